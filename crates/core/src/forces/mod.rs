@@ -1,0 +1,8 @@
+//! One file a force. Each adds to the forces f [N]; positions x, velocities v and f are n x 3, column-major.
+
+pub(crate) mod drag;
+pub(crate) mod gravity;
+pub(crate) mod springs;
+pub(crate) mod wind;
+
+pub use wind::Wind;

@@ -1,0 +1,159 @@
+//! Springs: with d = xi - xj, L = |d|, u = d/L and w = vi - vj, the force on i is
+//! -(k (L - r) + c (w . u)) u, and its opposite on j. A spring of length zero has no direction, and no force.
+
+use crate::network::{Spring, SpringFamily, SpringLaw};
+
+/// Springs whose forces are found together before they are added up: enough to fill vectors, few enough for L1.
+const BLOCK: usize = 64;
+
+/// The factor s of the force -s d, from d . d and w . d.
+#[inline]
+fn pull<const DAMPED: bool>(law: &SpringLaw, dd: f64, wd: f64) -> f64 {
+    let inverse = if dd > 0.0 { 1.0 / dd.sqrt() } else { 0.0 };
+    let elastic = law.stiffness - law.stiffness * law.rest_length * inverse;
+    if DAMPED {
+        elastic + law.damping * wd * (inverse * inverse)
+    } else {
+        elastic
+    }
+}
+
+/// Three columns of an n x 3 matrix.
+fn columns(a: &[f64]) -> [&[f64]; 3] {
+    let n = a.len() / 3;
+    [&a[..n], &a[n..2 * n], &a[2 * n..]]
+}
+
+/// Adds the forces of a family: block by block, first the forces, then the sums at the one end, then at the other.
+pub(crate) fn add_family(family: &SpringFamily, x: &[f64], v: &[f64], f: &mut [f64]) {
+    let damped = family.law.damping > 0.0;
+    for run in &family.runs {
+        for start in run.clone().step_by(BLOCK) {
+            let block = start..run.end.min(start + BLOCK);
+            if damped {
+                add_block::<true>(&family.law, block, family.offset, x, v, f);
+            } else {
+                add_block::<false>(&family.law, block, family.offset, x, v, f);
+            }
+        }
+    }
+}
+
+fn add_block<const DAMPED: bool>(
+    law: &SpringLaw,
+    block: std::ops::Range<usize>,
+    offset: usize,
+    x: &[f64],
+    v: &[f64],
+    f: &mut [f64],
+) {
+    let n = x.len() / 3;
+    let m = block.len();
+    let other = block.start + offset..block.end + offset;
+    let [xi, yi, zi] = columns(x).map(|c| &c[block.clone()][..m]);
+    let [xj, yj, zj] = columns(x).map(|c| &c[other.clone()][..m]);
+    let [ui, vi, wi] = columns(v).map(|c| &c[block.clone()][..m]);
+    let [uj, vj, wj] = columns(v).map(|c| &c[other.clone()][..m]);
+    let mut forces = [[0.0; BLOCK]; 3];
+    let [fx, fy, fz] = forces.each_mut().map(|c| &mut c[..m]);
+    for k in 0..m {
+        let (dx, dy, dz) = (xi[k] - xj[k], yi[k] - yj[k], zi[k] - zj[k]);
+        let dd = dx * dx + dy * dy + dz * dz;
+        let wd = if DAMPED {
+            (ui[k] - uj[k]) * dx + (vi[k] - vj[k]) * dy + (wi[k] - wj[k]) * dz
+        } else {
+            0.0
+        };
+        let s = pull::<DAMPED>(law, dd, wd);
+        fx[k] = s * dx;
+        fy[k] = s * dy;
+        fz[k] = s * dz;
+    }
+    for (axis, force) in forces.iter().enumerate() {
+        for (f, force) in f[axis * n..][block.clone()].iter_mut().zip(force) {
+            *f -= force;
+        }
+        for (f, force) in f[axis * n..][other.clone()].iter_mut().zip(force) {
+            *f += force;
+        }
+    }
+}
+
+/// Adds the forces of single springs.
+pub(crate) fn add_list(list: &[Spring], x: &[f64], v: &[f64], f: &mut [f64]) {
+    let n = x.len() / 3;
+    for spring in list {
+        let (i, j) = (spring.i, spring.j);
+        let d = difference(x, i, j);
+        let s = if spring.law.damping > 0.0 {
+            pull::<true>(&spring.law, dot(d, d), dot(difference(v, i, j), d))
+        } else {
+            pull::<false>(&spring.law, dot(d, d), 0.0)
+        };
+        for axis in 0..3 {
+            f[axis * n + i] -= s * d[axis];
+            f[axis * n + j] += s * d[axis];
+        }
+    }
+}
+
+/// Adds dF of one spring. With dd = dxi - dxj, dw = dvi - dvj and p = (dd - u (u . dd)) / L, that is
+/// -k ((1 - r/L) dd + (r/L) u (u . dd)) - c ((dw . u + w . p) u + (w . u) p).
+pub(crate) fn add_differential(
+    spring: &Spring,
+    x: &[f64],
+    v: &[f64],
+    dx: &[f64],
+    dv: &[f64],
+    df: &mut [f64],
+) {
+    let (i, j) = (spring.i, spring.j);
+    let SpringLaw {
+        stiffness: k,
+        rest_length: r,
+        damping: c,
+    } = spring.law;
+    let d = difference(x, i, j);
+    let dd = difference(dx, i, j);
+    let length = dot(d, d).sqrt();
+    let inverse = if length > 0.0 { 1.0 / length } else { 0.0 };
+    let u = d.map(|d| d * inverse);
+    let along = dot(u, dd);
+    let mut force: [f64; 3] =
+        std::array::from_fn(|a| k * ((1.0 - r * inverse) * dd[a] + r * inverse * along * u[a]));
+    if c > 0.0 {
+        let w = difference(v, i, j);
+        let dw = difference(dv, i, j);
+        let p: [f64; 3] = std::array::from_fn(|a| (dd[a] - u[a] * along) * inverse);
+        let (rate, turn) = (dot(dw, u) + dot(w, p), dot(w, u));
+        for a in 0..3 {
+            force[a] += c * (rate * u[a] + turn * p[a]);
+        }
+    }
+    let n = x.len() / 3;
+    for axis in 0..3 {
+        df[axis * n + i] -= force[axis];
+        df[axis * n + j] += force[axis];
+    }
+}
+
+/// L [m].
+pub(crate) fn length(x: &[f64], spring: &Spring) -> f64 {
+    let d = difference(x, spring.i, spring.j);
+    dot(d, d).sqrt()
+}
+
+#[inline]
+fn difference(a: &[f64], i: usize, j: usize) -> [f64; 3] {
+    let n = a.len() / 3;
+    [
+        a[i] - a[j],
+        a[n + i] - a[n + j],
+        a[2 * n + i] - a[2 * n + j],
+    ]
+}
+
+#[inline]
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

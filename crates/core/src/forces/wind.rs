@@ -1,0 +1,128 @@
+//! A gentle wind in gusts: a steady breeze and a few plane waves whose directions, lengths and periods come from
+//! a seed. A pure function of seed, time and position, so that every stage of a step feels the same wind and a run
+//! can be repeated.
+
+use nalgebra::Vector3;
+
+const WAVES: usize = 4;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Wave {
+    /// [N]
+    amplitude: Vector3<f64>,
+    /// [rad/m]
+    number: Vector3<f64>,
+    /// [rad/s]
+    rate: f64,
+    /// [rad]
+    phase: f64,
+}
+
+impl Wave {
+    fn argument(&self, t: f64, x: [f64; 3]) -> f64 {
+        let q = self.number;
+        q.x * x[0] + q.y * x[1] + q.z * x[2] - self.rate * t + self.phase
+    }
+}
+
+/// The wind's force on a particle: a breeze and four waves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wind {
+    breeze: Vector3<f64>,
+    waves: [Wave; WAVES],
+}
+
+impl Wind {
+    /// A wind that pushes each particle by `force` [N] on the average, and never by more than 2.2 times that.
+    #[must_use]
+    pub fn new(seed: u64, force: Vector3<f64>) -> Self {
+        let mut random = SplitMix(seed);
+        let strength = force.norm();
+        let waves = std::array::from_fn(|_| {
+            let direction = Vector3::from_fn(|_, _| random.between(-1.0, 1.0));
+            Wave {
+                amplitude: 0.2 * force + 0.1 * strength * direction / direction.norm().max(1.0),
+                number: Vector3::from_fn(|_, _| random.between(-1.5, 1.5)),
+                rate: random.between(0.8, 3.5),
+                phase: random.between(0.0, std::f64::consts::TAU),
+            }
+        });
+        Self {
+            breeze: force,
+            waves,
+        }
+    }
+
+    /// The force [N] on a particle at x [m] at time t [s].
+    #[must_use]
+    pub fn force(&self, t: f64, x: [f64; 3]) -> Vector3<f64> {
+        self.waves.iter().fold(self.breeze, |f, wave| {
+            f + wave.amplitude * libm::sin(wave.argument(t, x))
+        })
+    }
+
+    pub(crate) fn add(&self, t: f64, x: &[f64], f: &mut [f64]) {
+        let n = x.len() / 3;
+        for i in 0..n {
+            let force = self.force(t, [x[i], x[n + i], x[2 * n + i]]);
+            for axis in 0..3 {
+                f[axis * n + i] += force[axis];
+            }
+        }
+    }
+
+    pub(crate) fn add_differential(&self, t: f64, x: &[f64], dx: &[f64], df: &mut [f64]) {
+        let n = x.len() / 3;
+        for i in 0..n {
+            let at = [x[i], x[n + i], x[2 * n + i]];
+            let towards = Vector3::new(dx[i], dx[n + i], dx[2 * n + i]);
+            for wave in &self.waves {
+                let slope = libm::cos(wave.argument(t, at)) * wave.number.dot(&towards);
+                for axis in 0..3 {
+                    df[axis * n + i] += wave.amplitude[axis] * slope;
+                }
+            }
+        }
+    }
+}
+
+/// Steele, Lea, Flood, *Fast splittable pseudorandom number generators*, 2014.
+struct SplitMix(u64);
+
+impl SplitMix {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.next() >> 11) as f64 / (1u64 << 53) as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wind_is_its_seed() {
+        let (a, b) = (Wind::new(7, Vector3::z()), Wind::new(7, Vector3::z()));
+        assert_eq!(a.force(1.5, [0.1, 0.2, 0.3]), b.force(1.5, [0.1, 0.2, 0.3]));
+        assert_ne!(a, Wind::new(8, Vector3::z()));
+    }
+
+    #[test]
+    fn gusts_stay_within_their_bound_and_average_to_the_breeze() {
+        let mean = Vector3::new(0.0, 0.0, 2.0);
+        let wind = Wind::new(1, mean);
+        let mut sum = Vector3::zeros();
+        for k in 0..100_000 {
+            let force = wind.force(f64::from(k) * 0.01, [0.3, -0.2, 0.1]);
+            assert!(force.norm() <= 2.2 * mean.norm());
+            sum += force;
+        }
+        assert!((sum / 100_000.0 - mean).norm() < 0.05 * mean.norm());
+    }
+}

@@ -1,0 +1,147 @@
+//! One file a method, one table. An integrator sees flat arrays and knows no physics.
+
+mod euler;
+mod heun;
+mod midpoint;
+mod rk4;
+mod symplectic_euler;
+mod verlet;
+
+use crate::error::Error;
+use crate::system::ParticleSystem;
+
+/// What a step cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Evaluations of f(t, y), or of the forces.
+    pub evaluations: u64,
+}
+
+/// Advances a state.
+pub trait Integrator {
+    /// Takes y from t to t + h: a pure function of the arguments. Allocates nothing.
+    ///
+    /// # Errors
+    /// The system is another than the one the integrator was made for: its state has another length, or it lacks
+    /// the forces and masses the method needs.
+    fn step(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error>;
+}
+
+/// A row of the table of methods.
+#[derive(Debug)]
+pub struct Method {
+    /// As typed on the command line.
+    pub name: &'static str,
+    /// The short name.
+    pub letter: char,
+    /// Other names it goes by.
+    pub aliases: &'static [&'static str],
+    /// In full.
+    pub title: &'static str,
+    /// The global error falls as h to this power.
+    pub order: u32,
+    /// Holds on every built-in scene [s].
+    pub default_step: f64,
+    /// Evaluations a step takes.
+    pub evaluations: u32,
+    /// Whether it needs forces and masses, rather than any f(t, y).
+    pub needs_mechanics: bool,
+    create: fn(dim: usize) -> Box<dyn Integrator>,
+}
+
+impl Method {
+    /// An integrator with scratch for this system.
+    ///
+    /// # Errors
+    /// The method needs forces and masses, and the system has none.
+    pub fn integrator(&self, system: &dyn ParticleSystem) -> Result<Box<dyn Integrator>, Error> {
+        if self.needs_mechanics && system.mechanics().is_none() {
+            return Err(Error::NeedsMechanics { method: self.name });
+        }
+        Ok((self.create)(system.dim()))
+    }
+}
+
+/// Every method.
+pub static METHODS: &[Method] = &[
+    euler::METHOD,
+    heun::METHOD,
+    midpoint::METHOD,
+    rk4::METHOD,
+    symplectic_euler::METHOD,
+    verlet::METHOD,
+];
+
+/// The method of this letter, name or alias.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static Method> {
+    METHODS
+        .iter()
+        .find(|m| name.chars().eq([m.letter]) || m.name == name || m.aliases.contains(&name))
+}
+
+/// `Ok` if `y` has the length `expected`.
+fn check_dim(expected: usize, y: &[f64]) -> Result<(), Error> {
+    if y.len() == expected {
+        Ok(())
+    } else {
+        Err(Error::Dimension {
+            expected,
+            found: y.len(),
+        })
+    }
+}
+
+/// y += h k
+fn add_scaled(y: &mut [f64], h: f64, k: &[f64]) {
+    for (y, k) in y.iter_mut().zip(k) {
+        *y += h * k;
+    }
+}
+
+/// out = y + h k
+fn scaled_sum(out: &mut [f64], y: &[f64], h: f64, k: &[f64]) {
+    for ((out, y), k) in out.iter_mut().zip(y).zip(k) {
+        *out = y + h * k;
+    }
+}
+
+/// v += h M^-1 F: what a force does in time h.
+fn kick(v: &mut [f64], h: f64, inverse_masses: &[f64], forces: &[f64]) {
+    let n = inverse_masses.len();
+    for (v, f) in v.chunks_exact_mut(n).zip(forces.chunks_exact(n)) {
+        for ((v, f), w) in v.iter_mut().zip(f).zip(inverse_masses) {
+            *v += h * (w * f);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn no_two_methods_share_a_name() {
+        let mut seen = HashSet::new();
+        for m in METHODS {
+            for name in [m.name, &m.letter.to_string()]
+                .into_iter()
+                .chain(m.aliases.iter().copied())
+            {
+                assert!(
+                    seen.insert(name.to_owned()),
+                    "{name} stands for two methods"
+                );
+                assert!(std::ptr::eq(find(name).unwrap(), m));
+            }
+        }
+        assert!(find("no such method").is_none());
+    }
+}

@@ -1,0 +1,40 @@
+//! Mass-spring systems and the integrators that step them.
+//!
+//! The crate computes and nothing else: no files, no clock, no window, no GPU.
+//!
+//! * [`ParticleSystem`] is a first-order system y' = f(t, y); [`Mechanics`] is one with forces and masses.
+//! * [`Integrator`]s step any [`ParticleSystem`]; [`integrators::METHODS`] lists them.
+//! * [`Network`] is particles and springs with the forces a scene asked for; [`scenes::SCENES`] lists the scenes.
+//! * [`Simulation`] is scene x method x time, with the hands that pull at it.
+//!
+//! ```
+//! use a3_core::{Simulation, integrators, scenes};
+//!
+//! let scene = scenes::find("chain").unwrap().build(None)?;
+//! let method = integrators::find("rk4").unwrap();
+//! let mut simulation = Simulation::new(scene, method, 0.01)?;
+//! simulation.advance_to(1.0)?;
+//! assert!(simulation.position(3).y < 0.0);
+//! # Ok::<(), a3_core::Error>(())
+//! ```
+
+pub mod colliders;
+mod error;
+pub mod forces;
+mod grid;
+pub mod integrators;
+mod network;
+mod path;
+pub mod scenes;
+mod simulation;
+mod system;
+
+pub use error::{BlowUp, Error};
+pub use grid::{Grid, MAX_PARTICLES};
+pub use integrators::{Integrator, Method, Work};
+pub use nalgebra::Vector3;
+pub use network::{Energy, Network, Spring, SpringFamily, SpringKind, SpringLaw};
+pub use path::{Path, Place};
+pub use scenes::{Model, Scene, SceneEntry, Swing, View};
+pub use simulation::Simulation;
+pub use system::{Mechanics, ParticleSystem};

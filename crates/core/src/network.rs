@@ -1,0 +1,499 @@
+//! Particles, springs, pins, and only the forces that a scene asked for.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use crate::colliders::{Floor, Sphere};
+use crate::error::{Error, at_least, positive};
+use crate::forces::{drag, gravity, springs, wind::Wind};
+use crate::path::{Path, Place};
+use crate::system::{Mechanics, place_pins};
+
+/// What a spring is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpringKind {
+    /// Holds neighbours together; drawn in the wireframe.
+    Structural,
+    /// Keeps a cell square.
+    Shear,
+    /// Keeps a row straight.
+    #[doc(alias = "flex")]
+    Bend,
+}
+
+/// How a spring answers to its length L and rate of stretch L': pulls with k (L - r) + c L'.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpringLaw {
+    /// k [N/m].
+    pub stiffness: f64,
+    /// r [m].
+    pub rest_length: f64,
+    /// c, along the spring [N s/m].
+    pub damping: f64,
+}
+
+impl SpringLaw {
+    /// # Errors
+    /// A number is negative or not finite.
+    pub fn new(stiffness: f64, rest_length: f64, damping: f64) -> Result<Self, Error> {
+        at_least(0.0, "a spring's stiffness", stiffness)?;
+        at_least(0.0, "a spring's rest length", rest_length)?;
+        at_least(0.0, "a spring's damping", damping)?;
+        Ok(Self {
+            stiffness,
+            rest_length,
+            damping,
+        })
+    }
+}
+
+/// One spring between particles i and j.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// What it is for.
+    pub kind: SpringKind,
+    /// One end.
+    pub i: usize,
+    /// The other end.
+    pub j: usize,
+    /// How it answers.
+    pub law: SpringLaw,
+}
+
+/// Springs of one law from each particle p of the `runs` to p + `offset`: on a grid, contiguous loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpringFamily {
+    /// What they are for.
+    pub kind: SpringKind,
+    /// How they answer.
+    pub law: SpringLaw,
+    /// From one end of a spring to the other.
+    pub offset: usize,
+    /// First ends.
+    pub runs: Vec<Range<usize>>,
+}
+
+impl SpringFamily {
+    /// Number of springs.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.runs.iter().map(ExactSizeIterator::len).sum()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Each spring by itself.
+    pub fn springs(&self) -> impl Iterator<Item = Spring> {
+        let Self {
+            kind, law, offset, ..
+        } = *self;
+        self.runs.iter().cloned().flatten().map(move |i| Spring {
+            kind,
+            i,
+            j: i + offset,
+            law,
+        })
+    }
+}
+
+/// A particle led along a path.
+#[derive(Clone, Debug, PartialEq)]
+struct Pin {
+    particle: usize,
+    path: Path,
+}
+
+/// Energy by kind [J]. Gravity's is zero at the origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// m v2 / 2
+    pub kinetic: f64,
+    /// k (L - r)2 / 2
+    pub elastic: f64,
+    /// -m g . x
+    pub gravitational: f64,
+}
+
+impl Energy {
+    /// The sum.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.elastic + self.gravitational
+    }
+}
+
+/// Particles and springs. Gravity, drag, wind and obstacles are absent until asked for, and cost nothing then.
+#[derive(Clone, Debug)]
+pub struct Network {
+    masses: Vec<f64>,
+    /// 0 where pinned.
+    inverse_masses: Vec<f64>,
+    families: Vec<SpringFamily>,
+    list: Vec<Spring>,
+    pins: Vec<Pin>,
+    gravity: Option<Vector3<f64>>,
+    drag: Option<f64>,
+    wind: Option<Wind>,
+    spheres: Vec<Sphere>,
+    floor: Option<Floor>,
+}
+
+impl Network {
+    /// Free particles of these masses [kg], and nothing else yet.
+    ///
+    /// # Errors
+    /// There is none, or a mass is not a finite number above 0.
+    pub fn new(masses: Vec<f64>) -> Result<Self, Error> {
+        if masses.is_empty() {
+            return Err(Error::Invalid(
+                "a network needs at least one particle".into(),
+            ));
+        }
+        for &m in &masses {
+            positive("a particle's mass", m)?;
+        }
+        Ok(Self {
+            inverse_masses: masses.iter().map(|m| 1.0 / m).collect(),
+            masses,
+            families: vec![],
+            list: vec![],
+            pins: vec![],
+            gravity: None,
+            drag: None,
+            wind: None,
+            spheres: vec![],
+            floor: None,
+        })
+    }
+
+    /// Number of particles.
+    #[must_use]
+    pub fn particles(&self) -> usize {
+        self.masses.len()
+    }
+
+    /// Mass of each particle [kg], of pinned ones too.
+    #[must_use]
+    pub fn masses(&self) -> &[f64] {
+        &self.masses
+    }
+
+    fn check_particle(&self, i: usize) -> Result<(), Error> {
+        let n = self.particles();
+        if i < n {
+            Ok(())
+        } else {
+            Err(Error::Invalid(format!(
+                "there is no particle {i}: they are numbered 0 to {}",
+                n - 1
+            )))
+        }
+    }
+
+    /// Adds one spring.
+    ///
+    /// # Errors
+    /// An end does not exist, or both are the same.
+    pub fn add_spring(&mut self, spring: Spring) -> Result<(), Error> {
+        self.check_particle(spring.i)?;
+        self.check_particle(spring.j)?;
+        if spring.i == spring.j {
+            return Err(Error::Invalid(format!(
+                "a spring needs two ends, and this has {} twice",
+                spring.i
+            )));
+        }
+        self.list.push(spring);
+        Ok(())
+    }
+
+    /// Adds springs of one law and offset.
+    ///
+    /// # Errors
+    /// An end does not exist, or both ends are the same.
+    pub fn add_family(&mut self, family: SpringFamily) -> Result<(), Error> {
+        if family.offset == 0 {
+            return Err(Error::Invalid(
+                "the offset of a family of springs is at least 1".into(),
+            ));
+        }
+        if let Some(end) = family
+            .runs
+            .iter()
+            .filter(|run| !run.is_empty())
+            .map(|run| run.end)
+            .max()
+        {
+            self.check_particle((end - 1).saturating_add(family.offset))?;
+        }
+        self.families.push(family);
+        Ok(())
+    }
+
+    /// Leads particle i along `path` from now on, whether it was pinned before or not.
+    ///
+    /// # Errors
+    /// There is no such particle.
+    pub fn pin(&mut self, i: usize, path: Path) -> Result<(), Error> {
+        self.check_particle(i)?;
+        self.inverse_masses[i] = 0.0;
+        if let Some(pin) = self.pins.iter_mut().find(|pin| pin.particle == i) {
+            pin.path = path;
+        } else {
+            self.pins.push(Pin { particle: i, path });
+        }
+        Ok(())
+    }
+
+    /// Lets particle i go. Does nothing if it is free.
+    pub fn unpin(&mut self, i: usize) {
+        if let Some(k) = self.pins.iter().position(|pin| pin.particle == i) {
+            self.pins.swap_remove(k);
+            self.inverse_masses[i] = 1.0 / self.masses[i];
+        }
+    }
+
+    /// The pinned particles and their paths.
+    pub fn pins(&self) -> impl Iterator<Item = (usize, Path)> {
+        self.pins.iter().map(|pin| (pin.particle, pin.path))
+    }
+
+    /// Whether particle i is pinned.
+    #[must_use]
+    pub fn is_pinned(&self, i: usize) -> bool {
+        self.inverse_masses[i] == 0.0
+    }
+
+    /// Asks for gravity g [m/s2].
+    pub fn set_gravity(&mut self, g: Vector3<f64>) {
+        self.gravity = (g != Vector3::zeros()).then_some(g);
+    }
+
+    /// g [m/s2], if asked for.
+    #[must_use]
+    pub fn gravity(&self) -> Option<Vector3<f64>> {
+        self.gravity
+    }
+
+    /// Asks for viscous drag -c v, c in kg/s, on each particle.
+    ///
+    /// # Errors
+    /// c is negative or not finite.
+    pub fn set_drag(&mut self, c: f64) -> Result<(), Error> {
+        at_least(0.0, "the drag", c)?;
+        self.drag = (c > 0.0).then_some(c);
+        Ok(())
+    }
+
+    /// c [kg/s], if asked for.
+    #[must_use]
+    pub fn drag(&self) -> Option<f64> {
+        self.drag
+    }
+
+    /// Lets wind blow, or calms it.
+    pub fn set_wind(&mut self, wind: Option<Wind>) {
+        self.wind = wind;
+    }
+
+    /// The wind, if it blows.
+    #[must_use]
+    pub fn wind(&self) -> Option<&Wind> {
+        self.wind.as_ref()
+    }
+
+    /// Puts a sphere in the way.
+    pub fn add_sphere(&mut self, sphere: Sphere) {
+        self.spheres.push(sphere);
+    }
+
+    /// The spheres in the way.
+    #[must_use]
+    pub fn spheres(&self) -> &[Sphere] {
+        &self.spheres
+    }
+
+    /// Lays a floor.
+    pub fn set_floor(&mut self, floor: Floor) {
+        self.floor = Some(floor);
+    }
+
+    /// The floor, if there is one.
+    #[must_use]
+    pub fn floor(&self) -> Option<Floor> {
+        self.floor
+    }
+
+    /// The families of springs.
+    #[must_use]
+    pub fn families(&self) -> &[SpringFamily] {
+        &self.families
+    }
+
+    /// Every spring by itself, families first.
+    pub fn springs(&self) -> impl Iterator<Item = Spring> {
+        self.families
+            .iter()
+            .flat_map(SpringFamily::springs)
+            .chain(self.list.iter().copied())
+    }
+
+    /// Names of the forces and obstacles this network pays for.
+    #[must_use]
+    pub fn forces_in_use(&self) -> Vec<&'static str> {
+        let laws = || {
+            self.families
+                .iter()
+                .map(|f| f.law)
+                .chain(self.list.iter().map(|s| s.law))
+        };
+        [
+            (laws().next().is_some(), "springs"),
+            (laws().any(|law| law.damping > 0.0), "spring damping"),
+            (self.gravity.is_some(), "gravity"),
+            (self.drag.is_some(), "drag"),
+            (self.wind.is_some(), "wind"),
+            (!self.spheres.is_empty(), "sphere"),
+            (self.floor.is_some(), "floor"),
+        ]
+        .into_iter()
+        .filter_map(|(used, name)| used.then_some(name))
+        .collect()
+    }
+
+    /// The springs' part of the force [N], added to `f`.
+    pub fn add_spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
+        for family in &self.families {
+            springs::add_family(family, x, v, f);
+        }
+        springs::add_list(&self.list, x, v, f);
+    }
+
+    /// The energy in the state (x, v). Drag, damping and wind have none.
+    #[must_use]
+    pub fn energy(&self, x: &[f64], v: &[f64]) -> Energy {
+        let n = self.particles();
+        let kinetic = v
+            .chunks_exact(n)
+            .map(|v| {
+                v.iter()
+                    .zip(&self.masses)
+                    .map(|(v, m)| 0.5 * m * v * v)
+                    .sum::<f64>()
+            })
+            .sum();
+        let elastic = self
+            .springs()
+            .map(|s| 0.5 * s.law.stiffness * (springs::length(x, &s) - s.law.rest_length).powi(2))
+            .sum();
+        let gravitational = self
+            .gravity
+            .map_or(0.0, |g| gravity::energy(g, &self.masses, x));
+        Energy {
+            kinetic,
+            elastic,
+            gravitational,
+        }
+    }
+
+    /// Length over rest length of the structural spring that is stretched most; 1 if there is none.
+    #[must_use]
+    pub fn largest_stretch(&self, x: &[f64]) -> f64 {
+        self.springs()
+            .filter(|s| s.kind == SpringKind::Structural && s.law.rest_length > 0.0)
+            .map(|s| springs::length(x, &s) / s.law.rest_length)
+            .reduce(f64::max)
+            .unwrap_or(1.0)
+    }
+
+    fn reads_velocity(&self) -> bool {
+        let damped = |law: &SpringLaw| law.damping > 0.0;
+        self.families.iter().any(|f| damped(&f.law)) || self.list.iter().any(|s| damped(&s.law))
+    }
+}
+
+impl Mechanics for Network {
+    fn inverse_masses(&self) -> &[f64] {
+        &self.inverse_masses
+    }
+
+    fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.kick_forces(t, x, v, f);
+        if let Some(g) = self.gravity {
+            gravity::add(g, &self.masses, f);
+        }
+        if let Some(c) = self.drag {
+            drag::add(c, v, f);
+        }
+    }
+
+    fn force_differential(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        dx: &[f64],
+        dv: &[f64],
+        df: &mut [f64],
+    ) {
+        df.fill(0.0);
+        for spring in self.springs() {
+            springs::add_differential(&spring, x, v, dx, dv, df);
+        }
+        if let Some(c) = self.drag {
+            drag::add(c, dv, df);
+        }
+        if let Some(wind) = &self.wind {
+            wind.add_differential(t, x, dx, df);
+        }
+    }
+
+    fn pins(&self, t: f64, visit: &mut dyn FnMut(usize, Place)) {
+        for pin in &self.pins {
+            visit(pin.particle, pin.path.at(t));
+        }
+    }
+
+    /// Springs and wind. Gravity and drag are in the drift.
+    fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        f.fill(0.0);
+        self.add_spring_forces(x, v, f);
+        if let Some(wind) = &self.wind {
+            wind.add(t, x, f);
+        }
+    }
+
+    fn kick_reads_velocity(&self) -> bool {
+        self.reads_velocity()
+    }
+
+    /// x' = v, v' = g - (c/m) v, exactly.
+    fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
+        let n = self.particles();
+        let g = self.gravity.unwrap_or_default();
+        for axis in 0..3 {
+            let column = axis * n..(axis + 1) * n;
+            let (x, v) = (&mut x[column.clone()], &mut v[column]);
+            match self.drag {
+                None => gravity::drift(g[axis], h, x, v),
+                Some(c) => drag::drift(c, g[axis], h, &self.inverse_masses, x, v),
+            }
+        }
+        place_pins(self, t + h, x, v);
+    }
+
+    fn constrain(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
+        for sphere in &self.spheres {
+            sphere.push_out(t, x, v);
+        }
+        if let Some(floor) = self.floor {
+            floor.push_out(x, v);
+        }
+        place_pins(self, t, x, v);
+    }
+}

@@ -1,0 +1,155 @@
+//! One file a scene, one table. A scene is data: a model, the state it starts from, and what a hand or an eye needs.
+
+mod chain;
+mod cloth;
+mod mit;
+mod pendulum;
+mod simple;
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use crate::error::Error;
+use crate::forces::Wind;
+use crate::grid::Grid;
+use crate::network::Network;
+use crate::system::ParticleSystem;
+
+/// A first-order system that can be shared with its runs.
+pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
+
+/// What is simulated.
+#[derive(Clone)]
+pub enum Model {
+    /// Any y' = f(t, y) whose state is n x 3 positions, column-major.
+    FirstOrder(FirstOrder),
+    /// Masses and springs.
+    Network(Box<Network>),
+}
+
+impl Model {
+    /// The model as an integrator sees it.
+    #[must_use]
+    pub fn system(&self) -> &dyn ParticleSystem {
+        match self {
+            Self::FirstOrder(system) => system.as_ref(),
+            Self::Network(network) => network.as_ref(),
+        }
+    }
+
+    /// The masses and springs, if it has any.
+    #[must_use]
+    pub fn network(&self) -> Option<&Network> {
+        match self {
+            Self::FirstOrder(_) => None,
+            Self::Network(network) => Some(network),
+        }
+    }
+
+    /// Number of particles.
+    #[must_use]
+    pub fn particles(&self) -> usize {
+        self.network()
+            .map_or(self.system().dim() / 3, Network::particles)
+    }
+}
+
+/// How pins swing: to and fro by `amplitude`, at `rate`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Swing {
+    /// [m]
+    pub amplitude: Vector3<f64>,
+    /// [rad/s]
+    pub rate: f64,
+}
+
+/// Where an eye looks from, and at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// [m]
+    pub eye: Vector3<f64>,
+    /// [m]
+    pub target: Vector3<f64>,
+}
+
+/// A model with the state it starts from.
+#[derive(Clone)]
+pub struct Scene {
+    /// As in the table.
+    pub name: &'static str,
+    /// What is simulated.
+    pub model: Model,
+    /// y at t = 0.
+    pub state: Vec<f64>,
+    /// The grid of a cloth: it can be drawn as a surface.
+    pub grid: Option<Grid>,
+    /// What key `s` does to the pins.
+    pub swing: Option<Swing>,
+    /// What key `d` lets blow.
+    pub wind: Option<Wind>,
+    /// The particle whose way is drawn.
+    pub trail: Option<usize>,
+    /// Where to look from.
+    pub view: View,
+}
+
+/// A row of the table of scenes.
+#[derive(Debug)]
+pub struct SceneEntry {
+    /// As typed on the command line.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub summary: &'static str,
+    /// Rows and columns by default, if it has any.
+    pub grid: Option<(usize, usize)>,
+    make: fn(Grid) -> Result<Scene, Error>,
+}
+
+impl SceneEntry {
+    /// Builds the scene with this grid, or with its own.
+    ///
+    /// # Errors
+    /// A grid is asked of a scene that has none.
+    pub fn build(&self, grid: Option<Grid>) -> Result<Scene, Error> {
+        match (self.grid, grid) {
+            (None, Some(_)) => Err(Error::Invalid(format!(
+                "the scene {} has no grid",
+                self.name
+            ))),
+            (Some(_), Some(grid)) => (self.make)(grid),
+            (own, None) => {
+                let (rows, cols) = own.unwrap_or((2, 2));
+                (self.make)(Grid::new(rows, cols)?)
+            }
+        }
+    }
+}
+
+/// Every scene, in the order in which key `t` shows them.
+pub static SCENES: &[SceneEntry] = &[
+    cloth::ENTRY,
+    simple::ENTRY,
+    pendulum::ENTRY,
+    chain::ENTRY,
+    mit::ENTRY,
+    mit::WITH_SPHERE,
+];
+
+/// The scene of this name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static SceneEntry> {
+    SCENES.iter().find(|scene| scene.name == name)
+}
+
+/// The state [x | v] of particles at rest.
+fn at_rest(positions: &[Vector3<f64>]) -> Vec<f64> {
+    let n = positions.len();
+    let mut y = vec![0.0; 6 * n];
+    for (i, position) in positions.iter().enumerate() {
+        for axis in 0..3 {
+            y[axis * n + i] = position[axis];
+        }
+    }
+    y
+}

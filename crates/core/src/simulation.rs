@@ -1,0 +1,500 @@
+//! Scene x method x time, and the hands that swing, pull and blow.
+
+use std::ops::Range;
+
+use nalgebra::{DMatrixView, Vector3};
+
+use crate::error::{BlowUp, Error, positive};
+use crate::integrators::{Integrator, Method, Work};
+use crate::network::{Energy, Network};
+use crate::path::Path;
+use crate::scenes::{Model, Scene, Swing};
+
+/// A particle this many times the scene's radius away from its middle is lost.
+const LOST: f64 = 100.0;
+
+/// A pulled particle gets to where it is pulled in this time [s] ...
+const PULL_TIME: f64 = 1.0 / 30.0;
+
+/// ... but no faster than this many radii of the scene per second.
+const PULL_SPEED: f64 = 10.0;
+
+/// A run of a scene.
+pub struct Simulation {
+    scene: Scene,
+    model: Model,
+    method: &'static Method,
+    integrator: Box<dyn Integrator>,
+    step: f64,
+    y: Vec<f64>,
+    /// Time is `since + taken * step`, which gathers no rounding errors.
+    since: f64,
+    taken: u64,
+    steps: u64,
+    work: Work,
+    swinging: bool,
+    /// The swing's: while it swings, sin(rate t + phase); while it stands, sin(phase) [rad].
+    swing_phase: f64,
+    /// The grabbed particle, and whether it was pinned before.
+    grabbed: Option<(usize, bool)>,
+    blow_up: Option<BlowUp>,
+    good: Good,
+    middle: Vector3<f64>,
+    radius: f64,
+}
+
+/// The state to go back to when a step fails.
+struct Good {
+    y: Vec<f64>,
+    since: f64,
+    taken: u64,
+}
+
+impl Simulation {
+    /// A run from the scene's beginning, in steps of `step` [s].
+    ///
+    /// # Errors
+    /// The method does not serve the scene, or the step is not above 0.
+    pub fn new(scene: Scene, method: &'static Method, step: f64) -> Result<Self, Error> {
+        positive("the step", step)?;
+        let model = scene.model.clone();
+        let integrator = method.integrator(model.system())?;
+        let y = scene.state.clone();
+        let (middle, radius) = bounds(&y[..3 * model.particles()]);
+        let good = Good {
+            y: y.clone(),
+            since: 0.0,
+            taken: 0,
+        };
+        Ok(Self {
+            scene,
+            model,
+            method,
+            integrator,
+            step,
+            y,
+            since: 0.0,
+            taken: 0,
+            steps: 0,
+            work: Work::default(),
+            swinging: false,
+            swing_phase: 0.0,
+            grabbed: None,
+            blow_up: None,
+            good,
+            middle,
+            radius,
+        })
+    }
+
+    /// The scene as it was built.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The model as it is now: pins led, wind on or off.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The method.
+    #[must_use]
+    pub fn method(&self) -> &'static Method {
+        self.method
+    }
+
+    /// The step asked for [s].
+    #[must_use]
+    pub fn step_size(&self) -> f64 {
+        self.step
+    }
+
+    /// Simulated time [s].
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.since + self.taken as f64 * self.step
+    }
+
+    /// Steps taken since the beginning.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// What they cost.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// y
+    #[must_use]
+    pub fn state(&self) -> &[f64] {
+        &self.y
+    }
+
+    /// Number of particles.
+    #[must_use]
+    pub fn particles(&self) -> usize {
+        self.model.particles()
+    }
+
+    /// Positions [m], n x 3.
+    #[must_use]
+    pub fn positions(&self) -> DMatrixView<'_, f64> {
+        let n = self.particles();
+        DMatrixView::from_slice(&self.y[..3 * n], n, 3)
+    }
+
+    /// Position of particle i [m].
+    #[must_use]
+    pub fn position(&self, i: usize) -> Vector3<f64> {
+        let n = self.particles();
+        Vector3::new(self.y[i], self.y[n + i], self.y[2 * n + i])
+    }
+
+    /// Velocities [m/s], column-major: of a mechanical scene from its state, of a first-order one from f.
+    #[must_use]
+    pub fn velocities(&self) -> Vec<f64> {
+        if self.model.network().is_some() {
+            return self.y[self.y.len() / 2..].to_vec();
+        }
+        let mut v = vec![0.0; self.y.len()];
+        self.model.system().eval_f(self.time(), &self.y, &mut v);
+        v
+    }
+
+    /// The energy, if the scene has forces.
+    #[must_use]
+    pub fn energy(&self) -> Option<Energy> {
+        let (x, v) = self.y.split_at(self.y.len() / 2);
+        self.model.network().map(|network| network.energy(x, v))
+    }
+
+    /// Height of the lowest particle [m].
+    #[must_use]
+    pub fn lowest(&self) -> f64 {
+        self.positions().column(1).min()
+    }
+
+    /// Length over rest length of the most stretched structural spring, if there are springs.
+    #[must_use]
+    pub fn largest_stretch(&self) -> Option<f64> {
+        let x = &self.y[..3 * self.particles()];
+        self.model
+            .network()
+            .map(|network| network.largest_stretch(x))
+    }
+
+    /// The middle of the scene as it began, and the distance of its farthest particle from there, at least 1 [m].
+    #[must_use]
+    pub fn extent(&self) -> (Vector3<f64>, f64) {
+        (self.middle, self.radius)
+    }
+
+    /// Where the run was lost, if it was.
+    #[must_use]
+    pub fn blow_up(&self) -> Option<BlowUp> {
+        self.blow_up
+    }
+
+    /// Takes this many steps. When one of them blows up, the state is again what it was before the first of them,
+    /// and no more steps are taken until [`reset`](Self::reset).
+    ///
+    /// # Errors
+    /// The run blew up, now or earlier.
+    pub fn take_steps(&mut self, count: u64) -> Result<(), Error> {
+        self.keep()?;
+        for _ in 0..count {
+            self.advance(self.step)?;
+            self.taken += 1;
+        }
+        Ok(())
+    }
+
+    /// Goes on to `time` [s] exactly, if it is not past it: the last step is shortened. As
+    /// [`take_steps`](Self::take_steps) when a step blows up.
+    ///
+    /// # Errors
+    /// The run blew up, now or earlier.
+    pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
+        self.keep()?;
+        while self.time() < time {
+            let left = time - self.time();
+            // A last sliver of a rounding error's size is no step of its own.
+            if left > self.step * (1.0 + 1e-9) {
+                self.advance(self.step)?;
+                self.taken += 1;
+            } else {
+                self.advance(left)?;
+                self.since = time;
+                self.taken = 0;
+            }
+        }
+        Ok(())
+    }
+
+    /// Remembers the state, unless the run is lost.
+    fn keep(&mut self) -> Result<(), Error> {
+        if let Some(blow_up) = self.blow_up {
+            return Err(blow_up.into());
+        }
+        self.good.y.copy_from_slice(&self.y);
+        self.good.since = self.since;
+        self.good.taken = self.taken;
+        Ok(())
+    }
+
+    /// One step of h, and what follows it: constraints, and the look whether it went well.
+    fn advance(&mut self, h: f64) -> Result<(), Error> {
+        let t = self.time();
+        let system = self.model.system();
+        let work = self.integrator.step(system, t, h, &mut self.y)?;
+        self.work.evaluations += work.evaluations;
+        self.steps += 1;
+        if let Some(mechanics) = system.mechanics() {
+            let half = self.y.len() / 2;
+            let (x, v) = self.y.split_at_mut(half);
+            mechanics.constrain(t + h, x, v);
+        }
+        if let Some((particle, distance)) = self.lost() {
+            let blow_up = BlowUp {
+                step: self.steps,
+                time: t + h,
+                particle,
+                distance,
+            };
+            self.blow_up = Some(blow_up);
+            self.y.copy_from_slice(&self.good.y);
+            self.since = self.good.since;
+            self.taken = self.good.taken;
+            return Err(blow_up.into());
+        }
+        Ok(())
+    }
+
+    /// The first particle that is out of reach, and how far it is.
+    fn lost(&self) -> Option<(usize, f64)> {
+        let n = self.particles();
+        let x = &self.y[..3 * n];
+        let v = &self.y[3 * n..];
+        let c = self.middle;
+        let limit = (LOST * self.radius).powi(2);
+        let squared = |i: usize| {
+            (x[i] - c.x).powi(2) + (x[n + i] - c.y).powi(2) + (x[2 * n + i] - c.z).powi(2)
+        };
+        // By blocks without a branch inside. Written so that NaN, which compares as false, is lost too.
+        let near = |block: Range<usize>| block.fold(true, |near, i| near & (squared(i) <= limit));
+        if !(0..n)
+            .step_by(64)
+            .all(|start| near(start..n.min(start + 64)))
+        {
+            let i = (0..n).find(|&i| !near(i..i + 1))?;
+            return Some((i, squared(i).sqrt()));
+        }
+        // Multiplying by zero leaves zero, unless the number is not finite.
+        if v.iter().map(|v| v * 0.0).sum::<f64>() == 0.0 {
+            return None;
+        }
+        v.iter()
+            .position(|v| !v.is_finite())
+            .map(|k| (k % n, f64::NAN))
+    }
+
+    /// Back to the beginning. Wind and swing stay on if they are; the hand lets go.
+    pub fn reset(&mut self) {
+        let (windy, swinging) = (self.windy(), self.swinging);
+        self.model = self.scene.model.clone();
+        self.y.copy_from_slice(&self.scene.state);
+        (self.since, self.taken, self.steps) = (0.0, 0, 0);
+        (self.work, self.blow_up, self.grabbed) = (Work::default(), None, None);
+        (self.swinging, self.swing_phase) = (false, 0.0);
+        self.set_wind(windy);
+        self.set_swinging(swinging);
+    }
+
+    /// Goes on with another method.
+    ///
+    /// # Errors
+    /// The method does not serve the scene; the run goes on as before.
+    pub fn set_method(&mut self, method: &'static Method) -> Result<(), Error> {
+        self.integrator = method.integrator(self.model.system())?;
+        self.method = method;
+        Ok(())
+    }
+
+    /// Goes on in other steps [s].
+    ///
+    /// # Errors
+    /// The step is not above 0; the run goes on as before.
+    pub fn set_step(&mut self, step: f64) -> Result<(), Error> {
+        positive("the step", step)?;
+        self.since = self.time();
+        self.taken = 0;
+        self.step = step;
+        Ok(())
+    }
+
+    fn network_mut(&mut self) -> Option<&mut Network> {
+        match &mut self.model {
+            Model::FirstOrder(_) => None,
+            Model::Network(network) => Some(network),
+        }
+    }
+
+    /// Whether the wind blows.
+    #[must_use]
+    pub fn windy(&self) -> bool {
+        self.model
+            .network()
+            .is_some_and(|network| network.wind().is_some())
+    }
+
+    /// Lets the scene's wind blow, or calms it. A scene without wind stays as it is.
+    pub fn set_wind(&mut self, on: bool) {
+        let wind = self.scene.wind.filter(|_| on);
+        if let Some(network) = self.network_mut() {
+            network.set_wind(wind);
+        }
+    }
+
+    /// Whether the pins swing.
+    #[must_use]
+    pub fn swinging(&self) -> bool {
+        self.swinging
+    }
+
+    /// Swings the pins from where they are, or stops them there. A scene without swing stays as it is.
+    pub fn set_swinging(&mut self, on: bool) {
+        let Some(swing) = self.scene.swing.filter(|_| on != self.swinging) else {
+            return;
+        };
+        let turn = swing.rate * self.time();
+        self.swing_phase += if on { -turn } else { turn };
+        self.swinging = on;
+        let held = self.grabbed.map(|(i, _)| i);
+        let pins: Vec<usize> = self.pins().filter(|&i| Some(i) != held).collect();
+        for i in pins {
+            self.leave_pin(i);
+        }
+    }
+
+    fn pins(&self) -> impl Iterator<Item = usize> {
+        self.model
+            .network()
+            .into_iter()
+            .flat_map(Network::pins)
+            .map(|(i, _)| i)
+    }
+
+    /// Pins particle i where it is, or swings it from there.
+    fn leave_pin(&mut self, i: usize) {
+        let position = self.position(i);
+        let path = match self.scene.swing.filter(|_| self.swinging) {
+            None => Path::Still(position),
+            Some(Swing { amplitude, rate }) => {
+                let phase = self.swing_phase;
+                let center = position - amplitude * libm::sin(rate * self.time() + phase);
+                Path::Sine {
+                    center,
+                    amplitude,
+                    rate,
+                    phase,
+                }
+            }
+        };
+        self.pin(i, path);
+    }
+
+    /// Leads particle i along `path` from now on.
+    fn pin(&mut self, i: usize, path: Path) {
+        let (n, velocity) = (self.particles(), path.at(self.time()).velocity);
+        if let Some(network) = self.network_mut()
+            && network.pin(i, path).is_ok()
+        {
+            for axis in 0..3 {
+                self.y[(3 + axis) * n + i] = velocity[axis];
+            }
+        }
+    }
+
+    /// The grabbed particle.
+    #[must_use]
+    pub fn grabbed(&self) -> Option<usize> {
+        self.grabbed.map(|(i, _)| i)
+    }
+
+    /// Takes hold of particle i, and lets go of any other. Does nothing in a scene without masses, where there is
+    /// nothing to hold against.
+    ///
+    /// # Errors
+    /// There is no such particle.
+    pub fn grab(&mut self, i: usize) -> Result<(), Error> {
+        self.release();
+        let Some(network) = self.model.network() else {
+            return Ok(());
+        };
+        let n = network.particles();
+        if i >= n {
+            return Err(Error::Invalid(format!(
+                "there is no particle {i}: they are numbered 0 to {}",
+                n - 1
+            )));
+        }
+        self.grabbed = Some((i, network.is_pinned(i)));
+        self.pin(i, Path::Still(self.position(i)));
+        Ok(())
+    }
+
+    /// Draws the grabbed particle towards `target` [m]: there at once to the eye, and still no faster than the
+    /// scene's own size allows.
+    pub fn pull(&mut self, target: Vector3<f64>) {
+        let Some((i, _)) = self.grabbed else { return };
+        let (from, start) = (self.position(i), self.time());
+        let time = PULL_TIME.max((target - from).norm() / (PULL_SPEED * self.radius));
+        self.pin(
+            i,
+            Path::Line {
+                from,
+                to: target,
+                start,
+                end: start + time,
+            },
+        );
+    }
+
+    /// Lets go. A particle that was free keeps the speed of the hand; one that was pinned is pinned where it is.
+    pub fn release(&mut self) {
+        let Some((i, was_pinned)) = self.grabbed.take() else {
+            return;
+        };
+        if was_pinned {
+            self.leave_pin(i);
+        } else if let Some(network) = self.network_mut() {
+            network.unpin(i);
+        }
+    }
+}
+
+/// The middle of the smallest upright box around the particles, and the distance of the farthest from it, at least 1.
+fn bounds(x: &[f64]) -> (Vector3<f64>, f64) {
+    let n = x.len() / 3;
+    let range = |axis: usize| {
+        let column = &x[axis * n..(axis + 1) * n];
+        column
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
+                (low.min(x), high.max(x))
+            })
+    };
+    let middle = Vector3::from_fn(|axis, _| {
+        let (low, high) = range(axis);
+        0.5 * (low + high)
+    });
+    let radius = (0..n)
+        .map(|i| (Vector3::new(x[i], x[n + i], x[2 * n + i]) - middle).norm())
+        .fold(1.0, f64::max);
+    (middle, radius)
+}

@@ -1,0 +1,112 @@
+//! What an integrator sees: flat arrays of which only the length changes.
+
+use crate::path::Place;
+
+/// A first-order system y' = f(t, y).
+pub trait ParticleSystem {
+    /// Length of the state y.
+    fn dim(&self) -> usize;
+
+    /// Writes f(t, y) to `dydt`. Pure: reads the state it is given, not one of its own.
+    ///
+    /// Both slices have length [`dim`](Self::dim).
+    #[doc(alias = "evalF")]
+    fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]);
+
+    /// The second-order structure, if the system has one.
+    fn mechanics(&self) -> Option<&dyn Mechanics> {
+        None
+    }
+}
+
+/// M x'' = F(t, x, v). Its state is y = [x | v], and it is a [`ParticleSystem`] through that.
+///
+/// Each of x, v and F holds n x 3 numbers in column-major order: all x, then all y, then all z.
+/// Units are m, kg, s.
+pub trait Mechanics {
+    /// One over the mass of each particle [1/kg]; 0 pins a particle.
+    fn inverse_masses(&self) -> &[f64];
+
+    /// Writes F(t, x, v) [N] to `f`, on pinned particles too.
+    fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
+
+    /// Writes dF = dF/dx dx + dF/dv dv to `df`, without forming a matrix.
+    fn force_differential(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        dx: &[f64],
+        dv: &[f64],
+        df: &mut [f64],
+    );
+
+    /// Visits each pinned particle with the place it has at time t. Without any, nothing.
+    fn pins(&self, _t: f64, _visit: &mut dyn FnMut(usize, Place)) {}
+
+    /// The forces less the part that [`drift`](Self::drift) carries: what a splitting method kicks with.
+    fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.forces(t, x, v, f);
+    }
+
+    /// Whether [`kick_forces`](Self::kick_forces) depend on v. If not, a kick costs one evaluation instead of two.
+    fn kick_reads_velocity(&self) -> bool {
+        true
+    }
+
+    /// Moves x and v from t to t + h by the exact flow of x' = v, v' = the part that
+    /// [`kick_forces`](Self::kick_forces) left out. Pinned particles arrive at their place of t + h.
+    fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
+        for (x, v) in x.iter_mut().zip(&*v) {
+            *x += h * v;
+        }
+        place_pins(self, t + h, x, v);
+    }
+
+    /// Puts back, at the end of a step, what forces cannot hold: pins in their places, particles out of obstacles.
+    fn constrain(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
+        place_pins(self, t, x, v);
+    }
+}
+
+/// Writes the place of every pin at time t into x and v.
+pub(crate) fn place_pins<M: Mechanics + ?Sized>(system: &M, t: f64, x: &mut [f64], v: &mut [f64]) {
+    let n = x.len() / 3;
+    system.pins(t, &mut |i, place| {
+        for axis in 0..3 {
+            x[axis * n + i] = place.position[axis];
+            v[axis * n + i] = place.velocity[axis];
+        }
+    });
+}
+
+/// A mechanical system as a first-order one: x' = v, v' = F/m; a pin follows its path.
+impl<M: Mechanics> ParticleSystem for M {
+    fn dim(&self) -> usize {
+        6 * self.inverse_masses().len()
+    }
+
+    fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
+        let inverse_masses = self.inverse_masses();
+        let n = inverse_masses.len();
+        let (x, v) = y.split_at(3 * n);
+        let (dx, dv) = dydt.split_at_mut(3 * n);
+        self.forces(t, x, v, dv);
+        for column in dv.chunks_exact_mut(n) {
+            for (a, w) in column.iter_mut().zip(inverse_masses) {
+                *a *= w;
+            }
+        }
+        dx.copy_from_slice(v);
+        self.pins(t, &mut |i, place| {
+            for axis in 0..3 {
+                dx[axis * n + i] = place.velocity[axis];
+                dv[axis * n + i] = place.acceleration[axis];
+            }
+        });
+    }
+
+    fn mechanics(&self) -> Option<&dyn Mechanics> {
+        Some(self)
+    }
+}

@@ -1,0 +1,53 @@
+//! What several tests need.
+#![allow(dead_code, missing_docs, reason = "each test file uses its part")]
+
+use a3_core::{Grid, Method, Network, ParticleSystem, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3};
+use a3_core::{integrators, scenes};
+
+pub fn method(name: &str) -> &'static Method {
+    integrators::find(name).unwrap()
+}
+
+pub fn scene(name: &str) -> Scene {
+    scenes::find(name).unwrap().build(None).unwrap()
+}
+
+pub fn scene_with_grid(name: &str, rows: usize, cols: usize) -> Scene {
+    scenes::find(name).unwrap().build(Some(Grid::new(rows, cols).unwrap())).unwrap()
+}
+
+pub fn simulation(scene_name: &str, method_name: &str, step: f64) -> Simulation {
+    Simulation::new(scene(scene_name), method(method_name), step).unwrap()
+}
+
+/// y after `steps` steps of h with nothing between the method and the system.
+pub fn integrate(system: &dyn ParticleSystem, method: &Method, y: &[f64], h: f64, steps: u64) -> Vec<f64> {
+    let mut integrator = method.integrator(system).unwrap();
+    let mut y = y.to_vec();
+    for k in 0..steps {
+        integrator.step(system, k as f64 * h, h, &mut y).unwrap();
+    }
+    y
+}
+
+/// A linear oscillator of that angular frequency [rad/s] and damping ratio: a spring of rest length 0, pinned at the
+/// origin, with viscous drag. Particle 1 moves.
+pub fn oscillator(omega: f64, zeta: f64) -> Network {
+    let mut network = Network::new(vec![1.0; 2]).unwrap();
+    let law = SpringLaw::new(omega * omega, 0.0, 0.0).unwrap();
+    network.add_spring(Spring { kind: SpringKind::Structural, i: 0, j: 1, law }).unwrap();
+    network.pin(0, Path::Still(Vector3::zeros())).unwrap();
+    network.set_drag(2.0 * zeta * omega).unwrap();
+    network
+}
+
+/// The largest number in y, by size; infinite if one is not a number.
+pub fn size(y: &[f64]) -> f64 {
+    y.iter().fold(0.0, |m: f64, y| if y.is_nan() { f64::INFINITY } else { m.max(y.abs()) })
+}
+
+/// The largest difference between two states.
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    size(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())
+}

@@ -1,0 +1,57 @@
+//! The global error falls as h to the method's order, with gravity, drag, damped springs and a moving pin.
+
+mod common;
+
+use a3_core::{Network, Path, Spring, SpringKind, SpringLaw, Vector3, integrators};
+use common::{distance, integrate, method};
+
+fn network(spring_damping: f64) -> Network {
+    let mut network = Network::new(vec![1.0, 0.7, 1.3]).unwrap();
+    for (i, j, k) in [(0, 1, 20.0), (1, 2, 30.0)] {
+        let law = SpringLaw::new(k, 0.8, spring_damping).unwrap();
+        network.add_spring(Spring { kind: SpringKind::Structural, i, j, law }).unwrap();
+    }
+    let path = Path::Sine { center: Vector3::zeros(), amplitude: Vector3::new(0.3, 0.0, 0.2), rate: 2.0, phase: 0.4 };
+    network.pin(0, path).unwrap();
+    network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
+    network.set_drag(0.8).unwrap();
+    network
+}
+
+fn start(network: &Network) -> Vec<f64> {
+    let mut y = vec![0.0; 18];
+    let x = [[0.0; 3], [0.9, 0.1, 0.2], [1.5, -0.2, 0.3]];
+    for (i, x) in x.iter().enumerate() {
+        for axis in 0..3 {
+            y[3 * axis + i] = x[axis];
+        }
+    }
+    for (i, path) in network.pins() {
+        for axis in 0..3 {
+            y[3 * axis + i] = path.at(0.0).position[axis];
+            y[9 + 3 * axis + i] = path.at(0.0).velocity[axis];
+        }
+    }
+    y
+}
+
+#[test]
+fn every_method_has_its_order() {
+    for spring_damping in [0.0, 0.5] {
+        let network = network(spring_damping);
+        let y0 = start(&network);
+        let exact = integrate(&network, method("rk4"), &y0, 1.0 / 32768.0, 32768);
+        for m in integrators::METHODS {
+            // Small enough for the leading term, large enough to stay clear of rounding.
+            let steps = if m.order >= 4 { 512 } else { 4096 };
+            let error = |steps: u64| distance(&integrate(&network, m, &y0, 1.0 / steps as f64, steps), &exact);
+            let order = (error(steps) / error(2 * steps)).log2();
+            assert!(
+                (order - f64::from(m.order)).abs() < 0.05,
+                "{} with spring damping {spring_damping}: order {order:.3}, not {}",
+                m.name,
+                m.order
+            );
+        }
+    }
+}

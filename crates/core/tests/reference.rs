@@ -1,0 +1,107 @@
+//! Scenes whose states were computed elsewhere, by extended-precision extrapolation: met to 1e-9.
+
+mod common;
+
+use a3_core::{Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3, View};
+use common::method;
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Reference {
+    gravity: [f64; 3],
+    drag: f64,
+    mass: Vec<f64>,
+    pinned: Vec<usize>,
+    positions: Vec<[f64; 3]>,
+    velocities: Vec<[f64; 3]>,
+    springs: Vec<(usize, usize, f64, f64, f64)>,
+    states: Vec<State>,
+}
+
+#[derive(Deserialize)]
+struct State {
+    time: f64,
+    positions: Vec<[f64; 3]>,
+    velocities: Vec<[f64; 3]>,
+}
+
+fn load(name: &str) -> Reference {
+    let path = format!("{}/tests/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn column_major(positions: &[[f64; 3]], velocities: &[[f64; 3]]) -> Vec<f64> {
+    [positions, velocities].iter().flat_map(|a| (0..3).flat_map(move |axis| a.iter().map(move |x| x[axis]))).collect()
+}
+
+fn simulate(reference: &Reference, name: &str, h: f64) -> Simulation {
+    let mut network = Network::new(reference.mass.clone()).unwrap();
+    for &(i, j, k, rest, damping) in &reference.springs {
+        let law = SpringLaw::new(k, rest, damping).unwrap();
+        network.add_spring(Spring { kind: SpringKind::Structural, i, j, law }).unwrap();
+    }
+    for &i in &reference.pinned {
+        network.pin(i, Path::Still(Vector3::from(reference.positions[i]))).unwrap();
+    }
+    network.set_gravity(Vector3::from(reference.gravity));
+    network.set_drag(reference.drag).unwrap();
+    let scene = Scene {
+        name: "reference",
+        model: Model::Network(Box::new(network)),
+        state: column_major(&reference.positions, &reference.velocities),
+        grid: None,
+        swing: None,
+        wind: None,
+        trail: None,
+        view: View { eye: Vector3::z(), target: Vector3::zeros() },
+    };
+    Simulation::new(scene, method(name), h).unwrap()
+}
+
+/// The largest error over all states of the reference, velocities included.
+fn error(name: &str, method: &str, h: f64) -> f64 {
+    let reference = load(name);
+    let mut simulation = simulate(&reference, method, h);
+    let mut worst: f64 = 0.0;
+    for state in &reference.states {
+        simulation.advance_to(state.time).unwrap();
+        assert_eq!(simulation.time(), state.time);
+        worst = worst.max(common::distance(simulation.state(), &column_major(&state.positions, &state.velocities)));
+    }
+    worst
+}
+
+#[test]
+fn rk4_meets_every_reference() {
+    for (name, h) in
+        [("pendulum", 2e-4), ("pendulum_drag", 2e-4), ("chain", 1e-3), ("mit", 1e-4), ("cloth_damped", 1e-4)]
+    {
+        let error = error(name, "rk4", h);
+        println!("{name}: {error:.2e}");
+        assert!(error < 1e-9, "{name}: {error:e}");
+    }
+}
+
+/// Methods of lower order would need years of steps: their error at h and h/2, extrapolated, falls as it should.
+#[test]
+fn second_order_methods_close_in_on_the_reference() {
+    for method in ["trapezoid", "midpoint", "verlet"] {
+        let (coarse, fine) = (error("pendulum_drag", method, 1e-4), error("pendulum_drag", method, 5e-5));
+        assert!(fine < 1e-6 && (coarse / fine - 4.0).abs() < 0.1, "{method}: {coarse:e}, {fine:e}");
+    }
+}
+
+/// The scenes `mit` and `chain` are the course's: their states are the reference's.
+#[test]
+fn built_in_scenes_are_the_references() {
+    for (name, h) in [("mit", 2e-4), ("chain", 1e-3)] {
+        let reference = load(name);
+        let mut simulation = common::simulation(name, "rk4", h);
+        for state in &reference.states {
+            simulation.advance_to(state.time).unwrap();
+            let expected = column_major(&state.positions, &state.velocities);
+            let error = common::distance(simulation.state(), &expected);
+            assert!(error < 1e-8, "{name} at {}: {error:e}", state.time);
+        }
+    }
+}
