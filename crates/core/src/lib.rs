@@ -18,6 +18,8 @@
 //! # Ok::<(), a3_core::Error>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 pub mod colliders;
 mod error;
 pub mod forces;

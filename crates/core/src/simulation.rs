@@ -13,6 +13,9 @@ use crate::scenes::{Model, Scene, Swing};
 /// A particle this many times the scene's radius away from its middle is lost.
 const LOST: f64 = 100.0;
 
+/// A hand stretches a spring to this many times its rest length.
+const REACH: f64 = 3.0;
+
 /// A pulled particle gets to where it is pulled in this time [s] ...
 const PULL_TIME: f64 = 1.0 / 30.0;
 
@@ -448,11 +451,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// Draws the grabbed particle towards `target` [m]: there at once to the eye, and still no faster than the
-    /// scene's own size allows.
+    /// Draws the grabbed particle towards `target` [m]: there at once to the eye, unless springs hold it back. A hand
+    /// is strong and not almighty: it stretches a spring it holds to [`REACH`] times its rest length, and gets farther
+    /// as the other end comes along.
     pub fn pull(&mut self, target: Vector3<f64>) {
         let Some((i, _)) = self.grabbed else { return };
         let (from, start) = (self.position(i), self.time());
+        let target = self.within_reach(i, from, target);
         let time = PULL_TIME.max((target - from).norm() / (PULL_SPEED * self.radius));
         self.pin(
             i,
@@ -463,6 +468,33 @@ impl Simulation {
                 end: start + time,
             },
         );
+    }
+
+    /// The point on the way of particle i to `target` up to which no spring of its own is stretched too far. A spring
+    /// that is already may not get longer.
+    fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
+        let way = target - from;
+        let springs = self.model.network().into_iter().flat_map(Network::springs);
+        let share = springs
+            .filter(|s| s.i == i || s.j == i)
+            .map(|s| {
+                let other = self.position(s.i + s.j - i);
+                let limit = (REACH * s.law.rest_length).max((from - other).norm());
+                // The larger root u of |from + u way - other| = limit.
+                let d = from - other;
+                let (a, b, c) = (
+                    way.norm_squared(),
+                    d.dot(&way),
+                    d.norm_squared() - limit * limit,
+                );
+                if a > 0.0 {
+                    (-b + (b * b - a * c).max(0.0).sqrt()) / a
+                } else {
+                    1.0
+                }
+            })
+            .fold(1.0, f64::min);
+        from + share * way
     }
 
     /// Lets go. A particle that was free keeps the speed of the hand; one that was pinned is pinned where it is.

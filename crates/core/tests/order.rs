@@ -9,9 +9,21 @@ fn network(spring_damping: f64) -> Network {
     let mut network = Network::new(vec![1.0, 0.7, 1.3]).unwrap();
     for (i, j, k) in [(0, 1, 20.0), (1, 2, 30.0)] {
         let law = SpringLaw::new(k, 0.8, spring_damping).unwrap();
-        network.add_spring(Spring { kind: SpringKind::Structural, i, j, law }).unwrap();
+        network
+            .add_spring(Spring {
+                kind: SpringKind::Structural,
+                i,
+                j,
+                law,
+            })
+            .unwrap();
     }
-    let path = Path::Sine { center: Vector3::zeros(), amplitude: Vector3::new(0.3, 0.0, 0.2), rate: 2.0, phase: 0.4 };
+    let path = Path::Sine {
+        center: Vector3::zeros(),
+        amplitude: Vector3::new(0.3, 0.0, 0.2),
+        rate: 2.0,
+        phase: 0.4,
+    };
     network.pin(0, path).unwrap();
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
     network.set_drag(0.8).unwrap();
@@ -44,7 +56,12 @@ fn every_method_has_its_order() {
         for m in integrators::METHODS {
             // Small enough for the leading term, large enough to stay clear of rounding.
             let steps = if m.order >= 4 { 512 } else { 4096 };
-            let error = |steps: u64| distance(&integrate(&network, m, &y0, 1.0 / steps as f64, steps), &exact);
+            let error = |steps: u64| {
+                distance(
+                    &integrate(&network, m, &y0, 1.0 / steps as f64, steps),
+                    &exact,
+                )
+            };
             let order = (error(steps) / error(2 * steps)).log2();
             assert!(
                 (order - f64::from(m.order)).abs() < 0.05,

@@ -2,7 +2,9 @@
 
 mod common;
 
-use a3_core::{Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3, View};
+use a3_core::{
+    Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3, View,
+};
 use common::method;
 use serde::Deserialize;
 
@@ -31,17 +33,29 @@ fn load(name: &str) -> Reference {
 }
 
 fn column_major(positions: &[[f64; 3]], velocities: &[[f64; 3]]) -> Vec<f64> {
-    [positions, velocities].iter().flat_map(|a| (0..3).flat_map(move |axis| a.iter().map(move |x| x[axis]))).collect()
+    [positions, velocities]
+        .iter()
+        .flat_map(|a| (0..3).flat_map(move |axis| a.iter().map(move |x| x[axis])))
+        .collect()
 }
 
 fn simulate(reference: &Reference, name: &str, h: f64) -> Simulation {
     let mut network = Network::new(reference.mass.clone()).unwrap();
     for &(i, j, k, rest, damping) in &reference.springs {
         let law = SpringLaw::new(k, rest, damping).unwrap();
-        network.add_spring(Spring { kind: SpringKind::Structural, i, j, law }).unwrap();
+        network
+            .add_spring(Spring {
+                kind: SpringKind::Structural,
+                i,
+                j,
+                law,
+            })
+            .unwrap();
     }
     for &i in &reference.pinned {
-        network.pin(i, Path::Still(Vector3::from(reference.positions[i]))).unwrap();
+        network
+            .pin(i, Path::Still(Vector3::from(reference.positions[i])))
+            .unwrap();
     }
     network.set_gravity(Vector3::from(reference.gravity));
     network.set_drag(reference.drag).unwrap();
@@ -53,7 +67,10 @@ fn simulate(reference: &Reference, name: &str, h: f64) -> Simulation {
         swing: None,
         wind: None,
         trail: None,
-        view: View { eye: Vector3::z(), target: Vector3::zeros() },
+        view: View {
+            eye: Vector3::z(),
+            target: Vector3::zeros(),
+        },
     };
     Simulation::new(scene, method(name), h).unwrap()
 }
@@ -66,16 +83,23 @@ fn error(name: &str, method: &str, h: f64) -> f64 {
     for state in &reference.states {
         simulation.advance_to(state.time).unwrap();
         assert_eq!(simulation.time(), state.time);
-        worst = worst.max(common::distance(simulation.state(), &column_major(&state.positions, &state.velocities)));
+        worst = worst.max(common::distance(
+            simulation.state(),
+            &column_major(&state.positions, &state.velocities),
+        ));
     }
     worst
 }
 
 #[test]
 fn rk4_meets_every_reference() {
-    for (name, h) in
-        [("pendulum", 2e-4), ("pendulum_drag", 2e-4), ("chain", 1e-3), ("mit", 1e-4), ("cloth_damped", 1e-4)]
-    {
+    for (name, h) in [
+        ("pendulum", 2e-4),
+        ("pendulum_drag", 2e-4),
+        ("chain", 1e-3),
+        ("mit", 1e-4),
+        ("cloth_damped", 1e-4),
+    ] {
         let error = error(name, "rk4", h);
         println!("{name}: {error:.2e}");
         assert!(error < 1e-9, "{name}: {error:e}");
@@ -86,8 +110,14 @@ fn rk4_meets_every_reference() {
 #[test]
 fn second_order_methods_close_in_on_the_reference() {
     for method in ["trapezoid", "midpoint", "verlet"] {
-        let (coarse, fine) = (error("pendulum_drag", method, 1e-4), error("pendulum_drag", method, 5e-5));
-        assert!(fine < 1e-6 && (coarse / fine - 4.0).abs() < 0.1, "{method}: {coarse:e}, {fine:e}");
+        let (coarse, fine) = (
+            error("pendulum_drag", method, 1e-4),
+            error("pendulum_drag", method, 5e-5),
+        );
+        assert!(
+            fine < 1e-6 && (coarse / fine - 4.0).abs() < 0.1,
+            "{method}: {coarse:e}, {fine:e}"
+        );
     }
 }
 

@@ -36,7 +36,13 @@ fn the_circle_after_1571_steps() {
         ("midpoint", 1.000_502_846_22),
         ("rk4", 0.999_999_955_323),
     ] {
-        let y = integrate(circle.model.system(), method(name), &circle.state, 0.04, 1571);
+        let y = integrate(
+            circle.model.system(),
+            method(name),
+            &circle.state,
+            0.04,
+            1571,
+        );
         let radius = y.iter().map(|y| y * y).sum::<f64>().sqrt();
         assert_relative_eq!(radius, growth(name, 0.04).powi(1571), max_relative = 1e-12);
         assert_relative_eq!(radius, expected, max_relative = 1e-11);
@@ -51,16 +57,28 @@ fn largest(name: &str, zeta: f64, h_omega: f64) -> f64 {
         // Starting from a displacement, then from a velocity: one of them excites the growing mode.
         let mut y = vec![0.0; 12];
         y[1 + 6 * axis] = 1.0;
-        largest = largest.max(size(&integrate(&network, method(name), &y, h_omega, 60_000)));
+        largest = largest.max(size(&integrate(
+            &network,
+            method(name),
+            &y,
+            h_omega,
+            60_000,
+        )));
     }
     largest
 }
 
 fn holds_below_and_fails_above(name: &str, zeta: f64, limit: f64) {
     let below = largest(name, zeta, 0.99 * limit);
-    assert!(below < 100.0, "{name}, zeta {zeta}: {below:e} at 0.99 of the limit {limit}");
+    assert!(
+        below < 100.0,
+        "{name}, zeta {zeta}: {below:e} at 0.99 of the limit {limit}"
+    );
     let above = largest(name, zeta, 1.01 * limit);
-    assert!(above > 1e3, "{name}, zeta {zeta}: only {above:e} at 1.01 of the limit {limit}");
+    assert!(
+        above > 1e3,
+        "{name}, zeta {zeta}: only {above:e} at 1.01 of the limit {limit}"
+    );
 }
 
 #[test]
@@ -72,7 +90,11 @@ fn undamped_limits() {
 
 #[test]
 fn methods_without_an_undamped_limit_always_grow() {
-    for (name, h, steps) in [("euler", 0.01, 400_000), ("trapezoid", 0.1, 1_000_000), ("midpoint", 0.1, 1_000_000)] {
+    for (name, h, steps) in [
+        ("euler", 0.01, 400_000),
+        ("trapezoid", 0.1, 1_000_000),
+        ("midpoint", 0.1, 1_000_000),
+    ] {
         let network = oscillator(1.0, 0.0);
         let mut y = vec![0.0; 12];
         y[1] = 1.0;
@@ -85,12 +107,30 @@ fn methods_without_an_undamped_limit_always_grow() {
 fn damped_limits() {
     let zetas = [0.01, 0.1, 0.5, 1.0, 2.0];
     for (name, limits) in [
-        ("euler", [0.020_000, 0.200_000, 1.000_000, 2.000_000, 0.535_898]),
-        ("trapezoid", [0.444_003, 1.049_755, 2.000_000, 2.000_000, 0.535_898]),
-        ("midpoint", [0.444_003, 1.049_755, 2.000_000, 2.000_000, 0.535_898]),
-        ("rk4", [2.848_570, 2.950_853, 2.622_542, 2.785_294, 0.746_317]),
-        ("symplectic", [1.980_100, 1.809_975, 1.236_068, 0.828_427, 0.472_136]),
-        ("verlet", [2.000_133, 2.013_432, 2.399_357, 4.002_670, 8.000_000]),
+        (
+            "euler",
+            [0.020_000, 0.200_000, 1.000_000, 2.000_000, 0.535_898],
+        ),
+        (
+            "trapezoid",
+            [0.444_003, 1.049_755, 2.000_000, 2.000_000, 0.535_898],
+        ),
+        (
+            "midpoint",
+            [0.444_003, 1.049_755, 2.000_000, 2.000_000, 0.535_898],
+        ),
+        (
+            "rk4",
+            [2.848_570, 2.950_853, 2.622_542, 2.785_294, 0.746_317],
+        ),
+        (
+            "symplectic",
+            [1.980_100, 1.809_975, 1.236_068, 0.828_427, 0.472_136],
+        ),
+        (
+            "verlet",
+            [2.000_133, 2.013_432, 2.399_357, 4.002_670, 8.000_000],
+        ),
     ] {
         for (zeta, limit) in zetas.into_iter().zip(limits) {
             // A growth of 1 % over the limit shows within these steps, unless it is all but flat.
@@ -117,7 +157,14 @@ fn euler_at_light_damping() {
         let h: f64 = 0.02 * fraction;
         let steps = |t: f64| (t / h).round() as u64;
         let period = std::f64::consts::TAU;
-        let (early, late) = (amplitude(h, steps(period * 1.0)), amplitude(h, steps(period * 1001.0)));
-        assert_eq!(late > early, grows, "{early} {late} at {fraction} of the limit");
+        let (early, late) = (
+            amplitude(h, steps(period * 1.0)),
+            amplitude(h, steps(period * 1001.0)),
+        );
+        assert_eq!(
+            late > early,
+            grows,
+            "{early} {late} at {fraction} of the limit"
+        );
     }
 }

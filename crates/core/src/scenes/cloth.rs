@@ -1,10 +1,10 @@
-//! The default cloth: a curtain 3 m wide, gathered along its pinned top edge, let go from the side.
+//! The default cloth: a curtain 4 m wide, gathered along its pinned top edge, pushed so that it sways.
 //!
 //! Width and mass are of the cloth, not of a particle: another grid samples the same curtain, with square cells. A
 //! spring's stiffness does not depend on the spacing then, a particle's mass falls with its square, and the damping
 //! time with the spacing, which leaves the damping ratio of the fastest motion as it is. At 20 x 20 that makes 0.02 kg
-//! and k/m = 5000 / 2500 / 1250 s-2. The damping along the springs is what keeps `t 0.01` stable while the cloth
-//! still moves freely.
+//! and k/m = 2500 / 1250 / 625 s-2: it hangs stretched by a fifth at most, and `t 0.01` holds it whatever a hand does.
+//! The damping along the springs is what does that while the cloth still moves freely.
 
 use std::f64::consts::TAU;
 
@@ -26,43 +26,47 @@ pub(super) const ENTRY: SceneEntry = SceneEntry {
 };
 
 /// [m]
-const WIDTH: f64 = 3.0;
+const WIDTH: f64 = 4.0;
 /// [m]
-const TOP: f64 = 3.6;
+const TOP: f64 = 4.9;
 /// The spacing at which the other figures hold [m].
 const SPACING: f64 = WIDTH / 19.0;
 /// Of a particle at that spacing [kg].
 const MASS: f64 = 0.02;
 /// Structural, shear, bend [N/m].
-const STIFFNESS: [f64; 3] = [5000.0 * MASS, 2500.0 * MASS, 1250.0 * MASS];
+const STIFFNESS: [f64; 3] = [2500.0 * MASS, 1250.0 * MASS, 625.0 * MASS];
 /// Damping over stiffness, at that spacing [s].
 const DAMPING_TIME: f64 = 0.006;
 /// Drag over mass [1/s].
 const DRAG: f64 = 0.3;
 /// The breeze pushes with this much per mass [m/s2].
 const BREEZE: f64 = 2.0;
-/// Width of the gathered edge over the width of the cloth.
-const GATHER: f64 = 0.8;
 /// Number of folds.
 const FOLDS: f64 = 3.5;
-/// Depth of a fold either way [m], so that the top edge is about at rest.
-const FOLD: f64 = 0.13;
-/// How far the cloth is held out from hanging straight [rad].
-const TILT: f64 = 0.9;
+/// How far the gathered edge turns from straight [rad].
+const TURN: f64 = 0.95;
+/// Speed of the lower edge as it starts [m/s].
+const SWAY: f64 = 5.0;
 
 fn make(grid: Grid) -> Result<Scene, Error> {
     let spacing = WIDTH / (grid.cols() - 1) as f64;
     let fineness = spacing / SPACING;
     let mass = MASS * fineness * fineness;
-    let down = Vector3::new(0.0, -libm::cos(TILT), libm::sin(TILT));
-    let across = Vector3::new(0.0, libm::sin(TILT), libm::cos(TILT));
-    let positions: Vec<_> = (0..grid.particles())
-        .map(|k| {
-            let (i, j) = (k / grid.cols(), k % grid.cols());
-            let s = j as f64 / (grid.cols() - 1) as f64;
-            Vector3::new((s - 0.5) * GATHER * WIDTH, TOP, 0.0)
-                + across * (FOLD * libm::sin(TAU * FOLDS * s))
-                + down * (i as f64 * spacing)
+    // A sine-generated curve: its direction swings to and fro, its length is that of the cloth, so nothing is stretched.
+    let edge: Vec<_> = (0..grid.cols())
+        .scan(Vector3::new(0.0, TOP, 0.0), |at, j| {
+            let s = (j as f64 + 0.5) / (grid.cols() - 1) as f64;
+            let turn = TURN * libm::cos(TAU * FOLDS * s);
+            let here = *at;
+            *at += (Vector3::x() * libm::cos(turn) + Vector3::z() * libm::sin(turn)) * spacing;
+            Some(here)
+        })
+        .collect();
+    let middle = Vector3::x() * (0.5 * edge[grid.cols() - 1].x);
+    let positions: Vec<_> = (0..grid.rows())
+        .flat_map(|i| {
+            edge.iter()
+                .map(move |at| at - middle - Vector3::y() * (i as f64 * spacing))
         })
         .collect();
     let mut network = Network::new(vec![mass; grid.particles()])?;
@@ -75,10 +79,14 @@ fn make(grid: Grid) -> Result<Scene, Error> {
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
     network.set_drag(DRAG * mass)?;
     network.set_floor(Floor { height: 0.0 });
+    let mut state = at_rest(&positions);
+    for (k, vz) in state[5 * grid.particles()..].iter_mut().enumerate() {
+        *vz = SWAY * (k / grid.cols()) as f64 / (grid.rows() - 1) as f64;
+    }
     Ok(Scene {
         name: "cloth",
         model: Model::Network(Box::new(network)),
-        state: at_rest(&positions),
+        state,
         grid: Some(grid),
         swing: Some(Swing {
             amplitude: Vector3::new(0.0, 0.0, 0.5),

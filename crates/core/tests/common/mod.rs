@@ -1,7 +1,10 @@
 //! What several tests need.
 #![allow(dead_code, missing_docs, reason = "each test file uses its part")]
 
-use a3_core::{Grid, Method, Network, ParticleSystem, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3};
+use a3_core::{
+    Grid, Method, Network, ParticleSystem, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
+    Vector3,
+};
 use a3_core::{integrators, scenes};
 
 pub fn method(name: &str) -> &'static Method {
@@ -13,7 +16,10 @@ pub fn scene(name: &str) -> Scene {
 }
 
 pub fn scene_with_grid(name: &str, rows: usize, cols: usize) -> Scene {
-    scenes::find(name).unwrap().build(Some(Grid::new(rows, cols).unwrap())).unwrap()
+    scenes::find(name)
+        .unwrap()
+        .build(Some(Grid::new(rows, cols).unwrap()))
+        .unwrap()
 }
 
 pub fn simulation(scene_name: &str, method_name: &str, step: f64) -> Simulation {
@@ -21,7 +27,13 @@ pub fn simulation(scene_name: &str, method_name: &str, step: f64) -> Simulation 
 }
 
 /// y after `steps` steps of h with nothing between the method and the system.
-pub fn integrate(system: &dyn ParticleSystem, method: &Method, y: &[f64], h: f64, steps: u64) -> Vec<f64> {
+pub fn integrate(
+    system: &dyn ParticleSystem,
+    method: &Method,
+    y: &[f64],
+    h: f64,
+    steps: u64,
+) -> Vec<f64> {
     let mut integrator = method.integrator(system).unwrap();
     let mut y = y.to_vec();
     for k in 0..steps {
@@ -35,7 +47,14 @@ pub fn integrate(system: &dyn ParticleSystem, method: &Method, y: &[f64], h: f64
 pub fn oscillator(omega: f64, zeta: f64) -> Network {
     let mut network = Network::new(vec![1.0; 2]).unwrap();
     let law = SpringLaw::new(omega * omega, 0.0, 0.0).unwrap();
-    network.add_spring(Spring { kind: SpringKind::Structural, i: 0, j: 1, law }).unwrap();
+    network
+        .add_spring(Spring {
+            kind: SpringKind::Structural,
+            i: 0,
+            j: 1,
+            law,
+        })
+        .unwrap();
     network.pin(0, Path::Still(Vector3::zeros())).unwrap();
     network.set_drag(2.0 * zeta * omega).unwrap();
     network
@@ -43,7 +62,13 @@ pub fn oscillator(omega: f64, zeta: f64) -> Network {
 
 /// The largest number in y, by size; infinite if one is not a number.
 pub fn size(y: &[f64]) -> f64 {
-    y.iter().fold(0.0, |m: f64, y| if y.is_nan() { f64::INFINITY } else { m.max(y.abs()) })
+    y.iter().fold(0.0, |m: f64, y| {
+        if y.is_nan() {
+            f64::INFINITY
+        } else {
+            m.max(y.abs())
+        }
+    })
 }
 
 /// The largest difference between two states.

@@ -1,0 +1,61 @@
+//! A step allocates nothing, whatever the method and the scene.
+
+mod common;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use a3_core::{Simulation, integrators, scenes};
+
+/// The system's allocator, which counts this thread's allocations.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+#[expect(unsafe_code, reason = "an allocator cannot be written without")]
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn allocations(run: impl FnOnce()) -> u64 {
+    let before = ALLOCATIONS.get();
+    run();
+    ALLOCATIONS.get() - before
+}
+
+#[test]
+fn the_counter_counts() {
+    assert!(allocations(|| drop(std::hint::black_box(vec![1u8; 100]))) > 0);
+}
+
+#[test]
+fn no_step_allocates() {
+    for entry in scenes::SCENES {
+        for method in integrators::METHODS {
+            let Ok(mut run) =
+                Simulation::new(entry.build(None).unwrap(), method, method.default_step)
+            else {
+                assert!(
+                    method.needs_mechanics && entry.build(None).unwrap().model.network().is_none()
+                );
+                continue;
+            };
+            run.set_wind(true);
+            run.set_swinging(true);
+            let count = allocations(|| run.take_steps(20).unwrap());
+            assert_eq!(count, 0, "{} on {}", method.name, entry.name);
+        }
+    }
+}

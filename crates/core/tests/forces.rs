@@ -1,0 +1,251 @@
+//! Forces: pure, their differentials against central differences, and what they conserve.
+
+mod common;
+
+use a3_core::forces::Wind;
+use a3_core::{
+    Mechanics, Model, Network, ParticleSystem, Simulation, Spring, SpringKind, SpringLaw, Vector3,
+    scenes,
+};
+use approx::assert_relative_eq;
+use common::{distance, integrate, method, scene, scene_with_grid, size};
+
+/// A repeatable number between -1 and 1 for each k.
+fn noise(k: usize) -> f64 {
+    let x = (k as f64 * 12.9898 + 4.1).sin() * 43758.5453;
+    2.0 * (x - x.floor()) - 1.0
+}
+
+fn shaken(state: &[f64], by: f64) -> Vec<f64> {
+    state
+        .iter()
+        .enumerate()
+        .map(|(k, y)| y + by * noise(k))
+        .collect()
+}
+
+fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
+    scenes::SCENES.iter().filter_map(|entry| {
+        let scene = entry.build(None).unwrap();
+        let Model::Network(mut network) = scene.model else {
+            return None;
+        };
+        network.set_wind(scene.wind);
+        Some((entry.name, network, shaken(&scene.state, 0.05)))
+    })
+}
+
+#[test]
+fn evaluating_twice_gives_the_same_bits() {
+    for entry in scenes::SCENES {
+        let scene = entry.build(None).unwrap();
+        let system = scene.model.system();
+        let y = shaken(&scene.state, 0.1);
+        let mut a = vec![f64::NAN; y.len()];
+        let mut b = vec![7.0; y.len()];
+        system.eval_f(0.3, &y, &mut a);
+        system.eval_f(5.0, &scene.state, &mut b);
+        system.eval_f(0.3, &y, &mut b);
+        assert!(
+            a.iter().zip(&b).all(|(a, b)| a.to_bits() == b.to_bits()),
+            "{}",
+            entry.name
+        );
+    }
+}
+
+#[test]
+fn differentials_match_central_differences() {
+    for (name, network, y) in networks() {
+        let (x, v) = y.split_at(y.len() / 2);
+        let d: Vec<f64> = (0..y.len()).map(|k| noise(k + 1000)).collect();
+        let (dx, dv) = d.split_at(x.len());
+        let mut df = vec![0.0; x.len()];
+        network.force_differential(0.7, x, v, dx, dv, &mut df);
+        let e = 1e-6;
+        let at = |sign: f64| {
+            let moved: Vec<f64> = y.iter().zip(&d).map(|(y, d)| y + sign * e * d).collect();
+            let mut f = vec![0.0; x.len()];
+            network.forces(0.7, &moved[..x.len()], &moved[x.len()..], &mut f);
+            f
+        };
+        let difference: Vec<f64> = at(1.0)
+            .iter()
+            .zip(at(-1.0))
+            .map(|(a, b)| (a - b) / (2.0 * e))
+            .collect();
+        let error = distance(&df, &difference) / size(&difference);
+        assert!(error < 1e-6, "{name}: {error:e}");
+    }
+}
+
+/// The kernel over families against the plain formula, spring by spring.
+#[test]
+fn families_agree_with_the_plain_formula() {
+    for (rows, cols) in [(2, 2), (2, 9), (9, 2), (3, 70), (7, 5), (20, 20), (15, 131)] {
+        for name in ["cloth", "mit"] {
+            let scene = scene_with_grid(name, rows, cols);
+            let network = scene.model.network().unwrap();
+            let y = shaken(&scene.state, 0.05);
+            let (x, v) = y.split_at(y.len() / 2);
+            let n = rows * cols;
+            let mut expected = vec![0.0; 3 * n];
+            for Spring { i, j, law, .. } in network.springs() {
+                let get = |a: &[f64], i: usize| Vector3::new(a[i], a[n + i], a[2 * n + i]);
+                let d = get(x, i) - get(x, j);
+                let u = d.normalize();
+                let rate = (get(v, i) - get(v, j)).dot(&u);
+                let force = u * (law.stiffness * (d.norm() - law.rest_length) + law.damping * rate);
+                for axis in 0..3 {
+                    expected[axis * n + i] -= force[axis];
+                    expected[axis * n + j] += force[axis];
+                }
+            }
+            let mut f = vec![0.0; 3 * n];
+            network.add_spring_forces(x, v, &mut f);
+            let error = distance(&f, &expected) / size(&expected);
+            assert!(error < 1e-13, "{name} {rows}x{cols}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn a_spring_of_length_zero_has_no_force() {
+    for damping in [0.0, 1.0] {
+        let mut network = Network::new(vec![1.0; 2]).unwrap();
+        let law = SpringLaw::new(100.0, 0.5, damping).unwrap();
+        network
+            .add_spring(Spring {
+                kind: SpringKind::Structural,
+                i: 0,
+                j: 1,
+                law,
+            })
+            .unwrap();
+        let (x, v) = ([0.3; 6], [0.0, 1.0, 0.0, 2.0, 0.0, 3.0]);
+        let mut f = [f64::NAN; 6];
+        network.forces(0.0, &x, &v, &mut f);
+        assert_eq!(f, [0.0; 6]);
+        network.force_differential(0.0, &x, &v, &[0.1; 6], &[0.2; 6], &mut f);
+        assert!(f.iter().all(|f| f.is_finite()));
+    }
+}
+
+#[test]
+fn a_fixed_particle_has_no_derivative() {
+    for (name, network, y) in networks() {
+        let mut dydt = vec![f64::NAN; y.len()];
+        network.eval_f(0.2, &y, &mut dydt);
+        let n = network.particles();
+        for (i, _) in network.pins() {
+            assert!(
+                (0..6).all(|axis| dydt[axis * n + i] == 0.0),
+                "{name}, particle {i}"
+            );
+        }
+    }
+}
+
+/// A free cloth under springs and their damping alone: nothing outside pushes, so momentum stays, linear and angular.
+#[test]
+fn momentum_is_conserved() {
+    let scene = scene("cloth");
+    let network = scene.model.network().unwrap();
+    let n = network.particles();
+    let mut free = Network::new(network.masses().to_vec()).unwrap();
+    for family in network.families() {
+        free.add_family(family.clone()).unwrap();
+    }
+    let start = shaken(&scene.state, 0.02);
+    let momenta = |y: &[f64]| {
+        let get = |k: usize, i: usize| Vector3::new(y[k + i], y[k + n + i], y[k + 2 * n + i]);
+        (0..n).fold((Vector3::zeros(), Vector3::zeros()), |(p, l), i| {
+            let mv = free.masses()[i] * get(3 * n, i);
+            (p + mv, l + get(0, i).cross(&mv))
+        })
+    };
+    let (p0, l0) = momenta(&start);
+    for (name, angular_error) in [("rk4", 1e-7), ("verlet", 1e-12), ("symplectic", 1e-12)] {
+        let end = integrate(&free, method(name), &start, 0.001, 500);
+        assert!(distance(&end, &start) > 0.01);
+        let (p, l) = momenta(&end);
+        assert!(
+            (p - p0).norm() < 1e-13 * n as f64,
+            "{name}: {:e}",
+            (p - p0).norm()
+        );
+        assert!(
+            (l - l0).norm() < angular_error,
+            "{name}: {:e}",
+            (l - l0).norm()
+        );
+    }
+}
+
+/// Without drag and damping, the total energy stays: to the order of the method, and for ever with Verlet.
+#[test]
+fn energy_is_conserved() {
+    let scene = scene("mit");
+    let mut network = scene.model.network().unwrap().clone();
+    network.set_drag(0.0).unwrap();
+    let scene = a3_core::Scene {
+        model: Model::Network(Box::new(network)),
+        ..scene
+    };
+    let drift = |name: &str, h: f64, until: f64| {
+        let mut run = Simulation::new(scene.clone(), method(name), h).unwrap();
+        let before = run.energy().unwrap().total();
+        run.advance_to(until).unwrap();
+        let after = run.energy().unwrap();
+        assert!(after.kinetic > 1.0);
+        (after.total() - before).abs()
+    };
+    assert!(drift("rk4", 0.001, 2.0) < 1e-5);
+    // Second order, and no trend: ten times as long costs no more than a few times as much.
+    let (short, finer, long) = (
+        drift("verlet", 0.002, 2.0),
+        drift("verlet", 0.001, 2.0),
+        drift("verlet", 0.002, 20.0),
+    );
+    assert!(short < 0.05 && finer < 0.5 * short, "{short:e} {finer:e}");
+    assert!(long < 0.2, "{long:e}");
+}
+
+/// Energy by hand: a spring of 100 N/m stretched by 0.5 m, 2 kg at 3 m/s, 4 m up.
+#[test]
+fn energy_by_kind() {
+    let mut network = Network::new(vec![2.0; 2]).unwrap();
+    let law = SpringLaw::new(100.0, 0.5, 0.0).unwrap();
+    network
+        .add_spring(Spring {
+            kind: SpringKind::Structural,
+            i: 0,
+            j: 1,
+            law,
+        })
+        .unwrap();
+    network.set_gravity(Vector3::new(0.0, -10.0, 0.0));
+    let energy = network.energy(
+        &[0.0, 1.0, 4.0, 4.0, 0.0, 0.0],
+        &[3.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    );
+    assert_relative_eq!(energy.elastic, 12.5);
+    assert_relative_eq!(energy.kinetic, 9.0);
+    assert_relative_eq!(energy.gravitational, 160.0);
+    assert_relative_eq!(energy.total(), 181.5);
+}
+
+#[test]
+fn the_wind_pushes() {
+    let scene = scene("cloth");
+    let mut run = Simulation::new(scene, method("trapezoid"), 0.005).unwrap();
+    run.advance_to(40.0).unwrap();
+    let calm = run.positions().column(2).mean();
+    run.set_wind(true);
+    run.advance_to(41.5).unwrap();
+    assert!(run.positions().column(2).mean() > calm + 0.05);
+    assert_eq!(
+        Wind::new(3, Vector3::zeros()).force(1.0, [0.0; 3]),
+        Vector3::zeros()
+    );
+}

@@ -1,0 +1,91 @@
+//! The table of scenes: counts, and every scene with every method.
+
+mod common;
+
+use a3_core::{Grid, MAX_PARTICLES, Simulation, SpringKind, integrators, scenes};
+use common::{scene, scene_with_grid};
+
+#[test]
+fn cloth_springs_are_counted_by_kind() {
+    for (rows, cols) in [(15, 15), (8, 8), (2, 2), (2, 5), (7, 3), (12, 30)] {
+        for name in ["cloth", "mit"] {
+            let scene = scene_with_grid(name, rows, cols);
+            let network = scene.model.network().unwrap();
+            let count = |kind| network.springs().filter(|s| s.kind == kind).count();
+            assert_eq!(
+                count(SpringKind::Structural),
+                rows * (cols - 1) + cols * (rows - 1)
+            );
+            assert_eq!(count(SpringKind::Shear), 2 * (rows - 1) * (cols - 1));
+            assert_eq!(
+                count(SpringKind::Bend),
+                rows * (cols - 2) + cols * (rows - 2)
+            );
+        }
+    }
+    assert_eq!(
+        scene("mit").model.network().unwrap().springs().count(),
+        1202
+    );
+}
+
+/// Every spring joins the particles it should: neighbours, diagonals, next but one.
+#[test]
+fn cloth_springs_join_the_right_particles() {
+    let (rows, cols) = (4, 6);
+    let scene = scene_with_grid("mit", rows, cols);
+    let grid = scene.grid.unwrap();
+    let place = |k: usize| (k / cols, k % cols);
+    for spring in scene.model.network().unwrap().springs() {
+        let ((i, j), (k, l)) = (place(spring.i), place(spring.j));
+        assert_eq!(grid.index_of(i, j), spring.i);
+        let offset = (i.abs_diff(k), j.abs_diff(l));
+        match spring.kind {
+            SpringKind::Structural => assert!(offset == (0, 1) || offset == (1, 0)),
+            SpringKind::Shear => assert_eq!(offset, (1, 1)),
+            SpringKind::Bend => assert!(offset == (0, 2) || offset == (2, 0)),
+        }
+    }
+}
+
+#[test]
+fn grids_that_make_no_sense_are_refused() {
+    for (rows, cols) in [
+        (0, 5),
+        (1, 5),
+        (5, 1),
+        (usize::MAX, 2),
+        (4_294_967_295, 4_294_967_295),
+        (2049, 2048),
+    ] {
+        let error = Grid::new(rows, cols).unwrap_err().to_string();
+        assert!(error.contains(&MAX_PARTICLES.to_string()), "{error}");
+    }
+    let grid = Grid::new(3, 3).unwrap();
+    assert!(scenes::find("chain").unwrap().build(Some(grid)).is_err());
+}
+
+/// With its default step, each method holds on each scene that it serves, for ten seconds of wind and swing.
+#[test]
+fn default_steps_hold_everywhere() {
+    for entry in scenes::SCENES {
+        for method in integrators::METHODS {
+            let scene = entry.build(None).unwrap();
+            let first_order = scene.model.network().is_none();
+            let run = Simulation::new(scene, method, method.default_step);
+            assert_eq!(run.is_err(), first_order && method.needs_mechanics);
+            let Ok(mut run) = run else { continue };
+            run.set_wind(true);
+            run.set_swinging(true);
+            run.advance_to(10.0)
+                .unwrap_or_else(|e| panic!("{} on {}: {e}", method.name, entry.name));
+            let (_, radius) = run.extent();
+            assert!(
+                run.state().iter().all(|y| y.abs() < 20.0 * radius),
+                "{} on {}",
+                method.name,
+                entry.name
+            );
+        }
+    }
+}

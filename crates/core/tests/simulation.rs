@@ -1,0 +1,203 @@
+//! Stepping, and the hands: swing, wind, grab, pull, release, other methods and steps on the way.
+
+mod common;
+
+use a3_core::{Error, Simulation, Vector3};
+use approx::assert_relative_eq;
+use common::{method, scene, simulation};
+
+#[test]
+fn the_end_is_hit_exactly_and_no_step_is_longer() {
+    for (step, until, steps) in [
+        (0.01, 1.0, 100),
+        (0.3, 1.0, 4),
+        (0.1, 0.35, 4),
+        (5.0, 0.1, 1),
+    ] {
+        let mut run = simulation("simple", "rk4", step);
+        run.advance_to(until).unwrap();
+        assert_eq!((run.time(), run.steps()), (until, steps));
+        run.advance_to(until).unwrap();
+        assert_eq!(run.steps(), steps);
+    }
+    // The shortened step counts: RK4's error after 1 s in steps of 0.3 is below that of one step of 1.
+    let mut run = simulation("simple", "rk4", 0.3);
+    run.advance_to(1.0).unwrap();
+    assert_relative_eq!(run.position(0).x, 1.0f64.cos(), epsilon = 1e-4);
+}
+
+#[test]
+fn work_is_counted() {
+    for (name, method_name, per_step) in [
+        ("mit", "euler", 1),
+        ("mit", "trapezoid", 2),
+        ("mit", "rk4", 4),
+        ("mit", "verlet", 1),
+        ("cloth", "verlet", 2),
+    ] {
+        let mut run = simulation(name, method_name, 0.001);
+        run.take_steps(7).unwrap();
+        assert_eq!(
+            (run.steps(), run.work().evaluations),
+            (7, 7 * per_step),
+            "{method_name} on {name}"
+        );
+    }
+}
+
+#[test]
+fn a_reset_run_repeats_itself_to_the_bit() {
+    let mut run = simulation("cloth", "trapezoid", 0.01);
+    run.set_wind(true);
+    run.set_swinging(true);
+    run.advance_to(1.0).unwrap();
+    let first = run.state().to_vec();
+    run.grab(210).unwrap();
+    run.pull(run.position(210) + Vector3::z());
+    run.advance_to(1.5).unwrap();
+    run.reset();
+    assert_eq!((run.time(), run.steps(), run.grabbed()), (0.0, 0, None));
+    assert!(run.windy() && run.swinging());
+    assert!(run.state()[..1200] == run.scene().state[..1200]);
+    run.advance_to(1.0).unwrap();
+    assert!(run.state() == first);
+}
+
+#[test]
+fn swinging_pins_start_and_stop_where_they_are() {
+    let mut run = simulation("mit", "rk4", 0.01);
+    let at = |run: &Simulation| run.position(14);
+    let home = at(&run);
+    run.advance_to(0.5).unwrap();
+    assert_eq!(at(&run), home);
+    run.set_swinging(true);
+    run.advance_to(1.5).unwrap();
+    // z = 2 sin(t / 1.5), from the moment it was switched on.
+    assert_relative_eq!(
+        at(&run),
+        home + Vector3::z() * 2.0 * (1.0f64 / 1.5).sin(),
+        epsilon = 1e-12
+    );
+    run.set_swinging(false);
+    let stopped = at(&run);
+    run.advance_to(2.5).unwrap();
+    assert_eq!(at(&run), stopped);
+    run.set_swinging(true);
+    run.advance_to(3.5).unwrap();
+    assert_relative_eq!(
+        at(&run),
+        home + Vector3::z() * 2.0 * (2.0f64 / 1.5).sin(),
+        epsilon = 1e-12
+    );
+}
+
+#[test]
+fn a_pulled_particle_goes_where_it_is_pulled_and_is_let_go_with_its_speed() {
+    let mut run = simulation("cloth", "trapezoid", 0.01);
+    run.advance_to(20.0).unwrap();
+    let i = 210;
+    run.grab(i).unwrap();
+    let target = run.position(i) + Vector3::new(0.2, 0.1, 0.5);
+    for _ in 0..60 {
+        run.pull(target);
+        run.advance_to(run.time() + 1.0 / 60.0).unwrap();
+    }
+    assert_relative_eq!(run.position(i), target, epsilon = 1e-9);
+    assert!(run.model().network().unwrap().is_pinned(i));
+    // On the move when it is let go.
+    let from = run.position(i);
+    run.pull(from + Vector3::z() * 0.3);
+    run.advance_to(run.time() + 0.02).unwrap();
+    run.release();
+    assert!(run.grabbed().is_none() && !run.model().network().unwrap().is_pinned(i));
+    assert_relative_eq!(run.velocities()[2 * 400 + i], 9.0, epsilon = 1e-9);
+    run.advance_to(run.time() + 20.0).unwrap();
+    assert!((run.position(i) - target).norm() > 0.2, "it fell back");
+}
+
+#[test]
+fn a_pinned_particle_is_moved_and_stays() {
+    let mut run = simulation("cloth", "trapezoid", 0.01);
+    run.grab(0).unwrap();
+    let target = run.position(0) + Vector3::new(-0.1, 0.1, 0.1);
+    for _ in 0..30 {
+        run.pull(target);
+        run.take_steps(2).unwrap();
+    }
+    run.release();
+    run.advance_to(5.0).unwrap();
+    assert_relative_eq!(run.position(0), target, epsilon = 1e-9);
+    run.reset();
+    assert_eq!(run.model().network().unwrap().pins().count(), 20);
+    assert!((run.position(0) - target).norm() > 0.1);
+}
+
+#[test]
+fn there_is_nothing_to_grab_out_of_range_or_without_masses() {
+    let mut run = simulation("cloth", "trapezoid", 0.01);
+    assert!(run.grab(400).unwrap_err().to_string().contains("0 to 399"));
+    let mut run = simulation("simple", "rk4", 0.01);
+    run.grab(0).unwrap();
+    assert_eq!(run.grabbed(), None);
+}
+
+#[test]
+fn method_and_step_change_on_the_way() {
+    let mut run = simulation("pendulum", "trapezoid", 0.01);
+    run.take_steps(50).unwrap();
+    run.set_method(method("verlet")).unwrap();
+    run.set_step(0.001).unwrap();
+    run.take_steps(500).unwrap();
+    assert_relative_eq!(run.time(), 1.0, epsilon = 1e-12);
+    let mut whole = simulation("pendulum", "rk4", 0.0005);
+    whole.advance_to(1.0).unwrap();
+    assert_relative_eq!(run.position(1), whole.position(1), epsilon = 1e-2);
+    assert!(run.set_step(-1.0).is_err() && run.set_step(f64::NAN).is_err());
+    let mut circle = simulation("simple", "rk4", 0.01);
+    assert_eq!(
+        circle.set_method(method("verlet")),
+        Err(Error::NeedsMechanics { method: "verlet" })
+    );
+    assert_eq!(circle.method().name, "rk4");
+    circle.take_steps(1).unwrap();
+}
+
+#[test]
+fn a_lost_run_shows_its_last_good_state_until_it_is_reset() {
+    let mut run = Simulation::new(scene("mit"), method("rk4"), 0.05).unwrap();
+    let blow_up = loop {
+        if let Err(Error::BlowUp(blow_up)) = run.take_steps(2) {
+            break blow_up;
+        }
+    };
+    assert_eq!(run.blow_up(), Some(blow_up));
+    assert!(
+        blow_up.particle < 225
+            && blow_up.time > run.time()
+            && blow_up.time <= run.time() + 0.1 + 1e-9
+    );
+    assert!(run.state().iter().all(|y| y.is_finite()));
+    assert_eq!(run.take_steps(1), Err(Error::BlowUp(blow_up)));
+    run.reset();
+    assert_eq!(run.blow_up(), None);
+    run.take_steps(1).unwrap();
+}
+
+#[test]
+fn nothing_enters_the_sphere_or_the_floor() {
+    let mut run = simulation("mit-sphere", "rk4", 0.01);
+    run.set_swinging(true);
+    let mut touched = false;
+    for _ in 0..800 {
+        run.take_steps(1).unwrap();
+        let sphere = run.model().network().unwrap().spheres()[0];
+        let center = sphere.path.at(run.time()).position;
+        for i in 0..run.particles() {
+            let distance = (run.position(i) - center).norm();
+            assert!(distance > sphere.radius - 1e-9);
+            touched |= distance < sphere.radius + 1e-9;
+        }
+        assert!(run.lowest() >= -5.0);
+    }
+    assert!(touched);
+}
