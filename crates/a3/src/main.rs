@@ -1,1 +1,56 @@
-fn main() {}
+//! a3: mass-spring systems in a window, and without one.
+
+#![forbid(unsafe_code)]
+
+mod app;
+mod cli;
+mod headless;
+mod list;
+mod output;
+mod progress;
+mod render;
+mod show;
+mod simulate;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use cli::{Cli, Command};
+
+/// What went wrong, and whose fault it is.
+enum Failure {
+    /// The command line asked for something that cannot be: exit code 2.
+    Usage(String),
+    /// It could have been, and was not: exit code 1.
+    Run(String),
+}
+
+impl Failure {
+    fn run(why: impl std::fmt::Display) -> Self {
+        Self::Run(why.to_string())
+    }
+
+    fn usage(why: impl std::fmt::Display) -> Self {
+        Self::Usage(why.to_string())
+    }
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::try_parse() {
+        Ok(cli) => match cli.command {
+            None => app::run(&cli.window),
+            Some(Command::Simulate(options)) => simulate::run(&options),
+            Some(Command::Render(options)) => render::run(&options),
+            Some(Command::Scenes) => list::scenes(),
+            Some(Command::Solvers) => list::solvers(),
+        },
+        Err(error) => cli::explain(&error),
+    };
+    let (why, code) = match result {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Usage(why)) => (why, 2),
+        Err(Failure::Run(why)) => (why, 1),
+    };
+    eprintln!("error: {why}");
+    ExitCode::from(code)
+}

@@ -1,1 +1,21 @@
-//! x
+//! Draws cloth, balls, lines and a floor with wgpu: no physics, no window.
+//!
+//! The same [`Renderer`] draws into a window's surface and into an [`Offscreen`] picture. [`Gpu`] opens an adapter;
+//! [`Picture`] says what is to be seen; [`Camera`] from where.
+
+#![forbid(unsafe_code)]
+
+mod camera;
+mod gpu;
+mod offscreen;
+mod picture;
+mod renderer;
+mod shapes;
+mod targets;
+
+pub use camera::Camera;
+pub use gpu::{Gpu, GpuError};
+pub use offscreen::{OFFSCREEN_FORMAT, Offscreen};
+pub use picture::{Ball, Line, Picture, Style, Topology};
+pub use renderer::Renderer;
+pub use targets::Targets;

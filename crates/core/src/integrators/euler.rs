@@ -12,6 +12,7 @@ pub(super) const METHOD: Method = Method {
     order: 1,
     default_step: 0.0002,
     evaluations: 1,
+    damped_evaluations: 1,
     needs_mechanics: false,
     create: |dim| Box::new(Euler { f: vec![0.0; dim] }),
 };

@@ -13,6 +13,7 @@ pub(super) const METHOD: Method = Method {
     order: 2,
     default_step: 0.005,
     evaluations: 2,
+    damped_evaluations: 2,
     needs_mechanics: false,
     create: |dim| {
         Box::new(Heun {

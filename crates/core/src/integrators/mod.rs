@@ -50,6 +50,8 @@ pub struct Method {
     pub default_step: f64,
     /// Evaluations a step takes.
     pub evaluations: u32,
+    /// Evaluations a step takes where springs are damped.
+    pub damped_evaluations: u32,
     /// Whether it needs forces and masses, rather than any f(t, y).
     pub needs_mechanics: bool,
     create: fn(dim: usize) -> Box<dyn Integrator>,

@@ -14,6 +14,7 @@ pub(super) const METHOD: Method = Method {
     order: 4,
     default_step: 0.01,
     evaluations: 4,
+    damped_evaluations: 4,
     needs_mechanics: false,
     create: |dim| {
         Box::new(Rk4 {

@@ -12,6 +12,7 @@ pub(super) const METHOD: Method = Method {
     order: 1,
     default_step: 0.005,
     evaluations: 1,
+    damped_evaluations: 1,
     needs_mechanics: true,
     create: |dim| {
         Box::new(SymplecticEuler {

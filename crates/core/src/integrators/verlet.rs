@@ -20,6 +20,7 @@ pub(super) const METHOD: Method = Method {
     order: 2,
     default_step: 0.005,
     evaluations: 1,
+    damped_evaluations: 2,
     needs_mechanics: true,
     create: |dim| {
         Box::new(Verlet {

@@ -95,8 +95,8 @@ fn make(grid: Grid) -> Result<Scene, Error> {
         wind: Some(Wind::new(1, Vector3::new(0.3, 0.0, 1.0) * (BREEZE * mass))),
         trail: None,
         view: View {
-            eye: Vector3::new(3.4, 2.5, 5.9),
-            target: Vector3::new(0.0, 1.8, 0.2),
+            eye: Vector3::new(4.6, 3.1, 7.6),
+            target: Vector3::new(0.0, 2.35, 0.2),
         },
     })
 }

@@ -1,0 +1,102 @@
+//! The keys, in one table that also prints the help.
+
+use winit::keyboard::{Key, NamedKey};
+
+/// What a key does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    NextScene,
+    Reset,
+    Swing,
+    Wireframe,
+    Wind,
+    Pause,
+    Step,
+    /// By its place in the table of methods.
+    Solver(usize),
+    LongerStep,
+    ShorterStep,
+    Camera,
+    Picture,
+    Help,
+    Quit,
+}
+
+/// A row of the table: what is typed, what it does, and how the help says so.
+pub struct Binding {
+    pub keys: &'static [&'static str],
+    pub action: Action,
+    pub help: &'static str,
+}
+
+const fn bind(keys: &'static [&'static str], action: Action, help: &'static str) -> Binding {
+    Binding { keys, action, help }
+}
+
+/// Every key but the digits, which stand for the solvers in the order of their table.
+pub static KEYS: &[Binding] = &[
+    bind(&["t"], Action::NextScene, "next scene"),
+    bind(&["r"], Action::Reset, "reset"),
+    bind(&["s"], Action::Swing, "swing the pins"),
+    bind(&["w"], Action::Wireframe, "wireframe or surface"),
+    bind(&["d"], Action::Wind, "wind"),
+    bind(&["Space"], Action::Pause, "pause"),
+    bind(&["."], Action::Step, "one step"),
+    bind(&["+", "="], Action::LongerStep, "longer step"),
+    bind(&["-"], Action::ShorterStep, "shorter step"),
+    bind(&["c"], Action::Camera, "camera home"),
+    bind(&["p"], Action::Picture, "save a picture"),
+    bind(&["h", "?"], Action::Help, "this help"),
+    bind(&["Esc"], Action::Quit, "quit"),
+];
+
+/// What the mouse does, for the help.
+pub static MOUSE: &[(&str, &str)] = &[
+    ("left, on the scene", "pull"),
+    ("left, elsewhere", "turn"),
+    ("right or middle", "move"),
+    ("wheel", "zoom"),
+];
+
+/// The action of a key, if it has one. Letters mean the same in either case.
+pub fn action(key: &Key) -> Option<Action> {
+    let name = match key {
+        Key::Named(NamedKey::Space) => "Space".to_owned(),
+        Key::Named(NamedKey::Escape) => "Esc".to_owned(),
+        Key::Character(text) if text == " " => "Space".to_owned(),
+        Key::Character(text) => text.to_lowercase(),
+        _ => return None,
+    };
+    if let Ok(digit @ 1..=9) = name.parse::<usize>() {
+        return Some(Action::Solver(digit - 1));
+    }
+    KEYS.iter()
+        .find(|binding| binding.keys.contains(&name.as_str()))
+        .map(|binding| binding.action)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn no_key_does_two_things_and_every_key_is_found() {
+        let mut seen = HashSet::new();
+        for binding in KEYS {
+            for &key in binding.keys {
+                assert!(seen.insert(key), "{key} twice");
+                let typed = match key {
+                    "Space" => Key::Named(NamedKey::Space),
+                    "Esc" => Key::Named(NamedKey::Escape),
+                    key => Key::Character(key.into()),
+                };
+                assert_eq!(action(&typed), Some(binding.action));
+            }
+        }
+        assert_eq!(action(&Key::Character("T".into())), Some(Action::NextScene));
+        assert_eq!(action(&Key::Character("3".into())), Some(Action::Solver(2)));
+        assert_eq!(action(&Key::Character("0".into())), None);
+        assert_eq!(action(&Key::Named(NamedKey::F1)), None);
+    }
+}

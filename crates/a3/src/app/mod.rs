@@ -1,0 +1,432 @@
+//! The window: events in, frames out.
+
+mod graphics;
+mod hud;
+mod keys;
+mod pick;
+mod session;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use a3_core::Vector3;
+use a3_render::GpuError;
+use winit::application::ApplicationHandler;
+use winit::dpi::{LogicalSize, PhysicalPosition};
+use winit::event::{ElementState, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHandle};
+use winit::keyboard::{Key, NamedKey};
+use winit::window::{Window, WindowId};
+
+use crate::{Failure, cli, headless, show};
+use graphics::{Graphics, Outcome};
+use keys::Action;
+use pick::Grip;
+use session::Session;
+
+/// A frame that could not be drawn is tried again after this.
+const RETRY: Duration = Duration::from_millis(50);
+/// Points around the pointer in which a particle is hit.
+const REACH: f32 = 18.0;
+/// Radians per height of the picture.
+const TURN: f32 = 4.0;
+
+/// Opens the window, or does its job without one.
+pub fn run(options: &cli::Window) -> Result<(), Failure> {
+    let session = Session::new(options)?;
+    if let Some(i) = options.springs_of {
+        print!("{}", show::list_springs_of(&session.simulation, i));
+    }
+    let event_loop = match event_loop() {
+        Ok(event_loop) => event_loop,
+        Err(why) => return headless::run(&why, session.simulation, session.show),
+    };
+    let mut app = App {
+        display: event_loop.owned_display_handle(),
+        graphics: None,
+        window: None,
+        last: Instant::now(),
+        pointer: [0.0; 2],
+        hand: Hand::Empty,
+        visible: true,
+        status: options.status.then(Status::default),
+        failure: None,
+        session,
+    };
+    event_loop.run_app(&mut app).map_err(Failure::run)?;
+    match app.failure {
+        None => Ok(()),
+        Some(why @ GpuError::NoAdapter(_)) => {
+            let why = why.to_string();
+            headless::run(&why, app.session.simulation, app.session.show)
+        }
+        Some(why) => Err(Failure::run(why)),
+    }
+}
+
+/// Without a display an error; without a library that winit cannot do without, a panic of its own, caught here.
+fn event_loop() -> Result<EventLoop<()>, String> {
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| {}));
+    let result = catch_unwind(AssertUnwindSafe(EventLoop::new));
+    std::panic::set_hook(hook);
+    match result {
+        Ok(Ok(event_loop)) => Ok(event_loop),
+        Ok(Err(_)) => {
+            Err("no display (DISPLAY and WAYLAND_DISPLAY are unset or lead nowhere)".into())
+        }
+        Err(_) => Err(
+            "no window (a library is missing: `apt install libxkbcommon-x11-0 libxcursor1 libxi6`)"
+                .into(),
+        ),
+    }
+}
+
+/// What a pressed button is doing.
+#[derive(Clone, Copy, PartialEq)]
+enum Hand {
+    Empty,
+    Pull(Grip),
+    Orbit,
+    Pan,
+}
+
+struct App {
+    session: Session,
+    display: OwnedDisplayHandle,
+    graphics: Option<Graphics>,
+    window: Option<Arc<Window>>,
+    /// When the simulation was last brought up to date.
+    last: Instant,
+    /// 0..1 from the left and from the top.
+    pointer: [f32; 2],
+    hand: Hand,
+    visible: bool,
+    status: Option<Status>,
+    failure: Option<GpuError>,
+}
+
+/// For tests: what is on the screen, as text.
+#[derive(Default)]
+struct Status {
+    frames: u64,
+    state: String,
+    said: Option<Instant>,
+}
+
+impl App {
+    fn fail(&mut self, event_loop: &ActiveEventLoop, why: GpuError) {
+        self.failure = Some(why);
+        event_loop.exit();
+    }
+
+    fn redraw(&self) {
+        if let Some(window) = &self.window {
+            window.request_redraw();
+        }
+    }
+
+    fn aspect(&self) -> f32 {
+        self.graphics.as_ref().map_or(1.0, Graphics::aspect)
+    }
+
+    /// Everything that depends on the adapter, for the window that is there.
+    fn open_graphics(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(window) = self.window.clone() else {
+            return;
+        };
+        // The old surface has to go before the window can have another.
+        self.graphics = None;
+        match Graphics::new(window, &self.display, &self.session) {
+            Ok(graphics) => self.graphics = Some(graphics),
+            Err(why) => self.fail(event_loop, why),
+        }
+        self.redraw();
+    }
+
+    fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
+        match action {
+            Action::Quit => event_loop.exit(),
+            Action::Picture => {
+                let Some(graphics) = &self.graphics else {
+                    return;
+                };
+                let message = match graphics.save_picture(&mut self.session) {
+                    Ok(name) => format!("saved {name}"),
+                    Err(Failure::Run(why) | Failure::Usage(why)) => why,
+                };
+                self.session.say(message);
+            }
+            action => {
+                if self.session.act(action) {
+                    self.hand = Hand::Empty;
+                    if let Some(graphics) = &mut self.graphics {
+                        graphics.set_scene(&self.session);
+                    }
+                    self.title();
+                }
+            }
+        }
+        self.redraw();
+    }
+
+    fn title(&self) {
+        if let Some(window) = &self.window {
+            window.set_title(&format!("a3: {}", self.session.simulation.scene().name));
+        }
+    }
+
+    fn press(&mut self, button: MouseButton) {
+        let height = self.graphics.as_ref().map_or(1.0, |g| g.size().1 as f32);
+        let scale = self
+            .window
+            .as_ref()
+            .map_or(1.0, |w| w.scale_factor() as f32);
+        let reach = REACH * scale / height;
+        let session = &mut self.session;
+        self.hand = match button {
+            MouseButton::Left => {
+                let aspect = self.graphics.as_ref().map_or(1.0, Graphics::aspect);
+                match pick::pick(
+                    &session.simulation,
+                    &session.camera,
+                    self.pointer,
+                    aspect,
+                    reach,
+                ) {
+                    Some((i, grip)) if session.simulation.grab(i).is_ok() => Hand::Pull(grip),
+                    _ => Hand::Orbit,
+                }
+            }
+            MouseButton::Right | MouseButton::Middle => Hand::Pan,
+            _ => return,
+        };
+    }
+
+    fn let_go(&mut self) {
+        self.session.simulation.release();
+        self.hand = Hand::Empty;
+    }
+
+    fn move_to(&mut self, position: PhysicalPosition<f64>) {
+        let Some(graphics) = &self.graphics else {
+            return;
+        };
+        let (width, height) = graphics.size();
+        let pointer = [
+            position.x as f32 / width as f32,
+            position.y as f32 / height as f32,
+        ];
+        let (dx, dy) = (pointer[0] - self.pointer[0], pointer[1] - self.pointer[1]);
+        let aspect = graphics.aspect();
+        self.pointer = pointer;
+        match self.hand {
+            Hand::Orbit => self.session.camera.orbit(-TURN * dx * aspect, TURN * dy),
+            Hand::Pan => self.session.camera.pan(-dx * aspect, dy),
+            Hand::Pull(_) | Hand::Empty => return,
+        }
+        self.redraw();
+    }
+
+    /// Brings the simulation up to date and draws it.
+    fn frame(&mut self, event_loop: &ActiveEventLoop) {
+        let now = Instant::now();
+        let real = now.duration_since(self.last).as_secs_f64();
+        self.last = now;
+        if let Hand::Pull(grip) = self.hand {
+            let [x, y, z] = grip
+                .target(&self.session.camera, self.pointer, self.aspect())
+                .map(f64::from);
+            self.session.simulation.pull(Vector3::new(x, y, z));
+        }
+        self.session.tick(real);
+        let message_ends = self.session.message_ends();
+        let Some(graphics) = &mut self.graphics else {
+            return;
+        };
+        let begun = Instant::now();
+        match graphics.frame(&mut self.session) {
+            Ok(Outcome::Drawn) => {
+                self.session.drawn(begun.elapsed());
+                if let Some(status) = &mut self.status {
+                    status.frames += 1;
+                }
+                if self.session.animated() {
+                    self.wait_until(event_loop, now + self.frame_time());
+                } else if let Some(end) = message_ends {
+                    self.wait_until(event_loop, end);
+                }
+            }
+            Ok(Outcome::Skipped) => self.wait_until(event_loop, now + RETRY),
+            Err(GpuError::Lost) => self.open_graphics(event_loop),
+            Err(why) => self.fail(event_loop, why),
+        }
+        self.say_status();
+    }
+
+    /// Of the monitor, in case that presenting does not wait for it.
+    fn frame_time(&self) -> Duration {
+        let monitor = self
+            .window
+            .as_ref()
+            .and_then(|window| window.current_monitor());
+        let rate = monitor
+            .and_then(|monitor| monitor.refresh_rate_millihertz())
+            .unwrap_or(60_000);
+        Duration::from_secs_f64(1e3 / f64::from(rate.clamp(30_000, 500_000)))
+    }
+
+    fn wait_until(&self, event_loop: &ActiveEventLoop, when: Instant) {
+        if !self.visible {
+            event_loop.set_control_flow(ControlFlow::Wait);
+        } else if when <= Instant::now() {
+            self.redraw();
+        } else {
+            event_loop.set_control_flow(ControlFlow::WaitUntil(when));
+        }
+    }
+
+    fn say_status(&mut self) {
+        let (Some(status), Some(graphics)) = (&mut self.status, &self.graphics) else {
+            return;
+        };
+        let run = &self.session.simulation;
+        let readings = &self.session.readings;
+        let grabbed = run.grabbed().map_or("-".into(), |i| i.to_string());
+        let hand = run.grabbed().map_or(Vector3::zeros(), |i| run.position(i));
+        let state = format!(
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} blown={} grabbed={grabbed} \
+             size={}x{} visible={}",
+            run.scene().name,
+            run.method().name,
+            run.step_size(),
+            self.session.show.style,
+            run.windy(),
+            run.swinging(),
+            readings.paused,
+            readings.help,
+            run.blow_up().is_some(),
+            graphics.size().0,
+            graphics.size().1,
+            self.visible,
+        );
+        let now = Instant::now();
+        let quiet = status
+            .said
+            .is_some_and(|said| now.duration_since(said) < Duration::from_millis(200));
+        if quiet && state == status.state {
+            return;
+        }
+        eprintln!(
+            "status {state} time={:.4} steps={} frames={} hand={:.3},{:.3},{:.3} rate={:.1} factor={:.2} \
+             simulating={:.2} drawing={:.2} adapter={}",
+            run.time(),
+            run.steps(),
+            status.frames,
+            hand.x,
+            hand.y,
+            hand.z,
+            readings.rate,
+            readings.factor,
+            readings.simulating,
+            readings.drawing,
+            graphics.adapter(),
+        );
+        status.state = state;
+        status.said = Some(now);
+    }
+}
+
+impl ApplicationHandler for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.window.is_some() {
+            return;
+        }
+        event_loop.set_control_flow(ControlFlow::Wait);
+        let attributes = Window::default_attributes()
+            .with_inner_size(LogicalSize::new(1280.0, 720.0))
+            .with_min_inner_size(LogicalSize::new(64.0, 48.0));
+        match event_loop.create_window(attributes) {
+            Ok(window) => self.window = Some(Arc::new(window)),
+            Err(why) => return self.fail(event_loop, GpuError::Device(why.to_string())),
+        }
+        self.title();
+        self.open_graphics(event_loop);
+        self.last = Instant::now();
+    }
+
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
+        if let StartCause::ResumeTimeReached { .. } = cause {
+            event_loop.set_control_flow(ControlFlow::Wait);
+            self.redraw();
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(graphics) = &mut self.graphics else {
+            return;
+        };
+        let taken = graphics.on_event(&event);
+        match event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
+                graphics.resized();
+                self.redraw();
+            }
+            WindowEvent::Occluded(hidden) => {
+                self.visible = !hidden;
+                // What was not seen did not happen.
+                self.last = Instant::now();
+                self.session.restart_meter();
+                self.say_status();
+                self.redraw();
+            }
+            WindowEvent::Focused(false) => self.let_go(),
+            WindowEvent::KeyboardInput { event, .. }
+                if event.state == ElementState::Pressed && !taken =>
+            {
+                if self.status.is_some() && event.logical_key == Key::Named(NamedKey::F12) {
+                    graphics.lose_device();
+                    self.redraw();
+                }
+                let Some(action) = keys::action(&event.logical_key) else {
+                    return;
+                };
+                let repeats = matches!(
+                    action,
+                    Action::Step | Action::LongerStep | Action::ShorterStep
+                );
+                if !event.repeat || repeats {
+                    self.act(event_loop, action);
+                }
+            }
+            WindowEvent::MouseInput {
+                state: ElementState::Pressed,
+                button,
+                ..
+            } if !taken => {
+                self.press(button);
+                self.redraw();
+            }
+            WindowEvent::MouseInput {
+                state: ElementState::Released,
+                ..
+            } => {
+                self.let_go();
+                self.redraw();
+            }
+            WindowEvent::CursorMoved { position, .. } => self.move_to(position),
+            WindowEvent::MouseWheel { delta, .. } if !taken => {
+                let notches = match delta {
+                    MouseScrollDelta::LineDelta(_, y) => y,
+                    MouseScrollDelta::PixelDelta(p) => p.y as f32 / 50.0,
+                };
+                self.session.camera.zoom(0.9f32.powf(notches));
+                self.redraw();
+            }
+            WindowEvent::RedrawRequested if self.visible => self.frame(event_loop),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,363 @@
+//! A run that keeps up with real time, and what the keys do to it. Knows no window.
+
+use std::time::{Duration, Instant};
+
+use a3_core::{Method, SceneEntry, Simulation, integrators, scenes};
+use a3_render::{Camera, Style};
+
+use super::hud::Readings;
+use super::keys::Action;
+use crate::Failure;
+use crate::cli::{self, LARGEST_STEP, SMALLEST_STEP};
+use crate::show::{self, Show};
+
+/// Real time a frame may spend on steps. What does not fit is not caught up: the run is slower than real time then.
+const BUDGET: Duration = Duration::from_millis(12);
+/// No frame owes more than this [s], however long it took: neither a slow one nor a laptop's sleep.
+const MOST_OWED: f64 = 0.1;
+/// How long a message stays.
+const MESSAGE_TIME: Duration = Duration::from_secs(4);
+/// Steps of the keys + and -, in each decade.
+const LADDER: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
+
+/// A run on the screen.
+pub struct Session {
+    pub simulation: Simulation,
+    pub show: Show,
+    pub camera: Camera,
+    pub readings: Readings,
+    entry: &'static SceneEntry,
+    /// The solver asked for, also while a scene is shown that it cannot serve.
+    wanted: &'static Method,
+    /// Real time not yet simulated [s].
+    owed: f64,
+    message_ends: Option<Instant>,
+    meter: Meter,
+}
+
+/// What happened since the readings were last taken.
+struct Meter {
+    begun: Instant,
+    frames: u32,
+    simulated: f64,
+    simulating: Duration,
+    drawing: Duration,
+}
+
+impl Meter {
+    fn new() -> Self {
+        Self {
+            begun: Instant::now(),
+            frames: 0,
+            simulated: 0.0,
+            simulating: Duration::ZERO,
+            drawing: Duration::ZERO,
+        }
+    }
+}
+
+impl Session {
+    /// The session that the command line asks for.
+    pub fn new(options: &cli::Window) -> Result<Self, Failure> {
+        let step = options.step.unwrap_or(options.solver.default_step);
+        let simulation = options.what.simulation(options.solver, step)?;
+        cli::check_particle(&simulation, options.springs_of)?;
+        Ok(Self {
+            camera: show::camera(&simulation),
+            show: Show::new(options.wireframe, options.springs_of),
+            readings: Readings {
+                paused: options.paused,
+                ..Readings::default()
+            },
+            entry: options.what.scene,
+            wanted: options.solver,
+            owed: 0.0,
+            message_ends: None,
+            meter: Meter::new(),
+            simulation,
+        })
+    }
+
+    /// Whether the next frame will look different by itself.
+    pub fn animated(&self) -> bool {
+        !self.readings.paused && self.simulation.blow_up().is_none()
+    }
+
+    /// Goes on by `real` seconds of real time, in steps of exactly the size asked for.
+    pub fn tick(&mut self, real: f64) {
+        if !self.animated() {
+            self.owed = 0.0;
+            return;
+        }
+        let step = self.simulation.step_size();
+        self.owed = (self.owed + real.min(MOST_OWED)).min(MOST_OWED.max(step));
+        let mut left = (self.owed / step + 1e-9).floor() as u64;
+        let begun = Instant::now();
+        let mut portion = 1;
+        while left > 0 && begun.elapsed() < BUDGET {
+            let count = portion.min(left);
+            // A blow-up is on the screen from now on.
+            if self.simulation.take_steps(count).is_err() {
+                break;
+            }
+            left -= count;
+            self.owed -= count as f64 * step;
+            self.meter.simulated += count as f64 * step;
+            if begun.elapsed() < BUDGET / 16 {
+                portion *= 2;
+            }
+        }
+        if left > 0 {
+            self.owed = 0.0;
+        }
+        self.meter.simulating += begun.elapsed();
+        self.show.follow(&self.simulation);
+    }
+
+    /// A frame was drawn, in this time. Twice a second the readings are taken.
+    pub fn drawn(&mut self, drawing: Duration) {
+        self.meter.frames += 1;
+        self.meter.drawing += drawing;
+        let elapsed = self.meter.begun.elapsed().as_secs_f32();
+        if elapsed < 0.5 {
+            return;
+        }
+        let meter = std::mem::replace(&mut self.meter, Meter::new());
+        let frames = meter.frames as f32;
+        self.readings.rate = frames / elapsed;
+        self.readings.factor = meter.simulated as f32 / elapsed;
+        self.readings.simulating = meter.simulating.as_secs_f32() * 1e3 / frames;
+        self.readings.drawing = meter.drawing.as_secs_f32() * 1e3 / frames;
+    }
+
+    /// Forgets the pause that nothing was drawn in.
+    pub fn restart_meter(&mut self) {
+        self.meter = Meter::new();
+    }
+
+    /// Says something for a few seconds.
+    pub fn say(&mut self, message: impl Into<String>) {
+        self.readings.message = Some(message.into());
+        self.message_ends = Some(Instant::now() + MESSAGE_TIME);
+    }
+
+    /// Takes a message down whose time is over. Until when the one that is up stays.
+    pub fn message_ends(&mut self) -> Option<Instant> {
+        if self.message_ends.is_some_and(|end| end <= Instant::now()) {
+            self.message_ends = None;
+            self.readings.message = None;
+        }
+        self.message_ends
+    }
+
+    /// Does what a key asks for, except what needs the window. Whether the scene is another one now.
+    pub fn act(&mut self, action: Action) -> bool {
+        let simulation = &mut self.simulation;
+        match action {
+            Action::NextScene => {
+                self.next_scene();
+                return true;
+            }
+            Action::Reset => {
+                simulation.reset();
+                self.show.clear_trail();
+                self.owed = 0.0;
+            }
+            Action::Swing if simulation.scene().swing.is_none() => {
+                self.say("There is nothing to swing here.")
+            }
+            Action::Swing => simulation.set_swinging(!simulation.swinging()),
+            Action::Wind if simulation.scene().wind.is_none() => self.say("There is no wind here."),
+            Action::Wind => simulation.set_wind(!simulation.windy()),
+            Action::Wireframe => {
+                self.show.style = match self.show.style {
+                    Style::Shaded => Style::Wireframe,
+                    Style::Wireframe => Style::Shaded,
+                };
+            }
+            Action::Pause => self.readings.paused = !self.readings.paused,
+            Action::Step => {
+                self.readings.paused = true;
+                // A blow-up is on the screen from now on.
+                let _ = self.simulation.take_steps(1);
+                self.show.follow(&self.simulation);
+            }
+            Action::Solver(i) => match integrators::METHODS.get(i) {
+                Some(method) => self.set_method(method),
+                None => self.say(format!("There are {} solvers.", integrators::METHODS.len())),
+            },
+            Action::LongerStep => self.set_step(true),
+            Action::ShorterStep => self.set_step(false),
+            Action::Camera => self.camera = show::camera(&self.simulation),
+            Action::Help => self.readings.help = !self.readings.help,
+            Action::Picture | Action::Quit => {}
+        }
+        false
+    }
+
+    fn set_method(&mut self, method: &'static Method) {
+        match self.simulation.set_method(method) {
+            Ok(()) => self.wanted = method,
+            Err(why) => self.say(why.to_string()),
+        }
+    }
+
+    fn set_step(&mut self, longer: bool) {
+        let step = next_step(self.simulation.step_size(), longer);
+        if let Err(why) = self.simulation.set_step(step) {
+            self.say(why.to_string());
+        }
+    }
+
+    /// The next scene of the table, with the same solver if it can be, and the same step.
+    fn next_scene(&mut self) {
+        let here = scenes::SCENES
+            .iter()
+            .position(|entry| std::ptr::eq(entry, self.entry))
+            .unwrap_or(0);
+        let entry = &scenes::SCENES[(here + 1) % scenes::SCENES.len()];
+        let step = self.simulation.step_size();
+        let start = |method| Simulation::new(entry.build(None)?, method, step);
+        let simulation = start(self.wanted).or_else(|why| {
+            self.say(why.to_string());
+            start(&integrators::METHODS[1])
+        });
+        match simulation {
+            Ok(simulation) => {
+                self.camera = show::camera(&simulation);
+                self.simulation = simulation;
+                self.entry = entry;
+                self.show.clear_trail();
+                self.show.springs_of = None;
+                self.owed = 0.0;
+            }
+            Err(why) => self.say(why.to_string()),
+        }
+    }
+}
+
+/// The next longer or shorter step of the ladder [s].
+fn next_step(step: f64, longer: bool) -> f64 {
+    let decade = step.log10().floor() as i32;
+    let rungs = (decade - 1..=decade + 1).flat_map(|d| {
+        // Dividing by a power of ten is exact to the last digit where multiplying by its inverse is not.
+        LADDER.iter().map(move |rung| {
+            if d < 0 {
+                rung / 10f64.powi(-d)
+            } else {
+                rung * 10f64.powi(d)
+            }
+        })
+    });
+    let next = if longer {
+        rungs
+            .filter(|rung| *rung > step * (1.0 + 1e-9))
+            .reduce(f64::min)
+    } else {
+        rungs
+            .filter(|rung| *rung < step * (1.0 - 1e-9))
+            .reduce(f64::max)
+    };
+    next.unwrap_or(step).clamp(SMALLEST_STEP, LARGEST_STEP)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    fn session(words: &[&str]) -> Session {
+        let words = ["a3"].iter().chain(words);
+        match Session::new(&cli::Cli::try_parse_from(words).unwrap().window) {
+            Ok(session) => session,
+            Err(Failure::Usage(why) | Failure::Run(why)) => panic!("{why}"),
+        }
+    }
+
+    #[test]
+    fn time_keeps_up_whatever_the_frame_rate() {
+        for rate in [17.0, 60.0, 144.0] {
+            let mut session = session(&["t", "0.01", "--scene", "chain"]);
+            for _ in 0..(3.0 * rate) as u32 {
+                session.tick(1.0 / rate);
+            }
+            assert!(
+                (session.simulation.time() - 3.0).abs() < 0.011,
+                "{rate}: {}",
+                session.simulation.time()
+            );
+        }
+    }
+
+    #[test]
+    fn a_frame_of_minutes_is_no_huge_step() {
+        let mut session = session(&["t", "0.01", "--scene", "chain"]);
+        session.tick(300.0);
+        assert!(session.simulation.time() <= MOST_OWED + 1e-9);
+        assert!(session.simulation.steps() <= 10);
+    }
+
+    #[test]
+    fn a_long_step_waits_until_it_is_due() {
+        let mut session = session(&["r", "0.5", "--scene", "simple"]);
+        for _ in 0..65 {
+            session.tick(1.0 / 60.0);
+        }
+        assert_eq!(session.simulation.steps(), 2);
+    }
+
+    #[test]
+    fn paused_it_stands_still() {
+        let mut session = session(&["t", "0.01", "--paused"]);
+        session.tick(0.05);
+        assert_eq!(session.simulation.steps(), 0);
+        session.act(Action::Step);
+        assert_eq!(session.simulation.steps(), 1);
+        session.act(Action::Pause);
+        session.tick(0.05);
+        assert_eq!(session.simulation.steps(), 6);
+    }
+
+    #[test]
+    fn scenes_come_round_and_the_solver_comes_back() {
+        let mut session = session(&["v", "0.005"]);
+        let mut seen = vec![];
+        for _ in 0..scenes::SCENES.len() {
+            seen.push((
+                session.simulation.scene().name,
+                session.simulation.method().name,
+            ));
+            assert!(session.act(Action::NextScene));
+        }
+        let expected = ["cloth", "simple", "pendulum", "chain", "mit", "mit-sphere"];
+        assert_eq!(
+            seen.iter().map(|(scene, _)| *scene).collect::<Vec<_>>(),
+            expected
+        );
+        // Verlet cannot serve the circle, and serves the others again.
+        let solvers: Vec<_> = seen.iter().map(|(_, solver)| *solver).collect();
+        assert_eq!(
+            solvers,
+            [
+                "verlet",
+                "trapezoid",
+                "verlet",
+                "verlet",
+                "verlet",
+                "verlet"
+            ]
+        );
+        assert_eq!(session.simulation.scene().name, "cloth");
+    }
+
+    #[test]
+    fn steps_climb_the_ladder() {
+        assert_eq!(next_step(0.01, true), 0.012);
+        assert_eq!(next_step(0.01, false), 0.008);
+        assert_eq!(next_step(0.008, true), 0.01);
+        assert_eq!(next_step(0.0123, false), 0.012);
+        assert_eq!(next_step(8.0, true), 10.0);
+        assert_eq!(next_step(LARGEST_STEP, true), LARGEST_STEP);
+        assert_eq!(next_step(SMALLEST_STEP, false), SMALLEST_STEP);
+    }
+}

@@ -1,0 +1,235 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use a3_core::{Grid, Method, Scene, SceneEntry, Simulation, integrators, scenes};
+use clap::error::ErrorKind;
+use clap::{Args, Parser, Subcommand};
+
+use crate::Failure;
+
+/// Physical simulation of mass-spring systems: pull at cloth, and see which integrator holds.
+#[derive(Parser)]
+#[command(version, args_conflicts_with_subcommands = true, max_term_width = 100)]
+#[command(
+    after_help = "Examples:\n  a3 t 0.01                          the default cloth, explicit trapezoid, 10 ms\n  \
+    a3 e 0.05 --scene simple           watch Euler's circle spiral outwards\n  \
+    a3 simulate rk4 0.001 --until 2 --output state.json\n  \
+    a3 render v 0.005 --until 3 --output cloth.png --size 1920x1080\n\nIn the window, h shows the keys."
+)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    #[command(flatten)]
+    pub window: Window,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Simulate without a window and write the final state as JSON
+    Simulate(Simulate),
+    /// Simulate without a window and write a picture as PNG
+    Render(Render),
+    /// List the scenes: particles, springs, length of the state, forces
+    Scenes,
+    /// List the solvers: order, evaluations per step, default step
+    Solvers,
+}
+
+/// What is simulated.
+#[derive(Args, Clone)]
+pub struct What {
+    /// Scene, one of those that `a3 scenes` lists
+    #[arg(long, value_name = "NAME", default_value = "cloth", value_parser = scene)]
+    pub scene: &'static SceneEntry,
+    /// Rows and columns of a cloth, such as 30x40
+    #[arg(long, value_name = "ROWSxCOLS", value_parser = grid)]
+    pub grid: Option<Grid>,
+    /// Let the wind blow
+    #[arg(long)]
+    pub wind: bool,
+    /// Swing the pins
+    #[arg(long)]
+    pub swing: bool,
+}
+
+#[derive(Args)]
+pub struct Window {
+    /// Solver by letter or name: e, t, r, ... (`a3 solvers` lists them)
+    #[arg(default_value = "t", value_parser = solver)]
+    pub solver: &'static Method,
+    /// Step in seconds; without it, the solver's own
+    #[arg(value_parser = step, allow_negative_numbers = true)]
+    pub step: Option<f64>,
+    #[command(flatten)]
+    pub what: What,
+    /// Show the springs attached to particle I, and list them
+    #[arg(long, value_name = "I")]
+    pub springs_of: Option<usize>,
+    /// Begin with the wireframe
+    #[arg(long)]
+    pub wireframe: bool,
+    /// Begin paused
+    #[arg(long)]
+    pub paused: bool,
+    /// Write what is on the screen as lines of text to stderr
+    #[arg(long, hide = true)]
+    pub status: bool,
+}
+
+#[derive(Args)]
+pub struct Simulate {
+    #[command(flatten)]
+    pub run: Run,
+    /// File to write, ending in .json, or - for standard output
+    #[arg(long, short, value_name = "FILE.json")]
+    pub output: PathBuf,
+}
+
+#[derive(Args)]
+pub struct Render {
+    #[command(flatten)]
+    pub run: Run,
+    /// File to write, ending in .png
+    #[arg(long, short, value_name = "FILE.png")]
+    pub output: PathBuf,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    pub size: (u32, u32),
+    /// Draw the wires instead of the surface
+    #[arg(long)]
+    pub wireframe: bool,
+    /// Show the springs attached to particle I
+    #[arg(long, value_name = "I")]
+    pub springs_of: Option<usize>,
+}
+
+/// A run without a window.
+#[derive(Args)]
+pub struct Run {
+    /// Solver by letter or name
+    #[arg(value_parser = solver)]
+    pub solver: &'static Method,
+    /// Step in seconds
+    #[arg(value_parser = step, allow_negative_numbers = true)]
+    pub step: f64,
+    /// Simulated seconds; the last step is shortened to end exactly there
+    #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true)]
+    pub until: f64,
+    #[command(flatten)]
+    pub what: What,
+}
+
+impl What {
+    fn scene(&self) -> Result<Scene, Failure> {
+        self.scene.build(self.grid).map_err(Failure::usage)
+    }
+
+    /// A run of this scene.
+    pub fn simulation(&self, solver: &'static Method, step: f64) -> Result<Simulation, Failure> {
+        let mut simulation = Simulation::new(self.scene()?, solver, step)
+            .map_err(|e| Failure::usage(format!("{e} (scene {})", self.scene.name)))?;
+        simulation.set_wind(self.wind);
+        simulation.set_swinging(self.swing);
+        Ok(simulation)
+    }
+}
+
+impl Run {
+    pub fn simulation(&self) -> Result<Simulation, Failure> {
+        self.what.simulation(self.solver, self.step)
+    }
+}
+
+/// `Ok` if the scene has that particle.
+pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Result<(), Failure> {
+    let n = simulation.particles();
+    match particle {
+        Some(i) if i >= n => Err(Failure::usage(format!(
+            "there is no particle {i} in this scene: --springs-of takes 0 to {}",
+            n - 1
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// The largest step that is no slip of the finger [s].
+pub const LARGEST_STEP: f64 = 10.0;
+/// The smallest [s].
+pub const SMALLEST_STEP: f64 = 1e-7;
+
+fn step(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(step) if (SMALLEST_STEP..=LARGEST_STEP).contains(&step) => Ok(step),
+        _ => Err(format!(
+            "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01"
+        )),
+    }
+}
+
+fn until(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
+        _ => Err("the end is a number of seconds from 0 to 1e9, such as 10".into()),
+    }
+}
+
+fn solver(text: &str) -> Result<&'static Method, String> {
+    integrators::find(text).ok_or_else(|| {
+        let names: Vec<_> = integrators::METHODS
+            .iter()
+            .map(|m| format!("{} ({})", m.letter, m.name))
+            .collect();
+        format!("the solvers are {}", names.join(", "))
+    })
+}
+
+fn scene(text: &str) -> Result<&'static SceneEntry, String> {
+    scenes::find(text).ok_or_else(|| {
+        let names: Vec<_> = scenes::SCENES.iter().map(|s| s.name).collect();
+        format!("the scenes are {}", names.join(", "))
+    })
+}
+
+fn pair<T: std::str::FromStr>(text: &str) -> Option<(T, T)> {
+    let (a, b) = text.split_once(['x', 'X', '×'])?;
+    Some((a.parse().ok()?, b.parse().ok()?))
+}
+
+fn grid(text: &str) -> Result<Grid, String> {
+    let (rows, cols) = pair(text).ok_or("a grid is ROWSxCOLS, such as 20x30")?;
+    Grid::new(rows, cols).map_err(|e| e.to_string())
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    match pair(text) {
+        Some((w, h)) if w > 0 && h > 0 => Ok((w, h)),
+        _ => Err("a size is WIDTHxHEIGHT in pixels, such as 1280x720".into()),
+    }
+}
+
+/// Help and version as clap prints them; anything else in one line.
+pub fn explain(error: &clap::Error) -> Result<(), Failure> {
+    if matches!(
+        error.kind(),
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+    ) {
+        return error.print().map_err(Failure::run);
+    }
+    let text = error.render().to_string();
+    // The first paragraph says it; usage and hints follow.
+    let words: Vec<_> = text
+        .lines()
+        .take_while(|line| !line.is_empty())
+        .map(str::trim)
+        .collect();
+    let line = words.join(" ");
+    let tip = text
+        .lines()
+        .find_map(|line| line.trim().strip_prefix("tip: "));
+    let line = line.strip_prefix("error: ").unwrap_or(&line).to_owned();
+    Err(Failure::Usage(match tip {
+        Some(tip) => format!("{line}; {tip}"),
+        None => format!("{line} (--help says more)"),
+    }))
+}

@@ -1,0 +1,102 @@
+//! `a3 scenes` and `a3 solvers`: what there is.
+
+use std::io::Write;
+
+use a3_core::{integrators, scenes};
+
+use crate::Failure;
+
+/// Columns as wide as their widest cell; those whose heading starts with a space are right-aligned.
+fn table(rows: &[Vec<String>]) -> Result<(), Failure> {
+    let columns = rows[0].len();
+    let width = |c: usize| {
+        rows.iter()
+            .map(|row| row[c].trim().chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths: Vec<_> = (0..columns).map(width).collect();
+    let mut text = String::new();
+    for row in rows {
+        let mut line = String::new();
+        for (c, cell) in row.iter().enumerate() {
+            let (cell, width) = (cell.trim(), widths[c]);
+            if rows[0][c].starts_with(' ') {
+                line += &format!("{cell:>width$}  ");
+            } else {
+                line += &format!("{cell:<width$}  ");
+            }
+        }
+        text += line.trim_end();
+        text.push('\n');
+    }
+    // A reader that has seen enough, such as `head`, is no failure.
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    Ok(())
+}
+
+pub fn scenes() -> Result<(), Failure> {
+    let heading = [
+        "scene",
+        "grid",
+        " particles",
+        " springs",
+        " state",
+        "forces",
+        "what it is",
+    ];
+    let mut rows = vec![heading.map(String::from).to_vec()];
+    for entry in scenes::SCENES {
+        let scene = entry.build(None).map_err(Failure::run)?;
+        let network = scene.model.network();
+        rows.push(vec![
+            entry.name.into(),
+            entry
+                .grid
+                .map_or("-".into(), |(rows, cols)| format!("{rows}x{cols}")),
+            scene.model.particles().to_string(),
+            network.map_or(0, |n| n.springs().count()).to_string(),
+            scene.model.system().dim().to_string(),
+            network.map_or("-".into(), |n| n.forces_in_use().join(", ")),
+            entry.summary.into(),
+        ]);
+    }
+    table(&rows)
+}
+
+pub fn solvers() -> Result<(), Failure> {
+    let heading = [
+        "",
+        "solver",
+        " order",
+        " evaluations/step",
+        " default step",
+        "serves",
+        "method",
+    ];
+    let mut rows = vec![heading.map(String::from).to_vec()];
+    for m in integrators::METHODS {
+        rows.push(vec![
+            m.letter.into(),
+            m.name.into(),
+            m.order.to_string(),
+            if m.damped_evaluations == m.evaluations {
+                m.evaluations.to_string()
+            } else {
+                format!(
+                    "{} ({} if springs are damped)",
+                    m.evaluations, m.damped_evaluations
+                )
+            },
+            format!("{} s", m.default_step),
+            if m.needs_mechanics {
+                "masses"
+            } else {
+                "any system"
+            }
+            .into(),
+            m.title.into(),
+        ]);
+    }
+    table(&rows)
+}

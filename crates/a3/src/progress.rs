@@ -1,0 +1,50 @@
+//! A long run, with a bar on the terminal once it takes long.
+
+use std::time::{Duration, Instant};
+
+use a3_core::{Error, Simulation};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Simulated time between two calls of `frame` [s].
+const FRAME: f64 = 1.0 / 60.0;
+
+/// Goes on to `until` [s] in whole steps, the last one shortened. Calls `frame` about sixty times a simulated second.
+pub fn advance(
+    simulation: &mut Simulation,
+    until: f64,
+    mut frame: impl FnMut(&Simulation),
+) -> Result<(), Error> {
+    let begun = Instant::now();
+    let mut bar: Option<ProgressBar> = None;
+    let step = simulation.step_size();
+    let stride = (FRAME / step).floor().max(1.0);
+    loop {
+        // Whole steps that end before the last one.
+        let whole = ((until - simulation.time()) / step - 1.0)
+            .ceil()
+            .min(stride);
+        if whole < 1.0 {
+            break;
+        }
+        simulation.take_steps(whole as u64)?;
+        frame(simulation);
+        if bar.is_none() && begun.elapsed() > Duration::from_secs(1) {
+            bar = Some(new_bar());
+        }
+        if let Some(bar) = &bar {
+            bar.set_position((1000.0 * simulation.time() / until) as u64);
+        }
+    }
+    simulation.advance_to(until)?;
+    frame(simulation);
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    Ok(())
+}
+
+/// Draws to stderr, and nothing at all where that is no terminal.
+fn new_bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {eta} left");
+    ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

@@ -1,0 +1,309 @@
+//! What a run looks like: from particles, springs and obstacles to balls, lines and triangles.
+
+use std::collections::VecDeque;
+
+use a3_core::{Simulation, Spring, SpringKind, Vector3};
+use a3_render::{Ball, Camera, Line, Picture, Style, Topology};
+
+/// Linear colours.
+const INK: [f32; 4] = [0.035, 0.05, 0.09, 1.0];
+const STEEL: [f32; 4] = [0.30, 0.36, 0.44, 1.0];
+const RED: [f32; 4] = [0.62, 0.045, 0.06, 1.0];
+const AMBER: [f32; 4] = [0.95, 0.42, 0.02, 1.0];
+const TEAL: [f32; 4] = [0.0, 0.33, 0.36, 1.0];
+const VIOLET: [f32; 4] = [0.30, 0.10, 0.55, 1.0];
+
+/// Turns of a drawn coil, and pieces a turn.
+const TURNS: usize = 12;
+const PIECES: usize = 14;
+
+/// The most places a trail remembers.
+const TRAIL: usize = 3600;
+
+/// How a run is shown, and the buffers of its picture.
+pub struct Show {
+    /// Mesh or wires.
+    pub style: Style,
+    /// The particle whose springs are highlighted.
+    pub springs_of: Option<usize>,
+    trail: VecDeque<[f32; 3]>,
+    points: Vec<[f32; 4]>,
+    balls: Vec<Ball>,
+    lines: Vec<Line>,
+    floor: Option<f32>,
+}
+
+impl Show {
+    pub fn new(wireframe: bool, springs_of: Option<usize>) -> Self {
+        Self {
+            style: if wireframe {
+                Style::Wireframe
+            } else {
+                Style::Shaded
+            },
+            springs_of,
+            trail: VecDeque::new(),
+            points: vec![],
+            balls: vec![],
+            lines: vec![],
+            floor: None,
+        }
+    }
+
+    /// Forgets the way so far.
+    pub fn clear_trail(&mut self) {
+        self.trail.clear();
+    }
+
+    /// Remembers where the trailing particle is.
+    pub fn follow(&mut self, simulation: &Simulation) {
+        let Some(i) = simulation.scene().trail else {
+            return;
+        };
+        let here = to_f32(simulation.position(i));
+        if self.trail.back() != Some(&here) {
+            self.trail.push_back(here);
+        }
+        if self.trail.len() > TRAIL {
+            self.trail.pop_front();
+        }
+    }
+
+    /// Turns the state of the run into a picture.
+    pub fn compose(&mut self, simulation: &Simulation) {
+        let n = simulation.particles();
+        let (x, rest) = simulation.state().split_at(n);
+        let (y, z) = rest.split_at(n);
+        self.points.clear();
+        self.points.extend(
+            x.iter()
+                .zip(y)
+                .zip(z)
+                .map(|((x, y), z)| [*x as f32, *y as f32, *z as f32, 0.0]),
+        );
+        self.balls.clear();
+        self.lines.clear();
+        self.floor = None;
+        if simulation.scene().trail.is_some() {
+            self.draw_trail();
+        }
+        if simulation.scene().grid.is_some() {
+            self.draw_pins(simulation);
+        } else {
+            self.draw_parts(simulation);
+        }
+        self.draw_obstacles(simulation);
+        if let Some(i) = self.springs_of {
+            self.draw_springs_of(simulation, i);
+        }
+        if let Some(i) = simulation.grabbed() {
+            self.ball(i, 0.055, AMBER);
+        }
+    }
+
+    /// The picture composed last, seen by `camera`.
+    pub fn picture(&self, camera: Camera, scale: f32) -> Picture<'_> {
+        Picture {
+            camera,
+            style: self.style,
+            scale,
+            points: &self.points,
+            balls: &self.balls,
+            lines: &self.lines,
+            floor: self.floor,
+        }
+    }
+
+    fn at(&self, i: usize) -> [f32; 3] {
+        let [x, y, z, _] = self.points[i];
+        [x, y, z]
+    }
+
+    fn ball(&mut self, i: usize, radius: f32, color: [f32; 4]) {
+        self.balls.push(Ball {
+            center: self.at(i),
+            radius,
+            color,
+        });
+    }
+
+    /// Older parts are fainter.
+    fn draw_trail(&mut self) {
+        let n = self.trail.len();
+        for (k, (a, b)) in self.trail.iter().zip(self.trail.iter().skip(1)).enumerate() {
+            let age = 1.0 - (k + 1) as f32 / n as f32;
+            let [r, g, b_, _] = TEAL;
+            self.lines
+                .push(Line::new(*a, *b, 2.2, [r, g, b_, 0.12 + 0.8 * (1.0 - age)]));
+        }
+    }
+
+    fn draw_pins(&mut self, simulation: &Simulation) {
+        let pins: Vec<_> = simulation
+            .model()
+            .network()
+            .into_iter()
+            .flat_map(|n| n.pins())
+            .collect();
+        for (i, _) in pins {
+            self.ball(i, 0.032, INK);
+        }
+    }
+
+    /// A small system: coils for its springs, balls for its particles.
+    fn draw_parts(&mut self, simulation: &Simulation) {
+        let network = simulation.model().network();
+        for spring in network.into_iter().flat_map(|n| n.springs()) {
+            let points = coil(
+                simulation.position(spring.i),
+                simulation.position(spring.j),
+                &spring,
+            );
+            self.lines.extend(
+                points
+                    .windows(2)
+                    .map(|ends| Line::new(ends[0], ends[1], 2.4, STEEL)),
+            );
+        }
+        for i in 0..simulation.particles() {
+            let pinned = network.is_some_and(|n| n.is_pinned(i)) && simulation.grabbed() != Some(i);
+            let (radius, color) = if pinned { (0.045, INK) } else { (0.085, RED) };
+            self.ball(i, radius, color);
+        }
+    }
+
+    fn draw_obstacles(&mut self, simulation: &Simulation) {
+        let Some(network) = simulation.model().network() else {
+            return;
+        };
+        self.floor = network.floor().map(|floor| floor.height as f32);
+        for sphere in network.spheres() {
+            let center = to_f32(sphere.path.at(simulation.time()).position);
+            // A little smaller than it is, so that the flat triangles between particles on it stay outside.
+            self.balls.push(Ball {
+                center,
+                radius: 0.965 * sphere.radius as f32,
+                color: STEEL,
+            });
+        }
+    }
+
+    fn draw_springs_of(&mut self, simulation: &Simulation, i: usize) {
+        if i >= simulation.particles() {
+            return;
+        }
+        // Bend springs lie over structural ones: the widest first.
+        let mut springs = springs_of(simulation, i);
+        springs.sort_by_key(|spring| spring.kind != SpringKind::Bend);
+        for spring in springs {
+            let (width, color) = match spring.kind {
+                SpringKind::Structural => (4.0, AMBER),
+                SpringKind::Shear => (4.0, TEAL),
+                SpringKind::Bend => (8.0, VIOLET),
+            };
+            self.lines.push(Line::new(
+                self.at(spring.i),
+                self.at(spring.j),
+                width,
+                color,
+            ));
+            let other = spring.i + spring.j - i;
+            self.ball(other, 0.035, color);
+        }
+        self.ball(i, 0.06, AMBER);
+    }
+}
+
+/// The springs attached to particle i.
+pub fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
+    let springs = simulation
+        .model()
+        .network()
+        .into_iter()
+        .flat_map(|n| n.springs());
+    springs.filter(|s| s.i == i || s.j == i).collect()
+}
+
+/// The springs attached to particle i, a line each.
+pub fn list_springs_of(simulation: &Simulation, i: usize) -> String {
+    let springs = springs_of(simulation, i);
+    let mut text = format!("particle {i} has {} springs\n", springs.len());
+    for s in springs {
+        let kind = match s.kind {
+            SpringKind::Structural => "structural",
+            SpringKind::Shear => "shear",
+            SpringKind::Bend => "bend",
+        };
+        text += &format!(
+            "  {kind:<10}  to {:>5}   k = {:.4} N/m   rest length {:.4} m   damping {:.4} N s/m\n",
+            s.i + s.j - i,
+            s.law.stiffness,
+            s.law.rest_length,
+            s.law.damping
+        );
+    }
+    text
+}
+
+/// What stays the same from frame to frame. Small systems are drawn by balls and coils instead.
+pub fn topology(simulation: &Simulation) -> Topology {
+    let points = simulation.particles();
+    let Some(grid) = simulation.scene().grid else {
+        return Topology {
+            points,
+            ..Topology::default()
+        };
+    };
+    let structural = simulation
+        .model()
+        .network()
+        .into_iter()
+        .flat_map(|n| n.springs());
+    Topology {
+        points,
+        triangles: grid.triangles().map(|t| t.map(|i| i as u32)).collect(),
+        wires: structural
+            .filter(|s| s.kind == SpringKind::Structural)
+            .map(|s| [s.i as u32, s.j as u32])
+            .collect(),
+    }
+}
+
+/// Where the scene wants to be looked at from.
+pub fn camera(simulation: &Simulation) -> Camera {
+    let view = simulation.scene().view;
+    Camera::look_at(to_f32(view.eye), to_f32(view.target))
+}
+
+fn to_f32(v: Vector3<f64>) -> [f32; 3] {
+    [v.x as f32, v.y as f32, v.z as f32]
+}
+
+/// A coil from a to b with straight ends. Stretched, it gets thinner.
+fn coil(a: Vector3<f64>, b: Vector3<f64>, spring: &Spring) -> Vec<[f32; 3]> {
+    let along = b - a;
+    let length = along.norm();
+    if length < 1e-6 {
+        return vec![];
+    }
+    let up = if along.y.abs() < 0.9 * length {
+        Vector3::y()
+    } else {
+        Vector3::x()
+    };
+    let side = along.cross(&up).normalize();
+    let other = along.cross(&side) / length;
+    let rest = spring.law.rest_length.max(1e-3);
+    let radius = 0.07 * rest.min(1.0) * (rest / length).clamp(0.4, 1.5).sqrt();
+    let count = TURNS * PIECES;
+    let mut points = vec![to_f32(a)];
+    points.extend((0..=count).map(|k| {
+        let share = k as f64 / count as f64;
+        // Wider from the ends to the middle, so that the coil leaves the axis smoothly.
+        let radius = radius * (12.0 * share.min(1.0 - share)).min(1.0);
+        let (sin, cos) = (std::f64::consts::TAU * TURNS as f64 * share).sin_cos();
+        to_f32(a + along * (0.1 + 0.8 * share) + (side * cos + other * sin) * radius)
+    }));
+    points.push(to_f32(b));
+    points
+}

@@ -1,0 +1,64 @@
+//! `a3 simulate`: the final state as JSON.
+
+use std::io::Write;
+use std::path::Path;
+
+use a3_core::Simulation;
+use serde::Serialize;
+
+use crate::cli::Simulate;
+use crate::{Failure, output, progress};
+
+#[derive(Serialize)]
+struct State<'a> {
+    scene: &'a str,
+    solver: &'a str,
+    /// [s]
+    step: f64,
+    /// [s]
+    time: f64,
+    steps: u64,
+    evaluations: u64,
+    /// Total [J]; none for a system without forces.
+    energy: Option<f64>,
+    /// [m]
+    positions: Vec<[f64; 3]>,
+    /// [m/s]
+    velocities: Vec<[f64; 3]>,
+}
+
+pub fn run(options: &Simulate) -> Result<(), Failure> {
+    let to_stdout = options.output == Path::new("-");
+    let mut simulation = options.run.simulation()?;
+    if !to_stdout {
+        output::check(&options.output, "json")?;
+    }
+    progress::advance(&mut simulation, options.run.until, |_| {}).map_err(Failure::run)?;
+    let mut json = serde_json::to_vec(&state(&simulation)).map_err(Failure::run)?;
+    json.push(b'\n');
+    if to_stdout {
+        let mut stdout = std::io::stdout().lock();
+        stdout
+            .write_all(&json)
+            .and_then(|()| stdout.flush())
+            .map_err(|e| Failure::run(format!("standard output: not written: {e}")))
+    } else {
+        output::write(&options.output, &json)
+    }
+}
+
+fn state(simulation: &Simulation) -> State<'_> {
+    let n = simulation.particles();
+    let rows = |a: &[f64]| (0..n).map(|i| [a[i], a[n + i], a[2 * n + i]]).collect();
+    State {
+        scene: simulation.scene().name,
+        solver: simulation.method().name,
+        step: simulation.step_size(),
+        time: simulation.time(),
+        steps: simulation.steps(),
+        evaluations: simulation.work().evaluations,
+        energy: simulation.energy().map(|energy| energy.total()),
+        positions: rows(simulation.state()),
+        velocities: rows(&simulation.velocities()),
+    }
+}

@@ -1,0 +1,181 @@
+//! An eye on a sphere around what it looks at.
+
+use nalgebra::{Isometry3, Matrix4, Perspective3, Point3, Vector3};
+
+/// Full height of the view [rad].
+const FIELD_OF_VIEW: f32 = 0.75;
+/// The eye does not go over the poles [rad].
+const STEEPEST: f32 = 1.5;
+
+/// Looks at `target` from `distance`, turned by `yaw` around the vertical and raised by `pitch`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    target: Point3<f32>,
+    yaw: f32,
+    pitch: f32,
+    distance: f32,
+}
+
+impl Camera {
+    /// Looks from `eye` at `target` [m]. They must not be the same.
+    #[must_use]
+    pub fn look_at(eye: [f32; 3], target: [f32; 3]) -> Self {
+        let target = Point3::from(target);
+        let d = Point3::from(eye) - target;
+        let distance = d.norm().max(1e-3);
+        Self {
+            target,
+            yaw: d.x.atan2(d.z),
+            pitch: (d.y / distance)
+                .clamp(-1.0, 1.0)
+                .asin()
+                .clamp(-STEEPEST, STEEPEST),
+            distance,
+        }
+    }
+
+    /// Turns around the target [rad].
+    pub fn orbit(&mut self, yaw: f32, pitch: f32) {
+        if yaw.is_finite() && pitch.is_finite() {
+            self.yaw = (self.yaw + yaw).rem_euclid(std::f32::consts::TAU);
+            self.pitch = (self.pitch + pitch).clamp(-STEEPEST, STEEPEST);
+        }
+    }
+
+    /// Moves eye and target along the picture, by shares of its height.
+    pub fn pan(&mut self, right: f32, up: f32) {
+        let height = 2.0 * self.distance * (0.5 * FIELD_OF_VIEW).tan();
+        let (x, y, _) = self.axes();
+        let moved = self.target + (x * right + y * up) * height;
+        if moved.coords.iter().all(|c| c.abs() < 1e6) {
+            self.target = moved;
+        }
+    }
+
+    /// Goes nearer (factor below 1) or farther.
+    pub fn zoom(&mut self, factor: f32) {
+        if factor.is_finite() {
+            self.distance = (self.distance * factor).clamp(0.05, 1000.0);
+        }
+    }
+
+    /// [m]
+    #[must_use]
+    pub fn eye(&self) -> Point3<f32> {
+        let (_, _, z) = self.axes();
+        self.target + z * self.distance
+    }
+
+    /// [m]
+    #[must_use]
+    pub fn target(&self) -> Point3<f32> {
+        self.target
+    }
+
+    /// Right, up, and towards the eye.
+    #[must_use]
+    pub fn axes(&self) -> (Vector3<f32>, Vector3<f32>, Vector3<f32>) {
+        let ((sy, cy), (sp, cp)) = (self.yaw.sin_cos(), self.pitch.sin_cos());
+        let z = Vector3::new(cp * sy, sp, cp * cy);
+        let x = Vector3::new(cy, 0.0, -sy);
+        (x, z.cross(&x), z)
+    }
+
+    /// From the world to clip space with z in 0..1, for a picture of this width over height. A tall picture keeps
+    /// its width instead of its height, so that the scene stays in view.
+    #[must_use]
+    pub fn view_projection(&self, aspect: f32) -> Matrix4<f32> {
+        #[rustfmt::skip]
+        let half_depth = Matrix4::new(
+            1.0, 0.0, 0.0, 0.0,
+            0.0, 1.0, 0.0, 0.0,
+            0.0, 0.0, 0.5, 0.5,
+            0.0, 0.0, 0.0, 1.0,
+        );
+        let near = 0.02 * self.distance;
+        let far = 20.0 * self.distance + 100.0;
+        half_depth
+            * Perspective3::new(aspect, Self::field_of_view(aspect), near, far).to_homogeneous()
+            * Isometry3::look_at_rh(&self.eye(), &self.target, &Vector3::y()).to_homogeneous()
+    }
+
+    fn field_of_view(aspect: f32) -> f32 {
+        2.0 * ((0.5 * FIELD_OF_VIEW).tan() / aspect.min(1.0)).atan()
+    }
+
+    /// Where a point of the world is in the picture: 0..1 from the left and from the top, and its distance from the
+    /// eye along the view [m]. `None` behind the eye.
+    #[must_use]
+    pub fn project(&self, point: [f32; 3], aspect: f32) -> Option<([f32; 2], f32)> {
+        let clip = self.view_projection(aspect) * Point3::from(point).to_homogeneous();
+        (clip.w > 0.0).then(|| {
+            (
+                [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w],
+                clip.w,
+            )
+        })
+    }
+
+    /// The point of the world seen at that place of the picture, at that distance from the eye along the view [m].
+    #[must_use]
+    pub fn unproject(&self, at: [f32; 2], distance: f32, aspect: f32) -> [f32; 3] {
+        let half = distance * (0.5 * Self::field_of_view(aspect)).tan();
+        let (x, y, z) = self.axes();
+        let across = x * ((2.0 * at[0] - 1.0) * half * aspect) + y * ((1.0 - 2.0 * at[1]) * half);
+        (self.eye() + across - z * distance).coords.into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn projecting_and_back() {
+        let camera = Camera::look_at([3.0, 2.0, 5.0], [0.1, 1.0, -0.2]);
+        for aspect in [0.4, 1.0, 1.7] {
+            for point in [[0.0, 0.0, 0.0], [1.0, 2.0, 0.5], [-1.0, 0.3, -3.0]] {
+                let (at, distance) = camera.project(point, aspect).unwrap();
+                let back = camera.unproject(at, distance, aspect);
+                assert!(
+                    point.iter().zip(back).all(|(a, b)| (a - b).abs() < 1e-4),
+                    "{point:?} {back:?}"
+                );
+            }
+        }
+        let ([x, y], _) = camera.project([0.1, 1.0, -0.2], 1.5).unwrap();
+        assert!(
+            (x - 0.5).abs() < 1e-5 && (y - 0.5).abs() < 1e-5,
+            "the target is in the middle: {x} {y}"
+        );
+        assert_eq!(camera.project([6.0, 4.0, 10.0], 1.0), None);
+    }
+
+    #[test]
+    fn no_drag_turns_it_into_nan() {
+        let mut camera = Camera::look_at([0.0, 0.0, 5.0], [0.0; 3]);
+        let mut seed = 1u64;
+        let mut random = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            let wild = match seed >> 60 {
+                0 => f32::INFINITY,
+                1 => f32::NAN,
+                2 => 0.0,
+                3 => 1e30,
+                _ => 1.0,
+            };
+            wild * ((seed >> 40) as f32 / (1u64 << 23) as f32 - 1.0)
+        };
+        for k in 0..1_000_000 {
+            camera.orbit(random(), random());
+            camera.pan(random(), random());
+            camera.zoom(1.0 + 0.3 * random());
+            if k % 16 == 0 {
+                assert!(
+                    camera.view_projection(1.6).iter().all(|m| m.is_finite()),
+                    "{camera:?}"
+                );
+            }
+        }
+    }
+}

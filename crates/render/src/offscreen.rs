@@ -1,0 +1,109 @@
+//! A picture without a window.
+
+use crate::gpu::{Gpu, GpuError};
+use crate::picture::Picture;
+use crate::renderer::Renderer;
+use crate::targets::Targets;
+
+/// Eight bits each of red, green, blue and opacity.
+pub const OFFSCREEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+/// A texture to draw into, and the way back from the GPU.
+pub struct Offscreen {
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    targets: Targets,
+    buffer: wgpu::Buffer,
+    /// Bytes in a row of the buffer: a multiple of 256.
+    stride: u32,
+}
+
+impl Offscreen {
+    /// For pictures of `size` [px].
+    ///
+    /// # Errors
+    /// The size is zero or beyond the device's limit.
+    pub fn new(gpu: &Gpu, size: (u32, u32)) -> Result<Self, GpuError> {
+        let limit = gpu.largest_side();
+        let fits = |side| (1..=limit).contains(&side);
+        if !fits(size.0) || !fits(size.1) {
+            return Err(GpuError::Size { asked: size, limit });
+        }
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("offscreen"),
+            size: wgpu::Extent3d {
+                width: size.0,
+                height: size.1,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: OFFSCREEN_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let stride = (size.0 * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read-back"),
+            size: u64::from(stride) * u64::from(size.1),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        Ok(Self {
+            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            targets: Targets::new(gpu, size, OFFSCREEN_FORMAT, gpu.samples(OFFSCREEN_FORMAT)),
+            texture,
+            buffer,
+            stride,
+        })
+    }
+
+    /// Draws, and brings the pixels back: rows from the top, four bytes a pixel.
+    ///
+    /// # Errors
+    /// The device was lost, or refused something.
+    pub fn render(
+        &self,
+        gpu: &Gpu,
+        renderer: &mut Renderer,
+        picture: &Picture,
+    ) -> Result<Vec<u8>, GpuError> {
+        let size = self.targets.size();
+        renderer.prepare(gpu, picture, size);
+        let mut encoder = gpu
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        renderer.draw(&mut self.targets.pass(&mut encoder, &self.view));
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(self.stride),
+            rows_per_image: None,
+        };
+        encoder.copy_texture_to_buffer(
+            self.texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &self.buffer,
+                layout,
+            },
+            self.texture.size(),
+        );
+        gpu.queue.submit([encoder.finish()]);
+        let slice = self.buffer.slice(..);
+        slice.map_async(wgpu::MapMode::Read, |_| {});
+        gpu.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map_err(|_| GpuError::Lost)?;
+        gpu.check()?;
+        let mapped = slice
+            .get_mapped_range()
+            .map_err(|e| GpuError::Refused(e.to_string()))?;
+        let mut pixels = Vec::with_capacity(size.0 as usize * size.1 as usize * 4);
+        for row in mapped.chunks_exact(self.stride as usize) {
+            pixels.extend_from_slice(&row[..size.0 as usize * 4]);
+        }
+        drop(mapped);
+        self.buffer.unmap();
+        Ok(pixels)
+    }
+}

@@ -1,0 +1,86 @@
+//! What is to be seen.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::camera::Camera;
+
+/// How a surface is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// Its wires.
+    Wireframe,
+    /// A smooth mesh. What has no triangles is still drawn by its wires.
+    Shaded,
+}
+
+/// How particles hang together: what stays the same from frame to frame.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Topology {
+    /// Number of particles.
+    pub points: usize,
+    /// Corners of the triangles of a surface, wound alike. Empty for a system without one.
+    pub triangles: Vec<[u32; 3]>,
+    /// Ends of the wires.
+    pub wires: Vec<[u32; 2]>,
+}
+
+/// A shaded ball.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Ball {
+    /// [m]
+    pub center: [f32; 3],
+    /// [m]
+    pub radius: f32,
+    /// Linear red, green, blue, and 1.
+    pub color: [f32; 4],
+}
+
+/// A straight line that is not a wire.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Line {
+    /// One end [m].
+    pub from: [f32; 3],
+    /// In points: pixels on a screen of ordinary density.
+    pub width: f32,
+    /// The other end [m].
+    pub to: [f32; 3],
+    /// Unused.
+    pub padding: f32,
+    /// Linear red, green, blue and opacity.
+    pub color: [f32; 4],
+}
+
+impl Line {
+    /// A line between two points [m], `width` points wide.
+    #[must_use]
+    pub fn new(from: [f32; 3], to: [f32; 3], width: f32, color: [f32; 4]) -> Self {
+        Self {
+            from,
+            width,
+            to,
+            padding: 0.0,
+            color,
+        }
+    }
+}
+
+/// One frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Picture<'a> {
+    /// From where.
+    pub camera: Camera,
+    /// How.
+    pub style: Style,
+    /// Pixels per point: 1 on a screen of ordinary density, 2 on a dense one.
+    pub scale: f32,
+    /// Positions of the particles [m]; the fourth number is not used.
+    pub points: &'a [[f32; 4]],
+    /// Balls: particles of small systems, pins, obstacles.
+    pub balls: &'a [Ball],
+    /// Lines: trails, highlighted springs.
+    pub lines: &'a [Line],
+    /// Height of the floor [m], if there is one.
+    pub floor: Option<f32>,
+}

@@ -1,0 +1,544 @@
+//! The pipelines and the buffers they read.
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::{
+    BufferUsages, CompareFunction, PrimitiveTopology, ShaderStages, StencilOperation,
+    VertexStepMode,
+};
+
+use crate::gpu::Gpu;
+use crate::picture::{Ball, Line, Picture, Style, Topology};
+use crate::shapes::sphere;
+use crate::targets::DEPTH;
+
+/// Towards the light: over the left shoulder, high.
+const LIGHT: [f32; 3] = [-0.36, 0.80, 0.48];
+/// How far the floor is seen [m].
+const FLOOR_REACH: f32 = 14.0;
+/// Balls from this radius on [m] are drawn with more triangles.
+const LARGE: f32 = 0.25;
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Globals {
+    view_projection: [[f32; 4]; 4],
+    eye: [f32; 4],
+    light: [f32; 4],
+    viewport: [f32; 4],
+    floor: [f32; 4],
+    depth: [f32; 4],
+}
+
+/// Draws [`Picture`]s of one topology.
+pub struct Renderer {
+    pipelines: Pipelines,
+    layout: wgpu::BindGroupLayout,
+    globals: wgpu::Buffer,
+    small_sphere: Shape,
+    large_sphere: Shape,
+    balls: Instances,
+    lines: Instances,
+    particles: Particles,
+    frame: Frame,
+}
+
+struct Pipelines {
+    background: wgpu::RenderPipeline,
+    floor: wgpu::RenderPipeline,
+    mesh_shadow: wgpu::RenderPipeline,
+    ball_shadow: wgpu::RenderPipeline,
+    mesh: wgpu::RenderPipeline,
+    ball: wgpu::RenderPipeline,
+    wire: wgpu::RenderPipeline,
+    line: wgpu::RenderPipeline,
+}
+
+/// What of the last prepared picture the draw calls depend on.
+#[derive(Clone, Copy, Default)]
+struct Frame {
+    floor: bool,
+    mesh: bool,
+    wires: bool,
+    small_balls: u32,
+    balls: u32,
+    lines: u32,
+}
+
+struct Shape {
+    corners: wgpu::Buffer,
+    triangles: wgpu::Buffer,
+    indices: u32,
+}
+
+/// A vertex buffer that grows.
+struct Instances {
+    label: &'static str,
+    buffer: wgpu::Buffer,
+}
+
+/// The buffers of a topology.
+struct Particles {
+    points: wgpu::Buffer,
+    triangles: wgpu::Buffer,
+    wires: wgpu::Buffer,
+    bind: wgpu::BindGroup,
+    count: usize,
+    indices: u32,
+    wire_count: u32,
+}
+
+impl Renderer {
+    /// For targets of this format and number of samples.
+    #[must_use]
+    pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, samples: u32, topology: &Topology) -> Self {
+        let device = &gpu.device;
+        let layout = layout(device);
+        let globals = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("globals"),
+            size: size_of::<Globals>() as u64,
+            usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self {
+            pipelines: Pipelines::new(device, &layout, color, samples),
+            small_sphere: Shape::sphere(gpu, 10),
+            large_sphere: Shape::sphere(gpu, 40),
+            balls: Instances::new(device, "balls"),
+            lines: Instances::new(device, "lines"),
+            particles: Particles::new(gpu, &layout, &globals, topology),
+            frame: Frame::default(),
+            layout,
+            globals,
+        }
+    }
+
+    /// Goes on with another scene.
+    pub fn set_topology(&mut self, gpu: &Gpu, topology: &Topology) {
+        self.particles = Particles::new(gpu, &self.layout, &self.globals, topology);
+        self.frame = Frame::default();
+    }
+
+    /// Sends a picture of `size` [px] to the GPU: positions once, and what changes from frame to frame beside them.
+    ///
+    /// # Panics
+    /// The picture has another number of particles than the topology.
+    pub fn prepare(&mut self, gpu: &Gpu, picture: &Picture, size: (u32, u32)) {
+        assert_eq!(
+            picture.points.len(),
+            self.particles.count,
+            "particles of the picture and of the topology"
+        );
+        let queue = &gpu.queue;
+        queue.write_buffer(
+            &self.particles.points,
+            0,
+            bytemuck::cast_slice(picture.points),
+        );
+        let mut balls = picture.balls.to_vec();
+        balls.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+        self.balls.write(gpu, &balls);
+        self.lines.write(gpu, picture.lines);
+        queue.write_buffer(
+            &self.globals,
+            0,
+            bytemuck::bytes_of(&globals(picture, size)),
+        );
+        let mesh = picture.style == Style::Shaded && self.particles.indices > 0;
+        self.frame = Frame {
+            floor: picture.floor.is_some(),
+            mesh,
+            wires: !mesh,
+            small_balls: balls.iter().filter(|ball| ball.radius < LARGE).count() as u32,
+            balls: balls.len() as u32,
+            lines: picture.lines.len() as u32,
+        };
+    }
+
+    /// Draws the prepared picture.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass) {
+        let (p, particles, frame) = (&self.pipelines, &self.particles, self.frame);
+        pass.set_bind_group(0, &particles.bind, &[]);
+        pass.set_pipeline(&p.background);
+        pass.draw(0..3, 0..1);
+        if frame.floor {
+            pass.set_pipeline(&p.floor);
+            pass.draw(0..4, 0..1);
+            pass.set_stencil_reference(0);
+            if frame.mesh {
+                pass.set_pipeline(&p.mesh_shadow);
+                particles.draw_mesh(pass);
+            }
+            pass.set_pipeline(&p.ball_shadow);
+            self.draw_balls(pass);
+        }
+        if frame.mesh {
+            pass.set_pipeline(&p.mesh);
+            particles.draw_mesh(pass);
+        }
+        pass.set_pipeline(&p.ball);
+        self.draw_balls(pass);
+        if frame.wires {
+            pass.set_pipeline(&p.wire);
+            pass.set_vertex_buffer(0, particles.wires.slice(..));
+            pass.draw(0..4, 0..particles.wire_count);
+        }
+        if frame.lines > 0 {
+            pass.set_pipeline(&p.line);
+            pass.set_vertex_buffer(0, self.lines.buffer.slice(..));
+            pass.draw(0..4, 0..frame.lines);
+        }
+    }
+
+    fn draw_balls(&self, pass: &mut wgpu::RenderPass) {
+        let Frame {
+            small_balls, balls, ..
+        } = self.frame;
+        for (shape, range) in [
+            (&self.small_sphere, 0..small_balls),
+            (&self.large_sphere, small_balls..balls),
+        ] {
+            if !range.is_empty() {
+                pass.set_vertex_buffer(0, shape.corners.slice(..));
+                pass.set_vertex_buffer(1, self.balls.buffer.slice(..));
+                pass.set_index_buffer(shape.triangles.slice(..), wgpu::IndexFormat::Uint16);
+                pass.draw_indexed(0..shape.indices, 0, range);
+            }
+        }
+    }
+}
+
+fn globals(picture: &Picture, size: (u32, u32)) -> Globals {
+    let (width, height) = (size.0.max(1) as f32, size.1.max(1) as f32);
+    let eye = picture.camera.eye();
+    let target = picture.camera.target();
+    let length = LIGHT.iter().map(|l| l * l).sum::<f32>().sqrt();
+    let (near, far) = picture
+        .points
+        .iter()
+        .fold((f32::INFINITY, 0.0f32), |(near, far), p| {
+            let d =
+                ((p[0] - eye.x).powi(2) + (p[1] - eye.y).powi(2) + (p[2] - eye.z).powi(2)).sqrt();
+            (near.min(d), far.max(d))
+        });
+    Globals {
+        view_projection: picture.camera.view_projection(width / height).into(),
+        eye: [eye.x, eye.y, eye.z, 1.0],
+        light: [LIGHT[0] / length, LIGHT[1] / length, LIGHT[2] / length, 0.0],
+        viewport: [width, height, picture.scale, 0.0],
+        floor: [
+            picture.floor.unwrap_or(0.0),
+            FLOOR_REACH,
+            target.x,
+            target.z,
+        ],
+        depth: [near, far, 0.0, 0.0],
+    }
+}
+
+impl Shape {
+    fn sphere(gpu: &Gpu, rings: u16) -> Self {
+        let (corners, triangles) = sphere(rings);
+        Self {
+            corners: filled(
+                gpu,
+                "sphere",
+                BufferUsages::VERTEX,
+                bytemuck::cast_slice(&corners),
+            ),
+            triangles: filled(
+                gpu,
+                "sphere",
+                BufferUsages::INDEX,
+                bytemuck::cast_slice(&triangles),
+            ),
+            indices: triangles.len() as u32,
+        }
+    }
+}
+
+impl Instances {
+    fn new(device: &wgpu::Device, label: &'static str) -> Self {
+        Self {
+            label,
+            buffer: buffer(device, label, BufferUsages::VERTEX, 4096),
+        }
+    }
+
+    fn write<T: Pod>(&mut self, gpu: &Gpu, instances: &[T]) {
+        let bytes: &[u8] = bytemuck::cast_slice(instances);
+        if bytes.len() as u64 > self.buffer.size() {
+            let size = bytes.len().next_power_of_two();
+            self.buffer = buffer(&gpu.device, self.label, BufferUsages::VERTEX, size);
+        }
+        gpu.queue.write_buffer(&self.buffer, 0, bytes);
+    }
+}
+
+impl Particles {
+    fn new(
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        globals: &wgpu::Buffer,
+        topology: &Topology,
+    ) -> Self {
+        let (first, around) = triangles_around(topology);
+        let points = buffer(
+            &gpu.device,
+            "points",
+            BufferUsages::STORAGE,
+            16 * topology.points,
+        );
+        let first = filled(
+            gpu,
+            "first",
+            BufferUsages::STORAGE,
+            bytemuck::cast_slice(&first),
+        );
+        let around = filled(
+            gpu,
+            "around",
+            BufferUsages::STORAGE,
+            bytemuck::cast_slice(&around),
+        );
+        let bind = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("particles"),
+            layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: globals.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: points.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 2,
+                    resource: first.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 3,
+                    resource: around.as_entire_binding(),
+                },
+            ],
+        });
+        Self {
+            points,
+            triangles: filled(
+                gpu,
+                "triangles",
+                BufferUsages::INDEX,
+                bytemuck::cast_slice(&topology.triangles),
+            ),
+            wires: filled(
+                gpu,
+                "wires",
+                BufferUsages::VERTEX,
+                bytemuck::cast_slice(&topology.wires),
+            ),
+            bind,
+            count: topology.points,
+            indices: 3 * topology.triangles.len() as u32,
+            wire_count: topology.wires.len() as u32,
+        }
+    }
+
+    fn draw_mesh(&self, pass: &mut wgpu::RenderPass) {
+        pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.indices, 0, 0..1);
+    }
+}
+
+/// For each point, where its triangles begin in a list of their other two corners.
+fn triangles_around(topology: &Topology) -> (Vec<u32>, Vec<[u32; 2]>) {
+    let mut first = vec![0u32; topology.points + 1];
+    for corner in topology.triangles.iter().flatten() {
+        first[*corner as usize + 1] += 1;
+    }
+    for i in 0..topology.points {
+        first[i + 1] += first[i];
+    }
+    let mut next = first.clone();
+    let mut around = vec![[0; 2]; 3 * topology.triangles.len()];
+    for &[a, b, c] in &topology.triangles {
+        for (corner, others) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
+            let slot = &mut next[corner as usize];
+            around[*slot as usize] = others;
+            *slot += 1;
+        }
+    }
+    (first, around)
+}
+
+/// An empty buffer of at least 16 bytes: a binding may not be empty.
+fn buffer(device: &wgpu::Device, label: &str, usage: BufferUsages, bytes: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes.max(16) as u64,
+        usage: usage | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn filled(gpu: &Gpu, label: &str, usage: BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
+    // Writes come in multiples of four bytes.
+    let mut bytes = bytes.to_vec();
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    let buffer = buffer(&gpu.device, label, usage, bytes.len());
+    gpu.queue.write_buffer(&buffer, 0, &bytes);
+    buffer
+}
+
+fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer {
+            ty,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    let storage = wgpu::BufferBindingType::Storage { read_only: true };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("particles"),
+        entries: &[
+            entry(
+                0,
+                ShaderStages::VERTEX_FRAGMENT,
+                wgpu::BufferBindingType::Uniform,
+            ),
+            entry(1, ShaderStages::VERTEX, storage),
+            entry(2, ShaderStages::VERTEX, storage),
+            entry(3, ShaderStages::VERTEX, storage),
+        ],
+    })
+}
+
+/// How a pipeline treats what is already there.
+#[derive(Clone, Copy, PartialEq)]
+enum Layer {
+    /// Behind everything.
+    Back,
+    /// On the floor, blended, each place once.
+    Shadow,
+    /// Hides what is behind.
+    Solid,
+    /// Blended over what it is in front of.
+    Over,
+}
+
+impl Pipelines {
+    fn new(
+        device: &wgpu::Device,
+        layout: &wgpu::BindGroupLayout,
+        color: wgpu::TextureFormat,
+        samples: u32,
+    ) -> Self {
+        let shader = device.create_shader_module(wgpu::include_wgsl!("scene.wgsl"));
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("scene"),
+            bind_group_layouts: &[Some(layout)],
+            immediate_size: 0,
+        });
+        let pipeline = |name: &str, fragment: &str, topology, layer, buffers: &[_]| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(name),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: &shader,
+                    entry_point: Some(&format!("{name}_vertex")),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers,
+                },
+                primitive: wgpu::PrimitiveState {
+                    topology,
+                    ..Default::default()
+                },
+                depth_stencil: Some(depth_stencil(layer)),
+                multisample: wgpu::MultisampleState {
+                    count: samples,
+                    ..Default::default()
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &shader,
+                    entry_point: Some(&format!("{fragment}_fragment")),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format: color,
+                        blend: matches!(layer, Layer::Shadow | Layer::Over)
+                            .then_some(wgpu::BlendState::ALPHA_BLENDING),
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let unit = wgpu::vertex_attr_array![0 => Float32x3];
+        let ball = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4];
+        let ends = wgpu::vertex_attr_array![0 => Uint32x2];
+        let line = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
+        let stream = |step_mode, attributes, stride: usize| {
+            Some(wgpu::VertexBufferLayout {
+                array_stride: stride as u64,
+                step_mode,
+                attributes,
+            })
+        };
+        let balls = [
+            stream(VertexStepMode::Vertex, &unit, size_of::<[f32; 3]>()),
+            stream(VertexStepMode::Instance, &ball, size_of::<Ball>()),
+        ];
+        let wires = [stream(
+            VertexStepMode::Instance,
+            &ends,
+            size_of::<[u32; 2]>(),
+        )];
+        let lines = [stream(VertexStepMode::Instance, &line, size_of::<Line>())];
+        let (list, strip) = (
+            PrimitiveTopology::TriangleList,
+            PrimitiveTopology::TriangleStrip,
+        );
+        Self {
+            background: pipeline("background", "background", list, Layer::Back, &[]),
+            floor: pipeline("floor", "floor", strip, Layer::Over, &[]),
+            mesh_shadow: pipeline("mesh_shadow", "shadow", list, Layer::Shadow, &[]),
+            ball_shadow: pipeline("ball_shadow", "shadow", list, Layer::Shadow, &balls),
+            mesh: pipeline("mesh", "mesh", list, Layer::Solid, &[]),
+            ball: pipeline("ball", "ball", list, Layer::Solid, &balls),
+            wire: pipeline("wire", "line", strip, Layer::Over, &wires),
+            line: pipeline("line", "line", strip, Layer::Over, &lines),
+        }
+    }
+}
+
+fn depth_stencil(layer: Layer) -> wgpu::DepthStencilState {
+    let once = wgpu::StencilFaceState {
+        compare: CompareFunction::Equal,
+        fail_op: StencilOperation::Keep,
+        depth_fail_op: StencilOperation::Keep,
+        pass_op: StencilOperation::IncrementClamp,
+    };
+    let stencil = if layer == Layer::Shadow {
+        wgpu::StencilState {
+            front: once,
+            back: once,
+            read_mask: 0xff,
+            write_mask: 0xff,
+        }
+    } else {
+        wgpu::StencilState::default()
+    };
+    wgpu::DepthStencilState {
+        format: DEPTH,
+        depth_write_enabled: Some(layer == Layer::Solid),
+        depth_compare: Some(match layer {
+            Layer::Back | Layer::Shadow => CompareFunction::Always,
+            Layer::Solid | Layer::Over => CompareFunction::LessEqual,
+        }),
+        stencil,
+        bias: wgpu::DepthBiasState::default(),
+    }
+}

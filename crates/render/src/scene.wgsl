@@ -1,0 +1,219 @@
+// One bind group for everything: the camera and the light, and the particles' positions with the topology that turns
+// them into normals. Positions are sent once a frame; the mesh, the wireframe and the shadow all read the same copy.
+
+struct Globals {
+    view_proj: mat4x4<f32>,
+    eye: vec4<f32>,
+    // Towards the light, in world space.
+    light: vec4<f32>,
+    // Width, height [px], pixels per point, 1 if the wireframe is drawn.
+    viewport: vec4<f32>,
+    // Height of the floor [m], how far it is seen [m], x and z of its middle [m].
+    floor: vec4<f32>,
+    // Distance of the nearest and the farthest particle from the eye [m].
+    depth: vec4<f32>,
+};
+
+@group(0) @binding(0) var<uniform> globals: Globals;
+@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
+// The triangles around point i are around[first[i]] to around[first[i + 1] - 1], each as its two other corners.
+@group(0) @binding(2) var<storage, read> first: array<u32>;
+@group(0) @binding(3) var<storage, read> around: array<vec2<u32>>;
+
+const PAPER = vec3(0.86, 0.855, 0.835);
+const SHADE = vec3(0.56, 0.60, 0.655);
+const INK = vec3(0.035, 0.05, 0.09);
+const CLOTH = vec3(0.62, 0.045, 0.06);
+const LINING = vec3(0.50, 0.17, 0.05);
+
+// ---- Background: paper, darker towards the corners.
+
+@vertex fn background_vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
+    return vec4(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 1.0, 1.0);
+}
+
+fn background(pixel: vec2<f32>) -> vec3<f32> {
+    let p = pixel / globals.viewport.xy - vec2(0.5, 0.42);
+    return mix(PAPER, SHADE, smoothstep(0.05, 1.0, length(p * vec2(1.0, 1.15)) * 1.25));
+}
+
+// Half a step of an 8-bit channel up or down, so that the gradient shows no bands.
+fn dither(pixel: vec2<f32>) -> f32 {
+    return (fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715)))) - 0.5) / 255.0;
+}
+
+@fragment fn background_fragment(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
+    return vec4(background(pixel.xy) + dither(pixel.xy), 1.0);
+}
+
+// ---- Floor: a faint grid of metres that fades into the background.
+
+struct Floor { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32> };
+
+@vertex fn floor_vertex(@builtin(vertex_index) i: u32) -> Floor {
+    let corner = vec2(f32(i & 1u), f32(i >> 1u)) * 2.0 - 1.0;
+    let at = globals.floor.zw + corner * globals.floor.y;
+    var out: Floor;
+    out.world = vec3(at.x, globals.floor.x, at.y);
+    out.clip = globals.view_proj * vec4(out.world, 1.0);
+    return out;
+}
+
+// 1 at the middle of the floor, 0 where it ends.
+fn floor_fade(world: vec3<f32>) -> f32 {
+    return 1.0 - smoothstep(0.25, 1.0, length(world.xz - globals.floor.zw) / globals.floor.y);
+}
+
+@fragment fn floor_fragment(in: Floor) -> @location(0) vec4<f32> {
+    let width = max(fwidth(in.world.xz), vec2(1e-5));
+    let line = 1.0 - min(abs(fract(in.world.xz - 0.5) - 0.5) / width / globals.viewport.z, vec2(1.0));
+    let grid = max(line.x, line.y) * min(1.0, 0.2 / max(width.x, width.y));
+    let color = mix(vec3(0.90, 0.895, 0.88), SHADE * 0.8, 0.35 * grid);
+    let grazing = smoothstep(0.0, 0.12, abs(normalize(globals.eye.xyz - in.world).y));
+    return vec4(color, 0.75 * floor_fade(in.world) * grazing);
+}
+
+// ---- Shadow: what is above the floor, thrown onto it along the light. The stencil darkens each place once.
+
+struct Shadow { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32>, @location(1) height: f32 };
+
+fn shadow(p: vec3<f32>) -> Shadow {
+    var out: Shadow;
+    out.height = max(p.y - globals.floor.x, 0.0);
+    out.world = p - globals.light.xyz * (out.height / globals.light.y);
+    out.world.y = globals.floor.x;
+    out.clip = globals.view_proj * vec4(out.world, 1.0);
+    return out;
+}
+
+@vertex fn mesh_shadow_vertex(@builtin(vertex_index) i: u32) -> Shadow {
+    return shadow(points[i].xyz);
+}
+
+@vertex fn ball_shadow_vertex(
+    @location(0) unit: vec3<f32>, @location(1) ball: vec4<f32>, @location(2) color: vec4<f32>
+) -> Shadow {
+    return shadow(ball.xyz + ball.w * unit);
+}
+
+@fragment fn shadow_fragment(in: Shadow) -> @location(0) vec4<f32> {
+    return vec4(0.10, 0.11, 0.17, 0.34 * floor_fade(in.world) / (1.0 + 0.35 * in.height));
+}
+
+// ---- Light: a lamp, the sky, and a little from the eye, so that nothing is black.
+
+fn lit(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>, gloss: f32, sheen: f32) -> vec3<f32> {
+    let eye = normalize(globals.eye.xyz - world);
+    let lamp = globals.light.xyz;
+    let facing = dot(n, lamp);
+    let key = max(facing * 0.85 + 0.15, 0.0);
+    let sky = 0.5 + 0.5 * n.y;
+    let head = max(dot(n, eye), 0.0);
+    let bright = 1.15 * key * vec3(1.0, 0.97, 0.92) + 0.34 * sky * vec3(0.82, 0.9, 1.0) + 0.26 * head + 0.06;
+    let spark = gloss * pow(max(dot(n, normalize(lamp + eye)), 0.0), 48.0) * step(0.0, facing);
+    let rim = sheen * pow(1.0 - head, 3.5) * (0.35 + 0.65 * sky);
+    return color * bright + spark + rim * mix(color, vec3(1.0), 0.45);
+}
+
+// ---- Mesh: smooth, two-sided. The normal of a point is the sum over its triangles of the cross product of two
+// sides, which has twice the triangle's area for its length: area weighting comes for free.
+
+struct Mesh { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32>, @location(1) normal: vec3<f32> };
+
+@vertex fn mesh_vertex(@builtin(vertex_index) i: u32) -> Mesh {
+    let p = points[i].xyz;
+    var n = vec3(0.0);
+    for (var k = first[i]; k < first[i + 1u]; k++) {
+        n += cross(points[around[k].x].xyz - p, points[around[k].y].xyz - p);
+    }
+    var out: Mesh;
+    out.clip = globals.view_proj * vec4(p, 1.0);
+    out.world = p;
+    out.normal = n;
+    return out;
+}
+
+@fragment fn mesh_fragment(in: Mesh, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    // A squashed cell can have no normal: any will do, but not NaN.
+    let n = in.normal / max(length(in.normal), 1e-20) * select(-1.0, 1.0, front);
+    return vec4(lit(select(LINING, CLOTH, front), n, in.world, 0.10, 0.55), 1.0);
+}
+
+// ---- Balls: particles, pins, and the sphere in the way.
+
+struct Ball {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) color: vec3<f32>,
+};
+
+@vertex fn ball_vertex(
+    @location(0) unit: vec3<f32>, @location(1) ball: vec4<f32>, @location(2) color: vec4<f32>
+) -> Ball {
+    var out: Ball;
+    out.world = ball.xyz + ball.w * unit;
+    out.clip = globals.view_proj * vec4(out.world, 1.0);
+    out.normal = unit;
+    out.color = color.rgb;
+    return out;
+}
+
+@fragment fn ball_fragment(in: Ball) -> @location(0) vec4<f32> {
+    return vec4(lit(in.color, normalize(in.normal), in.world, 0.5, 0.25), 1.0);
+}
+
+// ---- Lines: a quad around each, as wide as asked for on the screen, with edges that fade over a pixel.
+
+struct Line {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) color: vec4<f32>,
+    // Pixels from the middle of the line; half its width.
+    @location(1) @interpolate(linear) across: f32,
+    @location(2) @interpolate(flat) half_width: f32,
+};
+
+// The corner i of the quad from a to b. A line that crosses the near plane is cut there.
+fn line(a: vec3<f32>, b: vec3<f32>, points_wide: f32, color: vec4<f32>, i: u32) -> Line {
+    var ca = globals.view_proj * vec4(a, 1.0);
+    var cb = globals.view_proj * vec4(b, 1.0);
+    if ca.z < 0.0 && cb.z > 0.0 { ca = mix(ca, cb, ca.z / (ca.z - cb.z)); }
+    if cb.z < 0.0 && ca.z > 0.0 { cb = mix(cb, ca, cb.z / (cb.z - ca.z)); }
+    let half_size = globals.viewport.xy * 0.5;
+    let along = (cb.xy / cb.w - ca.xy / ca.w) * half_size;
+    let direction = select(vec2(1.0, 0.0), normalize(along), dot(along, along) > 1e-12);
+    let end = select(ca, cb, i >= 2u);
+    let side = f32(i & 1u) * 2.0 - 1.0;
+    let half_width = 0.5 * points_wide * globals.viewport.z;
+    let reach = half_width + 1.0;
+    // Half a width beyond each end, so that lines join; not where one would see through both.
+    let beyond = direction * half_width * select(-1.0, 1.0, i >= 2u) * step(0.999, color.a);
+    let offset = (vec2(-direction.y, direction.x) * side * reach + beyond) / half_size;
+    var out: Line;
+    // A touch towards the eye, so that a line on a surface is not half in it.
+    out.clip = vec4(end.xy + offset * end.w, end.z - 2e-4 * end.w, end.w);
+    out.color = color;
+    out.across = side * reach;
+    out.half_width = half_width;
+    return out;
+}
+
+// A wire between two particles: darker near, fainter far.
+@vertex fn wire_vertex(@builtin(vertex_index) i: u32, @location(0) ends: vec2<u32>) -> Line {
+    let a = points[ends.x].xyz;
+    let b = points[ends.y].xyz;
+    let far = distance(globals.eye.xyz, 0.5 * (a + b));
+    let depth = clamp((far - globals.depth.x) / max(globals.depth.y - globals.depth.x, 1e-6), 0.0, 1.0);
+    return line(a, b, 1.35, vec4(INK, mix(0.95, 0.38, depth)), i);
+}
+
+@vertex fn line_vertex(
+    @builtin(vertex_index) i: u32,
+    @location(0) a: vec4<f32>, @location(1) b: vec4<f32>, @location(2) color: vec4<f32>
+) -> Line {
+    return line(a.xyz, b.xyz, a.w, color, i);
+}
+
+@fragment fn line_fragment(in: Line) -> @location(0) vec4<f32> {
+    return vec4(in.color.rgb, in.color.a * clamp(in.half_width + 0.5 - abs(in.across), 0.0, 1.0));
+}

@@ -1,0 +1,87 @@
+//! Depth and multisampled colour, of one size.
+
+use crate::gpu::Gpu;
+
+/// Depth for what hides what, stencil so that a shadow darkens once.
+pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusStencil8;
+
+/// What a picture is drawn into before it reaches its destination.
+pub struct Targets {
+    multisampled: Option<wgpu::TextureView>,
+    depth: wgpu::TextureView,
+    size: (u32, u32),
+}
+
+impl Targets {
+    /// For pictures of `size` [px], which the device must be able to have.
+    #[must_use]
+    pub fn new(gpu: &Gpu, size: (u32, u32), color: wgpu::TextureFormat, samples: u32) -> Self {
+        let texture = |format| {
+            gpu.device
+                .create_texture(&wgpu::TextureDescriptor {
+                    label: Some("target"),
+                    size: wgpu::Extent3d {
+                        width: size.0,
+                        height: size.1,
+                        depth_or_array_layers: 1,
+                    },
+                    mip_level_count: 1,
+                    sample_count: samples,
+                    dimension: wgpu::TextureDimension::D2,
+                    format,
+                    usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+                    view_formats: &[],
+                })
+                .create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        Self {
+            multisampled: (samples > 1).then(|| texture(color)),
+            depth: texture(DEPTH),
+            size,
+        }
+    }
+
+    /// [px]
+    #[must_use]
+    pub fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// Begins the pass that ends in `destination`.
+    pub fn pass<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        destination: &wgpu::TextureView,
+    ) -> wgpu::RenderPass<'e> {
+        let (view, resolve_target, store) = match &self.multisampled {
+            Some(view) => (view, Some(destination), wgpu::StoreOp::Discard),
+            None => (destination, None, wgpu::StoreOp::Store),
+        };
+        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    store,
+                },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+                stencil_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+            }),
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        })
+    }
+}
