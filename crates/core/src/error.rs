@@ -50,7 +50,7 @@ impl fmt::Display for BlowUp {
             "blew up at step {step}, t = {time:.4} s: particle {particle} "
         )?;
         if distance.is_finite() {
-            write!(f, "is {distance:.3e} m away")
+            write!(f, "is {distance:.0} m away")
         } else {
             write!(f, "is no longer a finite number")
         }

@@ -13,6 +13,9 @@ use crate::scenes::{Model, Scene, Swing};
 /// A particle this many times the scene's radius away from its middle is lost.
 const LOST: f64 = 100.0;
 
+/// The state to go back to when one is lost has all of them within this many radii: still a picture of the scene.
+const GOOD: f64 = 3.0;
+
 /// A hand stretches a spring to this many times its rest length.
 const REACH: f64 = 3.0;
 
@@ -203,8 +206,8 @@ impl Simulation {
         self.blow_up
     }
 
-    /// Takes this many steps. When one of them blows up, the state is again what it was before the first of them,
-    /// and no more steps are taken until [`reset`](Self::reset).
+    /// Takes this many steps. When one of them blows up, the state is again the last at the beginning of such a call
+    /// that was still in shape, and no more steps are taken until [`reset`](Self::reset).
     ///
     /// # Errors
     /// The run blew up, now or earlier.
@@ -239,14 +242,16 @@ impl Simulation {
         Ok(())
     }
 
-    /// Remembers the state, unless the run is lost.
+    /// Remembers the state if it is in shape, unless the run is lost.
     fn keep(&mut self) -> Result<(), Error> {
         if let Some(blow_up) = self.blow_up {
             return Err(blow_up.into());
         }
-        self.good.y.copy_from_slice(&self.y);
-        self.good.since = self.since;
-        self.good.taken = self.taken;
+        if self.beyond(GOOD).is_none() {
+            self.good.y.copy_from_slice(&self.y);
+            self.good.since = self.since;
+            self.good.taken = self.taken;
+        }
         Ok(())
     }
 
@@ -262,7 +267,7 @@ impl Simulation {
             let (x, v) = self.y.split_at_mut(half);
             mechanics.constrain(t + h, x, v);
         }
-        if let Some((particle, distance)) = self.lost() {
+        if let Some((particle, distance)) = self.beyond(LOST) {
             let blow_up = BlowUp {
                 step: self.steps,
                 time: t + h,
@@ -278,13 +283,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// The first particle that is out of reach, and how far it is.
-    fn lost(&self) -> Option<(usize, f64)> {
+    /// The first particle that is farther than this many radii from the middle, and how far it is.
+    fn beyond(&self, radii: f64) -> Option<(usize, f64)> {
         let n = self.particles();
         let x = &self.y[..3 * n];
         let v = &self.y[3 * n..];
         let c = self.middle;
-        let limit = (LOST * self.radius).powi(2);
+        let limit = (radii * self.radius).powi(2);
         let squared = |i: usize| {
             (x[i] - c.x).powi(2) + (x[n + i] - c.y).powi(2) + (x[2 * n + i] - c.z).powi(2)
         };

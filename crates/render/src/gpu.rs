@@ -161,6 +161,12 @@ impl Gpu {
         format!("{} ({})", info.name, info.backend)
     }
 
+    /// Whether the adapter is a program rather than a chip.
+    #[must_use]
+    pub fn is_software(&self) -> bool {
+        self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+    }
+
     /// The longest side of a picture [px].
     #[must_use]
     pub fn largest_side(&self) -> u32 {
