@@ -1,1 +1,168 @@
-fn main() {}
+//! Forces and steps, over the tables of scenes and methods.
+//!
+//! `cargo bench` runs all; `cargo bench -- forces` a part; `cargo bench -- --test` each once, to see that it runs.
+
+#![allow(missing_docs, reason = "criterion's macros make public functions")]
+
+use std::hint::black_box;
+
+use a3_core::{Grid, Mechanics, Model, Network, Scene, Spring, integrators, scenes};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+
+const SIDES: [usize; 7] = [8, 16, 32, 64, 128, 256, 512];
+
+fn cloth(name: &str, side: usize) -> Scene {
+    scenes::find(name)
+        .unwrap()
+        .build(Some(Grid::new(side, side).unwrap()))
+        .unwrap()
+}
+
+fn network(scene: &Scene) -> &Network {
+    match &scene.model {
+        Model::Network(network) => network,
+        Model::FirstOrder(_) => unreachable!("cloth is a network"),
+    }
+}
+
+/// The yardstick: what anyone would write first, a loop over a list of springs.
+fn plain_spring_list(springs: &[Spring], x: &[f64], v: &[f64], f: &mut [f64]) {
+    let n = x.len() / 3;
+    for s in springs {
+        let d = [0, n, 2 * n].map(|a| x[a + s.i] - x[a + s.j]);
+        let w = [0, n, 2 * n].map(|a| v[a + s.i] - v[a + s.j]);
+        let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+        if length == 0.0 {
+            continue;
+        }
+        let rate = (w[0] * d[0] + w[1] * d[1] + w[2] * d[2]) / length;
+        let pull = (s.law.stiffness * (length - s.law.rest_length) + s.law.damping * rate) / length;
+        for (axis, d) in d.iter().enumerate() {
+            f[axis * n + s.i] -= pull * d;
+            f[axis * n + s.j] += pull * d;
+        }
+    }
+}
+
+/// The same without damping, for the cloth that has none.
+fn plain_undamped_list(springs: &[Spring], x: &[f64], f: &mut [f64]) {
+    let n = x.len() / 3;
+    for s in springs {
+        let d = [0, n, 2 * n].map(|a| x[a + s.i] - x[a + s.j]);
+        let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+        if length == 0.0 {
+            continue;
+        }
+        let pull = s.law.stiffness * (length - s.law.rest_length) / length;
+        for (axis, d) in d.iter().enumerate() {
+            f[axis * n + s.i] -= pull * d;
+            f[axis * n + s.j] += pull * d;
+        }
+    }
+}
+
+/// Spring forces of both cloths, by families and by the yardstick. Throughput is in springs.
+fn forces(c: &mut Criterion) {
+    for name in ["cloth", "mit"] {
+        let mut group = c.benchmark_group(format!("forces/{name}"));
+        for side in SIDES {
+            let scene = cloth(name, side);
+            let network = network(&scene);
+            let springs: Vec<Spring> = network.springs().collect();
+            let (x, v) = scene.state.split_at(scene.state.len() / 2);
+            let mut f = vec![0.0; x.len()];
+            group.throughput(Throughput::Elements(springs.len() as u64));
+            group.bench_function(BenchmarkId::new("families", side), |b| {
+                b.iter(|| {
+                    f.fill(0.0);
+                    network.add_spring_forces(black_box(x), black_box(v), &mut f);
+                });
+            });
+            let damped = springs[0].law.damping > 0.0;
+            group.bench_function(BenchmarkId::new("plain list", side), |b| {
+                b.iter(|| {
+                    f.fill(0.0);
+                    if damped {
+                        plain_spring_list(black_box(&springs), black_box(x), black_box(v), &mut f);
+                    } else {
+                        plain_undamped_list(black_box(&springs), black_box(x), &mut f);
+                    }
+                });
+            });
+        }
+        group.finish();
+    }
+}
+
+/// One evaluation of all forces of every scene.
+fn evaluation(c: &mut Criterion) {
+    let mut group = c.benchmark_group("evaluation");
+    for entry in scenes::SCENES {
+        let scene = entry.build(None).unwrap();
+        let system = scene.model.system();
+        let mut dydt = vec![0.0; system.dim()];
+        group.bench_function(entry.name, |b| {
+            b.iter(|| system.eval_f(0.0, black_box(&scene.state), &mut dydt));
+        });
+    }
+    group.finish();
+}
+
+/// A step of every method on every scene that it serves.
+fn steps(c: &mut Criterion) {
+    for entry in scenes::SCENES {
+        let mut group = c.benchmark_group(format!("step/{}", entry.name));
+        let scene = entry.build(None).unwrap();
+        for method in integrators::METHODS {
+            step(&mut group, method.name, &scene, method);
+        }
+        group.finish();
+    }
+}
+
+/// A step of every method on cloth of every size.
+fn steps_by_size(c: &mut Criterion) {
+    for side in SIDES {
+        let mut group = c.benchmark_group(format!("step/cloth {side}x{side}"));
+        let scene = cloth("cloth", side);
+        group.throughput(Throughput::Elements((side * side) as u64));
+        let mut f = vec![0.0; scene.state.len() / 2];
+        let (x, v) = scene.state.split_at(f.len());
+        group.bench_function("forces", |b| {
+            b.iter(|| network(&scene).forces(0.0, black_box(x), black_box(v), &mut f));
+        });
+        for method in integrators::METHODS {
+            step(&mut group, method.name, &scene, method);
+        }
+        group.finish();
+    }
+}
+
+fn step(
+    group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>,
+    name: &str,
+    scene: &Scene,
+    method: &integrators::Method,
+) {
+    let system = scene.model.system();
+    let Ok(mut integrator) = method.integrator(system) else {
+        return;
+    };
+    let mut y = scene.state.clone();
+    group.bench_function(name, |b| {
+        // So small a step that no number of them leads anywhere.
+        b.iter(|| {
+            integrator
+                .step(system, 0.0, 1e-12, black_box(&mut y))
+                .unwrap()
+        });
+    });
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(20).warm_up_time(std::time::Duration::from_millis(300))
+        .measurement_time(std::time::Duration::from_secs(1));
+    targets = forces, evaluation, steps, steps_by_size
+}
+criterion_main!(benches);

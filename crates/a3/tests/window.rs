@@ -1,0 +1,605 @@
+//! The window for real: the built program on a virtual display, with real keys, a real mouse and a window manager.
+//!
+//! Needs Xvfb, openbox, xdotool and wmctrl. Without them the tests are skipped with a loud word, unless
+//! `A3_REQUIRE_DISPLAY` forbids that.
+
+#![cfg(target_os = "linux")]
+#![allow(missing_docs, reason = "a test")]
+
+use std::collections::HashMap;
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::{Arc, Mutex};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+const PATIENCE: Duration = Duration::from_secs(30);
+
+fn quiet(program: &str) -> Command {
+    let mut command = Command::new(program);
+    command
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .stdin(Stdio::null());
+    command
+}
+
+fn until<T>(what: &str, mut probe: impl FnMut() -> Option<T>) -> T {
+    let begun = Instant::now();
+    loop {
+        if let Some(found) = probe() {
+            return found;
+        }
+        assert!(begun.elapsed() < PATIENCE, "waited in vain: {what}");
+        sleep(Duration::from_millis(20));
+    }
+}
+
+/// A display with a window manager, gone when dropped.
+struct Display {
+    server: Child,
+    manager: Child,
+    name: String,
+    folder: TempDir,
+}
+
+impl Display {
+    fn open() -> Option<Self> {
+        let missing: Vec<_> = ["Xvfb", "openbox", "xdotool", "wmctrl"]
+            .into_iter()
+            .filter(|tool| {
+                quiet("which")
+                    .arg(tool)
+                    .status()
+                    .map_or(true, |status| !status.success())
+            })
+            .collect();
+        if !missing.is_empty() {
+            assert!(
+                std::env::var_os("A3_REQUIRE_DISPLAY").is_none(),
+                "A3_REQUIRE_DISPLAY is set: no {missing:?}"
+            );
+            eprintln!("SKIPPED, NOT TESTED: the window needs {missing:?}");
+            return None;
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let mut server = quiet("Xvfb")
+            .args([
+                "-displayfd",
+                "1",
+                "-screen",
+                "0",
+                "1400x900x24",
+                "-nolisten",
+                "tcp",
+                "-fbdir",
+            ])
+            .arg(folder.path())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut number = String::new();
+        BufReader::new(server.stdout.take().unwrap())
+            .read_line(&mut number)
+            .unwrap();
+        let name = format!(":{}", number.trim());
+        let manager = quiet("openbox").env("DISPLAY", &name).spawn().unwrap();
+        let display = Self {
+            server,
+            manager,
+            name,
+            folder,
+        };
+        // A window that is mapped before the manager is up gets no focus.
+        until("a window manager", || {
+            display
+                .command("wmctrl")
+                .arg("-m")
+                .status()
+                .unwrap()
+                .success()
+                .then_some(())
+        });
+        Some(display)
+    }
+
+    fn command(&self, program: &str) -> Command {
+        let mut command = quiet(program);
+        command
+            .env("DISPLAY", &self.name)
+            .env_remove("WAYLAND_DISPLAY");
+        command
+    }
+
+    fn xdotool(&self, words: &[&str]) -> String {
+        let output = self
+            .command("xdotool")
+            .args(words)
+            .stdout(Stdio::piped())
+            .output()
+            .unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// The screen as it is: red, green and blue by rows.
+    fn screen(&self) -> Screen {
+        // An XWD file, kept up to date by the server.
+        let bytes = fs::read(self.folder.path().join("Xvfb_screen0")).unwrap();
+        let word =
+            |k: usize| u32::from_be_bytes(bytes[4 * k..4 * k + 4].try_into().unwrap()) as usize;
+        let (width, height, stride, start) = (word(4), word(5), word(12), word(0) + 12 * word(19));
+        assert_eq!(
+            (word(7), word(11)),
+            (0, 32),
+            "four bytes a pixel, blue first"
+        );
+        let pixel = |x: usize, y: usize| {
+            let at = start + y * stride + 4 * x;
+            [bytes[at + 2], bytes[at + 1], bytes[at]]
+        };
+        let pixels = (0..height)
+            .flat_map(|y| (0..width).map(move |x| (x, y)))
+            .map(|(x, y)| pixel(x, y));
+        Screen {
+            width,
+            pixels: pixels.collect(),
+        }
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        for child in [&mut self.manager, &mut self.server] {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+struct Screen {
+    width: usize,
+    pixels: Vec<[u8; 3]>,
+}
+
+fn is_red([r, g, b]: [u8; 3]) -> bool {
+    r > 100 && r / 2 > g && r / 2 > b
+}
+
+/// The grabbed particle's ball.
+fn is_amber([r, g, b]: [u8; 3]) -> bool {
+    r > 170 && g > 100 && g < r && u16::from(b) * 2 < u16::from(g) + 60 && b < 110
+}
+
+impl Screen {
+    fn count(&self, is: impl Fn([u8; 3]) -> bool) -> usize {
+        self.pixels.iter().filter(|pixel| is(**pixel)).count()
+    }
+
+    /// Mean difference of the channels.
+    fn difference(&self, other: &Self) -> f64 {
+        let pairs = self
+            .pixels
+            .iter()
+            .flatten()
+            .zip(other.pixels.iter().flatten());
+        pairs.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>()
+            / (3.0 * self.pixels.len() as f64)
+    }
+
+    /// The middle of the pixels that are like that.
+    fn middle(&self, is: impl Fn([u8; 3]) -> bool) -> (i32, i32) {
+        let places: Vec<_> = (0..self.pixels.len())
+            .filter(|k| is(self.pixels[*k]))
+            .collect();
+        assert!(!places.is_empty(), "nothing of that colour on the screen");
+        let x = places.iter().map(|k| k % self.width).sum::<usize>() / places.len();
+        let y = places.iter().map(|k| k / self.width).sum::<usize>() / places.len();
+        (x as i32, y as i32)
+    }
+}
+
+/// The program in its window, gone when dropped.
+struct App<'d> {
+    display: &'d Display,
+    child: Child,
+    window: String,
+    lines: Arc<Mutex<Vec<String>>>,
+}
+
+impl<'d> App<'d> {
+    fn open(display: &'d Display, folder: &Path, words: &[&str]) -> Self {
+        let mut child = display
+            .command(env!("CARGO_BIN_EXE_a3"))
+            .args(words)
+            .arg("--status")
+            .current_dir(folder)
+            .env("XDG_RUNTIME_DIR", folder)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let lines = Arc::new(Mutex::new(vec![]));
+        let (sink, stderr) = (lines.clone(), child.stderr.take().unwrap());
+        std::thread::spawn(move || {
+            for line in BufReader::new(stderr).lines().map_while(Result::ok) {
+                sink.lock().unwrap().push(line);
+            }
+        });
+        let window = until("a window", || {
+            let found = display.xdotool(&["search", "--onlyvisible", "--name", "^a3: "]);
+            found.lines().next().map(str::to_owned)
+        });
+        display.xdotool(&["windowactivate", "--sync", &window]);
+        let app = Self {
+            display,
+            child,
+            window,
+            lines,
+        };
+        until("a first frame", || {
+            (app.number("frames")? > 2.0).then_some(())
+        });
+        app
+    }
+
+    fn status(&self) -> Option<HashMap<String, String>> {
+        let lines = self.lines.lock().unwrap();
+        let line = lines
+            .iter()
+            .rev()
+            .find_map(|line| line.strip_prefix("status "))?;
+        let pairs = line
+            .split_whitespace()
+            .filter_map(|word| word.split_once('='));
+        Some(
+            pairs
+                .map(|(key, value)| (key.to_owned(), value.to_owned()))
+                .collect(),
+        )
+    }
+
+    fn get(&self, key: &str) -> String {
+        self.status()
+            .and_then(|status| status.get(key).cloned())
+            .unwrap_or_default()
+    }
+
+    fn number(&self, key: &str) -> Option<f64> {
+        self.status()?.get(key)?.parse().ok()
+    }
+
+    fn expect(&self, key: &str, value: &str) {
+        until(&format!("{key}={value}, is {}", self.get(key)), || {
+            (self.get(key) == value).then_some(())
+        });
+    }
+
+    fn press(&self, key: &str) {
+        self.display.xdotool(&["key", key]);
+    }
+
+    /// Presses a key, and waits for its effect.
+    fn press_for(&self, key: &str, name: &str, value: &str) {
+        self.display.xdotool(&["key", key]);
+        self.expect(name, value);
+    }
+
+    fn frames_go_on(&self) {
+        let before = self.number("frames").unwrap();
+        until("more frames", || {
+            (self.number("frames")? > before + 2.0).then_some(())
+        });
+    }
+
+    /// Waits until what is paused is drawn, and looks.
+    fn settled(&self) -> Screen {
+        let mut last = self.display.screen();
+        until("a still picture", || {
+            sleep(Duration::from_millis(250));
+            let now = self.display.screen();
+            let still = now.difference(&last) == 0.0;
+            last = now;
+            still.then_some(())
+        });
+        last
+    }
+
+    fn processor_ticks(&self) -> u64 {
+        let text = fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap();
+        let fields: Vec<_> = text
+            .rsplit(')')
+            .next()
+            .unwrap()
+            .split_whitespace()
+            .collect();
+        fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
+    }
+
+    fn exit(mut self) -> ExitStatus {
+        let status = until("the end", || self.child.try_wait().unwrap());
+        let lines = self.lines.lock().unwrap();
+        assert!(
+            !lines.iter().any(|line| line.contains("panicked")),
+            "{lines:#?}"
+        );
+        status
+    }
+}
+
+impl Drop for App<'_> {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+#[test]
+fn keys() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+    for (key, value) in [
+        ("scene", "cloth"),
+        ("solver", "trapezoid"),
+        ("step", "0.01"),
+        ("size", "1280x720"),
+    ] {
+        assert_eq!(app.get(key), value);
+    }
+
+    // Simulated time keeps up with real time, in steps of exactly that size.
+    let (time, begun) = (app.number("time").unwrap(), Instant::now());
+    sleep(Duration::from_secs(2));
+    let factor = (app.number("time").unwrap() - time) / begun.elapsed().as_secs_f64();
+    assert!((0.5..1.25).contains(&factor), "{factor} times real time");
+    let (time, steps) = (app.number("time").unwrap(), app.number("steps").unwrap());
+    assert!(
+        (time - 0.01 * steps).abs() < 1e-3,
+        "{time} s after {steps} steps"
+    );
+
+    app.press_for("s", "swing", "true");
+    app.press_for("d", "wind", "true");
+    app.press_for("s", "swing", "false");
+    app.press_for("d", "wind", "false");
+
+    // Paused it stands still, costs nothing, and takes single steps.
+    app.press_for("space", "paused", "true");
+    let shaded = app.settled();
+    let (steps, ticks) = (app.number("steps").unwrap(), app.processor_ticks());
+    sleep(Duration::from_secs(2));
+    assert!(
+        app.processor_ticks() - ticks <= 4,
+        "paused, it takes {} ticks",
+        app.processor_ticks() - ticks
+    );
+    assert_eq!(app.number("steps").unwrap(), steps);
+    app.press("period");
+    until("a step", || {
+        (app.number("steps")? == steps + 1.0).then_some(())
+    });
+
+    // The surface is red, the wires are not.
+    assert!(
+        shaded.count(is_red) > 20_000,
+        "{} red pixels",
+        shaded.count(is_red)
+    );
+    app.press_for("w", "style", "Wireframe");
+    let wires = app.settled();
+    assert!(
+        wires.count(is_red) < 100,
+        "{} red pixels",
+        wires.count(is_red)
+    );
+    assert!(wires.difference(&shaded) > 2.0);
+    app.press_for("w", "style", "Shaded");
+
+    // Help comes and goes without a trace.
+    let before = app.settled();
+    app.press_for("h", "help", "true");
+    until("the help", || (display.screen().difference(&before) > 1.0).then_some(()));
+    app.press_for("question", "help", "false");
+    until("no help", || (display.screen().difference(&before) < 0.02).then_some(()));
+
+    // Wheel and drag move the camera, c brings it home.
+    display.xdotool(&[
+        "mousemove",
+        "--window",
+        &app.window,
+        "1150",
+        "600",
+        "click",
+        "4",
+        "click",
+        "4",
+    ]);
+    display.xdotool(&[
+        "mousedown",
+        "1",
+        "mousemove_relative",
+        "--",
+        "-200",
+        "20",
+        "mouseup",
+        "1",
+    ]);
+    until("another view", || (display.screen().difference(&before) > 1.0).then_some(()));
+    app.press("c");
+    until("the first view", || (display.screen().difference(&before) < 0.02).then_some(()));
+
+    app.press_for("plus", "step", "0.012");
+    app.press_for("minus", "step", "0.01");
+    app.press_for("4", "solver", "rk4");
+    app.press_for("6", "solver", "verlet");
+    app.press_for("2", "solver", "trapezoid");
+
+    app.press_for("p", "paused", "true");
+    let picture = folder.path().join("a3-cloth-1.png");
+    until("a picture", || picture.exists().then_some(()));
+    let picture = image::open(&picture).unwrap();
+    assert_eq!((picture.width(), picture.height()), (1280, 720));
+
+    for scene in ["simple", "pendulum", "chain", "mit", "mit-sphere", "cloth"] {
+        app.press_for("t", "scene", scene);
+    }
+    app.press_for("space", "paused", "false");
+    until("some time", || (app.number("time")? > 1.0).then_some(()));
+    app.press("r");
+    until("the beginning", || {
+        (app.number("time")? < 0.9).then_some(())
+    });
+    app.press("Escape");
+    assert!(app.exit().success());
+}
+
+#[test]
+fn pulling() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+    until("the cloth to hang", || {
+        (app.number("time")? > 2.0).then_some(())
+    });
+    let (x, y) = display.screen().middle(is_red);
+    display.xdotool(&[
+        "mousemove",
+        &x.to_string(),
+        &y.to_string(),
+        "mousedown",
+        "1",
+    ]);
+    until("a grip", || (app.get("grabbed") != "-").then_some(()));
+    let particle = app.get("grabbed");
+    // A fast drag: all of the way at once, then here and there.
+    for (dx, dy) in [(150, -60), (-170, -40), (120, 60)] {
+        display.xdotool(&["mousemove", &(x + dx).to_string(), &(y + dy).to_string()]);
+        until("the particle under the pointer", || {
+            let screen = display.screen();
+            if screen.count(is_amber) < 10 {
+                return None;
+            }
+            let (px, py) = screen.middle(is_amber);
+            (px.abs_diff(x + dx) < 14 && py.abs_diff(y + dy) < 14).then_some(())
+        });
+        assert_eq!(app.get("grabbed"), particle);
+    }
+    display.xdotool(&["mouseup", "1"]);
+    app.expect("grabbed", "-");
+    app.expect("blown", "false");
+    until("no ball", || {
+        (display.screen().count(is_amber) < 5).then_some(())
+    });
+    // Off the cloth there is nothing to grab.
+    display.xdotool(&[
+        "mousemove",
+        "--window",
+        &app.window,
+        "1200",
+        "650",
+        "mousedown",
+        "1",
+    ]);
+    app.frames_go_on();
+    assert_eq!(app.get("grabbed"), "-");
+    display.xdotool(&["mouseup", "1"]);
+    app.press("Escape");
+    assert!(app.exit().success());
+}
+
+#[test]
+fn sizes_minimising_a_lost_device_and_closing() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["r", "0.01", "--wind"]);
+    for (width, height) in [
+        ("90", "70"),
+        ("4000", "3000"),
+        ("333", "777"),
+        ("1280", "720"),
+    ] {
+        display.xdotool(&["windowsize", &app.window, width, height]);
+        app.expect("size", &format!("{width}x{height}"));
+        app.frames_go_on();
+    }
+    // A flood of sizes.
+    for k in 0..40 {
+        display.xdotool(&[
+            "windowsize",
+            &app.window,
+            &(300 + 17 * k).to_string(),
+            &(700 - 11 * k).to_string(),
+        ]);
+    }
+    display.xdotool(&["windowsize", &app.window, "1280", "720"]);
+    app.expect("size", "1280x720");
+
+    display.xdotool(&["windowminimize", &app.window]);
+    app.expect("visible", "false");
+    let (time, frames) = (app.number("time").unwrap(), app.number("frames").unwrap());
+    sleep(Duration::from_secs(2));
+    assert!(
+        app.number("frames").unwrap() <= frames + 1.0,
+        "drawn while minimised"
+    );
+    display.xdotool(&["windowmap", &app.window, "windowactivate", &app.window]);
+    app.expect("visible", "true");
+    app.frames_go_on();
+    assert!(
+        app.number("time").unwrap() < time + 1.5,
+        "time ran on while minimised"
+    );
+
+    // The device is lost, and the picture comes back, the simulation untouched.
+    for _ in 0..3 {
+        let steps = app.number("steps").unwrap();
+        app.press("F12");
+        app.frames_go_on();
+        assert!(app.number("steps").unwrap() > steps);
+    }
+    assert!(display.screen().count(is_red) > 10_000);
+
+    display
+        .command("wmctrl")
+        .args(["-i", "-c", &app.window])
+        .status()
+        .unwrap();
+    assert!(app.exit().success());
+}
+
+/// When a run blows up, the window says so, stands still, and starts again with r.
+#[test]
+fn blowing_up() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["e", "0.05", "--scene", "mit"]);
+    app.expect("blown", "true");
+    let steps = app.number("steps").unwrap();
+    sleep(Duration::from_millis(500));
+    assert_eq!(app.number("steps").unwrap(), steps);
+    assert!(
+        app.settled().count(|[r, g, b]| r > 150 && g < 60 && b < 60) > 100,
+        "it says so in red"
+    );
+    for _ in 0..40 {
+        app.press("minus");
+    }
+    until("a small step", || {
+        (app.number("step")? < 0.0003).then_some(())
+    });
+    app.press_for("r", "blown", "false");
+    app.frames_go_on();
+    app.press("Escape");
+    assert!(app.exit().success());
+}

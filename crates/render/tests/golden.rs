@@ -1,0 +1,146 @@
+//! Pictures against golden ones, with a tolerance in what an eye would notice. `UPDATE_GOLDEN=1` writes them anew; a
+//! failure leaves the picture beside its golden one.
+
+mod common;
+
+use std::path::PathBuf;
+
+use a3_render::{Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer, Style};
+use common::{Sheet, gpu};
+use image::RgbaImage;
+
+const SIZE: (u32, u32) = (320, 180);
+
+fn draw(gpu: &Gpu, sheet: &Sheet, style: Style) -> RgbaImage {
+    let samples = gpu.samples(OFFSCREEN_FORMAT);
+    let mut renderer = Renderer::new(gpu, OFFSCREEN_FORMAT, samples, &sheet.topology);
+    let offscreen = Offscreen::new(gpu, SIZE).unwrap();
+    let pixels = offscreen
+        .render(gpu, &mut renderer, &sheet.picture(style))
+        .unwrap();
+    RgbaImage::from_raw(SIZE.0, SIZE.1, pixels).unwrap()
+}
+
+/// Share of pixels that are off by more than 12 of 255 in some channel, and the mean error of all channels.
+/// Adapters differ along edges, so a few pixels may; a shader that is a little too dark moves the mean.
+fn difference(a: &RgbaImage, b: &RgbaImage) -> (f64, f64) {
+    assert_eq!(a.dimensions(), b.dimensions());
+    let (mut off, mut sum) = (0u32, 0u64);
+    for (p, q) in a.pixels().zip(b.pixels()) {
+        let errors: Vec<_> = p.0.iter().zip(q.0).map(|(p, q)| p.abs_diff(q)).collect();
+        off += u32::from(errors.iter().any(|e| *e > 12));
+        sum += errors.iter().map(|e| u64::from(*e)).sum::<u64>();
+    }
+    let pixels = f64::from(a.width() * a.height());
+    (f64::from(off) / pixels, sum as f64 / (4.0 * pixels))
+}
+
+fn same(a: &RgbaImage, b: &RgbaImage) -> bool {
+    let (off, mean) = difference(a, b);
+    println!(
+        "{:.3} % of the pixels are off, mean error {mean:.3}",
+        100.0 * off
+    );
+    off < 0.004 && mean < 0.4
+}
+
+#[test]
+fn pictures_match_the_golden_ones() {
+    let Some(gpu) = gpu() else { return };
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden");
+    let mut wrong = vec![];
+    for (name, style) in [("shaded", Style::Shaded), ("wireframe", Style::Wireframe)] {
+        let picture = draw(&gpu, &Sheet::new(), style);
+        let path = folder.join(format!("{name}.png"));
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            picture.save(&path).unwrap();
+            continue;
+        }
+        let golden = image::open(&path).unwrap().to_rgba8();
+        if !same(&picture, &golden) {
+            picture
+                .save(folder.join(format!("{name}.actual.png")))
+                .unwrap();
+            wrong.push(name);
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "{wrong:?} differ: look at the .actual.png files beside the golden ones"
+    );
+}
+
+/// The comparison sees a normal that points the wrong way: a sheet whose triangles are wound the other way round has
+/// its normals and its lining swapped.
+#[test]
+fn a_broken_normal_is_seen() {
+    let Some(gpu) = gpu() else { return };
+    let right = draw(&gpu, &Sheet::new(), Style::Shaded);
+    // Two rows of triangles turned over spoil the normals between them.
+    let mut sheet = Sheet::new();
+    for triangle in &mut sheet.topology.triangles[210..270] {
+        triangle.swap(1, 2);
+    }
+    assert!(!same(&draw(&gpu, &sheet, Style::Shaded), &right));
+    let mut sheet = Sheet::new();
+    for triangle in &mut sheet.topology.triangles {
+        triangle.swap(1, 2);
+    }
+    assert!(!same(&draw(&gpu, &sheet, Style::Shaded), &right));
+}
+
+/// Seen from behind, the sheet is lit as well as from the front, and shows its lining.
+#[test]
+fn both_sides_are_lit() {
+    let Some(gpu) = gpu() else { return };
+    let mut sheet = Sheet::new();
+    sheet.balls.clear();
+    sheet.lines.clear();
+    sheet.camera = a3_render::Camera::look_at([-1.6, 1.9, -4.2], [0.0, 1.0, 0.2]);
+    let picture = draw(&gpu, &sheet, Style::Shaded);
+    let middle = picture.get_pixel(SIZE.0 / 2, SIZE.1 / 2 - 10).0;
+    assert!(middle[0] > 60 && middle[0] > middle[2], "{middle:?}");
+}
+
+/// Lines have the width asked for, in points: twice the scale, twice the pixels.
+#[test]
+fn lines_are_as_wide_as_asked_for() {
+    let Some(gpu) = gpu() else { return };
+    let mut sheet = Sheet::new();
+    sheet.topology = a3_render::Topology::default();
+    sheet.points.clear();
+    sheet.balls.clear();
+    sheet.camera = a3_render::Camera::look_at([0.0, 0.0, 4.0], [0.0; 3]);
+    sheet.lines = vec![a3_render::Line::new(
+        [-1.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        6.0,
+        [0.0, 0.0, 0.0, 1.0],
+    )];
+    let mut renderer = Renderer::new(
+        &gpu,
+        OFFSCREEN_FORMAT,
+        gpu.samples(OFFSCREEN_FORMAT),
+        &sheet.topology,
+    );
+    let offscreen = Offscreen::new(&gpu, SIZE).unwrap();
+    for scale in [1.0f32, 2.0, 3.0] {
+        let picture = a3_render::Picture {
+            scale,
+            floor: None,
+            ..sheet.picture(Style::Shaded)
+        };
+        let pixels = offscreen.render(&gpu, &mut renderer, &picture).unwrap();
+        let column = |y: u32| pixels[4 * (y * SIZE.0 + SIZE.0 / 2) as usize];
+        // Ink in the column of the middle, from the darkness of its pixels.
+        let background = f64::from(column(10));
+        let ink: f64 = (0..SIZE.1)
+            .map(|y| 1.0 - f64::from(column(y)) / background)
+            .filter(|ink| *ink > 0.3)
+            .sum();
+        assert!(
+            (ink - 6.0 * f64::from(scale)).abs() < 1.0,
+            "{ink} pixels at scale {scale}"
+        );
+    }
+}
