@@ -1,6 +1,7 @@
 //! The window's surface, the picture on it and the text over it. All of it can be dropped and made again.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use a3_render::{Gpu, GpuError, OFFSCREEN_FORMAT, Offscreen, Renderer, Targets};
 use wgpu::CurrentSurfaceTexture;
@@ -13,7 +14,8 @@ use crate::{Failure, output, show};
 
 /// What became of a frame.
 pub enum Outcome {
-    Drawn,
+    /// The text wants to be drawn again after this time, if ever: it fades in.
+    Drawn(Option<Duration>),
     /// Not now: ask again at the next event, or soon.
     Skipped,
 }
@@ -178,29 +180,34 @@ impl Graphics {
         let text_view = frame
             .texture
             .create_view(&wgpu::TextureViewDescriptor::default());
-        let before = self.write_text(&mut encoder, &text_view, session);
+        let (before, again) = self.write_text(&mut encoder, &text_view, session);
         self.gpu
             .queue
             .submit(before.into_iter().chain([encoder.finish()]));
         self.window.pre_present_notify();
         self.gpu.queue.present(frame);
         self.gpu.check()?;
-        Ok(Outcome::Drawn)
+        Ok(Outcome::Drawn(again))
     }
 
-    /// The text, in a second pass over the picture.
+    /// The text, in a second pass over the picture: what to submit before it, and when it wants to be drawn again.
     fn write_text(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,
         session: &Session,
-    ) -> Vec<wgpu::CommandBuffer> {
+    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>) {
         let input = self.egui_winit.take_egui_input(&self.window);
         let mut output = self.egui.run_ui(input, |ui| {
             hud::show(ui.ctx(), &session.simulation, &session.readings)
         });
         self.egui_winit
             .handle_platform_output(&self.window, output.platform_output);
+        let again = output
+            .viewport_output
+            .get(&egui::ViewportId::ROOT)
+            .map(|viewport| viewport.repaint_delay);
+        let again = again.filter(|delay| *delay < Duration::from_secs(60));
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         // Dropping what is not drained panics.
         for (id, deltas) in output.textures_delta.set.drain() {
@@ -234,7 +241,7 @@ impl Graphics {
         for id in output.textures_delta.free.drain() {
             self.egui_wgpu.free_texture(&id);
         }
-        before
+        (before, again)
     }
 
     /// Saves what is seen, without the text, under the first free name. Which one that was.

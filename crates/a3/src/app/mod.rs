@@ -247,15 +247,19 @@ impl App {
         };
         let begun = Instant::now();
         match graphics.frame(&mut self.session) {
-            Ok(Outcome::Drawn) => {
+            Ok(Outcome::Drawn(again)) => {
                 self.session.drawn(begun.elapsed());
                 if let Some(status) = &mut self.status {
                     status.frames += 1;
                 }
-                if self.session.animated() {
-                    self.wait_until(event_loop, now + self.frame_time());
-                } else if let Some(end) = message_ends {
-                    self.wait_until(event_loop, end);
+                let next = if self.session.animated() {
+                    Some(now + self.frame_time())
+                } else {
+                    let again = again.map(|delay| now + delay.max(self.frame_time()));
+                    [again, message_ends].into_iter().flatten().min()
+                };
+                if let Some(next) = next {
+                    self.wait_until(event_loop, next);
                 }
             }
             Ok(Outcome::Skipped) => self.wait_until(event_loop, now + RETRY),
@@ -294,7 +298,17 @@ impl App {
         let run = &self.session.simulation;
         let readings = &self.session.readings;
         let grabbed = run.grabbed().map_or("-".into(), |i| i.to_string());
-        let hand = run.grabbed().map_or(Vector3::zeros(), |i| run.position(i));
+        let place = |i| {
+            let p = run.position(i);
+            let [x, y, z] = [p.x as f32, p.y as f32, p.z as f32];
+            let ([x, y], _) = self.session.camera.project([x, y, z], graphics.aspect())?;
+            Some(format!(
+                "{:.0},{:.0}",
+                x * graphics.size().0 as f32,
+                y * graphics.size().1 as f32
+            ))
+        };
+        let hand = run.grabbed().and_then(place).unwrap_or("-".into());
         let state = format!(
             "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} blown={} grabbed={grabbed} \
              size={}x{} visible={}",
@@ -319,14 +333,11 @@ impl App {
             return;
         }
         eprintln!(
-            "status {state} time={:.4} steps={} frames={} hand={:.3},{:.3},{:.3} rate={:.1} factor={:.2} \
+            "status {state} time={:.4} steps={} frames={} hand={hand} rate={:.1} factor={:.2} \
              simulating={:.2} drawing={:.2} adapter={}",
             run.time(),
             run.steps(),
             status.frames,
-            hand.x,
-            hand.y,
-            hand.z,
             readings.rate,
             readings.factor,
             readings.simulating,

@@ -114,8 +114,12 @@ impl Session {
         self.show.follow(&self.simulation);
     }
 
-    /// A frame was drawn, in this time. Twice a second the readings are taken.
+    /// A frame was drawn, in this time. Twice a second the readings are taken, unless all stands still.
     pub fn drawn(&mut self, drawing: Duration) {
+        if !self.animated() {
+            self.restart_meter();
+            return;
+        }
         self.meter.frames += 1;
         self.meter.drawing += drawing;
         let elapsed = self.meter.begun.elapsed().as_secs_f32();
@@ -130,7 +134,7 @@ impl Session {
         self.readings.drawing = meter.drawing.as_secs_f32() * 1e3 / frames;
     }
 
-    /// Forgets the pause that nothing was drawn in.
+    /// Begins the measurement anew, without what came before.
     pub fn restart_meter(&mut self) {
         self.meter = Meter::new();
     }
