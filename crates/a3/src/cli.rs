@@ -43,7 +43,7 @@ pub struct What {
     #[arg(long, value_name = "NAME", default_value = "cloth", value_parser = scene)]
     pub scene: &'static SceneEntry,
     /// Rows and columns of a cloth, such as 30x40
-    #[arg(long, value_name = "ROWSxCOLS", value_parser = grid)]
+    #[arg(long, value_name = "ROWSxCOLS", value_parser = grid, allow_hyphen_values = true)]
     pub grid: Option<Grid>,
     /// Let the wind blow
     #[arg(long)]
@@ -64,7 +64,7 @@ pub struct Window {
     #[command(flatten)]
     pub what: What,
     /// Show the springs attached to particle I, and list them
-    #[arg(long, value_name = "I")]
+    #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
     pub springs_of: Option<usize>,
     /// Begin with the wireframe
     #[arg(long)]
@@ -94,13 +94,13 @@ pub struct Render {
     #[arg(long, short, value_name = "FILE.png")]
     pub output: PathBuf,
     /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, allow_hyphen_values = true)]
     pub size: (u32, u32),
     /// Draw the wires instead of the surface
     #[arg(long)]
     pub wireframe: bool,
     /// Show the springs attached to particle I
-    #[arg(long, value_name = "I")]
+    #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
     pub springs_of: Option<usize>,
 }
 
@@ -165,6 +165,11 @@ fn step(text: &str) -> Result<f64, String> {
             "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01"
         )),
     }
+}
+
+fn particle(text: &str) -> Result<usize, String> {
+    text.parse()
+        .map_err(|_| "a particle is a whole number from 0, such as 12".into())
 }
 
 fn until(text: &str) -> Result<f64, String> {
