@@ -229,12 +229,17 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         .map(str::trim)
         .collect();
     let line = words.join(" ");
+    let line = line.strip_prefix("error: ").unwrap_or(&line).to_owned();
     let tip = text
         .lines()
         .find_map(|line| line.trim().strip_prefix("tip: "));
-    let line = line.strip_prefix("error: ").unwrap_or(&line).to_owned();
-    Err(Failure::Usage(match tip {
-        Some(tip) => format!("{line}; {tip}"),
-        None => format!("{line} (--help says more)"),
+    Err(Failure::Usage(match (error.kind(), tip) {
+        // Its own words end with what is right.
+        (ErrorKind::ValueValidation, _) => line,
+        (ErrorKind::ArgumentConflict, _) => {
+            "beside options there is a solver and a step, as in `a3 t 0.01`, or a command before all else".into()
+        }
+        (_, Some(tip)) => format!("{line}; {tip}"),
+        (_, None) => format!("{line} (--help says more)"),
     }))
 }

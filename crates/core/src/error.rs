@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::integrators::METHODS;
+
 /// Why something could not be built or stepped.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -61,10 +63,17 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Invalid(what) => f.write_str(what),
-            Self::NeedsMechanics { method } => write!(
-                f,
-                "{method} needs a system with forces and masses; this one is first order: use euler, trapezoid, midpoint or rk4"
-            ),
+            Self::NeedsMechanics { method } => {
+                let any = METHODS
+                    .iter()
+                    .filter(|m| !m.needs_mechanics)
+                    .map(|m| m.name);
+                let any = any.collect::<Vec<_>>().join(", ");
+                write!(
+                    f,
+                    "{method} needs forces and masses, and this system is first order: use one of {any}"
+                )
+            }
             Self::Dimension { expected, found } => {
                 write!(
                     f,

@@ -22,7 +22,7 @@ impl Grid {
             Ok(Self { rows, cols })
         } else {
             Err(Error::Invalid(format!(
-                "a grid has at least 2x2 and at most {MAX_PARTICLES} particles in all, such as 20x20; {rows}x{cols} is neither"
+                "a grid has at least 2x2 and at most {MAX_PARTICLES} particles in all, such as 20x20, and not {rows}x{cols}"
             )))
         }
     }
