@@ -12,7 +12,7 @@ use crate::shapes::sphere;
 use crate::targets::DEPTH;
 
 /// Towards the light: over the left shoulder, high.
-const LIGHT: [f32; 3] = [-0.36, 0.80, 0.48];
+const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
 /// How far the floor is seen [m].
 const FLOOR_REACH: f32 = 14.0;
 /// Balls from this radius on [m] are drawn with more triangles.
@@ -101,7 +101,7 @@ impl Renderer {
         });
         Self {
             pipelines: Pipelines::new(device, &layout, color, samples),
-            small_sphere: Shape::sphere(gpu, 10),
+            small_sphere: Shape::sphere(gpu, 8),
             large_sphere: Shape::sphere(gpu, 40),
             balls: Instances::new(device, "balls"),
             lines: Instances::new(device, "lines"),
@@ -145,7 +145,10 @@ impl Renderer {
         );
         let mesh = picture.style == Style::Shaded && self.particles.indices > 0;
         self.frame = Frame {
-            floor: picture.floor.is_some(),
+            // From below it would hide everything.
+            floor: picture
+                .floor
+                .is_some_and(|height| picture.camera.eye().y > height),
             mesh,
             wires: !mesh,
             small_balls: balls.iter().filter(|ball| ball.radius < LARGE).count() as u32,
@@ -158,11 +161,20 @@ impl Renderer {
     pub fn draw(&self, pass: &mut wgpu::RenderPass) {
         let (p, particles, frame) = (&self.pipelines, &self.particles, self.frame);
         pass.set_bind_group(0, &particles.bind, &[]);
-        pass.set_pipeline(&p.background);
-        pass.draw(0..3, 0..1);
+        // What hides comes first, so that no pixel is shaded twice; then what is blended over it.
+        if frame.mesh {
+            pass.set_pipeline(&p.mesh);
+            particles.draw_mesh(pass);
+        }
+        pass.set_pipeline(&p.ball);
+        self.draw_balls(pass);
         if frame.floor {
             pass.set_pipeline(&p.floor);
             pass.draw(0..4, 0..1);
+        }
+        pass.set_pipeline(&p.background);
+        pass.draw(0..3, 0..1);
+        if frame.floor {
             pass.set_stencil_reference(0);
             if frame.mesh {
                 pass.set_pipeline(&p.mesh_shadow);
@@ -171,12 +183,6 @@ impl Renderer {
             pass.set_pipeline(&p.ball_shadow);
             self.draw_balls(pass);
         }
-        if frame.mesh {
-            pass.set_pipeline(&p.mesh);
-            particles.draw_mesh(pass);
-        }
-        pass.set_pipeline(&p.ball);
-        self.draw_balls(pass);
         if frame.wires {
             pass.set_pipeline(&p.wire);
             pass.set_vertex_buffer(0, particles.wires.slice(..));
@@ -419,7 +425,7 @@ fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 /// How a pipeline treats what is already there.
 #[derive(Clone, Copy, PartialEq)]
 enum Layer {
-    /// Behind everything.
+    /// Where nothing else is.
     Back,
     /// On the floor, blended, each place once.
     Shadow,
@@ -503,7 +509,7 @@ impl Pipelines {
         );
         Self {
             background: pipeline("background", "background", list, Layer::Back, &[]),
-            floor: pipeline("floor", "floor", strip, Layer::Over, &[]),
+            floor: pipeline("floor", "floor", strip, Layer::Solid, &[]),
             mesh_shadow: pipeline("mesh_shadow", "shadow", list, Layer::Shadow, &[]),
             ball_shadow: pipeline("ball_shadow", "shadow", list, Layer::Shadow, &balls),
             mesh: pipeline("mesh", "mesh", list, Layer::Solid, &[]),
@@ -534,10 +540,7 @@ fn depth_stencil(layer: Layer) -> wgpu::DepthStencilState {
     wgpu::DepthStencilState {
         format: DEPTH,
         depth_write_enabled: Some(layer == Layer::Solid),
-        depth_compare: Some(match layer {
-            Layer::Back | Layer::Shadow => CompareFunction::Always,
-            Layer::Solid | Layer::Over => CompareFunction::LessEqual,
-        }),
+        depth_compare: Some(CompareFunction::LessEqual),
         stencil,
         bias: wgpu::DepthBiasState::default(),
     }

@@ -26,15 +26,15 @@ const INK = vec3(0.035, 0.05, 0.09);
 const CLOTH = vec3(0.62, 0.045, 0.06);
 const LINING = vec3(0.50, 0.17, 0.05);
 
-// ---- Background: paper, darker towards the corners.
+// ---- Background: paper, darker towards the corners. Drawn where nothing else is.
 
 @vertex fn background_vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
     return vec4(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 1.0, 1.0);
 }
 
 fn background(pixel: vec2<f32>) -> vec3<f32> {
-    let p = pixel / globals.viewport.xy - vec2(0.5, 0.42);
-    return mix(PAPER, SHADE, smoothstep(0.05, 1.0, length(p * vec2(1.0, 1.15)) * 1.25));
+    let p = (pixel / globals.viewport.xy - vec2(0.5, 0.42)) * vec2(1.0, 1.15);
+    return mix(PAPER, SHADE, min(2.1 * dot(p, p), 1.0));
 }
 
 // Half a step of an 8-bit channel up or down, so that the gradient shows no bands.
@@ -70,7 +70,8 @@ fn floor_fade(world: vec3<f32>) -> f32 {
     let grid = max(line.x, line.y) * min(1.0, 0.2 / max(width.x, width.y));
     let color = mix(vec3(0.90, 0.895, 0.88), SHADE * 0.8, 0.35 * grid);
     let grazing = smoothstep(0.0, 0.12, abs(normalize(globals.eye.xyz - in.world).y));
-    return vec4(color, 0.75 * floor_fade(in.world) * grazing);
+    let paper = background(in.clip.xy) + dither(in.clip.xy);
+    return vec4(mix(paper, color, 0.75 * floor_fade(in.world) * grazing), 1.0);
 }
 
 // ---- Shadow: what is above the floor, thrown onto it along the light. The stencil darkens each place once.
@@ -83,6 +84,8 @@ fn shadow(p: vec3<f32>) -> Shadow {
     out.world = p - globals.light.xyz * (out.height / globals.light.y);
     out.world.y = globals.floor.x;
     out.clip = globals.view_proj * vec4(out.world, 1.0);
+    // On the floor, not in it.
+    out.clip.z -= 1e-4 * out.clip.w;
     return out;
 }
 
@@ -106,10 +109,10 @@ fn lit(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>, gloss: f32, sheen: f32)
     let eye = normalize(globals.eye.xyz - world);
     let lamp = globals.light.xyz;
     let facing = dot(n, lamp);
-    let key = max(facing * 0.85 + 0.15, 0.0);
+    let key = max(facing * 0.9 + 0.1, 0.0);
     let sky = 0.5 + 0.5 * n.y;
     let head = max(dot(n, eye), 0.0);
-    let bright = 1.15 * key * vec3(1.0, 0.97, 0.92) + 0.34 * sky * vec3(0.82, 0.9, 1.0) + 0.26 * head + 0.06;
+    let bright = 1.2 * key * vec3(1.0, 0.97, 0.92) + 0.22 * sky * vec3(0.82, 0.9, 1.0) + 0.16 * head + 0.04;
     let spark = gloss * pow(max(dot(n, normalize(lamp + eye)), 0.0), 48.0) * step(0.0, facing);
     let rim = sheen * pow(1.0 - head, 3.5) * (0.35 + 0.65 * sky);
     return color * bright + spark + rim * mix(color, vec3(1.0), 0.45);
@@ -136,7 +139,7 @@ struct Mesh { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32>,
 @fragment fn mesh_fragment(in: Mesh, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     // A squashed cell can have no normal: any will do, but not NaN.
     let n = in.normal / max(length(in.normal), 1e-20) * select(-1.0, 1.0, front);
-    return vec4(lit(select(LINING, CLOTH, front), n, in.world, 0.10, 0.55), 1.0);
+    return vec4(lit(select(LINING, CLOTH, front), n, in.world, 0.07, 0.35), 1.0);
 }
 
 // ---- Balls: particles, pins, and the sphere in the way.

@@ -40,11 +40,11 @@ const DAMPING_TIME: f64 = 0.006;
 /// Drag over mass [1/s].
 const DRAG: f64 = 0.3;
 /// The breeze pushes with this much per mass [m/s2].
-const BREEZE: f64 = 2.0;
+const BREEZE: f64 = 4.0;
 /// Number of folds.
 const FOLDS: f64 = 3.5;
 /// How far the gathered edge turns from straight [rad].
-const TURN: f64 = 0.95;
+const TURN: f64 = 1.15;
 /// Speed of the lower edge as it starts [m/s].
 const SWAY: f64 = 5.0;
 
