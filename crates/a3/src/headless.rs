@@ -18,7 +18,7 @@ pub fn run(why: &str, mut simulation: Simulation, mut show: Show) -> Result<(), 
     line(&simulation);
     for second in 1..=SECONDS {
         progress::advance(&mut simulation, f64::from(second), |simulation| {
-            show.follow(simulation)
+            show.follow(simulation);
         })
         .map_err(Failure::run)?;
         line(&simulation);

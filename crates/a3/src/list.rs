@@ -6,33 +6,37 @@ use a3_core::{integrators, scenes};
 
 use crate::Failure;
 
-/// Columns as wide as their widest cell; those whose heading starts with a space are right-aligned.
-fn table(rows: &[Vec<String>]) -> Result<(), Failure> {
-    let columns = rows[0].len();
+/// Prints columns as wide as their widest cell; those whose heading starts with a space are right-aligned.
+fn print_table(rows: &[Vec<String>]) {
+    let headings = &rows[0];
     let width = |c: usize| {
         rows.iter()
             .map(|row| row[c].trim().chars().count())
             .max()
             .unwrap_or(0)
     };
-    let widths: Vec<_> = (0..columns).map(width).collect();
-    let mut text = String::new();
-    for row in rows {
-        let mut line = String::new();
-        for (c, cell) in row.iter().enumerate() {
-            let (cell, width) = (cell.trim(), widths[c]);
-            if rows[0][c].starts_with(' ') {
-                line += &format!("{cell:>width$}  ");
-            } else {
-                line += &format!("{cell:<width$}  ");
-            }
+    let widths: Vec<_> = (0..headings.len()).map(width).collect();
+    let cell = |(c, cell): (usize, &String)| {
+        let (cell, width) = (cell.trim(), widths[c]);
+        if headings[c].starts_with(' ') {
+            format!("{cell:>width$}")
+        } else {
+            format!("{cell:<width$}")
         }
-        text += line.trim_end();
-        text.push('\n');
-    }
+    };
+    let line = |row: &Vec<String>| {
+        row.iter()
+            .enumerate()
+            .map(cell)
+            .collect::<Vec<_>>()
+            .join("  ")
+    };
+    let text: String = rows
+        .iter()
+        .map(|row| line(row).trim_end().to_owned() + "\n")
+        .collect();
     // A reader that has seen enough, such as `head`, is no failure.
     let _ = std::io::stdout().write_all(text.as_bytes());
-    Ok(())
 }
 
 pub fn scenes() -> Result<(), Failure> {
@@ -61,10 +65,11 @@ pub fn scenes() -> Result<(), Failure> {
             entry.summary.into(),
         ]);
     }
-    table(&rows)
+    print_table(&rows);
+    Ok(())
 }
 
-pub fn solvers() -> Result<(), Failure> {
+pub fn solvers() {
     let heading = [
         "",
         "solver",
@@ -98,5 +103,5 @@ pub fn solvers() -> Result<(), Failure> {
             m.title.into(),
         ]);
     }
-    table(&rows)
+    print_table(&rows);
 }

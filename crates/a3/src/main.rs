@@ -42,7 +42,10 @@ fn main() -> ExitCode {
             Some(Command::Simulate(options)) => simulate::run(&options),
             Some(Command::Render(options)) => render::run(&options),
             Some(Command::Scenes) => list::scenes(),
-            Some(Command::Solvers) => list::solvers(),
+            Some(Command::Solvers) => {
+                list::solvers();
+                Ok(())
+            }
         },
         Err(error) => cli::explain(&error),
     };

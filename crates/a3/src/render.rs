@@ -22,7 +22,7 @@ pub fn run(options: &Render) -> Result<(), Failure> {
     }
     let mut show = Show::new(options.wireframe, options.springs_of);
     progress::advance(&mut simulation, options.run.until, |simulation| {
-        show.follow(simulation)
+        show.follow(simulation);
     })
     .map_err(Failure::run)?;
     let pixels = draw(&gpu, &offscreen, &simulation, &mut show, options.size)?;

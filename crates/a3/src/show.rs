@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use a3_core::{Simulation, Spring, SpringKind, Vector3};
+use a3_core::{Simulation, Spring, SpringKind, SpringLaw, Vector3};
 use a3_render::{Ball, Camera, Line, Picture, Style, Topology};
 
 /// Linear colours.
@@ -143,7 +143,7 @@ impl Show {
             .model()
             .network()
             .into_iter()
-            .flat_map(|n| n.pins())
+            .flat_map(a3_core::Network::pins)
             .collect();
         for (i, _) in pins {
             self.ball(i, 0.032, INK);
@@ -153,7 +153,7 @@ impl Show {
     /// A small system: coils for its springs, balls for its particles.
     fn draw_parts(&mut self, simulation: &Simulation) {
         let network = simulation.model().network();
-        for spring in network.into_iter().flat_map(|n| n.springs()) {
+        for spring in network.into_iter().flat_map(a3_core::Network::springs) {
             let points = coil(
                 simulation.position(spring.i),
                 simulation.position(spring.j),
@@ -220,29 +220,32 @@ pub fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
         .model()
         .network()
         .into_iter()
-        .flat_map(|n| n.springs());
+        .flat_map(a3_core::Network::springs);
     springs.filter(|s| s.i == i || s.j == i).collect()
 }
 
 /// The springs attached to particle i, a line each.
 pub fn list_springs_of(simulation: &Simulation, i: usize) -> String {
     let springs = springs_of(simulation, i);
-    let mut text = format!("particle {i} has {} springs\n", springs.len());
-    for s in springs {
+    let line = |s: &Spring| {
         let kind = match s.kind {
             SpringKind::Structural => "structural",
             SpringKind::Shear => "shear",
             SpringKind::Bend => "bend",
         };
-        text += &format!(
-            "  {kind:<10}  to {:>5}   k = {:.4} N/m   rest length {:.4} m   damping {:.4} N s/m\n",
-            s.i + s.j - i,
-            s.law.stiffness,
-            s.law.rest_length,
-            s.law.damping
-        );
-    }
-    text
+        let SpringLaw {
+            stiffness,
+            rest_length,
+            damping,
+        } = s.law;
+        let to = s.i + s.j - i;
+        format!(
+            "  {kind:<10}  to {to:>5}   k = {stiffness:.4} N/m   rest length {rest_length:.4} m   \
+             damping {damping:.4} N s/m\n"
+        )
+    };
+    let lines: String = springs.iter().map(line).collect();
+    format!("particle {i} has {} springs\n{lines}", springs.len())
 }
 
 /// What stays the same from frame to frame. Small systems are drawn by balls and coils instead.
@@ -258,7 +261,7 @@ pub fn topology(simulation: &Simulation) -> Topology {
         .model()
         .network()
         .into_iter()
-        .flat_map(|n| n.springs());
+        .flat_map(a3_core::Network::springs);
     Topology {
         points,
         triangles: grid.triangles().map(|t| t.map(|i| i as u32)).collect(),

@@ -381,6 +381,38 @@ fn keys() {
     app.press_for("s", "swing", "false");
     app.press_for("d", "wind", "false");
 
+    app.press_for("plus", "step", "0.012");
+    app.press_for("minus", "step", "0.01");
+    app.press_for("4", "solver", "rk4");
+    app.press_for("6", "solver", "verlet");
+    app.press_for("2", "solver", "trapezoid");
+
+    app.press("p");
+    let picture = folder.path().join("a3-cloth-1.png");
+    until("a picture", || picture.exists().then_some(()));
+    let picture = image::open(&picture).unwrap();
+    assert_eq!((picture.width(), picture.height()), (1280, 720));
+
+    for scene in ["simple", "pendulum", "chain", "mit", "mit-sphere", "cloth"] {
+        app.press_for("t", "scene", scene);
+    }
+    until("some time", || (app.number("time")? > 1.0).then_some(()));
+    app.press("r");
+    until("the beginning", || {
+        (app.number("time")? < 0.9).then_some(())
+    });
+    app.press("Escape");
+    assert!(app.exit().success());
+}
+
+#[test]
+fn pausing_looking_and_help() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+
     // Paused it stands still, costs nothing, and takes single steps.
     app.press_for("space", "paused", "true");
     let shaded = app.settled();
@@ -454,28 +486,11 @@ fn keys() {
         (display.screen().difference(&before) < 0.1).then_some(())
     });
 
-    app.press_for("plus", "step", "0.012");
-    app.press_for("minus", "step", "0.01");
-    app.press_for("4", "solver", "rk4");
-    app.press_for("6", "solver", "verlet");
-    app.press_for("2", "solver", "trapezoid");
-
-    app.press_for("p", "paused", "true");
-    let picture = folder.path().join("a3-cloth-1.png");
-    until("a picture", || picture.exists().then_some(()));
-    let picture = image::open(&picture).unwrap();
-    assert_eq!((picture.width(), picture.height()), (1280, 720));
-
-    for scene in ["simple", "pendulum", "chain", "mit", "mit-sphere", "cloth"] {
-        app.press_for("t", "scene", scene);
-    }
     app.press_for("space", "paused", "false");
-    until("some time", || (app.number("time")? > 1.0).then_some(()));
-    app.press("r");
-    until("the beginning", || {
-        (app.number("time")? < 0.9).then_some(())
+    until("more steps", || {
+        (app.number("steps")? > steps + 5.0).then_some(())
     });
-    app.press("Escape");
+    display.xdotool(&["key", "Escape"]);
     assert!(app.exit().success());
 }
 

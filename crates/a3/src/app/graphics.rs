@@ -199,7 +199,7 @@ impl Graphics {
     ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>) {
         let input = self.egui_winit.take_egui_input(&self.window);
         let mut output = self.egui.run_ui(input, |ui| {
-            hud::show(ui.ctx(), &session.simulation, &session.readings)
+            hud::show(ui.ctx(), &session.simulation, &session.readings);
         });
         self.egui_winit
             .handle_platform_output(&self.window, output.platform_output);
@@ -207,7 +207,7 @@ impl Graphics {
             .viewport_output
             .get(&egui::ViewportId::ROOT)
             .map(|viewport| viewport.repaint_delay);
-        let again = again.filter(|delay| *delay < Duration::from_secs(60));
+        let again = again.filter(|delay| *delay < Duration::from_mins(1));
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         // Dropping what is not drained panics.
         for (id, deltas) in output.textures_delta.set.drain() {
@@ -258,10 +258,10 @@ impl Graphics {
         let pixels = offscreen
             .render(&self.gpu, &mut renderer, &picture)
             .map_err(Failure::run)?;
-        let name = (1..)
+        let name = (1..=9999)
             .map(|k| format!("a3-{}-{k}.png", session.simulation.scene().name))
             .find(|name| !std::path::Path::new(name).exists())
-            .unwrap_or_default();
+            .ok_or_else(|| Failure::run("there are 9999 pictures here already"))?;
         output::write(name.as_ref(), &output::png(&pixels, size)?)?;
         Ok(name)
     }

@@ -61,7 +61,7 @@ fn faint(words: impl Into<String>) -> RichText {
 /// Writes everything.
 pub fn show(ctx: &Context, simulation: &Simulation, readings: &Readings) {
     sheet(ctx, "run", Align2::LEFT_TOP, [12.0, 12.0], |ui| {
-        run(ui, simulation, readings)
+        run(ui, simulation, readings);
     });
     if readings.help {
         sheet(ctx, "help", Align2::CENTER_CENTER, [0.0, 0.0], help);

@@ -168,7 +168,7 @@ impl Session {
                 self.owed = 0.0;
             }
             Action::Swing if simulation.scene().swing.is_none() => {
-                self.say("There is nothing to swing here.")
+                self.say("There is nothing to swing here.");
             }
             Action::Swing => simulation.set_swinging(!simulation.swinging()),
             Action::Wind if simulation.scene().wind.is_none() => self.say("There is no wind here."),
