@@ -125,9 +125,15 @@ impl What {
         self.scene.build(self.grid).map_err(Failure::usage)
     }
 
-    /// A run of this scene.
-    pub fn simulation(&self, solver: &'static Method, step: f64) -> Result<Simulation, Failure> {
-        let mut simulation = Simulation::new(self.scene()?, solver, step)
+    /// A run of this scene, in steps of this size or of the solver's own.
+    pub fn simulation(
+        &self,
+        solver: &'static Method,
+        step: Option<f64>,
+    ) -> Result<Simulation, Failure> {
+        let scene = self.scene()?;
+        let step = step.unwrap_or_else(|| two_digits(solver.default_step * scene.step_scale));
+        let mut simulation = Simulation::new(scene, solver, step)
             .map_err(|e| Failure::usage(format!("{e} (scene {})", self.scene.name)))?;
         simulation.set_wind(self.wind);
         simulation.set_swinging(self.swing);
@@ -135,9 +141,14 @@ impl What {
     }
 }
 
+/// To two digits, as one would type it.
+fn two_digits(number: f64) -> f64 {
+    format!("{number:.1e}").parse().unwrap_or(number)
+}
+
 impl Run {
     pub fn simulation(&self) -> Result<Simulation, Failure> {
-        self.what.simulation(self.solver, self.step)
+        self.what.simulation(self.solver, Some(self.step))
     }
 }
 

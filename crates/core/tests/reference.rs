@@ -67,6 +67,7 @@ fn simulate(reference: &Reference, name: &str, h: f64) -> Simulation {
         swing: None,
         wind: None,
         trail: None,
+        step_scale: 1.0,
         view: View {
             eye: Vector3::z(),
             target: Vector3::zeros(),

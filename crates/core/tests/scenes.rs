@@ -89,3 +89,22 @@ fn default_steps_hold_everywhere() {
         }
     }
 }
+
+/// A finer cloth has a faster fastest motion: its default steps are shortened, and hold.
+#[test]
+fn default_steps_hold_on_other_grids() {
+    for (rows, cols) in [(8, 8), (40, 40), (60, 20), (20, 60)] {
+        for method in integrators::METHODS {
+            let scene = scene_with_grid("cloth", rows, cols);
+            let step = method.default_step * scene.step_scale;
+            let mut run = Simulation::new(scene, method, step).unwrap();
+            run.advance_to(2.0)
+                .unwrap_or_else(|e| panic!("{} on {rows}x{cols}: {e}", method.name));
+            assert!(
+                run.largest_stretch().unwrap() < 2.5,
+                "{} on {rows}x{cols}",
+                method.name
+            );
+        }
+    }
+}

@@ -13,8 +13,8 @@ use crate::targets::DEPTH;
 
 /// Towards the light: over the left shoulder, high.
 const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
-/// How far the floor is seen [m].
-const FLOOR_REACH: f32 = 14.0;
+/// How far the floor is seen [m], at least, and in distances of the eye from what it looks at.
+const FLOOR_REACH: (f32, f32) = (14.0, 1.4);
 /// Balls from this radius on [m] are drawn with more triangles.
 const LARGE: f32 = 0.25;
 
@@ -233,7 +233,7 @@ fn globals(picture: &Picture, size: (u32, u32)) -> Globals {
         viewport: [width, height, picture.scale, 0.0],
         floor: [
             picture.floor.unwrap_or(0.0),
-            FLOOR_REACH,
+            FLOOR_REACH.0.max(FLOOR_REACH.1 * (eye - target).norm()),
             target.x,
             target.z,
         ],

@@ -59,8 +59,7 @@ impl Meter {
 impl Session {
     /// The session that the command line asks for.
     pub fn new(options: &cli::Window) -> Result<Self, Failure> {
-        let step = options.step.unwrap_or(options.solver.default_step);
-        let simulation = options.what.simulation(options.solver, step)?;
+        let simulation = options.what.simulation(options.solver, options.step)?;
         cli::check_particle(&simulation, options.springs_of)?;
         Ok(Self {
             camera: show::camera(&simulation),

@@ -45,5 +45,6 @@ fn make() -> Result<Scene, Error> {
             eye: Vector3::new(1.5, -1.0, 10.0),
             target: Vector3::new(0.0, -2.2, 0.0),
         },
+        step_scale: 1.0,
     })
 }

@@ -27,8 +27,6 @@ pub(super) const ENTRY: SceneEntry = SceneEntry {
 
 /// [m]
 const WIDTH: f64 = 4.0;
-/// [m]
-const TOP: f64 = 4.9;
 /// The spacing at which the other figures hold [m].
 const SPACING: f64 = WIDTH / 19.0;
 /// Of a particle at that spacing [kg].
@@ -50,11 +48,14 @@ const SWAY: f64 = 5.0;
 
 fn make(grid: Grid) -> Result<Scene, Error> {
     let spacing = WIDTH / (grid.cols() - 1) as f64;
+    let height = spacing * (grid.rows() - 1) as f64;
     let fineness = spacing / SPACING;
     let mass = MASS * fineness * fineness;
+    // Stretched by a fifth, it still hangs free of the floor.
+    let top = 1.2 * height + 0.1;
     // A sine-generated curve: its direction swings to and fro, its length is that of the cloth, so nothing is stretched.
     let edge: Vec<_> = (0..grid.cols())
-        .scan(Vector3::new(0.0, TOP, 0.0), |at, j| {
+        .scan(Vector3::new(0.0, top, 0.0), |at, j| {
             let s = (j as f64 + 0.5) / (grid.cols() - 1) as f64;
             let turn = TURN * libm::cos(TAU * FOLDS * s);
             let here = *at;
@@ -83,6 +84,7 @@ fn make(grid: Grid) -> Result<Scene, Error> {
     for (k, vz) in state[5 * grid.particles()..].iter_mut().enumerate() {
         *vz = SWAY * (k / grid.cols()) as f64 / (grid.rows() - 1) as f64;
     }
+    let target = Vector3::new(0.0, 0.48 * top, 0.2);
     Ok(Scene {
         name: "cloth",
         model: Model::Network(Box::new(network)),
@@ -95,8 +97,9 @@ fn make(grid: Grid) -> Result<Scene, Error> {
         wind: Some(Wind::new(1, Vector3::new(0.3, 0.0, 1.0) * (BREEZE * mass))),
         trail: None,
         view: View {
-            eye: Vector3::new(4.6, 3.1, 7.6),
-            target: Vector3::new(0.0, 2.35, 0.2),
+            eye: target + Vector3::new(4.6, 0.75, 7.4) * (top / 4.9).max(1.0),
+            target,
         },
+        step_scale: fineness.min(1.0),
     })
 }

@@ -55,6 +55,7 @@ fn make(name: &'static str, grid: Grid, sphere: Option<Sphere>) -> Result<Scene,
         network.add_sphere(sphere);
         network.set_floor(Floor { height: -5.0 });
     }
+    let size = (grid.rows().max(grid.cols()) as f64 / 15.0).max(1.0);
     Ok(Scene {
         name,
         model: Model::Network(Box::new(network)),
@@ -67,8 +68,9 @@ fn make(name: &'static str, grid: Grid, sphere: Option<Sphere>) -> Result<Scene,
         wind: Some(Wind::new(1, Vector3::new(0.0, 0.0, 0.15))),
         trail: None,
         view: View {
-            eye: Vector3::new(4.5, -0.4, 8.0),
-            target: Vector3::new(0.0, -2.2, -0.3),
+            eye: Vector3::new(4.5, -0.4, 8.0) * size,
+            target: Vector3::new(0.0, -2.2, -0.3) * size,
         },
+        step_scale: 1.0,
     })
 }

@@ -92,6 +92,8 @@ pub struct Scene {
     pub trail: Option<usize>,
     /// Where to look from.
     pub view: View,
+    /// A method's default step times this holds: less than 1 for a cloth finer than its own grid.
+    pub step_scale: f64,
 }
 
 /// A row of the table of scenes.

@@ -42,5 +42,6 @@ fn make() -> Result<Scene, Error> {
             eye: Vector3::new(0.6, -0.3, 4.2),
             target: Vector3::new(0.0, -0.75, 0.0),
         },
+        step_scale: 1.0,
     })
 }

@@ -25,6 +25,7 @@ pub(super) const ENTRY: SceneEntry = SceneEntry {
                 eye: Vector3::new(0.0, 0.0, 5.5),
                 target: Vector3::zeros(),
             },
+            step_scale: 1.0,
         })
     },
 };
