@@ -1,7 +1,7 @@
 //! A rectangular grid of particles: its numbering, its springs, its triangles.
 
 use crate::error::{Error, positive};
-use crate::network::{SpringFamily, SpringKind, SpringLaw};
+use crate::spring::{SpringFamily, SpringKind, SpringLaw};
 
 /// The most particles a scene may have: 2048 x 2048.
 pub const MAX_PARTICLES: usize = 2048 * 2048;

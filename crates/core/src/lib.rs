@@ -29,14 +29,16 @@ mod network;
 mod path;
 pub mod scenes;
 mod simulation;
+mod spring;
 mod system;
 
 pub use error::{BlowUp, Error};
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
-pub use network::{Energy, Network, Spring, SpringFamily, SpringKind, SpringLaw};
+pub use network::{Energy, Network};
 pub use path::{Path, Place};
 pub use scenes::{Model, Scene, SceneEntry, Swing, View};
 pub use simulation::Simulation;
+pub use spring::{Spring, SpringFamily, SpringKind, SpringLaw};
 pub use system::{Mechanics, ParticleSystem};

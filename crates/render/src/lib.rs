@@ -9,6 +9,7 @@ mod camera;
 mod gpu;
 mod offscreen;
 mod picture;
+mod pipelines;
 mod renderer;
 mod shapes;
 mod targets;

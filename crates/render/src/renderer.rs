@@ -1,15 +1,12 @@
-//! The pipelines and the buffers they read.
+//! The buffers of a picture, and the order in which its parts are drawn.
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::{
-    BufferUsages, CompareFunction, PrimitiveTopology, ShaderStages, StencilOperation,
-    VertexStepMode,
-};
+use wgpu::BufferUsages;
 
 use crate::gpu::Gpu;
-use crate::picture::{Ball, Line, Picture, Style, Topology};
+use crate::picture::{Picture, Style, Topology};
+use crate::pipelines::{Pipelines, layout};
 use crate::shapes::sphere;
-use crate::targets::DEPTH;
 
 /// Towards the light: over the left shoulder, high.
 const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
@@ -40,17 +37,6 @@ pub struct Renderer {
     lines: Instances,
     particles: Particles,
     frame: Frame,
-}
-
-struct Pipelines {
-    background: wgpu::RenderPipeline,
-    floor: wgpu::RenderPipeline,
-    mesh_shadow: wgpu::RenderPipeline,
-    ball_shadow: wgpu::RenderPipeline,
-    mesh: wgpu::RenderPipeline,
-    ball: wgpu::RenderPipeline,
-    wire: wgpu::RenderPipeline,
-    line: wgpu::RenderPipeline,
 }
 
 /// What of the last prepared picture the draw calls depend on.
@@ -393,155 +379,4 @@ fn filled(gpu: &Gpu, label: &str, usage: BufferUsages, bytes: &[u8]) -> wgpu::Bu
     let buffer = buffer(&gpu.device, label, usage, bytes.len());
     gpu.queue.write_buffer(&buffer, 0, &bytes);
     buffer
-}
-
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("particles"),
-        entries: &[
-            entry(
-                0,
-                ShaderStages::VERTEX_FRAGMENT,
-                wgpu::BufferBindingType::Uniform,
-            ),
-            entry(1, ShaderStages::VERTEX, storage),
-            entry(2, ShaderStages::VERTEX, storage),
-            entry(3, ShaderStages::VERTEX, storage),
-        ],
-    })
-}
-
-/// How a pipeline treats what is already there.
-#[derive(Clone, Copy, PartialEq)]
-enum Layer {
-    /// Where nothing else is.
-    Back,
-    /// On the floor, blended, each place once.
-    Shadow,
-    /// Hides what is behind.
-    Solid,
-    /// Blended over what it is in front of.
-    Over,
-}
-
-impl Pipelines {
-    fn new(
-        device: &wgpu::Device,
-        layout: &wgpu::BindGroupLayout,
-        color: wgpu::TextureFormat,
-        samples: u32,
-    ) -> Self {
-        let shader = device.create_shader_module(wgpu::include_wgsl!("scene.wgsl"));
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("scene"),
-            bind_group_layouts: &[Some(layout)],
-            immediate_size: 0,
-        });
-        let pipeline = |name: &str, fragment: &str, topology, layer, buffers: &[_]| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(name),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &shader,
-                    entry_point: Some(&format!("{name}_vertex")),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers,
-                },
-                primitive: wgpu::PrimitiveState {
-                    topology,
-                    ..Default::default()
-                },
-                depth_stencil: Some(depth_stencil(layer)),
-                multisample: wgpu::MultisampleState {
-                    count: samples,
-                    ..Default::default()
-                },
-                fragment: Some(wgpu::FragmentState {
-                    module: &shader,
-                    entry_point: Some(&format!("{fragment}_fragment")),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format: color,
-                        blend: matches!(layer, Layer::Shadow | Layer::Over)
-                            .then_some(wgpu::BlendState::ALPHA_BLENDING),
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
-        let unit = wgpu::vertex_attr_array![0 => Float32x3];
-        let ball = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4];
-        let ends = wgpu::vertex_attr_array![0 => Uint32x2];
-        let line = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
-        let stream = |step_mode, attributes, stride: usize| {
-            Some(wgpu::VertexBufferLayout {
-                array_stride: stride as u64,
-                step_mode,
-                attributes,
-            })
-        };
-        let balls = [
-            stream(VertexStepMode::Vertex, &unit, size_of::<[f32; 3]>()),
-            stream(VertexStepMode::Instance, &ball, size_of::<Ball>()),
-        ];
-        let wires = [stream(
-            VertexStepMode::Instance,
-            &ends,
-            size_of::<[u32; 2]>(),
-        )];
-        let lines = [stream(VertexStepMode::Instance, &line, size_of::<Line>())];
-        let (list, strip) = (
-            PrimitiveTopology::TriangleList,
-            PrimitiveTopology::TriangleStrip,
-        );
-        Self {
-            background: pipeline("background", "background", list, Layer::Back, &[]),
-            floor: pipeline("floor", "floor", strip, Layer::Solid, &[]),
-            mesh_shadow: pipeline("mesh_shadow", "shadow", list, Layer::Shadow, &[]),
-            ball_shadow: pipeline("ball_shadow", "shadow", list, Layer::Shadow, &balls),
-            mesh: pipeline("mesh", "mesh", list, Layer::Solid, &[]),
-            ball: pipeline("ball", "ball", list, Layer::Solid, &balls),
-            wire: pipeline("wire", "line", strip, Layer::Over, &wires),
-            line: pipeline("line", "line", strip, Layer::Over, &lines),
-        }
-    }
-}
-
-fn depth_stencil(layer: Layer) -> wgpu::DepthStencilState {
-    let once = wgpu::StencilFaceState {
-        compare: CompareFunction::Equal,
-        fail_op: StencilOperation::Keep,
-        depth_fail_op: StencilOperation::Keep,
-        pass_op: StencilOperation::IncrementClamp,
-    };
-    let stencil = if layer == Layer::Shadow {
-        wgpu::StencilState {
-            front: once,
-            back: once,
-            read_mask: 0xff,
-            write_mask: 0xff,
-        }
-    } else {
-        wgpu::StencilState::default()
-    };
-    wgpu::DepthStencilState {
-        format: DEPTH,
-        depth_write_enabled: Some(layer == Layer::Solid),
-        depth_compare: Some(CompareFunction::LessEqual),
-        stencil,
-        bias: wgpu::DepthBiasState::default(),
-    }
 }

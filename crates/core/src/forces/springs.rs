@@ -1,7 +1,7 @@
 //! Springs: with d = xi - xj, L = |d|, u = d/L and w = vi - vj, the force on i is
 //! -(k (L - r) + c (w . u)) u, and its opposite on j. A spring of length zero has no direction, and no force.
 
-use crate::network::{Spring, SpringFamily, SpringLaw};
+use crate::spring::{Spring, SpringFamily, SpringLaw};
 
 /// Springs whose forces are found together before they are added up: enough to fill vectors, few enough for L1.
 const BLOCK: usize = 64;

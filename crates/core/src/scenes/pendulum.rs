@@ -5,8 +5,9 @@ use nalgebra::Vector3;
 use super::{Model, Scene, SceneEntry, Swing, View, at_rest};
 use crate::error::Error;
 use crate::forces::Wind;
-use crate::network::{Network, Spring, SpringKind, SpringLaw};
+use crate::network::Network;
 use crate::path::Path;
+use crate::spring::{Spring, SpringKind, SpringLaw};
 
 pub(super) const ENTRY: SceneEntry = SceneEntry {
     name: "pendulum",
