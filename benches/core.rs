@@ -107,7 +107,7 @@ fn steps(c: &mut Criterion) {
         let mut group = c.benchmark_group(format!("step/{}", entry.name));
         let scene = entry.build(None).unwrap();
         for method in integrators::METHODS {
-            step(&mut group, method.name, &scene, method);
+            step(&mut group, &scene, method);
         }
         group.finish();
     }
@@ -125,7 +125,7 @@ fn steps_by_size(c: &mut Criterion) {
             b.iter(|| network(&scene).forces(0.0, black_box(x), black_box(v), &mut f));
         });
         for method in integrators::METHODS {
-            step(&mut group, method.name, &scene, method);
+            step(&mut group, &scene, method);
         }
         group.finish();
     }
@@ -133,7 +133,6 @@ fn steps_by_size(c: &mut Criterion) {
 
 fn step(
     group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>,
-    name: &str,
     scene: &Scene,
     method: &integrators::Method,
 ) {
@@ -142,7 +141,7 @@ fn step(
         return;
     };
     let mut y = scene.state.clone();
-    group.bench_function(name, |b| {
+    group.bench_function(method.name, |b| {
         // So small a step that no number of them leads anywhere.
         b.iter(|| {
             integrator

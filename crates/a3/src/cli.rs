@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use a3_core::{Grid, Method, Scene, SceneEntry, Simulation, integrators, scenes};
+use a3_core::{Error, Grid, Method, SceneEntry, Simulation, integrators, scenes};
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 
@@ -121,20 +121,36 @@ pub struct Run {
 }
 
 impl What {
-    fn scene(&self) -> Result<Scene, Failure> {
-        self.scene.build(self.grid).map_err(Failure::usage)
-    }
-
     /// A run of this scene, in steps of this size or of the solver's own.
     pub fn simulation(
         &self,
         solver: &'static Method,
         step: Option<f64>,
     ) -> Result<Simulation, Failure> {
-        let scene = self.scene()?;
+        let scene = self.scene.build(self.grid).map_err(Failure::usage)?;
+        for (asked, there, option) in [
+            (self.wind, scene.wind.is_some(), "wind"),
+            (self.swing, scene.swing.is_some(), "swing"),
+        ] {
+            if asked && !there {
+                return Err(Failure::usage(format!(
+                    "the scene {} has no {option}: leave out --{option}",
+                    scene.name
+                )));
+            }
+        }
         let step = step.unwrap_or_else(|| two_digits(solver.default_step * scene.step_scale));
-        let mut simulation = Simulation::new(scene, solver, step)
-            .map_err(|e| Failure::usage(format!("{e} (scene {})", self.scene.name)))?;
+        let mut simulation = Simulation::new(scene, solver, step).map_err(|e| match e {
+            Error::NeedsMechanics { .. } => {
+                let any = integrators::METHODS
+                    .iter()
+                    .filter(|m| !m.needs_mechanics)
+                    .map(|m| m.name);
+                let any = any.collect::<Vec<_>>().join(", ");
+                Failure::usage(format!("scene {}: {e}; use one of {any}", self.scene.name))
+            }
+            e => Failure::usage(e),
+        })?;
         simulation.set_wind(self.wind);
         simulation.set_swinging(self.swing);
         Ok(simulation)
@@ -154,13 +170,12 @@ impl Run {
 
 /// `Ok` if the scene has that particle.
 pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Result<(), Failure> {
-    let n = simulation.particles();
-    match particle {
-        Some(i) if i >= n => Err(Failure::usage(format!(
-            "there is no particle {i} in this scene: --springs-of takes 0 to {}",
-            n - 1
-        ))),
-        _ => Ok(()),
+    match (particle, simulation.model().network()) {
+        (Some(i), Some(network)) => network
+            .check_particle(i)
+            .map_err(|e| Failure::usage(format!("--springs-of: {e}"))),
+        (Some(_), None) => Err(Failure::usage("--springs-of: this scene has no springs")),
+        (None, _) => Ok(()),
     }
 }
 
@@ -196,7 +211,10 @@ fn solver(text: &str) -> Result<&'static Method, String> {
             .iter()
             .map(|m| format!("{} ({})", m.letter, m.name))
             .collect();
-        format!("the solvers are {}", names.join(", "))
+        format!(
+            "the solvers are {}; the commands, which come first, simulate, render, scenes, solvers",
+            names.join(", ")
+        )
     })
 }
 
@@ -249,6 +267,10 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         (ErrorKind::ValueValidation, _) => line,
         (ErrorKind::ArgumentConflict, _) => {
             "beside options there is a solver and a step, as in `a3 t 0.01`, or a command before all else".into()
+        }
+        // clap takes -1e-3 for options, and -0.001 not.
+        (ErrorKind::UnknownArgument, _) if line.contains("argument '-") && !line.contains("argument '--") => {
+            format!("{line}; {}", step("").unwrap_err())
         }
         (_, Some(tip)) => format!("{line}; {tip}"),
         (_, None) => format!("{line} (--help says more)"),

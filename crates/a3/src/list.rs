@@ -1,13 +1,11 @@
 //! `a3 scenes` and `a3 solvers`: what there is.
 
-use std::io::Write;
-
 use a3_core::{integrators, scenes};
 
-use crate::Failure;
+use crate::{Failure, output};
 
 /// Prints columns as wide as their widest cell; those whose heading starts with a space are right-aligned.
-fn print_table(rows: &[Vec<String>]) {
+fn print_table(rows: &[Vec<String>]) -> Result<(), Failure> {
     let headings = &rows[0];
     let width = |c: usize| {
         rows.iter()
@@ -35,8 +33,7 @@ fn print_table(rows: &[Vec<String>]) {
         .iter()
         .map(|row| line(row).trim_end().to_owned() + "\n")
         .collect();
-    // A reader that has seen enough, such as `head`, is no failure.
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    output::say(&text)
 }
 
 pub fn scenes() -> Result<(), Failure> {
@@ -65,11 +62,10 @@ pub fn scenes() -> Result<(), Failure> {
             entry.summary.into(),
         ]);
     }
-    print_table(&rows);
-    Ok(())
+    print_table(&rows)
 }
 
-pub fn solvers() {
+pub fn solvers() -> Result<(), Failure> {
     let heading = [
         "",
         "solver",
@@ -103,5 +99,5 @@ pub fn solvers() {
             m.title.into(),
         ]);
     }
-    print_table(&rows);
+    print_table(&rows)
 }

@@ -42,10 +42,7 @@ fn main() -> ExitCode {
             Some(Command::Simulate(options)) => simulate::run(&options),
             Some(Command::Render(options)) => render::run(&options),
             Some(Command::Scenes) => list::scenes(),
-            Some(Command::Solvers) => {
-                list::solvers();
-                Ok(())
-            }
+            Some(Command::Solvers) => list::solvers(),
         },
         Err(error) => cli::explain(&error),
     };

@@ -42,34 +42,61 @@ fn folder(path: &Path) -> PathBuf {
     }
 }
 
-/// Writes `bytes` to `path`: beside it first, then in its place. What is no ordinary file is written to as it is.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let special = fs::metadata(path).is_ok_and(|meta| !meta.is_file());
-    let result = if special {
-        write_to(&mut fs::File::options().write(true).open(path), bytes)
-    } else {
-        replace(path, bytes)
-    };
-    result.map_err(|e| Failure::run(format!("{}: not written: {e}", path.display())))
-}
-
-fn write_to(file: &mut io::Result<fs::File>, bytes: &[u8]) -> io::Result<()> {
-    match file {
-        Ok(file) => file.write_all(bytes),
-        Err(e) => Err(io::Error::new(e.kind(), e.to_string())),
+/// Writes to standard output. A reader that has seen enough, such as `head`, is no failure.
+pub fn say(text: &str) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    match stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush())
+    {
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::run(format!("standard output: not written: {e}")))
+        }
+        _ => Ok(()),
     }
 }
 
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+/// The first of a3-SCENE-1.png, a3-SCENE-2.png, ... that is not there yet.
+pub fn free_picture_name(scene: &str) -> Result<String, Failure> {
+    (1..=9999)
+        .map(|k| format!("a3-{scene}-{k}.png"))
+        .find(|name| !Path::new(name).exists())
+        .ok_or_else(|| Failure::run("there are 9999 pictures here already"))
+}
+
+/// Writes `bytes` to `path`: beside it first, then in its place. What is no ordinary file is written to as it is.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    // A link stays one: what it leads to is replaced.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.into());
+    let result = match fs::metadata(&target) {
+        Ok(there) if !there.is_file() => fs::File::options()
+            .write(true)
+            .open(&target)
+            .and_then(|mut file| file.write_all(bytes)),
+        there => replace(&target, bytes, there.ok().map(|there| there.permissions())),
+    };
+    result.map_err(|e| {
+        // The name of the temporary file is nobody's business.
+        let why = e.to_string();
+        let why = why.split(" at path").next().unwrap_or_default();
+        Failure::run(format!("{}: not written: {why}", path.display()))
+    })
+}
+
+/// With the permissions of the old file, or those of any new one.
+fn replace(path: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> io::Result<()> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".a3-");
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As any new file: less what the umask takes.
+        // Less what the umask takes.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(folder(path))?;
+    if let Some(permissions) = permissions {
+        file.as_file().set_permissions(permissions)?;
+    }
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
     file.persist(path).map_err(|e| e.error)?;

@@ -15,14 +15,14 @@ pub fn advance(
     mut frame: impl FnMut(&Simulation),
 ) -> Result<(), Error> {
     let begun = Instant::now();
+    let start = simulation.time();
     let mut bar: Option<ProgressBar> = None;
     let step = simulation.step_size();
     let stride = (FRAME / step).floor().max(1.0);
     loop {
-        // Whole steps that end before the last one.
-        let whole = ((until - simulation.time()) / step - 1.0)
-            .ceil()
-            .min(stride);
+        // Whole steps that end before the last one, which is whole too if only rounding says otherwise.
+        let left = (until - simulation.time()) / step;
+        let whole = (left - 1.0 - 1e-9).ceil().min(stride);
         if whole < 1.0 {
             break;
         }
@@ -32,7 +32,7 @@ pub fn advance(
             bar = Some(new_bar());
         }
         if let Some(bar) = &bar {
-            bar.set_position((1000.0 * simulation.time() / until) as u64);
+            bar.set_position((1000.0 * (simulation.time() - start) / (until - start)) as u64);
         }
     }
     simulation.advance_to(until)?;

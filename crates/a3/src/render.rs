@@ -18,7 +18,7 @@ pub fn run(options: &Render) -> Result<(), Failure> {
     // Before the work, not after: the device may not have pictures of this size.
     let offscreen = Offscreen::new(&gpu, options.size).map_err(Failure::usage)?;
     if let Some(i) = options.springs_of {
-        print!("{}", show::list_springs_of(&simulation, i));
+        output::say(&show::list_springs_of(&simulation, i))?;
     }
     let mut show = Show::new(options.wireframe, options.springs_of);
     progress::advance(&mut simulation, options.run.until, |simulation| {

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use a3_core::{Simulation, Spring, SpringKind, SpringLaw, Vector3};
+use a3_core::{Network, Simulation, Spring, SpringKind, SpringLaw, Vector3};
 use a3_render::{Ball, Camera, Line, Picture, Style, Topology};
 
 /// Linear colours.
@@ -53,6 +53,12 @@ impl Show {
     /// Forgets the way so far.
     pub fn clear_trail(&mut self) {
         self.trail.clear();
+    }
+
+    /// Where the trailing particle has been.
+    #[cfg(test)]
+    pub fn trail(&self) -> impl Iterator<Item = &[f32; 3]> {
+        self.trail.iter()
     }
 
     /// Remembers where the trailing particle is.
@@ -139,13 +145,12 @@ impl Show {
     }
 
     fn draw_pins(&mut self, simulation: &Simulation) {
-        let pins: Vec<_> = simulation
+        for (i, _) in simulation
             .model()
             .network()
             .into_iter()
-            .flat_map(a3_core::Network::pins)
-            .collect();
-        for (i, _) in pins {
+            .flat_map(Network::pins)
+        {
             self.ball(i, 0.032, INK);
         }
     }
@@ -189,9 +194,6 @@ impl Show {
     }
 
     fn draw_springs_of(&mut self, simulation: &Simulation, i: usize) {
-        if i >= simulation.particles() {
-            return;
-        }
         // Bend springs lie over structural ones: the widest first.
         let mut springs = springs_of(simulation, i);
         springs.sort_by_key(|spring| spring.kind != SpringKind::Bend);
@@ -215,13 +217,13 @@ impl Show {
 }
 
 /// The springs attached to particle i.
-pub fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
-    let springs = simulation
+fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
+    simulation
         .model()
         .network()
         .into_iter()
-        .flat_map(a3_core::Network::springs);
-    springs.filter(|s| s.i == i || s.j == i).collect()
+        .flat_map(|n| n.springs_of(i))
+        .collect()
 }
 
 /// The springs attached to particle i, a line each.

@@ -1,6 +1,5 @@
 //! `a3 simulate`: the final state as JSON.
 
-use std::io::Write;
 use std::path::Path;
 
 use a3_core::Simulation;
@@ -34,16 +33,12 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         output::check(&options.output, "json")?;
     }
     progress::advance(&mut simulation, options.run.until, |_| {}).map_err(Failure::run)?;
-    let mut json = serde_json::to_vec(&state(&simulation)).map_err(Failure::run)?;
-    json.push(b'\n');
+    let mut json = serde_json::to_string(&state(&simulation)).map_err(Failure::run)?;
+    json.push('\n');
     if to_stdout {
-        let mut stdout = std::io::stdout().lock();
-        stdout
-            .write_all(&json)
-            .and_then(|()| stdout.flush())
-            .map_err(|e| Failure::run(format!("standard output: not written: {e}")))
+        output::say(&json)
     } else {
-        output::write(&options.output, &json)
+        output::write(&options.output, json.as_bytes())
     }
 }
 

@@ -3,6 +3,7 @@
 #![allow(missing_docs, reason = "a test")]
 
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -56,7 +57,8 @@ fn gpu_may_be_missing(stderr: &str) -> bool {
         "A3_REQUIRE_GPU is set: {stderr}"
     );
     if missing {
-        eprintln!("SKIPPED, NOT TESTED: {stderr}");
+        // Past the test runner, which keeps what a passing test prints.
+        let _ = writeln!(std::io::stderr(), "SKIPPED, NOT TESTED: {stderr}");
     }
     missing
 }
@@ -72,6 +74,17 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
         (vec!["q"], "t (trapezoid)"),
         (vec!["0.01"], "e (euler)"),
         (vec!["t", "-0.01"], "such as 0.01"),
+        (vec!["t", "-1e-3"], "such as 0.01"),
+        (vec!["t", "-inf"], "such as 0.01"),
+        (vec!["simulat"], "simulate"),
+        (
+            vec!["t", "0.01", "--scene", "simple", "--wind"],
+            "leave out --wind",
+        ),
+        (
+            vec!["t", "0.01", "--scene", "simple", "--springs-of", "0"],
+            "no springs",
+        ),
         (vec!["t", "0"], "such as 0.01"),
         (vec!["t", "-0"], "such as 0.01"),
         (vec!["t", "nan"], "such as 0.01"),
@@ -289,6 +302,92 @@ fn the_state_is_written_at_full_precision() {
     assert_eq!((&start["steps"], &start["time"]), (&0.into(), &0.0.into()));
 }
 
+/// As many steps as it takes, and none of a rounding error's size.
+#[test]
+fn steps_are_counted_right() {
+    let folder = tempfile::tempdir().unwrap();
+    for (step, until, steps) in [
+        ("0.0003", "3", 10_000),
+        ("0.6", "3.6", 6),
+        ("0.3", "0.9", 3),
+        ("0.03", "0.9", 30),
+        ("0.4", "1", 3),
+    ] {
+        let state = simulate(
+            folder.path(),
+            &["e", step, "--scene", "simple", "--until", until],
+        );
+        assert_eq!(state["steps"], steps, "{until} s in steps of {step} s");
+        assert_eq!(state["time"], until.parse::<f64>().unwrap());
+    }
+}
+
+#[test]
+fn a_closed_or_full_output_is_no_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    for words in [
+        &["scenes"][..],
+        &["t", "0.01", "--scene", "pendulum"],
+        &["solvers"],
+    ] {
+        let mut child = command(folder.path(), words)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(
+            output.status.success() && !text(&output.stderr).contains("panicked"),
+            "{words:?}"
+        );
+        #[cfg(target_os = "linux")]
+        {
+            let full = fs::File::options().write(true).open("/dev/full").unwrap();
+            let output = command(folder.path(), words)
+                .stdout(full)
+                .stderr(Stdio::piped())
+                .spawn()
+                .unwrap();
+            let output = output.wait_with_output().unwrap();
+            assert_eq!(output.status.code(), Some(1), "{words:?}");
+            assert!(text(&output.stderr).contains("standard output"));
+        }
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn links_stay_links_and_modes_stay_modes() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let (target, link) = (
+        folder.path().join("target.json"),
+        folder.path().join("link.json"),
+    );
+    fs::write(&target, "old").unwrap();
+    fs::set_permissions(&target, fs::Permissions::from_mode(0o600)).unwrap();
+    std::os::unix::fs::symlink("target.json", &link).unwrap();
+    let words = [
+        "simulate",
+        "t",
+        "0.01",
+        "--scene",
+        "chain",
+        "--until",
+        "1",
+        "--output",
+        "link.json",
+    ];
+    assert!(a3(folder.path(), &words).status.success());
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert!(fs::read_to_string(&target).unwrap().starts_with('{'));
+    assert_eq!(
+        fs::metadata(&target).unwrap().permissions().mode() & 0o777,
+        0o600
+    );
+}
+
 #[test]
 fn a_state_file_is_whole_or_absent() {
     let folder = tempfile::tempdir().unwrap();
@@ -441,8 +540,8 @@ fn without_a_display_the_job_is_done_all_the_same() {
     }
     if !gpu_may_be_missing(stderr) {
         assert_eq!(stderr.lines().count(), 1, "{stderr}");
-        assert!(stdout.contains("a3-cloth.png"));
-        image::open(folder.path().join("a3-cloth.png")).unwrap();
+        assert!(stdout.contains("a3-cloth-1.png"));
+        image::open(folder.path().join("a3-cloth-1.png")).unwrap();
     }
 }
 

@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use crate::integrators::METHODS;
-
 /// Why something could not be built or stepped.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -15,11 +13,11 @@ pub enum Error {
         /// Name of the method.
         method: &'static str,
     },
-    /// The state has another length than the integrator was sized for.
+    /// The state has another length than the system's.
     Dimension {
-        /// Length the integrator was built for.
+        /// Length of the system's state.
         expected: usize,
-        /// Length it was given.
+        /// Length of the one that was given.
         found: usize,
     },
     /// The run left every reasonable bound.
@@ -29,6 +27,10 @@ pub enum Error {
 /// Where a run was lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlowUp {
+    /// The method that lost it, in full.
+    pub method: &'static str,
+    /// Its step [s].
+    pub step_size: f64,
     /// Steps taken, the bad one included.
     pub step: u64,
     /// Time at its end [s].
@@ -46,6 +48,7 @@ impl fmt::Display for BlowUp {
             time,
             particle,
             distance,
+            ..
         } = self;
         write!(
             f,
@@ -64,20 +67,15 @@ impl fmt::Display for Error {
         match self {
             Self::Invalid(what) => f.write_str(what),
             Self::NeedsMechanics { method } => {
-                let any = METHODS
-                    .iter()
-                    .filter(|m| !m.needs_mechanics)
-                    .map(|m| m.name);
-                let any = any.collect::<Vec<_>>().join(", ");
                 write!(
                     f,
-                    "{method} needs forces and masses, and this system is first order: use one of {any}"
+                    "{method} needs forces and masses, and this system is first order"
                 )
             }
             Self::Dimension { expected, found } => {
                 write!(
                     f,
-                    "the state has {found} numbers where the method was built for {expected}"
+                    "the state has {found} numbers, and {expected} were expected"
                 )
             }
             Self::BlowUp(blow_up) => blow_up.fmt(f),

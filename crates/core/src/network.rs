@@ -91,7 +91,9 @@ impl Network {
         &self.masses
     }
 
-    fn check_particle(&self, i: usize) -> Result<(), Error> {
+    /// # Errors
+    /// There is no particle i.
+    pub fn check_particle(&self, i: usize) -> Result<(), Error> {
         let n = self.particles();
         if i < n {
             Ok(())
@@ -149,12 +151,16 @@ impl Network {
     /// There is no such particle.
     pub fn pin(&mut self, i: usize, path: Path) -> Result<(), Error> {
         self.check_particle(i)?;
-        self.inverse_masses[i] = 0.0;
-        if let Some(pin) = self.pins.iter_mut().find(|pin| pin.particle == i) {
-            pin.path = path;
-        } else {
-            self.pins.push(Pin { particle: i, path });
+        // Only a pinned particle can be among the pins: no search for each of a whole row.
+        let known = self
+            .is_pinned(i)
+            .then(|| self.pins.iter_mut().find(|pin| pin.particle == i))
+            .flatten();
+        match known {
+            Some(pin) => pin.path = path,
+            None => self.pins.push(Pin { particle: i, path }),
         }
+        self.inverse_masses[i] = 0.0;
         Ok(())
     }
 
@@ -251,18 +257,24 @@ impl Network {
             .chain(self.list.iter().copied())
     }
 
+    /// The springs attached to particle i.
+    pub fn springs_of(&self, i: usize) -> impl Iterator<Item = Spring> {
+        self.springs().filter(move |s| s.i == i || s.j == i)
+    }
+
+    fn laws(&self) -> impl Iterator<Item = SpringLaw> {
+        self.families
+            .iter()
+            .map(|f| f.law)
+            .chain(self.list.iter().map(|s| s.law))
+    }
+
     /// Names of the forces and obstacles this network pays for.
     #[must_use]
     pub fn forces_in_use(&self) -> Vec<&'static str> {
-        let laws = || {
-            self.families
-                .iter()
-                .map(|f| f.law)
-                .chain(self.list.iter().map(|s| s.law))
-        };
         [
-            (laws().next().is_some(), "springs"),
-            (laws().any(|law| law.damping > 0.0), "spring damping"),
+            (self.laws().next().is_some(), "springs"),
+            (self.kick_reads_velocity(), "spring damping"),
             (self.gravity.is_some(), "gravity"),
             (self.drag.is_some(), "drag"),
             (self.wind.is_some(), "wind"),
@@ -318,11 +330,6 @@ impl Network {
             .reduce(f64::max)
             .unwrap_or(1.0)
     }
-
-    fn reads_velocity(&self) -> bool {
-        let damped = |law: &SpringLaw| law.damping > 0.0;
-        self.families.iter().any(|f| damped(&f.law)) || self.list.iter().any(|s| damped(&s.law))
-    }
 }
 
 impl Mechanics for Network {
@@ -377,7 +384,7 @@ impl Mechanics for Network {
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        self.reads_velocity()
+        self.laws().any(|law| law.damping > 0.0)
     }
 
     /// x' = v, v' = g - (c/m) v, exactly.

@@ -1,7 +1,5 @@
 //! A step allocates nothing, whatever the method and the scene.
 
-mod common;
-
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 

@@ -2,7 +2,10 @@
 
 mod common;
 
-use a3_core::{Error, Simulation, Vector3};
+use std::sync::Arc;
+
+use a3_core::colliders::Sphere;
+use a3_core::{Error, Model, Network, ParticleSystem, Path, Scene, Simulation, Vector3, View};
 use approx::assert_relative_eq;
 use common::{method, scene, simulation};
 
@@ -200,4 +203,145 @@ fn nothing_enters_the_sphere_or_the_floor() {
         assert!(run.lowest() >= -5.0);
     }
     assert!(touched);
+}
+
+fn bare(model: Model, state: Vec<f64>) -> Scene {
+    Scene {
+        name: "bare",
+        model,
+        state,
+        grid: None,
+        swing: None,
+        wind: None,
+        trail: None,
+        view: View {
+            eye: Vector3::z(),
+            target: Vector3::zeros(),
+        },
+        step_scale: 1.0,
+    }
+}
+
+/// A sphere that comes along at 2 m/s hits a particle that slides past at 3 m/s: the particle is put on the surface,
+/// gets the sphere's velocity along the normal, and keeps its own across.
+#[test]
+fn a_moving_sphere_pushes_without_friction() {
+    let mut network = Network::new(vec![1.0]).unwrap();
+    let path = Path::Line {
+        from: Vector3::zeros(),
+        to: Vector3::new(20.0, 0.0, 0.0),
+        start: 0.0,
+        end: 10.0,
+    };
+    network.add_sphere(Sphere { path, radius: 1.0 });
+    // Towards the sphere at 1 m/s; at t = 0.1 it would be 0.7 m from its centre, on the line of its motion.
+    let state = vec![1.0, 0.0, -0.3, -1.0, 0.0, 3.0];
+    let mut run = Simulation::new(
+        bare(Model::Network(Box::new(network)), state),
+        method("rk4"),
+        0.1,
+    )
+    .unwrap();
+    run.take_steps(1).unwrap();
+    assert_relative_eq!(
+        run.position(0),
+        Vector3::new(0.2 + 1.0, 0.0, 0.0),
+        epsilon = 1e-12
+    );
+    let v = run.velocities();
+    assert_relative_eq!(
+        Vector3::new(v[0], v[1], v[2]),
+        Vector3::new(2.0, 0.0, 3.0),
+        epsilon = 1e-12
+    );
+    // Faster than the sphere, it leaves, and nothing holds it.
+    let mut network = Network::new(vec![1.0]).unwrap();
+    network.add_sphere(Sphere { path, radius: 1.0 });
+    let state = vec![0.9, 0.0, 0.0, 5.0, 0.0, 0.0];
+    let mut run = Simulation::new(
+        bare(Model::Network(Box::new(network)), state),
+        method("rk4"),
+        0.01,
+    )
+    .unwrap();
+    run.take_steps(1).unwrap();
+    assert_eq!(run.velocities(), [5.0, 0.0, 0.0]);
+}
+
+/// A system that fails in one way or another at t > 0.35.
+struct Failing(fn() -> f64, usize);
+
+impl ParticleSystem for Failing {
+    fn dim(&self) -> usize {
+        6
+    }
+
+    fn eval_f(&self, t: f64, _y: &[f64], dydt: &mut [f64]) {
+        dydt.fill(0.0);
+        if t > 0.35 {
+            dydt[self.1] = self.0();
+        }
+    }
+}
+
+#[test]
+fn what_is_not_finite_is_a_blow_up_that_names_its_particle() {
+    for value in [
+        || f64::NAN,
+        || f64::INFINITY,
+        || f64::NEG_INFINITY,
+        || 1e300,
+    ] {
+        for entry in [0, 1, 4] {
+            let model = Model::FirstOrder(Arc::new(Failing(value, entry)));
+            let mut run = Simulation::new(bare(model, vec![0.5; 6]), method("euler"), 0.1).unwrap();
+            let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else {
+                panic!("{} survived", value())
+            };
+            assert_eq!((lost.step, lost.particle), (5, entry % 2), "{}", value());
+            assert_eq!((lost.step_size, lost.method), (0.1, "explicit Euler"));
+            assert!(run.state().iter().all(|y| y.is_finite()));
+            assert_eq!((run.time(), run.steps()), (0.0, 0));
+        }
+    }
+}
+
+#[test]
+fn the_state_goes_back_to_the_time_it_had_whatever_the_step_is_by_then() {
+    let mut run = simulation("simple", "euler", 0.5);
+    while run.position(0).norm() < 4.0 {
+        run.take_steps(1).unwrap();
+    }
+    run.set_step(0.7).unwrap();
+    while run.take_steps(1).is_ok() {}
+    // The radius after n steps of 0.5 is 1.25^(n/2), so it tells the time.
+    assert_relative_eq!(
+        run.position(0).norm(),
+        1.25f64.powf(run.time()),
+        max_relative = 1e-12
+    );
+    assert_relative_eq!(run.time(), 0.5 * run.steps() as f64, max_relative = 1e-12);
+    assert!(run.position(0).norm() > 1.5);
+}
+
+#[test]
+fn scenes_that_do_not_fit_their_model_are_refused() {
+    let scene = |length: usize| {
+        bare(
+            Model::FirstOrder(Arc::new(Failing(|| 0.0, 0))),
+            vec![0.0; length],
+        )
+    };
+    let refused = Simulation::new(scene(5), method("euler"), 0.1).err();
+    assert_eq!(
+        refused,
+        Some(Error::Dimension {
+            expected: 6,
+            found: 5
+        })
+    );
+    let mut run = Simulation::new(scene(6), method("euler"), 0.1).unwrap();
+    for end in [f64::NAN, f64::INFINITY] {
+        assert!(run.advance_to(end).is_err());
+    }
 }

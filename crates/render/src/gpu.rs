@@ -53,6 +53,17 @@ impl fmt::Display for GpuError {
 
 impl std::error::Error for GpuError {}
 
+impl GpuError {
+    /// No driver answered, perhaps because the environment names backends that are not there.
+    #[must_use]
+    pub fn no_adapter() -> Self {
+        Self::NoAdapter(match std::env::var("WGPU_BACKEND") {
+            Ok(backend) => format!("none for WGPU_BACKEND={backend}"),
+            Err(_) => "no driver answers".into(),
+        })
+    }
+}
+
 /// An open device.
 pub struct Gpu {
     /// Where the adapter came from; surfaces are made of it.
@@ -73,7 +84,7 @@ impl Gpu {
     /// # Errors
     /// There is no adapter, or it does not open.
     pub async fn headless() -> Result<Self, GpuError> {
-        let mut result = Err(GpuError::NoAdapter("no backend to try".into()));
+        let mut result = Err(GpuError::no_adapter());
         for backends in Self::backends() {
             let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
             descriptor.backends = backends;
@@ -113,7 +124,7 @@ impl Gpu {
                     apply_limit_buckets: false,
                 })
                 .await
-                .map_err(|e| GpuError::NoAdapter(one_line(&e.to_string())))?,
+                .map_err(|_| GpuError::no_adapter())?,
         };
         let offered = adapter.limits();
         let mut limits = wgpu::Limits::downlevel_defaults()

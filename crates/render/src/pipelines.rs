@@ -5,6 +5,9 @@ use wgpu::{CompareFunction, PrimitiveTopology, ShaderStages, StencilOperation, V
 use crate::picture::{Ball, Line};
 use crate::targets::DEPTH;
 
+/// The shaders.
+pub(crate) const SOURCE: &str = include_str!("scene.wgsl");
+
 /// One pipeline a kind of thing.
 pub(crate) struct Pipelines {
     pub(crate) background: wgpu::RenderPipeline,
@@ -61,11 +64,15 @@ enum Layer {
 impl Pipelines {
     pub(crate) fn new(
         device: &wgpu::Device,
+        source: &str,
         layout: &wgpu::BindGroupLayout,
         color: wgpu::TextureFormat,
         samples: u32,
     ) -> Self {
-        let shader = device.create_shader_module(wgpu::include_wgsl!("scene.wgsl"));
+        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("scene"),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("scene"),
             bind_group_layouts: &[Some(layout)],

@@ -5,7 +5,7 @@ use wgpu::BufferUsages;
 
 use crate::gpu::Gpu;
 use crate::picture::{Picture, Style, Topology};
-use crate::pipelines::{Pipelines, layout};
+use crate::pipelines::{Pipelines, SOURCE, layout};
 use crate::shapes::sphere;
 
 /// Towards the light: over the left shoulder, high.
@@ -77,6 +77,16 @@ impl Renderer {
     /// For targets of this format and number of samples.
     #[must_use]
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, samples: u32, topology: &Topology) -> Self {
+        Self::with_source(gpu, SOURCE, color, samples, topology)
+    }
+
+    fn with_source(
+        gpu: &Gpu,
+        source: &str,
+        color: wgpu::TextureFormat,
+        samples: u32,
+        topology: &Topology,
+    ) -> Self {
         let device = &gpu.device;
         let layout = layout(device);
         let globals = device.create_buffer(&wgpu::BufferDescriptor {
@@ -86,7 +96,7 @@ impl Renderer {
             mapped_at_creation: false,
         });
         Self {
-            pipelines: Pipelines::new(device, &layout, color, samples),
+            pipelines: Pipelines::new(device, source, &layout, color, samples),
             small_sphere: Shape::sphere(gpu, 8),
             large_sphere: Shape::sphere(gpu, 40),
             balls: Instances::new(device, "balls"),
@@ -379,4 +389,103 @@ fn filled(gpu: &Gpu, label: &str, usage: BufferUsages, bytes: &[u8]) -> wgpu::Bu
     let buffer = buffer(&gpu.device, label, usage, bytes.len());
     gpu.queue.write_buffer(&buffer, 0, &bytes);
     buffer
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Camera, OFFSCREEN_FORMAT, Offscreen};
+
+    #[test]
+    fn every_point_knows_its_triangles() {
+        let triangles = vec![[0, 2, 1], [1, 2, 3], [4, 1, 3]];
+        let (first, around) = triangles_around(&Topology {
+            points: 6,
+            triangles,
+            wires: vec![],
+        });
+        assert_eq!(first, [0, 1, 4, 6, 8, 9, 9]);
+        let of = |i: usize| &around[first[i] as usize..first[i + 1] as usize];
+        assert_eq!(of(0), [[2, 1]]);
+        assert_eq!(of(1), [[0, 2], [2, 3], [3, 4]]);
+        assert_eq!(of(4), [[1, 3]]);
+        assert!(of(5).is_empty());
+    }
+
+    /// A ridge of two slopes of different size, drawn with these shaders: pixels by rows.
+    fn ridge(gpu: &Gpu, source: &str) -> Vec<u8> {
+        let points = [
+            [-1.0, 0.6, 0.0, 0.0],
+            [-1.0, -0.6, 0.0, 0.0],
+            [-0.6, 0.6, 0.5, 0.0],
+            [-0.6, -0.6, 0.5, 0.0],
+        ];
+        let points = [&points[..], &[[1.0, 0.6, 0.0, 0.0], [1.0, -0.6, 0.0, 0.0]]].concat();
+        let triangles = vec![[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]];
+        let topology = Topology {
+            points: points.len(),
+            triangles,
+            wires: vec![],
+        };
+        let samples = gpu.samples(OFFSCREEN_FORMAT);
+        let mut renderer = Renderer::with_source(gpu, source, OFFSCREEN_FORMAT, samples, &topology);
+        let picture = Picture {
+            camera: Camera::look_at([0.0, 0.0, 3.0], [0.0; 3]),
+            style: Style::Shaded,
+            scale: 1.0,
+            points: &points,
+            balls: &[],
+            lines: &[],
+            floor: None,
+        };
+        Offscreen::new(gpu, (96, 64))
+            .unwrap()
+            .render(gpu, &mut renderer, &picture)
+            .unwrap()
+    }
+
+    /// Shaders whose normals are wrong in one way or another draw another picture.
+    #[test]
+    fn normals_are_seen_to_be_right() {
+        let gpu = match pollster::block_on(Gpu::headless()) {
+            Ok(gpu) => gpu,
+            Err(why) => {
+                assert!(
+                    std::env::var_os("A3_REQUIRE_GPU").is_none(),
+                    "A3_REQUIRE_GPU is set: {why}"
+                );
+                return;
+            }
+        };
+        let right = ridge(&gpu, SOURCE);
+        assert_eq!(ridge(&gpu, SOURCE), right);
+        let sum = "n += cross(points[around[k].x].xyz - p, points[around[k].y].xyz - p);";
+        for (good, bad) in [
+            ("out.normal = n;", "out.normal = -n;"),
+            ("out.normal = n;", "out.normal = vec3(0.0, 0.0, 1.0);"),
+            // Only one of the triangles; all, without regard to their areas.
+            (
+                sum,
+                "n = cross(points[around[k].x].xyz - p, points[around[k].y].xyz - p);",
+            ),
+            (
+                sum,
+                "n += normalize(cross(points[around[k].x].xyz - p, points[around[k].y].xyz - p));",
+            ),
+            (
+                "select(-1.0, 1.0, front)",
+                "1.0 + 0.0 * select(-1.0, 1.0, front) - 2.0",
+            ),
+        ] {
+            assert!(SOURCE.contains(good));
+            let wrong = ridge(&gpu, &SOURCE.replace(good, bad));
+            let error: u64 = right
+                .iter()
+                .zip(&wrong)
+                .map(|(a, b)| u64::from(a.abs_diff(*b)))
+                .sum();
+            let mean = error as f64 / right.len() as f64;
+            assert!(mean > 0.4, "{bad}: mean error {mean}");
+        }
+    }
 }

@@ -6,7 +6,7 @@ struct Globals {
     eye: vec4<f32>,
     // Towards the light, in world space.
     light: vec4<f32>,
-    // Width, height [px], pixels per point, 1 if the wireframe is drawn.
+    // Width, height [px], pixels per point, unused.
     viewport: vec4<f32>,
     // Height of the floor [m], how far it is seen [m], x and z of its middle [m].
     floor: vec4<f32>,

@@ -1,6 +1,6 @@
 //! What is written over the picture: egui, without winit and wgpu, so that a test can read it.
 
-use a3_core::Simulation;
+use a3_core::{BlowUp, Simulation, integrators};
 use egui::{Align2, Area, Color32, Context, Frame, Id, Margin, RichText, Ui};
 
 use super::keys::{KEYS, MOUSE};
@@ -10,11 +10,15 @@ use super::keys::{KEYS, MOUSE};
 pub struct Readings {
     pub paused: bool,
     pub help: bool,
+    /// Total energy [J], if the scene has any.
+    pub energy: Option<f64>,
+    /// The largest length over rest length, if the scene has springs.
+    pub stretch: Option<f64>,
     /// Simulated over real time.
     pub factor: f32,
     /// Frames per second.
     pub rate: f32,
-    /// Time a frame spends on the simulation, and on drawing [ms].
+    /// Time a frame spends on steps, and on drawing and waiting for the screen [ms].
     pub simulating: f32,
     pub drawing: f32,
     /// What just happened, for a few seconds.
@@ -25,9 +29,11 @@ const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
 const FAINT: Color32 = Color32::from_rgb(92, 98, 114);
 const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
 const ALARM: Color32 = Color32::from_rgb(170, 22, 30);
+/// From the edge of the window [points].
+const MARGIN: f32 = 12.0;
 
-/// A sheet of paper that no click sees.
-fn sheet(
+/// Sheets of paper below one another, that no click sees.
+fn column(
     ctx: &Context,
     name: &str,
     anchor: Align2,
@@ -38,16 +44,25 @@ fn sheet(
         .anchor(anchor, offset)
         .interactable(false)
         .show(ctx, |ui| {
-            Frame::new()
-                .fill(PAPER)
-                .corner_radius(7)
-                .inner_margin(Margin::symmetric(12, 9))
-                .show(ui, |ui| {
-                    ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-                    ui.spacing_mut().item_spacing = egui::vec2(8.0, 3.0);
-                    contents(ui);
-                });
+            ui.spacing_mut().item_spacing = egui::vec2(8.0, 6.0);
+            ui.set_max_width((ctx.content_rect().width() - 2.0 * MARGIN).clamp(60.0, 460.0));
+            contents(ui);
         });
+}
+
+fn sheet(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    Frame::new()
+        .fill(PAPER)
+        .corner_radius(7)
+        .inner_margin(Margin::symmetric(12, 9))
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing = egui::vec2(8.0, 3.0);
+            contents(ui);
+        });
+}
+
+fn title(words: impl Into<String>) -> RichText {
+    RichText::new(words).color(TEXT).size(17.0).strong()
 }
 
 fn text(words: impl Into<String>) -> RichText {
@@ -58,38 +73,29 @@ fn faint(words: impl Into<String>) -> RichText {
     RichText::new(words).color(FAINT).size(12.5)
 }
 
-/// Writes everything.
+/// Writes everything. Sheets stand below one another, and the help alone: nothing overlaps, however small the window.
 pub fn show(ctx: &Context, simulation: &Simulation, readings: &Readings) {
-    sheet(ctx, "run", Align2::LEFT_TOP, [12.0, 12.0], |ui| {
-        run(ui, simulation, readings);
-    });
     if readings.help {
-        sheet(ctx, "help", Align2::CENTER_CENTER, [0.0, 0.0], help);
-    } else {
-        sheet(ctx, "hint", Align2::LEFT_BOTTOM, [12.0, -12.0], |ui| {
-            ui.label(faint("h  help"));
+        return column(ctx, "help", Align2::CENTER_CENTER, [0.0, 0.0], |ui| {
+            sheet(ui, help);
         });
     }
-    if let Some(blow_up) = simulation.blow_up() {
-        sheet(ctx, "blow-up", Align2::CENTER_TOP, [0.0, 12.0], |ui| {
-            ui.label(
-                RichText::new(format!("It {blow_up}."))
-                    .color(ALARM)
-                    .size(15.0)
-                    .strong(),
-            );
-            let step = simulation.step_size();
-            ui.label(text(format!(
-                "The step of {step} s is too long for {} here.",
-                simulation.method().title
-            )));
-            ui.label(faint(
-                "-  shorter step      1-9  another solver      r  start again",
-            ));
-        });
-    } else if let Some(message) = &readings.message {
-        sheet(ctx, "message", Align2::CENTER_BOTTOM, [0.0, -12.0], |ui| {
-            ui.label(text(message));
+    column(ctx, "run", Align2::LEFT_TOP, [MARGIN, MARGIN], |ui| {
+        sheet(ui, |ui| run(ui, simulation, readings));
+        if let Some(lost) = simulation.blow_up() {
+            sheet(ui, |ui| blow_up(ui, &lost));
+        }
+        if let Some(message) = &readings.message {
+            sheet(ui, |ui| {
+                ui.label(text(message));
+            });
+        }
+    });
+    if ctx.content_rect().height() > 400.0 {
+        column(ctx, "hint", Align2::LEFT_BOTTOM, [MARGIN, -MARGIN], |ui| {
+            sheet(ui, |ui| {
+                ui.label(faint("h  help"));
+            });
         });
     }
 }
@@ -99,16 +105,11 @@ fn run(ui: &mut Ui, simulation: &Simulation, readings: &Readings) {
     let grid = scene.grid.map_or(String::new(), |grid| {
         format!("  {} × {}", grid.rows(), grid.cols())
     });
-    ui.label(
-        RichText::new(format!("{}{grid}", scene.name))
-            .color(TEXT)
-            .size(17.0)
-            .strong(),
-    );
+    ui.label(title(format!("{}{grid}", scene.name)));
+    let step = simulation.step_size();
     ui.label(text(format!(
-        "{},  step {} s",
-        simulation.method().title,
-        simulation.step_size()
+        "{},  step {step} s",
+        simulation.method().title
     )));
     egui::Grid::new("readings")
         .num_columns(2)
@@ -119,27 +120,27 @@ fn run(ui: &mut Ui, simulation: &Simulation, readings: &Readings) {
                 ui.label(text(value));
                 ui.end_row();
             };
-            row(
-                "time",
-                format!(
-                    "{:.2} s,  {:.2} × real time",
-                    simulation.time(),
-                    readings.factor
-                ),
-            );
-            match simulation.energy() {
-                Some(energy) => row("energy", format!("{:.3} J", energy.total())),
+            // As many digits as tell one step from the next.
+            let digits = (-step.log10()).ceil().clamp(2.0, 7.0) as usize;
+            row("time", format!("{:.digits$} s", simulation.time()));
+            row("speed", speed(readings));
+            match readings.energy {
+                Some(energy) => row("energy", format!("{energy:.3} J")),
                 None => row("radius", format!("{:.6} m", simulation.position(0).norm())),
             }
-            if let Some(stretch) = simulation.largest_stretch() {
+            if let Some(stretch) = readings.stretch {
                 row("stretch", format!("{stretch:.3} at most"));
             }
+            let Readings {
+                rate,
+                simulating,
+                drawing,
+                ..
+            } = readings;
+            row("frames", format!("{rate:.0} per second"));
             row(
-                "frame",
-                format!(
-                    "{:.0} /s:  {:.1} ms steps,  {:.1} ms drawing",
-                    readings.rate, readings.simulating, readings.drawing
-                ),
+                "each",
+                format!("{simulating:.1} ms steps + {drawing:.1} ms drawing"),
             );
         });
     let states = [
@@ -160,33 +161,236 @@ fn run(ui: &mut Ui, simulation: &Simulation, readings: &Readings) {
     });
 }
 
+/// Simulated time in real time.
+fn speed(readings: &Readings) -> String {
+    match readings.factor {
+        _ if readings.paused => "paused".into(),
+        0.0 => "-".into(),
+        slow if slow < 0.01 => format!("{slow:.1e} × real time"),
+        factor => format!("{factor:.2} × real time"),
+    }
+}
+
+fn blow_up(ui: &mut Ui, lost: &BlowUp) {
+    ui.label(
+        RichText::new(format!("It {lost}."))
+            .color(ALARM)
+            .size(14.5)
+            .strong(),
+    );
+    ui.label(text(format!(
+        "A step of {} s was too long for {}.",
+        lost.step_size, lost.method
+    )));
+    let solvers = integrators::METHODS.len();
+    ui.label(text(format!(
+        "Press - for a shorter step or 1-{solvers} for another solver, then r."
+    )));
+}
+
 fn help(ui: &mut Ui) {
-    ui.label(RichText::new("Keys").color(TEXT).size(17.0).strong());
-    egui::Grid::new("keys")
-        .num_columns(2)
-        .spacing([22.0, 4.0])
-        .show(ui, |ui| {
-            for binding in KEYS {
-                ui.label(text(binding.keys.join("  ")).strong());
-                ui.label(text(binding.help));
-                ui.end_row();
-            }
-            for (i, method) in a3_core::integrators::METHODS.iter().enumerate().take(9) {
-                ui.label(text((i + 1).to_string()).strong());
-                ui.label(text(method.title));
-                ui.end_row();
-            }
+    let rows = |ui: &mut Ui, heading: &str, rows: &[(String, &str)]| {
+        ui.vertical(|ui| {
+            ui.label(title(heading));
+            egui::Grid::new(heading)
+                .num_columns(2)
+                .spacing([16.0, 4.0])
+                .show(ui, |ui| {
+                    for (key, does) in rows {
+                        ui.label(text(key).strong());
+                        ui.label(text(*does));
+                        ui.end_row();
+                    }
+                });
         });
-    ui.add_space(6.0);
-    ui.label(RichText::new("Mouse").color(TEXT).size(17.0).strong());
-    egui::Grid::new("mouse")
-        .num_columns(2)
-        .spacing([22.0, 4.0])
-        .show(ui, |ui| {
-            for (what, does) in MOUSE {
-                ui.label(text(*what).strong());
-                ui.label(text(*does));
-                ui.end_row();
-            }
+    };
+    let keys: Vec<_> = KEYS
+        .iter()
+        .map(|binding| (binding.keys.join("  "), binding.help))
+        .collect();
+    let solvers = integrators::METHODS.iter().enumerate();
+    let solvers: Vec<_> = solvers
+        .map(|(i, method)| ((i + 1).to_string(), method.title))
+        .take(9)
+        .collect();
+    let mouse: Vec<_> = MOUSE
+        .iter()
+        .map(|(what, does)| ((*what).to_owned(), *does))
+        .collect();
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 28.0;
+        rows(ui, "Keys", &keys);
+        ui.vertical(|ui| {
+            rows(ui, "Solvers", &solvers);
+            ui.add_space(10.0);
+            rows(ui, "Mouse", &mouse);
         });
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use a3_core::scenes;
+
+    /// All that is written, in a window of that size, and the rectangles of the sheets.
+    fn read(
+        simulation: &Simulation,
+        readings: &Readings,
+        size: [f32; 2],
+    ) -> (String, Vec<egui::Rect>) {
+        fn collect(shape: &egui::Shape, words: &mut String, sheets: &mut Vec<egui::Rect>) {
+            match shape {
+                egui::Shape::Text(text) => words.extend([text.galley.text(), "\n"]),
+                egui::Shape::Rect(rect) if rect.fill == PAPER => sheets.push(rect.rect),
+                egui::Shape::Vec(shapes) => shapes
+                    .iter()
+                    .for_each(|shape| collect(shape, words, sheets)),
+                _ => {}
+            }
+        }
+        let ctx = Context::default();
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+        let mut output = egui::FullOutput::default();
+        // The first pass measures, the next ones draw.
+        for pass in 0..3 {
+            let input = egui::RawInput {
+                screen_rect: Some(screen),
+                time: Some(f64::from(pass)),
+                ..Default::default()
+            };
+            output.textures_delta.set.clear();
+            output.textures_delta.free.clear();
+            output = ctx.run_ui(input, |ui| show(ui.ctx(), simulation, readings));
+        }
+        let (mut words, mut sheets) = (String::new(), vec![]);
+        for clipped in &output.shapes {
+            collect(&clipped.shape, &mut words, &mut sheets);
+        }
+        output.textures_delta.set.clear();
+        output.textures_delta.free.clear();
+        (words, sheets)
+    }
+
+    fn simulation(scene: &str, method: &str, step: f64) -> Simulation {
+        let scene = scenes::find(scene).unwrap().build(None).unwrap();
+        Simulation::new(scene, integrators::find(method).unwrap(), step).unwrap()
+    }
+
+    #[test]
+    fn everything_is_said() {
+        let mut run = simulation("cloth", "t", 0.01);
+        run.set_wind(true);
+        run.set_swinging(true);
+        run.grab(210).unwrap();
+        run.take_steps(7).unwrap();
+        let readings = Readings {
+            energy: Some(12.3456),
+            stretch: Some(1.25),
+            factor: 0.98,
+            rate: 59.6,
+            simulating: 0.2,
+            drawing: 3.4,
+            message: Some("saved".into()),
+            ..Readings::default()
+        };
+        let (words, _) = read(&run, &readings, [1280.0, 720.0]);
+        for said in [
+            "cloth  20 × 20",
+            "explicit trapezoid (Heun),  step 0.01 s",
+            "0.07 s",
+            "0.98 × real time",
+            "12.346 J",
+            "1.250 at most",
+            "60 per second",
+            "0.2 ms steps + 3.4 ms drawing",
+            "wind   swing   pulling",
+            "saved",
+            "h  help",
+        ] {
+            assert!(words.contains(said), "{said} in\n{words}");
+        }
+        let readings = Readings {
+            paused: true,
+            ..readings
+        };
+        assert!(
+            read(&run, &readings, [1280.0, 720.0])
+                .0
+                .contains("paused   wind")
+        );
+        let circle = simulation("simple", "e", 1e-7);
+        let slow = Readings {
+            factor: 0.0005,
+            ..Readings::default()
+        };
+        let (words, _) = read(&circle, &slow, [1280.0, 720.0]);
+        for said in [
+            "1.000000 m",
+            "0.0000000 s",
+            "5.0e-4 × real time",
+            "no wind, no swing",
+        ] {
+            assert!(words.contains(said), "{said} in\n{words}");
+        }
+    }
+
+    #[test]
+    fn the_help_lists_every_key() {
+        let readings = Readings {
+            help: true,
+            ..Readings::default()
+        };
+        let (words, sheets) = read(&simulation("chain", "r", 0.01), &readings, [1280.0, 720.0]);
+        for binding in KEYS {
+            assert!(
+                words.contains(binding.help) && words.contains(&binding.keys.join("  ")),
+                "{words}"
+            );
+        }
+        for method in integrators::METHODS {
+            assert!(words.contains(method.title));
+        }
+        assert!(
+            sheets[0].height() < 460.0 && sheets[0].width() < 640.0,
+            "{sheets:?}"
+        );
+    }
+
+    #[test]
+    fn a_blow_up_names_what_failed_and_nothing_overlaps() {
+        let mut run = simulation("mit", "e", 0.05);
+        while run.take_steps(1).is_ok() {}
+        run.set_step(0.01).unwrap();
+        run.set_method(integrators::find("r").unwrap()).unwrap();
+        let readings = Readings {
+            message: Some("There is no wind here.".into()),
+            ..Readings::default()
+        };
+        for size in [
+            [1280.0, 720.0],
+            [800.0, 600.0],
+            [500.0, 400.0],
+            [260.0, 860.0],
+        ] {
+            let (words, sheets) = read(&run, &readings, size);
+            let words = words.replace('\n', " ");
+            assert!(
+                words.contains("blew up at step") && words.contains("no wind here"),
+                "{words}"
+            );
+            assert!(
+                words.contains("A step of 0.05 s was too long for explicit Euler"),
+                "{words}"
+            );
+            assert!(sheets.len() >= 3);
+            for (k, a) in sheets.iter().enumerate() {
+                assert!(a.right() <= size[0] + 1.0, "{a:?} in {size:?}");
+                assert!(
+                    sheets[..k].iter().all(|b| !a.shrink(1.0).intersects(*b)),
+                    "{sheets:?} in {size:?}"
+                );
+            }
+        }
+    }
 }

@@ -49,6 +49,8 @@ pub fn run(options: &cli::Window) -> Result<(), Failure> {
         last: Instant::now(),
         pointer: [0.0; 2],
         hand: Hand::Empty,
+        button: None,
+        devices: 0,
         visible: true,
         status: options.status.then(Status::default),
         failure: None,
@@ -57,11 +59,10 @@ pub fn run(options: &cli::Window) -> Result<(), Failure> {
     event_loop.run_app(&mut app).map_err(Failure::run)?;
     match app.failure {
         None => Ok(()),
-        Some(why @ GpuError::NoAdapter(_)) => {
-            let why = why.to_string();
+        Some(Failure::Run(why)) if app.devices == 0 => {
             headless::run(&why, app.session.simulation, app.session.show)
         }
-        Some(why) => Err(Failure::run(why)),
+        Some(failure) => Err(failure),
     }
 }
 
@@ -102,9 +103,13 @@ struct App {
     /// 0..1 from the left and from the top.
     pointer: [f32; 2],
     hand: Hand,
+    /// The button that holds it.
+    button: Option<MouseButton>,
     visible: bool,
+    /// Devices opened so far.
+    devices: u32,
     status: Option<Status>,
-    failure: Option<GpuError>,
+    failure: Option<Failure>,
 }
 
 /// For tests: what is on the screen, as text.
@@ -116,8 +121,8 @@ struct Status {
 }
 
 impl App {
-    fn fail(&mut self, event_loop: &ActiveEventLoop, why: GpuError) {
-        self.failure = Some(why);
+    fn fail(&mut self, event_loop: &ActiveEventLoop, why: impl std::fmt::Display) {
+        self.failure = Some(Failure::run(why));
         event_loop.exit();
     }
 
@@ -139,7 +144,10 @@ impl App {
         // The old surface has to go before the window can have another.
         self.graphics = None;
         match Graphics::new(window, &self.display, &self.session) {
-            Ok(graphics) => self.graphics = Some(graphics),
+            Ok(graphics) => {
+                self.graphics = Some(graphics);
+                self.devices += 1;
+            }
             Err(why) => self.fail(event_loop, why),
         }
         self.redraw();
@@ -159,8 +167,13 @@ impl App {
                 self.session.say(message);
             }
             action => {
+                // What stood still owes nothing.
+                if !self.session.animated() {
+                    self.last = Instant::now();
+                }
                 if self.session.act(action) {
                     self.hand = Hand::Empty;
+                    self.button = None;
                     if let Some(graphics) = &mut self.graphics {
                         graphics.set_scene(&self.session);
                     }
@@ -178,6 +191,10 @@ impl App {
     }
 
     fn press(&mut self, button: MouseButton) {
+        // One button at a time.
+        if self.button.is_some() {
+            return;
+        }
         let height = self.graphics.as_ref().map_or(1.0, |g| g.size().1 as f32);
         let scale = self
             .window
@@ -188,13 +205,16 @@ impl App {
         self.hand = match button {
             MouseButton::Left => {
                 let aspect = self.graphics.as_ref().map_or(1.0, Graphics::aspect);
-                match pick::pick(
+                // A lost run does not move, whoever pulls.
+                let alive = session.simulation.blow_up().is_none();
+                let hit = pick::pick(
                     &session.simulation,
                     &session.camera,
                     self.pointer,
                     aspect,
                     reach,
-                ) {
+                );
+                match hit.filter(|_| alive) {
                     Some((i, grip)) if session.simulation.grab(i).is_ok() => Hand::Pull(grip),
                     _ => Hand::Orbit,
                 }
@@ -202,11 +222,13 @@ impl App {
             MouseButton::Right | MouseButton::Middle => Hand::Pan,
             _ => return,
         };
+        self.button = Some(button);
     }
 
     fn let_go(&mut self) {
         self.session.simulation.release();
         self.hand = Hand::Empty;
+        self.button = None;
     }
 
     fn move_to(&mut self, position: PhysicalPosition<f64>) {
@@ -241,6 +263,7 @@ impl App {
             self.session.simulation.pull(Vector3::new(x, y, z));
         }
         self.session.tick(real);
+        self.session.read_state();
         let message_ends = self.session.message_ends();
         let Some(graphics) = &mut self.graphics else {
             return;
@@ -311,7 +334,7 @@ impl App {
         let hand = run.grabbed().and_then(place).unwrap_or("-".into());
         let state = format!(
             "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} blown={} grabbed={grabbed} \
-             size={}x{} visible={}",
+             size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
             run.step_size(),
@@ -324,6 +347,7 @@ impl App {
             graphics.size().0,
             graphics.size().1,
             self.visible,
+            self.devices,
         );
         let now = Instant::now();
         let quiet = status
@@ -360,7 +384,7 @@ impl ApplicationHandler for App {
             .with_min_inner_size(LogicalSize::new(64.0, 48.0));
         match event_loop.create_window(attributes) {
             Ok(window) => self.window = Some(Arc::new(window)),
-            Err(why) => return self.fail(event_loop, GpuError::Device(why.to_string())),
+            Err(why) => return self.fail(event_loop, format!("no window ({why})")),
         }
         self.title();
         self.open_graphics(event_loop);
@@ -389,7 +413,7 @@ impl ApplicationHandler for App {
                 self.visible = !hidden;
                 // What was not seen did not happen.
                 self.last = Instant::now();
-                self.session.restart_meter();
+                self.session.stand();
                 self.say_status();
                 self.redraw();
             }
@@ -422,8 +446,9 @@ impl ApplicationHandler for App {
             }
             WindowEvent::MouseInput {
                 state: ElementState::Released,
+                button,
                 ..
-            } => {
+            } if self.button == Some(button) => {
                 self.let_go();
                 self.redraw();
             }

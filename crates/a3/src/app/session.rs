@@ -26,12 +26,16 @@ pub struct Session {
     pub show: Show,
     pub camera: Camera,
     pub readings: Readings,
+    /// The scene and grid asked for, to come back to.
+    asked: cli::What,
     entry: &'static SceneEntry,
     /// The solver asked for, also while a scene is shown that it cannot serve.
     wanted: &'static Method,
     /// Real time not yet simulated [s].
     owed: f64,
     message_ends: Option<Instant>,
+    /// At how many steps, and when, the state was last read.
+    read: Option<(u64, Instant)>,
     meter: Meter,
 }
 
@@ -68,10 +72,12 @@ impl Session {
                 paused: options.paused,
                 ..Readings::default()
             },
+            asked: options.what.clone(),
             entry: options.what.scene,
             wanted: options.solver,
             owed: 0.0,
             message_ends: None,
+            read: None,
             meter: Meter::new(),
             simulation,
         })
@@ -110,13 +116,34 @@ impl Session {
             self.owed = 0.0;
         }
         self.meter.simulating += begun.elapsed();
-        self.show.follow(&self.simulation);
+        self.follow();
+    }
+
+    /// The trail goes on, unless the run is lost: it would lead to where the particle no longer is.
+    fn follow(&mut self) {
+        if self.simulation.blow_up().is_none() {
+            self.show.follow(&self.simulation);
+        }
+    }
+
+    /// Energy and stretch of the state as it is now: ten times a second while it moves, and when it stands still.
+    pub fn read_state(&mut self) {
+        let due = self.read.is_none_or(|(steps, when)| {
+            steps != self.simulation.steps()
+                && (!self.animated() || when.elapsed() > Duration::from_millis(100))
+        });
+        if due {
+            self.read = Some((self.simulation.steps(), Instant::now()));
+            self.readings.energy = self.simulation.energy().map(|energy| energy.total());
+            self.readings.stretch = self.simulation.largest_stretch();
+        }
     }
 
     /// A frame was drawn, in this time. Twice a second the readings are taken, unless all stands still.
     pub fn drawn(&mut self, drawing: Duration) {
         if !self.animated() {
-            self.restart_meter();
+            self.readings.factor = 0.0;
+            self.meter = Meter::new();
             return;
         }
         self.meter.frames += 1;
@@ -133,8 +160,10 @@ impl Session {
         self.readings.drawing = meter.drawing.as_secs_f32() * 1e3 / frames;
     }
 
-    /// Begins the measurement anew, without what came before.
-    pub fn restart_meter(&mut self) {
+    /// Owes nothing, and begins to measure anew: after a time in which nothing was simulated.
+    pub fn stand(&mut self) {
+        self.owed = 0.0;
+        self.read = None;
         self.meter = Meter::new();
     }
 
@@ -164,7 +193,7 @@ impl Session {
             Action::Reset => {
                 simulation.reset();
                 self.show.clear_trail();
-                self.owed = 0.0;
+                self.stand();
             }
             Action::Swing if simulation.scene().swing.is_none() => {
                 self.say("There is nothing to swing here.");
@@ -178,12 +207,15 @@ impl Session {
                     Style::Wireframe => Style::Shaded,
                 };
             }
-            Action::Pause => self.readings.paused = !self.readings.paused,
+            Action::Pause => {
+                self.readings.paused = !self.readings.paused;
+                self.stand();
+            }
             Action::Step => {
                 self.readings.paused = true;
                 // A blow-up is on the screen from now on.
                 let _ = self.simulation.take_steps(1);
-                self.show.follow(&self.simulation);
+                self.follow();
             }
             Action::Solver(i) => match integrators::METHODS.get(i) {
                 Some(method) => self.set_method(method),
@@ -220,10 +252,15 @@ impl Session {
             .unwrap_or(0);
         let entry = &scenes::SCENES[(here + 1) % scenes::SCENES.len()];
         let step = self.simulation.step_size();
-        let start = |method| Simulation::new(entry.build(None)?, method, step);
+        let grid = self
+            .asked
+            .grid
+            .filter(|_| std::ptr::eq(entry, self.asked.scene));
+        let start = |method| Simulation::new(entry.build(grid)?, method, step);
+        // Heun serves every scene.
         let simulation = start(self.wanted).or_else(|why| {
-            self.say(why.to_string());
-            start(&integrators::METHODS[1])
+            self.say(format!("{why}: the explicit trapezoid steps in"));
+            start(integrators::find("trapezoid").unwrap_or(self.wanted))
         });
         match simulation {
             Ok(simulation) => {
@@ -232,7 +269,7 @@ impl Session {
                 self.entry = entry;
                 self.show.clear_trail();
                 self.show.springs_of = None;
-                self.owed = 0.0;
+                self.stand();
             }
             Err(why) => self.say(why.to_string()),
         }
@@ -351,6 +388,28 @@ mod tests {
             ]
         );
         assert_eq!(session.simulation.scene().name, "cloth");
+    }
+
+    #[test]
+    fn the_grid_asked_for_comes_back() {
+        let mut session = session(&["t", "0.005", "--grid", "30x25"]);
+        for _ in 0..scenes::SCENES.len() {
+            session.act(Action::NextScene);
+        }
+        assert_eq!(session.simulation.particles(), 750);
+    }
+
+    #[test]
+    fn a_lost_run_leaves_no_line_across_the_picture() {
+        let mut session = session(&["e", "2", "--scene", "simple"]);
+        while session.simulation.blow_up().is_none() {
+            session.act(Action::Step);
+        }
+        let radius = |p: &[f32; 3]| p[0].hypot(p[1]);
+        assert!(session.show.trail().all(|p| radius(p) <= 100.0));
+        let last = session.show.trail().last().copied();
+        session.act(Action::Step);
+        assert_eq!(session.show.trail().last().copied(), last);
     }
 
     #[test]

@@ -43,8 +43,8 @@ fn make() -> Result<Scene, Error> {
         wind: Some(Wind::new(1, Vector3::new(0.8, 0.0, 1.5))),
         trail: Some(3),
         view: View {
-            eye: Vector3::new(1.5, -1.0, 10.0),
-            target: Vector3::new(0.0, -2.2, 0.0),
+            eye: Vector3::new(2.0, -1.9, 12.5),
+            target: Vector3::new(0.0, -2.6, 0.0),
         },
         step_scale: 1.0,
     })

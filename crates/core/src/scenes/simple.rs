@@ -22,7 +22,7 @@ pub(super) const ENTRY: SceneEntry = SceneEntry {
             wind: None,
             trail: Some(0),
             view: View {
-                eye: Vector3::new(0.0, 0.0, 5.5),
+                eye: Vector3::new(0.0, 0.0, 6.5),
                 target: Vector3::zeros(),
             },
             step_scale: 1.0,

@@ -117,13 +117,7 @@ impl Simulation {
         let Some(network) = self.model.network() else {
             return Ok(());
         };
-        let n = network.particles();
-        if i >= n {
-            return Err(Error::Invalid(format!(
-                "there is no particle {i}: they are numbered 0 to {}",
-                n - 1
-            )));
-        }
+        network.check_particle(i)?;
         self.grabbed = Some((i, network.is_pinned(i)));
         self.pin(i, Path::Still(self.position(i)));
         Ok(())
@@ -152,9 +146,12 @@ impl Simulation {
     /// that is already may not get longer.
     fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
         let way = target - from;
-        let springs = self.model.network().into_iter().flat_map(Network::springs);
+        let springs = self
+            .model
+            .network()
+            .into_iter()
+            .flat_map(|network| network.springs_of(i));
         let share = springs
-            .filter(|s| s.i == i || s.j == i)
             .map(|s| {
                 let other = self.position(s.i + s.j - i);
                 let limit = (REACH * s.law.rest_length).max((from - other).norm());

@@ -44,25 +44,38 @@ pub struct Simulation {
 /// The state to go back to when a step fails.
 struct Good {
     y: Vec<f64>,
-    since: f64,
-    taken: u64,
+    time: f64,
+    steps: u64,
 }
 
 impl Simulation {
     /// A run from the scene's beginning, in steps of `step` [s].
     ///
     /// # Errors
-    /// The method does not serve the scene, or the step is not above 0.
+    /// The method does not serve the scene, the scene's state has not the length of its model's, or the step is not
+    /// above 0.
     pub fn new(scene: Scene, method: &'static Method, step: f64) -> Result<Self, Error> {
         positive("the step", step)?;
         let model = scene.model.clone();
+        let (dim, length) = (model.system().dim(), scene.state.len());
+        if length != dim {
+            return Err(Error::Dimension {
+                expected: dim,
+                found: length,
+            });
+        }
+        if dim == 0 || dim % 3 != 0 {
+            return Err(Error::Invalid(format!(
+                "a scene's state is n x 3 positions, and this has {dim} numbers"
+            )));
+        }
         let integrator = method.integrator(model.system())?;
         let y = scene.state.clone();
         let (middle, radius) = bounds(&y[..3 * model.particles()]);
         let good = Good {
             y: y.clone(),
-            since: 0.0,
-            taken: 0,
+            time: 0.0,
+            steps: 0,
         };
         Ok(Self {
             scene,
@@ -127,7 +140,7 @@ impl Simulation {
         self.work
     }
 
-    /// y
+    /// y: of a network [x | v], in m and m/s.
     #[must_use]
     pub fn state(&self) -> &[f64] {
         &self.y
@@ -164,7 +177,7 @@ impl Simulation {
         v
     }
 
-    /// The energy, if the scene has forces.
+    /// The energy [J], if the scene has forces.
     #[must_use]
     pub fn energy(&self) -> Option<Energy> {
         let (x, v) = self.y.split_at(self.y.len() / 2);
@@ -216,8 +229,13 @@ impl Simulation {
     /// [`take_steps`](Self::take_steps) when a step blows up.
     ///
     /// # Errors
-    /// The run blew up, now or earlier.
+    /// The run blew up, now or earlier; or `time` is not finite.
     pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
+        if !time.is_finite() {
+            return Err(Error::Invalid(format!(
+                "the end must be a finite number of seconds, not {time}"
+            )));
+        }
         self.keep()?;
         while self.time() < time {
             let left = time - self.time();
@@ -241,8 +259,8 @@ impl Simulation {
         }
         if self.beyond(GOOD).is_none() {
             self.good.y.copy_from_slice(&self.y);
-            self.good.since = self.since;
-            self.good.taken = self.taken;
+            self.good.time = self.time();
+            self.good.steps = self.steps;
         }
         Ok(())
     }
@@ -261,6 +279,8 @@ impl Simulation {
         }
         if let Some((particle, distance)) = self.beyond(LOST) {
             let blow_up = BlowUp {
+                method: self.method.title,
+                step_size: self.step,
                 step: self.steps,
                 time: t + h,
                 particle,
@@ -268,8 +288,9 @@ impl Simulation {
             };
             self.blow_up = Some(blow_up);
             self.y.copy_from_slice(&self.good.y);
-            self.since = self.good.since;
-            self.taken = self.good.taken;
+            self.since = self.good.time;
+            self.taken = 0;
+            self.steps = self.good.steps;
             return Err(blow_up.into());
         }
         Ok(())
