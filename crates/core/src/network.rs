@@ -172,6 +172,13 @@ impl Network {
         }
     }
 
+    /// Gives every pin the path that `path` makes of its own.
+    pub fn lead_pins(&mut self, mut path: impl FnMut(usize, Path) -> Path) {
+        for pin in &mut self.pins {
+            pin.path = path(pin.particle, pin.path);
+        }
+    }
+
     /// The pinned particles and their paths.
     pub fn pins(&self) -> impl Iterator<Item = (usize, Path)> {
         self.pins.iter().map(|pin| (pin.particle, pin.path))

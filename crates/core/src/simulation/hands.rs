@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::network::Network;
 use crate::path::Path;
 use crate::scenes::{Model, Swing};
+use crate::system::place_pins;
 
 /// A hand stretches a spring to this many times its rest length.
 const REACH: f64 = 3.0;
@@ -55,38 +56,28 @@ impl Simulation {
         let turn = swing.rate * self.time();
         self.swing_phase += if on { -turn } else { turn };
         self.swinging = on;
-        let held = self.grabbed.map(|(i, _)| i);
-        let pins: Vec<usize> = self.pins().filter(|&i| Some(i) != held).collect();
-        for i in pins {
-            self.leave_pin(i);
+        let (held, time, half) = (self.grabbed(), self.time(), self.y.len() / 2);
+        let (from_now_on, phase) = (on.then_some(swing), self.swing_phase);
+        if let Model::Network(network) = &mut self.model {
+            network.lead_pins(|i, path| {
+                if Some(i) == held {
+                    path
+                } else {
+                    leave(path.at(time).position, from_now_on, phase, time)
+                }
+            });
+            let (x, v) = self.y.split_at_mut(half);
+            place_pins(network.as_ref(), time, x, v);
         }
-    }
-
-    fn pins(&self) -> impl Iterator<Item = usize> {
-        self.model
-            .network()
-            .into_iter()
-            .flat_map(Network::pins)
-            .map(|(i, _)| i)
     }
 
     /// Pins particle i where it is, or swings it from there.
     fn leave_pin(&mut self, i: usize) {
-        let position = self.position(i);
-        let path = match self.scene.swing.filter(|_| self.swinging) {
-            None => Path::Still(position),
-            Some(Swing { amplitude, rate }) => {
-                let phase = self.swing_phase;
-                let center = position - amplitude * libm::sin(rate * self.time() + phase);
-                Path::Sine {
-                    center,
-                    amplitude,
-                    rate,
-                    phase,
-                }
-            }
-        };
-        self.pin(i, path);
+        let swing = self.scene.swing.filter(|_| self.swinging);
+        self.pin(
+            i,
+            leave(self.position(i), swing, self.swing_phase, self.time()),
+        );
     }
 
     /// Leads particle i along `path` from now on.
@@ -181,6 +172,22 @@ impl Simulation {
             self.leave_pin(i);
         } else if let Some(network) = self.network_mut() {
             network.unpin(i);
+        }
+    }
+}
+
+/// The path of a pin that is left at `position` at time t: still there, or swinging from there.
+fn leave(position: Vector3<f64>, swing: Option<Swing>, phase: f64, t: f64) -> Path {
+    match swing {
+        None => Path::Still(position),
+        Some(Swing { amplitude, rate }) => {
+            let center = position - amplitude * libm::sin(rate * t + phase);
+            Path::Sine {
+                center,
+                amplitude,
+                rate,
+                phase,
+            }
         }
     }
 }
