@@ -179,9 +179,9 @@ pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Resul
     }
 }
 
-/// The largest step that is no slip of the finger [s].
+/// The largest step that is no slip of the finger (s).
 pub const LARGEST_STEP: f64 = 10.0;
-/// The smallest [s].
+/// The smallest (s).
 pub const SMALLEST_STEP: f64 = 1e-7;
 
 fn step(text: &str) -> Result<f64, String> {

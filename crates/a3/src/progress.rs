@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 use a3_core::{Error, Simulation};
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Simulated time between two calls of `frame` [s].
+/// Simulated time between two calls of `frame` (s).
 const FRAME: f64 = 1.0 / 60.0;
 
-/// Goes on to `until` [s] in whole steps, the last one shortened. Calls `frame` about sixty times a simulated second.
+/// Goes on to `until` (s) in whole steps, the last one shortened. Calls `frame` about sixty times a simulated second.
 pub fn advance(
     simulation: &mut Simulation,
     until: f64,

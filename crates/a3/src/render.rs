@@ -7,7 +7,7 @@ use crate::cli::{self, Render};
 use crate::show::{self, Show};
 use crate::{Failure, output, progress};
 
-/// Pictures of this height [px] have lines of one point a pixel.
+/// Pictures of this height (px) have lines of one point a pixel.
 const POINTS: f32 = 720.0;
 
 pub fn run(options: &Render) -> Result<(), Failure> {

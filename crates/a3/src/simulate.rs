@@ -12,17 +12,17 @@ use crate::{Failure, output, progress};
 struct State<'a> {
     scene: &'a str,
     solver: &'a str,
-    /// [s]
+    /// In s.
     step: f64,
-    /// [s]
+    /// In s.
     time: f64,
     steps: u64,
     evaluations: u64,
-    /// Total [J]; none for a system without forces.
+    /// Total (J); none for a system without forces.
     energy: Option<f64>,
-    /// [m]
+    /// In m.
     positions: Vec<[f64; 3]>,
-    /// [m/s]
+    /// In m/s.
     velocities: Vec<[f64; 3]>,
 }
 

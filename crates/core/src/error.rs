@@ -29,15 +29,15 @@ pub enum Error {
 pub struct BlowUp {
     /// The method that lost it, in full.
     pub method: &'static str,
-    /// Its step [s].
+    /// Its step (s).
     pub step_size: f64,
     /// Steps taken, the bad one included.
     pub step: u64,
-    /// Time at its end [s].
+    /// Time at its end (s).
     pub time: f64,
     /// The first particle that is lost.
     pub particle: usize,
-    /// Its distance from the middle of the scene [m]; not finite if the state is not.
+    /// Its distance from the middle of the scene (m); not finite if the state is not.
     pub distance: f64,
 }
 

@@ -53,10 +53,10 @@ impl Grid {
         i * self.cols + j
     }
 
-    /// The six families of cloth springs, at rest in a flat grid of that `spacing` [m]:
+    /// The six families of cloth springs, at rest in a flat grid of that `spacing` (m):
     /// structural to the next particle, shear across each cell, bend to the next but one.
     ///
-    /// `stiffness` [N/m] is for the three kinds in this order; each spring is damped by `damping_time` [s] times its
+    /// `stiffness` (N/m) is for the three kinds in this order; each spring is damped by `damping_time` (s) times its
     /// stiffness.
     ///
     /// # Errors

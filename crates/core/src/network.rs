@@ -16,7 +16,7 @@ struct Pin {
     path: Path,
 }
 
-/// Energy by kind [J]. Gravity's is zero at the origin.
+/// Energy by kind (J). Gravity's is zero at the origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// m v2 / 2
@@ -52,7 +52,7 @@ pub struct Network {
 }
 
 impl Network {
-    /// Free particles of these masses [kg], and nothing else yet.
+    /// Free particles of these masses (kg), and nothing else yet.
     ///
     /// # Errors
     /// There is none, or a mass is not a finite number above 0.
@@ -85,7 +85,7 @@ impl Network {
         self.masses.len()
     }
 
-    /// Mass of each particle [kg], of pinned ones too.
+    /// Mass of each particle (kg), of pinned ones too.
     #[must_use]
     pub fn masses(&self) -> &[f64] {
         &self.masses
@@ -190,12 +190,12 @@ impl Network {
         self.inverse_masses[i] == 0.0
     }
 
-    /// Asks for gravity g [m/s2].
+    /// Asks for gravity g (m/s2).
     pub fn set_gravity(&mut self, g: Vector3<f64>) {
         self.gravity = (g != Vector3::zeros()).then_some(g);
     }
 
-    /// g [m/s2], if asked for.
+    /// g (m/s2), if asked for.
     #[must_use]
     pub fn gravity(&self) -> Option<Vector3<f64>> {
         self.gravity
@@ -211,7 +211,7 @@ impl Network {
         Ok(())
     }
 
-    /// c [kg/s], if asked for.
+    /// c (kg/s), if asked for.
     #[must_use]
     pub fn drag(&self) -> Option<f64> {
         self.drag
@@ -293,7 +293,7 @@ impl Network {
         .collect()
     }
 
-    /// The springs' part of the force [N], added to `f`.
+    /// The springs' part of the force (N), added to `f`.
     pub fn add_spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
         for family in &self.families {
             springs::add_family(family, x, v, f);

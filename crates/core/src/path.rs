@@ -5,11 +5,11 @@ use nalgebra::Vector3;
 /// Position, velocity and acceleration of a point on a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// [m]
+    /// In m.
     pub position: Vector3<f64>,
-    /// [m/s]
+    /// In m/s.
     pub velocity: Vector3<f64>,
-    /// [m/s2]
+    /// In m/s2.
     pub acceleration: Vector3<f64>,
 }
 
@@ -32,30 +32,30 @@ pub enum Path {
     Still(Vector3<f64>),
     /// `center + amplitude sin(rate t + phase)`.
     Sine {
-        /// [m]
+        /// In m.
         center: Vector3<f64>,
-        /// [m]
+        /// In m.
         amplitude: Vector3<f64>,
-        /// [rad/s]
+        /// In rad/s.
         rate: f64,
-        /// [rad]
+        /// In rad.
         phase: f64,
     },
     /// From `from` at time `start` in a straight line to `to` at time `end`; at rest before and after.
     Line {
-        /// [m]
+        /// In m.
         from: Vector3<f64>,
-        /// [m]
+        /// In m.
         to: Vector3<f64>,
-        /// [s]
+        /// In s.
         start: f64,
-        /// [s], later than `start`
+        /// In s, later than `start`
         end: f64,
     },
 }
 
 impl Path {
-    /// The place at time t [s].
+    /// The place at time t (s).
     #[must_use]
     pub fn at(&self, t: f64) -> Place {
         match *self {

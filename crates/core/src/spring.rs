@@ -19,11 +19,11 @@ pub enum SpringKind {
 /// How a spring answers to its length L and rate of stretch L': pulls with k (L - r) + c L'.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLaw {
-    /// k [N/m].
+    /// k (N/m).
     pub stiffness: f64,
-    /// r [m].
+    /// r (m).
     pub rest_length: f64,
-    /// c, along the spring [N s/m].
+    /// c, along the spring (N s/m).
     pub damping: f64,
 }
 

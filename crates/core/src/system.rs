@@ -24,10 +24,10 @@ pub trait ParticleSystem {
 /// Each of x, v and F holds n x 3 numbers in column-major order: all x, then all y, then all z.
 /// Units are m, kg, s.
 pub trait Mechanics {
-    /// One over the mass of each particle [1/kg]; 0 pins a particle.
+    /// One over the mass of each particle (1/kg); 0 pins a particle.
     fn inverse_masses(&self) -> &[f64];
 
-    /// Writes F(t, x, v) [N] to `f`, on pinned particles too.
+    /// Writes F(t, x, v) (N) to `f`, on pinned particles too.
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
 
     /// Writes dF = dF/dx dx + dF/dv dv to `df`, without forming a matrix.

@@ -2,9 +2,9 @@
 
 use nalgebra::{Isometry3, Matrix4, Perspective3, Point3, Vector3};
 
-/// Full height of the view [rad].
+/// Full height of the view (rad).
 const FIELD_OF_VIEW: f32 = 0.75;
-/// The eye does not go over the poles [rad].
+/// The eye does not go over the poles (rad).
 const STEEPEST: f32 = 1.5;
 
 /// Looks at `target` from `distance`, turned by `yaw` around the vertical and raised by `pitch`.
@@ -17,7 +17,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Looks from `eye` at `target` [m]. They must not be the same.
+    /// Looks from `eye` at `target` (m). They must not be the same.
     #[must_use]
     pub fn look_at(eye: [f32; 3], target: [f32; 3]) -> Self {
         let target = Point3::from(target);
@@ -34,7 +34,7 @@ impl Camera {
         }
     }
 
-    /// Turns around the target [rad].
+    /// Turns around the target (rad).
     pub fn orbit(&mut self, yaw: f32, pitch: f32) {
         if yaw.is_finite() && pitch.is_finite() {
             self.yaw = (self.yaw + yaw).rem_euclid(std::f32::consts::TAU);
@@ -59,14 +59,14 @@ impl Camera {
         }
     }
 
-    /// [m]
+    /// In m.
     #[must_use]
     pub fn eye(&self) -> Point3<f32> {
         let (_, _, z) = self.axes();
         self.target + z * self.distance
     }
 
-    /// [m]
+    /// In m.
     #[must_use]
     pub fn target(&self) -> Point3<f32> {
         self.target
@@ -104,7 +104,7 @@ impl Camera {
     }
 
     /// Where a point of the world is in the picture: 0..1 from the left and from the top, and its distance from the
-    /// eye along the view [m]. `None` behind the eye.
+    /// eye along the view (m). `None` behind the eye.
     #[must_use]
     pub fn project(&self, point: [f32; 3], aspect: f32) -> Option<([f32; 2], f32)> {
         let clip = self.view_projection(aspect) * Point3::from(point).to_homogeneous();
@@ -116,7 +116,7 @@ impl Camera {
         })
     }
 
-    /// The point of the world seen at that place of the picture, at that distance from the eye along the view [m].
+    /// The point of the world seen at that place of the picture, at that distance from the eye along the view (m).
     #[must_use]
     pub fn unproject(&self, at: [f32; 2], distance: f32, aspect: f32) -> [f32; 3] {
         let half = distance * (0.5 * Self::field_of_view(aspect)).tan();

@@ -16,9 +16,9 @@ pub enum GpuError {
     Device(String),
     /// A picture of this size is beyond the device's limit.
     Size {
-        /// What was asked for [px].
+        /// What was asked for (px).
         asked: (u32, u32),
-        /// The most it can [px].
+        /// The most it can (px).
         limit: u32,
     },
     /// The device is gone: open another.
@@ -178,7 +178,7 @@ impl Gpu {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }
 
-    /// The longest side of a picture [px].
+    /// The longest side of a picture (px).
     #[must_use]
     pub fn largest_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d

@@ -19,7 +19,7 @@ pub struct Offscreen {
 }
 
 impl Offscreen {
-    /// For pictures of `size` [px].
+    /// For pictures of `size` (px).
     ///
     /// # Errors
     /// The size is zero or beyond the device's limit.

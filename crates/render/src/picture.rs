@@ -28,9 +28,9 @@ pub struct Topology {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Ball {
-    /// [m]
+    /// In m.
     pub center: [f32; 3],
-    /// [m]
+    /// In m.
     pub radius: f32,
     /// Linear red, green, blue, and 1.
     pub color: [f32; 4],
@@ -40,11 +40,11 @@ pub struct Ball {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Line {
-    /// One end [m].
+    /// One end (m).
     pub from: [f32; 3],
     /// In points: pixels on a screen of ordinary density.
     pub width: f32,
-    /// The other end [m].
+    /// The other end (m).
     pub to: [f32; 3],
     /// Unused.
     pub padding: f32,
@@ -53,7 +53,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// A line between two points [m], `width` points wide.
+    /// A line between two points (m), `width` points wide.
     #[must_use]
     pub fn new(from: [f32; 3], to: [f32; 3], width: f32, color: [f32; 4]) -> Self {
         Self {
@@ -75,12 +75,12 @@ pub struct Picture<'a> {
     pub style: Style,
     /// Pixels per point: 1 on a screen of ordinary density, 2 on a dense one.
     pub scale: f32,
-    /// Positions of the particles [m]; the fourth number is not used.
+    /// Positions of the particles (m); the fourth number is not used.
     pub points: &'a [[f32; 4]],
     /// Balls: particles of small systems, pins, obstacles.
     pub balls: &'a [Ball],
     /// Lines: trails, highlighted springs.
     pub lines: &'a [Line],
-    /// Height of the floor [m], if there is one.
+    /// Height of the floor (m), if there is one.
     pub floor: Option<f32>,
 }

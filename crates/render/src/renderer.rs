@@ -10,9 +10,9 @@ use crate::shapes::sphere;
 
 /// Towards the light: over the left shoulder, high.
 const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
-/// How far the floor is seen [m], at least, and in distances of the eye from what it looks at.
+/// How far the floor is seen (m), at least, and in distances of the eye from what it looks at.
 const FLOOR_REACH: (f32, f32) = (14.0, 1.4);
-/// Balls from this radius on [m] are drawn with more triangles.
+/// Balls from this radius on (m) are drawn with more triangles.
 const LARGE: f32 = 0.25;
 
 #[repr(C)]
@@ -114,7 +114,7 @@ impl Renderer {
         self.frame = Frame::default();
     }
 
-    /// Sends a picture of `size` [px] to the GPU: positions once, and what changes from frame to frame beside them.
+    /// Sends a picture of `size` (px) to the GPU: positions once, and what changes from frame to frame beside them.
     ///
     /// # Panics
     /// The picture has another number of particles than the topology.

@@ -13,7 +13,7 @@ pub struct Targets {
 }
 
 impl Targets {
-    /// For pictures of `size` [px], which the device must be able to have.
+    /// For pictures of `size` (px), which the device must be able to have.
     #[must_use]
     pub fn new(gpu: &Gpu, size: (u32, u32), color: wgpu::TextureFormat, samples: u32) -> Self {
         let texture = |format| {
@@ -41,7 +41,7 @@ impl Targets {
         }
     }
 
-    /// [px]
+    /// In px.
     #[must_use]
     pub fn size(&self) -> (u32, u32) {
         self.size

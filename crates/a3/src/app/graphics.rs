@@ -79,7 +79,7 @@ impl Graphics {
         })
     }
 
-    /// [px]
+    /// In px.
     pub fn size(&self) -> (u32, u32) {
         (self.config.width, self.config.height)
     }
@@ -276,7 +276,7 @@ fn window_samples(gpu: &Gpu, format: wgpu::TextureFormat) -> u32 {
     }
 }
 
-/// The size of the window within what the device can do [px].
+/// The size of the window within what the device can do (px).
 fn clamped(gpu: &Gpu, window: &Window) -> (u32, u32) {
     let (size, limit) = (window.inner_size(), gpu.largest_side());
     (size.width.clamp(1, limit), size.height.clamp(1, limit))

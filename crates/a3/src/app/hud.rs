@@ -10,7 +10,7 @@ use super::keys::{KEYS, MOUSE};
 pub struct Readings {
     pub paused: bool,
     pub help: bool,
-    /// Total energy [J], if the scene has any.
+    /// Total energy (J), if the scene has any.
     pub energy: Option<f64>,
     /// The largest length over rest length, if the scene has springs.
     pub stretch: Option<f64>,
@@ -18,7 +18,7 @@ pub struct Readings {
     pub factor: f32,
     /// Frames per second.
     pub rate: f32,
-    /// Time a frame spends on steps, and on drawing and waiting for the screen [ms].
+    /// Time a frame spends on steps, and on drawing and waiting for the screen (ms).
     pub simulating: f32,
     pub drawing: f32,
     /// What just happened, for a few seconds.
@@ -29,7 +29,7 @@ const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
 const FAINT: Color32 = Color32::from_rgb(92, 98, 114);
 const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
 const ALARM: Color32 = Color32::from_rgb(170, 22, 30);
-/// From the edge of the window [points].
+/// From the edge of the window (points).
 const MARGIN: f32 = 12.0;
 
 /// Sheets of paper below one another, that no click sees.

@@ -292,7 +292,7 @@ impl App {
         self.say_status();
     }
 
-    /// Of the monitor, in case that presenting does not wait for it.
+    /// A little less than that of the monitor: presenting waits for the rest, where it waits at all.
     fn frame_time(&self) -> Duration {
         let monitor = self
             .window
@@ -301,7 +301,7 @@ impl App {
         let rate = monitor
             .and_then(|monitor| monitor.refresh_rate_millihertz())
             .unwrap_or(60_000);
-        Duration::from_secs_f64(1e3 / f64::from(rate.clamp(30_000, 500_000)))
+        Duration::from_secs_f64(0.9e3 / f64::from(rate.clamp(30_000, 500_000)))
     }
 
     fn wait_until(&self, event_loop: &ActiveEventLoop, when: Instant) {

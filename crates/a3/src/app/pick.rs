@@ -6,7 +6,7 @@ use a3_render::Camera;
 /// A particle in the hand: what keeps it under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
-    /// Its distance from the eye along the view [m].
+    /// Its distance from the eye along the view (m).
     distance: f32,
     /// From the pointer to the particle, as shares of the picture.
     offset: [f32; 2],

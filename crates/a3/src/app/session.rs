@@ -13,7 +13,7 @@ use crate::show::{self, Show};
 
 /// Real time a frame may spend on steps. What does not fit is not caught up: the run is slower than real time then.
 const BUDGET: Duration = Duration::from_millis(12);
-/// No frame owes more than this [s], however long it took: neither a slow one nor a laptop's sleep.
+/// No frame owes more than this (s), however long it took: neither a slow one nor a laptop's sleep.
 const MOST_OWED: f64 = 0.1;
 /// How long a message stays.
 const MESSAGE_TIME: Duration = Duration::from_secs(4);
@@ -31,7 +31,7 @@ pub struct Session {
     entry: &'static SceneEntry,
     /// The solver asked for, also while a scene is shown that it cannot serve.
     wanted: &'static Method,
-    /// Real time not yet simulated [s].
+    /// Real time not yet simulated (s).
     owed: f64,
     message_ends: Option<Instant>,
     /// At how many steps, and when, the state was last read.
@@ -276,7 +276,7 @@ impl Session {
     }
 }
 
-/// The next longer or shorter step of the ladder [s].
+/// The next longer or shorter step of the ladder (s).
 fn next_step(step: f64, longer: bool) -> f64 {
     let decade = step.log10().floor() as i32;
     let rungs = (decade - 1..=decade + 1).flat_map(|d| {

@@ -3,7 +3,7 @@
 /// Nothing goes below y = `height`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Floor {
-    /// [m]
+    /// In m.
     pub height: f64,
 }
 

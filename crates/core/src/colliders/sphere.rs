@@ -9,7 +9,7 @@ use crate::path::Path;
 pub struct Sphere {
     /// Of the centre.
     pub path: Path,
-    /// [m]
+    /// In m.
     pub radius: f64,
 }
 

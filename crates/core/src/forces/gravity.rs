@@ -12,7 +12,7 @@ pub(crate) fn add(g: Vector3<f64>, masses: &[f64], f: &mut [f64]) {
     }
 }
 
-/// -m g . x [J]
+/// -m g . x (J)
 pub(crate) fn energy(g: Vector3<f64>, masses: &[f64], x: &[f64]) -> f64 {
     x.chunks_exact(masses.len())
         .zip(&g)

@@ -1,4 +1,4 @@
-//! One file a force. Each adds to the forces f [N]; positions x, velocities v and f are n x 3, column-major.
+//! One file a force. Each adds to the forces f (N); positions x, velocities v and f are n x 3, column-major.
 
 pub(crate) mod drag;
 pub(crate) mod gravity;

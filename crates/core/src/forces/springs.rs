@@ -137,7 +137,7 @@ pub(crate) fn add_differential(
     }
 }
 
-/// L [m].
+/// L (m).
 pub(crate) fn length(x: &[f64], spring: &Spring) -> f64 {
     let d = difference(x, spring.i, spring.j);
     dot(d, d).sqrt()

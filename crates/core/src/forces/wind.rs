@@ -8,13 +8,13 @@ const WAVES: usize = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wave {
-    /// [N]
+    /// In N.
     amplitude: Vector3<f64>,
-    /// [rad/m]
+    /// In rad/m.
     number: Vector3<f64>,
-    /// [rad/s]
+    /// In rad/s.
     rate: f64,
-    /// [rad]
+    /// In rad.
     phase: f64,
 }
 
@@ -33,7 +33,7 @@ pub struct Wind {
 }
 
 impl Wind {
-    /// A wind that pushes each particle by `force` [N] on the average, and never by more than 2.2 times that.
+    /// A wind that pushes each particle by `force` (N) on the average, and never by more than 2.2 times that.
     #[must_use]
     pub fn new(seed: u64, force: Vector3<f64>) -> Self {
         let mut random = SplitMix(seed);
@@ -53,7 +53,7 @@ impl Wind {
         }
     }
 
-    /// The force [N] on a particle at x [m] at time t [s].
+    /// The force (N) on a particle at x (m) at time t (s).
     #[must_use]
     pub fn force(&self, t: f64, x: [f64; 3]) -> Vector3<f64> {
         self.waves.iter().fold(self.breeze, |f, wave| {

@@ -46,7 +46,7 @@ pub struct Method {
     pub title: &'static str,
     /// The global error falls as h to this power.
     pub order: u32,
-    /// Holds on every built-in scene [s].
+    /// Holds on every built-in scene (s).
     pub default_step: f64,
     /// Evaluations a step takes.
     pub evaluations: u32,

@@ -25,25 +25,25 @@ pub(super) const ENTRY: SceneEntry = SceneEntry {
     make,
 };
 
-/// [m]
+/// In m.
 const WIDTH: f64 = 4.0;
-/// The spacing at which the other figures hold [m].
+/// The spacing at which the other figures hold (m).
 const SPACING: f64 = WIDTH / 19.0;
-/// Of a particle at that spacing [kg].
+/// Of a particle at that spacing (kg).
 const MASS: f64 = 0.02;
-/// Structural, shear, bend [N/m].
+/// Structural, shear, bend (N/m).
 const STIFFNESS: [f64; 3] = [2500.0 * MASS, 1250.0 * MASS, 625.0 * MASS];
-/// Damping over stiffness, at that spacing [s].
+/// Damping over stiffness, at that spacing (s).
 const DAMPING_TIME: f64 = 0.006;
-/// Drag over mass [1/s].
+/// Drag over mass (1/s).
 const DRAG: f64 = 0.3;
-/// The breeze pushes with this much per mass [m/s2].
+/// The breeze pushes with this much per mass (m/s2).
 const BREEZE: f64 = 4.0;
 /// Number of folds.
 const FOLDS: f64 = 3.5;
-/// How far the gathered edge turns from straight [rad].
+/// How far the gathered edge turns from straight (rad).
 const TURN: f64 = 1.15;
-/// Speed of the lower edge as it starts [m/s].
+/// Speed of the lower edge as it starts (m/s).
 const SWAY: f64 = 5.0;
 
 fn make(grid: Grid) -> Result<Scene, Error> {

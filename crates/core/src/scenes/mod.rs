@@ -58,18 +58,18 @@ impl Model {
 /// How pins swing: to and fro by `amplitude`, at `rate`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swing {
-    /// [m]
+    /// In m.
     pub amplitude: Vector3<f64>,
-    /// [rad/s]
+    /// In rad/s.
     pub rate: f64,
 }
 
 /// Where an eye looks from, and at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// [m]
+    /// In m.
     pub eye: Vector3<f64>,
-    /// [m]
+    /// In m.
     pub target: Vector3<f64>,
 }
 

@@ -12,7 +12,7 @@ use crate::system::place_pins;
 /// A hand stretches a spring to this many times its rest length.
 const REACH: f64 = 3.0;
 
-/// A pulled particle gets to where it is pulled in this time [s] ...
+/// A pulled particle gets to where it is pulled in this time (s) ...
 const PULL_TIME: f64 = 1.0 / 30.0;
 
 /// ... but no faster than this many radii of the scene per second.
@@ -114,8 +114,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Draws the grabbed particle towards `target` [m]: there at once to the eye, unless springs hold it back. A hand
-    /// is strong and not almighty: it stretches a spring it holds to [`REACH`] times its rest length, and gets farther
+    /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs hold it back. A hand
+    /// is strong and not almighty: it stretches a spring it holds to three times its rest length, and gets farther
     /// as the other end comes along.
     pub fn pull(&mut self, target: Vector3<f64>) {
         let Some((i, _)) = self.grabbed else { return };

@@ -31,7 +31,7 @@ pub struct Simulation {
     steps: u64,
     work: Work,
     swinging: bool,
-    /// The swing's: while it swings, sin(rate t + phase); while it stands, sin(phase) [rad].
+    /// The swing's: while it swings, sin(rate t + phase); while it stands, sin(phase) (rad).
     swing_phase: f64,
     /// The grabbed particle, and whether it was pinned before.
     grabbed: Option<(usize, bool)>,
@@ -49,7 +49,7 @@ struct Good {
 }
 
 impl Simulation {
-    /// A run from the scene's beginning, in steps of `step` [s].
+    /// A run from the scene's beginning, in steps of `step` (s).
     ///
     /// # Errors
     /// The method does not serve the scene, the scene's state has not the length of its model's, or the step is not
@@ -116,13 +116,13 @@ impl Simulation {
         self.method
     }
 
-    /// The step asked for [s].
+    /// The step asked for (s).
     #[must_use]
     pub fn step_size(&self) -> f64 {
         self.step
     }
 
-    /// Simulated time [s].
+    /// Simulated time (s).
     #[must_use]
     pub fn time(&self) -> f64 {
         self.since + self.taken as f64 * self.step
@@ -152,21 +152,21 @@ impl Simulation {
         self.model.particles()
     }
 
-    /// Positions [m], n x 3.
+    /// Positions (m), n x 3.
     #[must_use]
     pub fn positions(&self) -> DMatrixView<'_, f64> {
         let n = self.particles();
         DMatrixView::from_slice(&self.y[..3 * n], n, 3)
     }
 
-    /// Position of particle i [m].
+    /// Position of particle i (m).
     #[must_use]
     pub fn position(&self, i: usize) -> Vector3<f64> {
         let n = self.particles();
         Vector3::new(self.y[i], self.y[n + i], self.y[2 * n + i])
     }
 
-    /// Velocities [m/s], column-major: of a mechanical scene from its state, of a first-order one from f.
+    /// Velocities (m/s), column-major: of a mechanical scene from its state, of a first-order one from f.
     #[must_use]
     pub fn velocities(&self) -> Vec<f64> {
         if self.model.network().is_some() {
@@ -177,14 +177,14 @@ impl Simulation {
         v
     }
 
-    /// The energy [J], if the scene has forces.
+    /// The energy (J), if the scene has forces.
     #[must_use]
     pub fn energy(&self) -> Option<Energy> {
         let (x, v) = self.y.split_at(self.y.len() / 2);
         self.model.network().map(|network| network.energy(x, v))
     }
 
-    /// Height of the lowest particle [m].
+    /// Height of the lowest particle (m).
     #[must_use]
     pub fn lowest(&self) -> f64 {
         self.positions().column(1).min()
@@ -199,7 +199,7 @@ impl Simulation {
             .map(|network| network.largest_stretch(x))
     }
 
-    /// The middle of the scene as it began, and the distance of its farthest particle from there, at least 1 [m].
+    /// The middle of the scene as it began, and the distance of its farthest particle from there, at least 1 (m).
     #[must_use]
     pub fn extent(&self) -> (Vector3<f64>, f64) {
         (self.middle, self.radius)
@@ -225,7 +225,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes on to `time` [s] exactly, if it is not past it: the last step is shortened. As
+    /// Goes on to `time` (s) exactly, if it is not past it: the last step is shortened. As
     /// [`take_steps`](Self::take_steps) when a step blows up.
     ///
     /// # Errors
@@ -346,7 +346,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes on in other steps [s].
+    /// Goes on in other steps (s).
     ///
     /// # Errors
     /// The step is not above 0; the run goes on as before.
