@@ -115,6 +115,7 @@ fn every_method_meets_the_references_in_the_limit() {
         ("pendulum_drag", 400, 8),
         ("chain", 200, 8),
         ("cloth_damped", 250, 8),
+        ("mit", 100, 8),
     ] {
         let reference = load(name);
         let state = &reference.states[0];
