@@ -68,6 +68,7 @@ fn simulate(reference: &Reference, name: &str, h: f64) -> Simulation {
         wind: None,
         trail: None,
         step_scale: 1.0,
+        reach: 10.0,
         view: View {
             eye: Vector3::z(),
             target: Vector3::zeros(),

@@ -219,6 +219,7 @@ fn bare(model: Model, state: Vec<f64>) -> Scene {
             target: Vector3::zeros(),
         },
         step_scale: 1.0,
+        reach: 10.0,
     }
 }
 
@@ -344,4 +345,19 @@ fn scenes_that_do_not_fit_their_model_are_refused() {
     for end in [f64::NAN, f64::INFINITY] {
         assert!(run.advance_to(end).is_err());
     }
+}
+
+/// The chain hangs stretched to several times its length, and can be pulled all the same.
+#[test]
+fn soft_springs_give_way() {
+    let mut run = simulation("chain", "verlet", 0.005);
+    run.advance_to(1.5).unwrap();
+    assert!(run.largest_stretch().unwrap() > 4.0);
+    run.grab(2).unwrap();
+    let target = run.position(2) + Vector3::new(1.0, -0.5, 0.3);
+    for _ in 0..60 {
+        run.pull(target);
+        run.advance_to(run.time() + 1.0 / 60.0).unwrap();
+    }
+    assert_relative_eq!(run.position(2), target, epsilon = 1e-9);
 }

@@ -47,5 +47,6 @@ fn make() -> Result<Scene, Error> {
             target: Vector3::new(0.0, -2.6, 0.0),
         },
         step_scale: 1.0,
+        reach: 10.0,
     })
 }

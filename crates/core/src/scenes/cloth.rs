@@ -101,5 +101,6 @@ fn make(grid: Grid) -> Result<Scene, Error> {
             target,
         },
         step_scale: fineness.min(1.0),
+        reach: 3.0,
     })
 }

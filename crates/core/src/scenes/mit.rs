@@ -72,5 +72,6 @@ fn make(name: &'static str, grid: Grid, sphere: Option<Sphere>) -> Result<Scene,
             target: Vector3::new(0.0, -2.2, -0.3) * size,
         },
         step_scale: 1.0,
+        reach: 10.0,
     })
 }

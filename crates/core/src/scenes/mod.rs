@@ -94,6 +94,9 @@ pub struct Scene {
     pub view: View,
     /// A method's default step times this holds: less than 1 for a cloth finer than its own grid.
     pub step_scale: f64,
+    /// A hand stretches the springs it holds to this many times their rest length, and then waits for the other end.
+    /// Less than 10 only where more would blow up a run that otherwise holds.
+    pub reach: f64,
 }
 
 /// A row of the table of scenes.

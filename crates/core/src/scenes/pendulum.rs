@@ -44,5 +44,6 @@ fn make() -> Result<Scene, Error> {
             target: Vector3::new(0.0, -0.75, 0.0),
         },
         step_scale: 1.0,
+        reach: 10.0,
     })
 }

@@ -26,6 +26,7 @@ pub(super) const ENTRY: SceneEntry = SceneEntry {
                 target: Vector3::zeros(),
             },
             step_scale: 1.0,
+            reach: 10.0,
         })
     },
 };

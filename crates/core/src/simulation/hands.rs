@@ -9,9 +9,6 @@ use crate::path::Path;
 use crate::scenes::{Model, Swing};
 use crate::system::place_pins;
 
-/// A hand stretches a spring to this many times its rest length.
-const REACH: f64 = 3.0;
-
 /// A pulled particle gets to where it is pulled in this time (s) ...
 const PULL_TIME: f64 = 1.0 / 30.0;
 
@@ -115,7 +112,7 @@ impl Simulation {
     }
 
     /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs hold it back. A hand
-    /// is strong and not almighty: it stretches a spring it holds to three times its rest length, and gets farther
+    /// is strong and not almighty: it stretches a spring it holds as far as the scene allows, and gets farther
     /// as the other end comes along.
     pub fn pull(&mut self, target: Vector3<f64>) {
         let Some((i, _)) = self.grabbed else { return };
@@ -145,7 +142,7 @@ impl Simulation {
         let share = springs
             .map(|s| {
                 let other = self.position(s.i + s.j - i);
-                let limit = (REACH * s.law.rest_length).max((from - other).norm());
+                let limit = (self.scene.reach * s.law.rest_length).max((from - other).norm());
                 // The larger root u of |from + u way - other| = limit.
                 let d = from - other;
                 let (a, b, c) = (
