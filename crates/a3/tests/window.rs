@@ -12,7 +12,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::ops::Range;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -40,12 +40,16 @@ fn until<T>(what: &str, mut probe: impl FnMut() -> Option<T>) -> T {
     }
 }
 
+/// One display at a time: two servers and two software renderers on two cores are in one another's way.
+static TURN: Mutex<()> = Mutex::new(());
+
 /// A display with a window manager, gone when dropped.
 struct Display {
     server: Child,
     manager: Child,
     name: String,
     folder: TempDir,
+    _turn: MutexGuard<'static, ()>,
 }
 
 impl Display {
@@ -71,6 +75,8 @@ impl Display {
             );
             return None;
         }
+        // A test that failed has had its turn all the same.
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = tempfile::tempdir().unwrap();
         let mut server = quiet("Xvfb")
             .args([
@@ -79,6 +85,7 @@ impl Display {
                 "-screen",
                 "0",
                 "1400x900x24",
+                "-noreset",
                 "-nolisten",
                 "tcp",
                 "-fbdir",
@@ -98,6 +105,7 @@ impl Display {
             manager,
             name,
             folder,
+            _turn: turn,
         };
         // A window that is mapped before the manager is up gets no focus.
         until("a window manager", || {
@@ -244,6 +252,12 @@ impl<'d> App<'d> {
             }
         });
         let window = until("a window", || {
+            if let Some(status) = child.try_wait().unwrap() {
+                panic!(
+                    "it left before its window opened, {status}: {:?}",
+                    lines.lock().unwrap()
+                );
+            }
             let found = display.xdotool(&["search", "--onlyvisible", "--name", "^a3: "]);
             found.lines().next().map(str::to_owned)
         });
