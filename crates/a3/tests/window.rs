@@ -234,7 +234,14 @@ struct App<'d> {
 }
 
 impl<'d> App<'d> {
+    /// Starts the program. A software adapter on a busy machine now and then hangs as it opens: up to three tries.
     fn open(display: &'d Display, folder: &Path, words: &[&str]) -> Self {
+        (0..3)
+            .find_map(|_| Self::try_open(display, folder, words))
+            .expect("no window in three tries")
+    }
+
+    fn try_open(display: &'d Display, folder: &Path, words: &[&str]) -> Option<Self> {
         let mut child = display
             .command(env!("CARGO_BIN_EXE_a3"))
             .args(words)
@@ -251,16 +258,25 @@ impl<'d> App<'d> {
                 sink.lock().unwrap().push(line);
             }
         });
-        let window = until("a window", || {
+        let begun = Instant::now();
+        let window = loop {
+            let found = display.xdotool(&["search", "--onlyvisible", "--name", "^a3: "]);
+            if let Some(window) = found.lines().next() {
+                break window.to_owned();
+            }
             if let Some(status) = child.try_wait().unwrap() {
                 panic!(
                     "it left before its window opened, {status}: {:?}",
                     lines.lock().unwrap()
                 );
             }
-            let found = display.xdotool(&["search", "--onlyvisible", "--name", "^a3: "]);
-            found.lines().next().map(str::to_owned)
-        });
+            if begun.elapsed() > PATIENCE / 3 {
+                child.kill().unwrap();
+                child.wait().unwrap();
+                return None;
+            }
+            sleep(Duration::from_millis(20));
+        };
         display.xdotool(&["windowactivate", "--sync", &window]);
         let app = Self {
             display,
@@ -271,7 +287,7 @@ impl<'d> App<'d> {
         until("a first frame", || {
             (app.number("frames")? > 2.0).then_some(())
         });
-        app
+        Some(app)
     }
 
     fn status(&self) -> Option<HashMap<String, String>> {
