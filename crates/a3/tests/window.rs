@@ -234,7 +234,7 @@ struct App<'d> {
 }
 
 impl<'d> App<'d> {
-    /// Starts the program. A software adapter on a busy machine now and then hangs as it opens: up to three tries.
+    /// Starts the program. Now and then its window does not show up, and why is not known: up to three tries, said aloud.
     fn open(display: &'d Display, folder: &Path, words: &[&str]) -> Self {
         (0..3)
             .find_map(|_| Self::try_open(display, folder, words))
@@ -273,6 +273,8 @@ impl<'d> App<'d> {
             if begun.elapsed() > PATIENCE / 3 {
                 child.kill().unwrap();
                 child.wait().unwrap();
+                let lines = lines.lock().unwrap();
+                let _ = writeln!(std::io::stderr(), "NO WINDOW, TRYING AGAIN: {lines:?}");
                 return None;
             }
             sleep(Duration::from_millis(20));
