@@ -139,7 +139,7 @@ impl What {
                 )));
             }
         }
-        let step = step.unwrap_or_else(|| two_digits(solver.default_step * scene.step_scale));
+        let step = step.unwrap_or_else(|| two_digits(solver.default_setting * scene.step_scale));
         let mut simulation = Simulation::new(scene, solver, step).map_err(|e| match e {
             Error::NeedsMechanics { .. } => {
                 let any = integrators::METHODS

@@ -89,7 +89,7 @@ pub fn solvers() -> Result<(), Failure> {
                     m.evaluations, m.damped_evaluations
                 )
             },
-            format!("{} s", m.default_step),
+            format!("{} s", m.default_setting),
             if m.needs_mechanics {
                 "masses"
             } else {

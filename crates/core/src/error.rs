@@ -20,6 +20,18 @@ pub enum Error {
         /// Length of the one that was given.
         found: usize,
     },
+    /// No step that is long enough to get anywhere meets the tolerance.
+    StepTooSmall {
+        /// Where (s).
+        time: f64,
+        /// The step that was still too long (s).
+        step: f64,
+    },
+    /// The equations of an implicit step were not solved.
+    NoConvergence {
+        /// What is left of the first residual.
+        residual: f64,
+    },
     /// The run left every reasonable bound.
     BlowUp(BlowUp),
 }
@@ -29,35 +41,63 @@ pub enum Error {
 pub struct BlowUp {
     /// The method that lost it, in full.
     pub method: &'static str,
-    /// Its step (s).
-    pub step_size: f64,
+    /// Its step (s), or the tolerance of an adaptive method.
+    pub setting: f64,
     /// Steps taken, the bad one included.
     pub step: u64,
     /// Time at its end (s).
     pub time: f64,
-    /// The first particle that is lost.
-    pub particle: usize,
-    /// Its distance from the middle of the scene (m); not finite if the state is not.
-    pub distance: f64,
+    /// What was seen.
+    pub cause: Cause,
+}
+
+/// How a run was lost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cause {
+    /// A particle is far away from everything.
+    Away {
+        /// The first such.
+        particle: usize,
+        /// From the middle of the scene (m).
+        distance: f64,
+    },
+    /// A particle's state is not finite.
+    NotFinite {
+        /// The first such.
+        particle: usize,
+    },
+    /// No step meets the tolerance of an adaptive method.
+    StepTooSmall {
+        /// The step that was still too long (s).
+        step: f64,
+    },
+    /// The equations of an implicit step were not solved.
+    NoConvergence {
+        /// What is left of the first residual.
+        residual: f64,
+    },
 }
 
 impl fmt::Display for BlowUp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
-            step,
-            time,
-            particle,
-            distance,
-            ..
+            step, time, cause, ..
         } = self;
-        write!(
-            f,
-            "blew up at step {step}, t = {time:.4} s: particle {particle} "
-        )?;
-        if distance.is_finite() {
-            write!(f, "is {distance:.0} m away")
-        } else {
-            write!(f, "is no longer a finite number")
+        write!(f, "blew up at step {step}, t = {time:.4} s: ")?;
+        match cause {
+            Cause::Away { particle, distance } => {
+                write!(f, "particle {particle} is {distance:.0} m away")
+            }
+            Cause::NotFinite { particle } => {
+                write!(f, "particle {particle} is no longer a finite number")
+            }
+            Cause::StepTooSmall { step } => {
+                write!(f, "no step meets the tolerance, not even {step:.1e} s")
+            }
+            Cause::NoConvergence { residual } => write!(
+                f,
+                "the step's equations were not solved, {residual:.1e} of the residual is left"
+            ),
         }
     }
 }
@@ -78,6 +118,14 @@ impl fmt::Display for Error {
                     "the state has {found} numbers, and {expected} were expected"
                 )
             }
+            Self::StepTooSmall { time, step } => write!(
+                f,
+                "no step meets the tolerance at t = {time:.4} s, not even {step:.1e} s: a larger tolerance would"
+            ),
+            Self::NoConvergence { residual } => write!(
+                f,
+                "the equations of the step were not solved: {residual:.1e} of the residual is left"
+            ),
             Self::BlowUp(blow_up) => blow_up.fmt(f),
         }
     }

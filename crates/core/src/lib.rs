@@ -32,7 +32,7 @@ mod simulation;
 mod spring;
 mod system;
 
-pub use error::{BlowUp, Error};
+pub use error::{BlowUp, Cause, Error};
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
@@ -41,4 +41,4 @@ pub use path::{Path, Place};
 pub use scenes::{Model, Scene, SceneEntry, Swing, View};
 pub use simulation::Simulation;
 pub use spring::{Spring, SpringFamily, SpringKind, SpringLaw};
-pub use system::{Mechanics, ParticleSystem};
+pub use system::{Coupling, Mechanics, ParticleSystem};

@@ -7,7 +7,7 @@ use crate::error::{Error, at_least, positive};
 use crate::forces::{drag, gravity, springs, wind::Wind};
 use crate::path::{Path, Place};
 use crate::spring::{Spring, SpringFamily, SpringKind, SpringLaw};
-use crate::system::{Mechanics, place_pins};
+use crate::system::{Coupling, Mechanics, place_pins};
 
 /// A particle led along a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -373,6 +373,16 @@ impl Mechanics for Network {
         if let Some(wind) = &self.wind {
             wind.add_differential(t, x, dx, df);
         }
+    }
+
+    fn couplings(&self, x: &[f64], visit: &mut dyn FnMut(Coupling)) {
+        for spring in self.springs() {
+            visit(springs::coupling(&spring, x));
+        }
+    }
+
+    fn damping(&self) -> f64 {
+        self.drag.unwrap_or(0.0)
     }
 
     fn pins(&self, t: f64, visit: &mut dyn FnMut(usize, Place)) {

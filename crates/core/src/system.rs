@@ -19,6 +19,24 @@ pub trait ParticleSystem {
     }
 }
 
+/// How two particles hold one another, to first order. With d = xi - xj and u = d/|d|,
+/// dFi = -(along u uT + across (1 - u uT)) dd - damping u uT dd', and dFj is its opposite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coupling {
+    /// One end.
+    pub i: usize,
+    /// The other end.
+    pub j: usize,
+    /// u
+    pub direction: [f64; 3],
+    /// Stiffness along u (N/m).
+    pub along: f64,
+    /// Stiffness across it (N/m): negative where it pushes.
+    pub across: f64,
+    /// Along u (N s/m).
+    pub damping: f64,
+}
+
 /// M x'' = F(t, x, v). Its state is y = [x | v], and it is a [`ParticleSystem`] through that.
 ///
 /// Each of x, v and F holds n x 3 numbers in column-major order: all x, then all y, then all z.
@@ -40,6 +58,15 @@ pub trait Mechanics {
         dv: &[f64],
         df: &mut [f64],
     );
+
+    /// Visits the pairs of particles that hold one another, always in the same order: dF/dx and dF/dv by their
+    /// symmetric parts, for methods that solve with them. Without any, nothing.
+    fn couplings(&self, _x: &[f64], _visit: &mut dyn FnMut(Coupling)) {}
+
+    /// -dF/dv of each particle by itself: viscous drag (kg/s).
+    fn damping(&self) -> f64 {
+        0.0
+    }
 
     /// Visits each pinned particle with the place it has at time t. Without any, nothing.
     fn pins(&self, _t: f64, _visit: &mut dyn FnMut(usize, Place)) {}

@@ -43,7 +43,7 @@ fn no_step_allocates() {
     for entry in scenes::SCENES {
         for method in integrators::METHODS {
             let Ok(mut run) =
-                Simulation::new(entry.build(None).unwrap(), method, method.default_step)
+                Simulation::new(entry.build(None).unwrap(), method, method.default_setting)
             else {
                 assert!(
                     method.needs_mechanics && entry.build(None).unwrap().model.network().is_none()

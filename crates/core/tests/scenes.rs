@@ -67,12 +67,12 @@ fn grids_that_make_no_sense_are_refused() {
 
 /// With its default step, each method holds on each scene that it serves, for ten seconds of wind and swing.
 #[test]
-fn default_steps_hold_everywhere() {
+fn default_settings_hold_everywhere() {
     for entry in scenes::SCENES {
         for method in integrators::METHODS {
             let scene = entry.build(None).unwrap();
             let first_order = scene.model.network().is_none();
-            let run = Simulation::new(scene, method, method.default_step);
+            let run = Simulation::new(scene, method, method.default_setting);
             assert_eq!(run.is_err(), first_order && method.needs_mechanics);
             let Ok(mut run) = run else { continue };
             run.set_wind(true);
@@ -92,11 +92,11 @@ fn default_steps_hold_everywhere() {
 
 /// A finer cloth has a faster fastest motion: its default steps are shortened, and hold.
 #[test]
-fn default_steps_hold_on_other_grids() {
+fn default_settings_hold_on_other_grids() {
     for (rows, cols) in [(8, 8), (40, 40), (60, 20), (20, 60)] {
         for method in integrators::METHODS {
             let scene = scene_with_grid("cloth", rows, cols);
-            let step = method.default_step * scene.step_scale;
+            let step = method.default_setting * scene.step_scale;
             let mut run = Simulation::new(scene, method, step).unwrap();
             run.advance_to(2.0)
                 .unwrap_or_else(|e| panic!("{} on {rows}x{cols}: {e}", method.name));

@@ -5,7 +5,9 @@ mod common;
 use std::sync::Arc;
 
 use a3_core::colliders::Sphere;
-use a3_core::{Error, Model, Network, ParticleSystem, Path, Scene, Simulation, Vector3, View};
+use a3_core::{
+    Cause, Error, Model, Network, ParticleSystem, Path, Scene, Simulation, Vector3, View,
+};
 use approx::assert_relative_eq;
 use common::{method, scene, simulation};
 
@@ -174,9 +176,8 @@ fn a_lost_run_shows_its_last_good_state_until_it_is_reset() {
         }
     };
     assert_eq!(run.blow_up(), Some(blow_up));
-    assert!(
-        blow_up.particle < 225 && blow_up.time > run.time() && blow_up.time <= run.time() + 2.0
-    );
+    assert!(matches!(blow_up.cause, Cause::Away { particle, .. } if particle < 225));
+    assert!(blow_up.time > run.time() && blow_up.time <= run.time() + 2.0);
     let (middle, radius) = run.extent();
     assert!((0..225).all(|i| (run.position(i) - middle).norm() <= 3.0 * radius));
     assert!(run.state().iter().all(|y| y.is_finite()));
@@ -299,8 +300,11 @@ fn what_is_not_finite_is_a_blow_up_that_names_its_particle() {
             let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else {
                 panic!("{} survived", value())
             };
-            assert_eq!((lost.step, lost.particle), (5, entry % 2), "{}", value());
-            assert_eq!((lost.step_size, lost.method), (0.1, "explicit Euler"));
+            let cause = Cause::NotFinite {
+                particle: entry % 2,
+            };
+            assert_eq!((lost.step, lost.cause), (5, cause), "{}", value());
+            assert_eq!((lost.setting, lost.method), (0.1, "explicit Euler"));
             assert!(run.state().iter().all(|y| y.is_finite()));
             assert_eq!((run.time(), run.steps()), (0.0, 0));
         }

@@ -180,7 +180,7 @@ fn blow_up(ui: &mut Ui, lost: &BlowUp) {
     );
     ui.label(text(format!(
         "A step of {} s was too long for {}.",
-        lost.step_size, lost.method
+        lost.setting, lost.method
     )));
     let solvers = integrators::METHODS.len();
     ui.label(text(format!(

@@ -2,6 +2,7 @@
 //! -(k (L - r) + c (w . u)) u, and its opposite on j. A spring of length zero has no direction, and no force.
 
 use crate::spring::{Spring, SpringFamily, SpringLaw};
+use crate::system::Coupling;
 
 /// Springs whose forces are found together before they are added up: enough to fill vectors, few enough for L1.
 const BLOCK: usize = 64;
@@ -134,6 +135,27 @@ pub(crate) fn add_differential(
     for axis in 0..3 {
         df[axis * n + i] -= force[axis];
         df[axis * n + j] += force[axis];
+    }
+}
+
+/// The symmetric part of a spring's differential: k along it, k (1 - r/L) across. At length zero it has no direction.
+pub(crate) fn coupling(spring: &Spring, x: &[f64]) -> Coupling {
+    let (i, j) = (spring.i, spring.j);
+    let SpringLaw {
+        stiffness,
+        rest_length,
+        damping,
+    } = spring.law;
+    let d = difference(x, i, j);
+    let length = dot(d, d).sqrt();
+    let inverse = if length > 0.0 { 1.0 / length } else { 0.0 };
+    Coupling {
+        i,
+        j,
+        direction: d.map(|d| d * inverse),
+        along: stiffness,
+        across: stiffness * (1.0 - rest_length * inverse),
+        damping,
     }
 }
 

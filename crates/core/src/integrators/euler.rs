@@ -10,11 +10,16 @@ pub(super) const METHOD: Method = Method {
     aliases: &["explicit-euler", "forward-euler"],
     title: "explicit Euler",
     order: 1,
-    default_step: 0.0002,
+    default_setting: 0.0002,
     evaluations: 1,
     damped_evaluations: 1,
+    adaptive: false,
     needs_mechanics: false,
-    create: |dim| Box::new(Euler { f: vec![0.0; dim] }),
+    create: |system| {
+        Box::new(Euler {
+            f: vec![0.0; system.dim()],
+        })
+    },
 };
 
 struct Euler {
@@ -32,6 +37,6 @@ impl Integrator for Euler {
         check_dim(self.f.len(), y)?;
         system.eval_f(t, y, &mut self.f);
         add_scaled(y, h, &self.f);
-        Ok(Work { evaluations: 1 })
+        Ok(Work::of(1))
     }
 }

@@ -11,11 +11,13 @@ pub(super) const METHOD: Method = Method {
     aliases: &["heun", "trapezoidal", "explicit-trapezoid"],
     title: "explicit trapezoid (Heun)",
     order: 2,
-    default_step: 0.005,
+    default_setting: 0.005,
     evaluations: 2,
     damped_evaluations: 2,
+    adaptive: false,
     needs_mechanics: false,
-    create: |dim| {
+    create: |system| {
+        let dim = system.dim();
         Box::new(Heun {
             f0: vec![0.0; dim],
             f1: vec![0.0; dim],
@@ -46,6 +48,6 @@ impl Integrator for Heun {
         for ((y, f0), f1) in y.iter_mut().zip(&*f0).zip(&*f1) {
             *y += 0.5 * h * (f0 + f1);
         }
-        Ok(Work { evaluations: 2 })
+        Ok(Work::of(2))
     }
 }

@@ -10,11 +10,13 @@ pub(super) const METHOD: Method = Method {
     aliases: &["explicit-midpoint"],
     title: "explicit midpoint",
     order: 2,
-    default_step: 0.005,
+    default_setting: 0.005,
     evaluations: 2,
     damped_evaluations: 2,
+    adaptive: false,
     needs_mechanics: false,
-    create: |dim| {
+    create: |system| {
+        let dim = system.dim();
         Box::new(Midpoint {
             f: vec![0.0; dim],
             middle: vec![0.0; dim],
@@ -41,6 +43,6 @@ impl Integrator for Midpoint {
         scaled_sum(middle, y, 0.5 * h, f);
         system.eval_f(t + 0.5 * h, middle, f);
         add_scaled(y, h, f);
-        Ok(Work { evaluations: 2 })
+        Ok(Work::of(2))
     }
 }

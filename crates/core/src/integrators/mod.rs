@@ -11,10 +11,51 @@ use crate::error::Error;
 use crate::system::ParticleSystem;
 
 /// What a step cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     /// Evaluations of f(t, y), or of the forces.
     pub evaluations: u64,
+    /// Linear systems solved.
+    pub solves: u64,
+    /// Iterations that conjugate gradients took for them.
+    pub iterations: u64,
+    /// Matrices factorised for them.
+    pub factorizations: u64,
+    /// What that linear algebra costs, in evaluations, by prices that are the same on every machine.
+    pub algebra: f64,
+    /// The largest relative residual that a solve left.
+    pub residual: f64,
+    /// Steps of an adaptive method that were too inaccurate, and taken back.
+    pub rejections: u64,
+}
+
+impl Work {
+    /// Evaluations, and nothing else.
+    #[must_use]
+    pub fn of(evaluations: u64) -> Self {
+        Self {
+            evaluations,
+            ..Self::default()
+        }
+    }
+
+    /// The cost of everything, in evaluations.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.evaluations as f64 + self.algebra
+    }
+}
+
+impl std::ops::AddAssign for Work {
+    fn add_assign(&mut self, other: Self) {
+        self.evaluations += other.evaluations;
+        self.solves += other.solves;
+        self.iterations += other.iterations;
+        self.factorizations += other.factorizations;
+        self.algebra += other.algebra;
+        self.residual = self.residual.max(other.residual);
+        self.rejections += other.rejections;
+    }
 }
 
 /// Advances a state.
@@ -46,15 +87,17 @@ pub struct Method {
     pub title: &'static str,
     /// The global error falls as h to this power.
     pub order: u32,
-    /// Holds on every built-in scene (s).
-    pub default_step: f64,
+    /// The step (s), or the relative tolerance of an adaptive method, that holds on every built-in scene.
+    pub default_setting: f64,
     /// Evaluations a step takes.
     pub evaluations: u32,
     /// Evaluations a step takes where springs are damped.
     pub damped_evaluations: u32,
+    /// Whether it chooses its steps by itself, to a tolerance.
+    pub adaptive: bool,
     /// Whether it needs forces and masses, rather than any f(t, y).
     pub needs_mechanics: bool,
-    create: fn(dim: usize) -> Box<dyn Integrator>,
+    create: fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>,
 }
 
 impl Method {
@@ -66,7 +109,7 @@ impl Method {
         if self.needs_mechanics && system.mechanics().is_none() {
             return Err(Error::NeedsMechanics { method: self.name });
         }
-        Ok((self.create)(system.dim()))
+        Ok((self.create)(system))
     }
 }
 

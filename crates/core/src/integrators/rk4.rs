@@ -12,11 +12,13 @@ pub(super) const METHOD: Method = Method {
     aliases: &["runge-kutta", "runge-kutta-4"],
     title: "classical Runge-Kutta",
     order: 4,
-    default_step: 0.01,
+    default_setting: 0.01,
     evaluations: 4,
     damped_evaluations: 4,
+    adaptive: false,
     needs_mechanics: false,
-    create: |dim| {
+    create: |system| {
+        let dim = system.dim();
         Box::new(Rk4 {
             k: vec![0.0; dim],
             sum: vec![0.0; dim],
@@ -52,6 +54,6 @@ impl Integrator for Rk4 {
         for ((y, sum), k) in y.iter_mut().zip(&*sum).zip(&*k) {
             *y += h / 6.0 * (sum + k);
         }
-        Ok(Work { evaluations: 4 })
+        Ok(Work::of(4))
     }
 }

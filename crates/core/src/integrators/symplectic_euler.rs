@@ -10,11 +10,13 @@ pub(super) const METHOD: Method = Method {
     aliases: &["symplectic-euler", "semi-implicit-euler"],
     title: "symplectic Euler",
     order: 1,
-    default_step: 0.005,
+    default_setting: 0.005,
     evaluations: 1,
     damped_evaluations: 1,
+    adaptive: false,
     needs_mechanics: true,
-    create: |dim| {
+    create: |system| {
+        let dim = system.dim();
         Box::new(SymplecticEuler {
             f: vec![0.0; dim / 2],
         })
@@ -42,6 +44,6 @@ impl Integrator for SymplecticEuler {
         kick(v, h, mechanics.inverse_masses(), &self.f);
         add_scaled(x, h, v);
         place_pins(mechanics, t + h, x, v);
-        Ok(Work { evaluations: 1 })
+        Ok(Work::of(1))
     }
 }

@@ -18,11 +18,13 @@ pub(super) const METHOD: Method = Method {
     aliases: &["velocity-verlet", "leapfrog"],
     title: "velocity Verlet, exact drag",
     order: 2,
-    default_step: 0.005,
+    default_setting: 0.005,
     evaluations: 1,
     damped_evaluations: 2,
+    adaptive: false,
     needs_mechanics: true,
-    create: |dim| {
+    create: |system| {
+        let dim = system.dim();
         Box::new(Verlet {
             f: vec![0.0; dim / 2],
             middle: vec![0.0; dim / 2],
@@ -62,6 +64,6 @@ impl Integrator for Verlet {
         }
         kick(v, h, inverse_masses, f);
         mechanics.drift(t + half, half, x, v);
-        Ok(Work { evaluations })
+        Ok(Work::of(evaluations))
     }
 }

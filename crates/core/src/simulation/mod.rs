@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use nalgebra::{DMatrixView, Vector3};
 
-use crate::error::{BlowUp, Error, positive};
+use crate::error::{BlowUp, Cause, Error, positive};
 use crate::integrators::{Integrator, Method, Work};
 use crate::network::Energy;
 use crate::scenes::{Model, Scene};
@@ -270,21 +270,20 @@ impl Simulation {
         let t = self.time();
         let system = self.model.system();
         let work = self.integrator.step(system, t, h, &mut self.y)?;
-        self.work.evaluations += work.evaluations;
+        self.work += work;
         self.steps += 1;
         if let Some(mechanics) = system.mechanics() {
             let half = self.y.len() / 2;
             let (x, v) = self.y.split_at_mut(half);
             mechanics.constrain(t + h, x, v);
         }
-        if let Some((particle, distance)) = self.beyond(LOST) {
+        if let Some(cause) = self.beyond(LOST) {
             let blow_up = BlowUp {
                 method: self.method.title,
-                step_size: self.step,
+                setting: self.step,
                 step: self.steps,
                 time: t + h,
-                particle,
-                distance,
+                cause,
             };
             self.blow_up = Some(blow_up);
             self.y.copy_from_slice(&self.good.y);
@@ -296,8 +295,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// The first particle that is farther than this many radii from the middle, and how far it is.
-    fn beyond(&self, radii: f64) -> Option<(usize, f64)> {
+    /// The first particle that is farther than this many radii from the middle, if there is one.
+    fn beyond(&self, radii: f64) -> Option<Cause> {
         let n = self.particles();
         let x = &self.y[..3 * n];
         let v = &self.y[3 * n..];
@@ -312,8 +311,13 @@ impl Simulation {
             .step_by(64)
             .all(|start| near(start..n.min(start + 64)))
         {
-            let i = (0..n).find(|&i| !near(i..i + 1))?;
-            return Some((i, squared(i).sqrt()));
+            let particle = (0..n).find(|&i| !near(i..i + 1))?;
+            let distance = squared(particle).sqrt();
+            return Some(if distance.is_finite() {
+                Cause::Away { particle, distance }
+            } else {
+                Cause::NotFinite { particle }
+            });
         }
         // Multiplying by zero leaves zero, unless the number is not finite.
         if v.iter().map(|v| v * 0.0).sum::<f64>() == 0.0 {
@@ -321,7 +325,7 @@ impl Simulation {
         }
         v.iter()
             .position(|v| !v.is_finite())
-            .map(|k| (k % n, f64::NAN))
+            .map(|k| Cause::NotFinite { particle: k % n })
     }
 
     /// Back to the beginning. Wind and swing stay on if they are; the hand lets go.
