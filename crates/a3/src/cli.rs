@@ -139,7 +139,7 @@ impl What {
                 )));
             }
         }
-        let step = step.unwrap_or_else(|| two_digits(solver.default_setting * scene.step_scale));
+        let step = step.unwrap_or_else(|| scene.default_setting(solver));
         let mut simulation = Simulation::new(scene, solver, step).map_err(|e| match e {
             Error::NeedsMechanics { .. } => {
                 let any = integrators::METHODS
@@ -155,11 +155,6 @@ impl What {
         simulation.set_swinging(self.swing);
         Ok(simulation)
     }
-}
-
-/// To two digits, as one would type it.
-fn two_digits(number: f64) -> f64 {
-    format!("{number:.1e}").parse().unwrap_or(number)
 }
 
 impl Run {

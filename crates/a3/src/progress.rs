@@ -17,7 +17,12 @@ pub fn advance(
     let begun = Instant::now();
     let start = simulation.time();
     let mut bar: Option<ProgressBar> = None;
-    let step = simulation.step_size();
+    let adaptive = simulation.method().is_adaptive();
+    let step = if adaptive {
+        FRAME
+    } else {
+        simulation.setting()
+    };
     let stride = (FRAME / step).floor().max(1.0);
     loop {
         // Whole steps that end before the last one, which is whole too if only rounding says otherwise.
@@ -26,7 +31,11 @@ pub fn advance(
         if whole < 1.0 {
             break;
         }
-        simulation.take_steps(whole as u64)?;
+        if adaptive {
+            simulation.advance_to(simulation.time() + FRAME)?;
+        } else {
+            simulation.take_steps(whole as u64)?;
+        }
         frame(simulation);
         if bar.is_none() && begun.elapsed() > Duration::from_secs(1) {
             bar = Some(new_bar());

@@ -48,7 +48,7 @@ fn state(simulation: &Simulation) -> State<'_> {
     State {
         scene: simulation.scene().name,
         solver: simulation.method().name,
-        step: simulation.step_size(),
+        step: simulation.setting(),
         time: simulation.time(),
         steps: simulation.steps(),
         evaluations: simulation.work().evaluations,

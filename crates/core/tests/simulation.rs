@@ -150,17 +150,17 @@ fn there_is_nothing_to_grab_out_of_range_or_without_masses() {
 fn method_and_step_change_on_the_way() {
     let mut run = simulation("pendulum", "trapezoid", 0.01);
     run.take_steps(50).unwrap();
-    run.set_method(method("verlet")).unwrap();
-    run.set_step(0.001).unwrap();
+    run.set_method(method("verlet"), 0.01).unwrap();
+    run.set_setting(0.001).unwrap();
     run.take_steps(500).unwrap();
     assert_relative_eq!(run.time(), 1.0, epsilon = 1e-12);
     let mut whole = simulation("pendulum", "rk4", 0.0005);
     whole.advance_to(1.0).unwrap();
     assert_relative_eq!(run.position(1), whole.position(1), epsilon = 1e-2);
-    assert!(run.set_step(-1.0).is_err() && run.set_step(f64::NAN).is_err());
+    assert!(run.set_setting(-1.0).is_err() && run.set_setting(f64::NAN).is_err());
     let mut circle = simulation("simple", "rk4", 0.01);
     assert_eq!(
-        circle.set_method(method("verlet")),
+        circle.set_method(method("verlet"), 0.01),
         Err(Error::NeedsMechanics { method: "verlet" })
     );
     assert_eq!(circle.method().name, "rk4");
@@ -317,7 +317,7 @@ fn the_state_goes_back_to_the_time_it_had_whatever_the_step_is_by_then() {
     while run.position(0).norm() < 4.0 {
         run.take_steps(1).unwrap();
     }
-    run.set_step(0.7).unwrap();
+    run.set_setting(0.7).unwrap();
     while run.take_steps(1).is_ok() {}
     // The radius after n steps of 0.5 is 1.25^(n/2), so it tells the time.
     assert_relative_eq!(

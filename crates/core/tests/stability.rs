@@ -83,7 +83,13 @@ fn holds_below_and_fails_above(name: &str, zeta: f64, limit: f64) {
 
 #[test]
 fn undamped_limits() {
-    for (name, limit) in [("rk4", 2.828_427_125), ("symplectic", 2.0), ("verlet", 2.0)] {
+    for (name, limit) in [
+        ("rk4", 2.828_427_125),
+        ("symplectic", 2.0),
+        ("verlet", 2.0),
+        ("pefrl", 2.989_450),
+        ("dop853", 5.960_359_812),
+    ] {
         holds_below_and_fails_above(name, 0.0, limit);
     }
 }
@@ -94,6 +100,7 @@ fn methods_without_an_undamped_limit_always_grow() {
         ("euler", 0.01, 400_000),
         ("trapezoid", 0.1, 1_000_000),
         ("midpoint", 0.1, 1_000_000),
+        ("rkf45", 0.9, 400_000),
     ] {
         let network = oscillator(1.0, 0.0);
         let mut y = vec![0.0; 12];
@@ -124,6 +131,14 @@ fn damped_limits() {
             [2.848_570, 2.950_853, 2.622_542, 2.785_294, 0.746_317],
         ),
         (
+            "dopri5",
+            [1.872_130, 2.681_407, 3.398_992, 3.306_568, 0.885_992],
+        ),
+        (
+            "dop853",
+            [6.031_695, 6.281_012, 6.765_937, 6.393_652, 1.713_174],
+        ),
+        (
             "symplectic",
             [1.980_100, 1.809_975, 1.236_068, 0.828_427, 0.472_136],
         ),
@@ -139,6 +154,19 @@ fn damped_limits() {
             }
             holds_below_and_fails_above(name, zeta, limit);
         }
+    }
+}
+
+/// Past its limit Dormand and Prince's method grows by 5e-6 a step.
+#[test]
+fn the_undamped_limit_of_dopri5() {
+    let network = oscillator(1.0, 0.0);
+    let mut y = vec![0.0; 12];
+    y[1] = 1.0;
+    for (fraction, grows) in [(0.99, false), (1.01, true)] {
+        let h = 0.997_189_009 * fraction;
+        let y = integrate(&network, method("dopri5"), &y, h, 2_000_000);
+        assert_eq!(size(&y) > 1e3, grows, "{:e} at {fraction}", size(&y));
     }
 }
 

@@ -106,7 +106,7 @@ fn run(ui: &mut Ui, simulation: &Simulation, readings: &Readings) {
         format!("  {} × {}", grid.rows(), grid.cols())
     });
     ui.label(title(format!("{}{grid}", scene.name)));
-    let step = simulation.step_size();
+    let step = simulation.setting();
     ui.label(text(format!(
         "{},  step {step} s",
         simulation.method().title
@@ -361,8 +361,8 @@ mod tests {
     fn a_blow_up_names_what_failed_and_nothing_overlaps() {
         let mut run = simulation("mit", "e", 0.05);
         while run.take_steps(1).is_ok() {}
-        run.set_step(0.01).unwrap();
-        run.set_method(integrators::find("r").unwrap()).unwrap();
+        run.set_method(integrators::find("r").unwrap(), 0.01)
+            .unwrap();
         let readings = Readings {
             message: Some("There is no wind here.".into()),
             ..Readings::default()

@@ -337,7 +337,7 @@ impl App {
              size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
-            run.step_size(),
+            run.setting(),
             self.session.show.style,
             run.windy(),
             run.swinging(),

@@ -15,6 +15,8 @@ use crate::show::{self, Show};
 const BUDGET: Duration = Duration::from_millis(12);
 /// No frame owes more than this (s), however long it took: neither a slow one nor a laptop's sleep.
 const MOST_OWED: f64 = 0.1;
+/// An adaptive method is asked for no more at once (s).
+const PORTION: f64 = 1.0 / 240.0;
 /// How long a message stays.
 const MESSAGE_TIME: Duration = Duration::from_secs(4);
 /// Steps of the keys + and -, in each decade.
@@ -94,7 +96,10 @@ impl Session {
             self.owed = 0.0;
             return;
         }
-        let step = self.simulation.step_size();
+        if self.simulation.method().is_adaptive() {
+            return self.tick_adaptive(real);
+        }
+        let step = self.simulation.setting();
         self.owed = (self.owed + real.min(MOST_OWED)).min(MOST_OWED.max(step));
         let mut left = (self.owed / step + 1e-9).floor() as u64;
         let begun = Instant::now();
@@ -115,6 +120,24 @@ impl Session {
         if left > 0 {
             self.owed = 0.0;
         }
+        self.meter.simulating += begun.elapsed();
+        self.follow();
+    }
+
+    /// Goes on by `real` seconds: an adaptive method is read off where the frame wants it.
+    fn tick_adaptive(&mut self, real: f64) {
+        let begun = Instant::now();
+        let start = self.simulation.time();
+        let end = start + real.min(MOST_OWED);
+        // In portions, of which the budget may cut off the last ones.
+        while self.simulation.time() < end && begun.elapsed() < BUDGET {
+            let next = (self.simulation.time() + PORTION).min(end);
+            // A blow-up is on the screen from now on.
+            if self.simulation.advance_to(next).is_err() {
+                break;
+            }
+        }
+        self.meter.simulated += (self.simulation.time() - start).max(0.0);
         self.meter.simulating += begun.elapsed();
         self.follow();
     }
@@ -231,15 +254,21 @@ impl Session {
     }
 
     fn set_method(&mut self, method: &'static Method) {
-        match self.simulation.set_method(method) {
+        let run = &self.simulation;
+        let setting = if method.is_adaptive() == run.method().is_adaptive() {
+            run.setting()
+        } else {
+            run.scene().default_setting(method)
+        };
+        match self.simulation.set_method(method, setting) {
             Ok(()) => self.wanted = method,
             Err(why) => self.say(why.to_string()),
         }
     }
 
     fn set_step(&mut self, longer: bool) {
-        let step = next_step(self.simulation.step_size(), longer);
-        if let Err(why) = self.simulation.set_step(step) {
+        let step = next_step(self.simulation.setting(), longer);
+        if let Err(why) = self.simulation.set_setting(step) {
             self.say(why.to_string());
         }
     }
@@ -251,7 +280,7 @@ impl Session {
             .position(|entry| std::ptr::eq(entry, self.entry))
             .unwrap_or(0);
         let entry = &scenes::SCENES[(here + 1) % scenes::SCENES.len()];
-        let step = self.simulation.step_size();
+        let step = self.simulation.setting();
         let grid = self
             .asked
             .grid

@@ -13,7 +13,7 @@ pub(super) const METHOD: Method = Method {
     default_setting: 0.005,
     evaluations: 2,
     damped_evaluations: 2,
-    adaptive: false,
+    pair: None,
     needs_mechanics: false,
     create: |system| {
         let dim = system.dim();

@@ -1,14 +1,23 @@
 //! One file a method, one table. An integrator sees flat arrays and knows no physics.
 
+mod adaptive;
+mod dop853;
+mod dormand_prince;
+mod embedded;
 mod euler;
 mod heun;
 mod midpoint;
+mod pefrl;
 mod rk4;
+mod rkf45;
 mod symplectic_euler;
 mod verlet;
 
 use crate::error::Error;
 use crate::system::ParticleSystem;
+
+pub use adaptive::{Adaptive, Taken, Tolerance};
+pub use embedded::Tableau;
 
 /// What a step cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -93,8 +102,8 @@ pub struct Method {
     pub evaluations: u32,
     /// Evaluations a step takes where springs are damped.
     pub damped_evaluations: u32,
-    /// Whether it chooses its steps by itself, to a tolerance.
-    pub adaptive: bool,
+    /// The table of an adaptive method, which chooses its steps by itself, to a tolerance.
+    pub pair: Option<&'static Tableau>,
     /// Whether it needs forces and masses, rather than any f(t, y).
     pub needs_mechanics: bool,
     create: fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>,
@@ -111,6 +120,19 @@ impl Method {
         }
         Ok((self.create)(system))
     }
+
+    /// Steps of its own choice, if it is an adaptive method.
+    #[must_use]
+    pub fn adaptive(&self, system: &dyn ParticleSystem, tolerance: Tolerance) -> Option<Adaptive> {
+        self.pair
+            .map(|tableau| Adaptive::new(tableau, system.dim(), tolerance))
+    }
+
+    /// Whether it chooses its steps by itself, to a tolerance.
+    #[must_use]
+    pub fn is_adaptive(&self) -> bool {
+        self.pair.is_some()
+    }
 }
 
 /// Every method.
@@ -121,6 +143,10 @@ pub static METHODS: &[Method] = &[
     rk4::METHOD,
     symplectic_euler::METHOD,
     verlet::METHOD,
+    pefrl::METHOD,
+    dormand_prince::METHOD,
+    dop853::METHOD,
+    rkf45::METHOD,
 ];
 
 /// The method of this letter, name or alias.

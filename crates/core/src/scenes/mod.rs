@@ -13,6 +13,7 @@ use nalgebra::Vector3;
 use crate::error::Error;
 use crate::forces::Wind;
 use crate::grid::Grid;
+use crate::integrators::Method;
 use crate::network::Network;
 use crate::system::ParticleSystem;
 
@@ -97,6 +98,20 @@ pub struct Scene {
     /// A hand stretches the springs it holds to this many times their rest length, and then waits for the other end.
     /// Less than 10 only where more would blow up a run that otherwise holds.
     pub reach: f64,
+}
+
+impl Scene {
+    /// The method's default step (s) on this scene to two digits, as one would type it, or its default tolerance.
+    #[must_use]
+    pub fn default_setting(&self, method: &Method) -> f64 {
+        let scale = if method.is_adaptive() {
+            1.0
+        } else {
+            self.step_scale
+        };
+        let setting = method.default_setting * scale;
+        format!("{setting:.1e}").parse().unwrap_or(setting)
+    }
 }
 
 /// A row of the table of scenes.

@@ -17,6 +17,7 @@ const PULL_SPEED: f64 = 10.0;
 
 impl Simulation {
     fn network_mut(&mut self) -> Option<&mut Network> {
+        self.look_again();
         match &mut self.model {
             Model::FirstOrder(_) => None,
             Model::Network(network) => Some(network),
@@ -53,6 +54,7 @@ impl Simulation {
         let turn = swing.rate * self.time();
         self.swing_phase += if on { -turn } else { turn };
         self.swinging = on;
+        self.look_again();
         let (held, time, half) = (self.grabbed(), self.time(), self.y.len() / 2);
         let (from_now_on, phase) = (on.then_some(swing), self.swing_phase);
         if let Model::Network(network) = &mut self.model {

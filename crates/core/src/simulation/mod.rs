@@ -7,9 +7,10 @@ use std::ops::Range;
 use nalgebra::{DMatrixView, Vector3};
 
 use crate::error::{BlowUp, Cause, Error, positive};
-use crate::integrators::{Integrator, Method, Work};
+use crate::integrators::{Adaptive, Integrator, Method, Tolerance, Work};
 use crate::network::Energy;
 use crate::scenes::{Model, Scene};
+use crate::system::ParticleSystem;
 
 /// A particle this many times the scene's radius away from its middle is lost.
 const LOST: f64 = 100.0;
@@ -22,10 +23,10 @@ pub struct Simulation {
     scene: Scene,
     model: Model,
     method: &'static Method,
-    integrator: Box<dyn Integrator>,
-    step: f64,
+    stepper: Stepper,
+    setting: f64,
     y: Vec<f64>,
-    /// Time is `since + taken * step`, which gathers no rounding errors.
+    /// Time is `since + taken * setting`, which gathers no rounding errors. Of an adaptive method it is `since`.
     since: f64,
     taken: u64,
     steps: u64,
@@ -41,6 +42,35 @@ pub struct Simulation {
     radius: f64,
 }
 
+/// What takes the steps.
+enum Stepper {
+    /// Steps of the size asked for.
+    Fixed(Box<dyn Integrator>),
+    /// Steps of its own choice, whose ends are no times that anyone asked for: the run looks ahead, and the state shown
+    /// is on the way to `end`.
+    Adaptive {
+        adaptive: Box<Adaptive>,
+        /// The state at the end of the last step.
+        end: Vec<f64>,
+        /// When that is (s), if the state and the system are still those that it was stepped from.
+        until: Option<f64>,
+    },
+}
+
+impl Stepper {
+    fn new(method: &Method, system: &dyn ParticleSystem, setting: f64) -> Result<Self, Error> {
+        let tolerance = Tolerance::new(setting)?;
+        Ok(match method.adaptive(system, tolerance) {
+            None => Self::Fixed(method.integrator(system)?),
+            Some(adaptive) => Self::Adaptive {
+                adaptive: Box::new(adaptive),
+                end: vec![0.0; system.dim()],
+                until: None,
+            },
+        })
+    }
+}
+
 /// The state to go back to when a step fails.
 struct Good {
     y: Vec<f64>,
@@ -49,13 +79,13 @@ struct Good {
 }
 
 impl Simulation {
-    /// A run from the scene's beginning, in steps of `step` (s).
+    /// A run from the scene's beginning. The setting is the step (s), or the relative tolerance of an adaptive method.
     ///
     /// # Errors
-    /// The method does not serve the scene, the scene's state has not the length of its model's, or the step is not
+    /// The method does not serve the scene, the scene's state has not the length of its model's, or the setting is not
     /// above 0.
-    pub fn new(scene: Scene, method: &'static Method, step: f64) -> Result<Self, Error> {
-        positive("the step", step)?;
+    pub fn new(scene: Scene, method: &'static Method, setting: f64) -> Result<Self, Error> {
+        check_setting(method, setting)?;
         let model = scene.model.clone();
         let (dim, length) = (model.system().dim(), scene.state.len());
         if length != dim {
@@ -69,7 +99,7 @@ impl Simulation {
                 "a scene's state is n x 3 positions, and this has {dim} numbers"
             )));
         }
-        let integrator = method.integrator(model.system())?;
+        let stepper = Stepper::new(method, model.system(), setting)?;
         let y = scene.state.clone();
         let (middle, radius) = bounds(&y[..3 * model.particles()]);
         let good = Good {
@@ -81,8 +111,8 @@ impl Simulation {
             scene,
             model,
             method,
-            integrator,
-            step,
+            stepper,
+            setting,
             y,
             since: 0.0,
             taken: 0,
@@ -116,16 +146,25 @@ impl Simulation {
         self.method
     }
 
-    /// The step asked for (s).
+    /// The step asked for (s), or the relative tolerance of an adaptive method.
     #[must_use]
-    pub fn step_size(&self) -> f64 {
-        self.step
+    pub fn setting(&self) -> f64 {
+        self.setting
+    }
+
+    /// The step (s): of an adaptive method the last one, if there was one yet.
+    #[must_use]
+    pub fn step_size(&self) -> Option<f64> {
+        match &self.stepper {
+            Stepper::Fixed(_) => Some(self.setting),
+            Stepper::Adaptive { adaptive, .. } => Some(adaptive.last().h).filter(|h| *h > 0.0),
+        }
     }
 
     /// Simulated time (s).
     #[must_use]
     pub fn time(&self) -> f64 {
-        self.since + self.taken as f64 * self.step
+        self.since + self.taken as f64 * self.setting
     }
 
     /// Steps taken since the beginning.
@@ -219,14 +258,20 @@ impl Simulation {
     pub fn take_steps(&mut self, count: u64) -> Result<(), Error> {
         self.keep()?;
         for _ in 0..count {
-            self.advance(self.step)?;
-            self.taken += 1;
+            if let Stepper::Fixed(_) = self.stepper {
+                self.step_by(self.setting)?;
+                self.taken += 1;
+            } else {
+                let until = self.look_ahead()?;
+                self.show(until);
+            }
         }
         Ok(())
     }
 
-    /// Goes on to `time` (s) exactly, if it is not past it: the last step is shortened. As
-    /// [`take_steps`](Self::take_steps) when a step blows up.
+    /// Goes on to `time` (s) exactly, if it is not past it: the last step is shortened. An adaptive method steps past
+    /// it instead, and the state is read off its step's polynomial: a frame costs no clipped step, and how often
+    /// one looks changes nothing. As [`take_steps`](Self::take_steps) when a step blows up.
     ///
     /// # Errors
     /// The run blew up, now or earlier; or `time` is not finite.
@@ -238,13 +283,18 @@ impl Simulation {
         }
         self.keep()?;
         while self.time() < time {
+            if let Stepper::Adaptive { .. } = self.stepper {
+                let until = self.look_ahead()?;
+                self.show(until.min(time));
+                continue;
+            }
             let left = time - self.time();
             // A last sliver of a rounding error's size is no step of its own.
-            if left > self.step * (1.0 + 1e-9) {
-                self.advance(self.step)?;
+            if left > self.setting * (1.0 + 1e-9) {
+                self.step_by(self.setting)?;
                 self.taken += 1;
             } else {
-                self.advance(left)?;
+                self.step_by(left)?;
                 self.since = time;
                 self.taken = 0;
             }
@@ -257,7 +307,7 @@ impl Simulation {
         if let Some(blow_up) = self.blow_up {
             return Err(blow_up.into());
         }
-        if self.beyond(GOOD).is_none() {
+        if self.beyond(GOOD, &self.y).is_none() {
             self.good.y.copy_from_slice(&self.y);
             self.good.time = self.time();
             self.good.steps = self.steps;
@@ -266,40 +316,112 @@ impl Simulation {
     }
 
     /// One step of h, and what follows it: constraints, and the look whether it went well.
-    fn advance(&mut self, h: f64) -> Result<(), Error> {
+    fn step_by(&mut self, h: f64) -> Result<(), Error> {
         let t = self.time();
         let system = self.model.system();
-        let work = self.integrator.step(system, t, h, &mut self.y)?;
-        self.work += work;
+        let Stepper::Fixed(integrator) = &mut self.stepper else {
+            return Ok(());
+        };
+        let cause = match integrator.step(system, t, h, &mut self.y) {
+            Ok(work) => {
+                self.work += work;
+                constrain(system, t + h, &mut self.y);
+                self.beyond(LOST, &self.y)
+            }
+            Err(error) => Some(cause(error)?),
+        };
+        self.judge(cause, t + h)
+    }
+
+    /// Sees to it that an adaptive method's step reaches past the time shown. Where it ends.
+    fn look_ahead(&mut self) -> Result<f64, Error> {
+        let now = self.time();
+        let system = self.model.system();
+        let Stepper::Adaptive {
+            adaptive,
+            end,
+            until,
+        } = &mut self.stepper
+        else {
+            return Ok(now);
+        };
+        let begin = match *until {
+            Some(until) if until > now => return Ok(until),
+            Some(until) => until,
+            None => {
+                end.copy_from_slice(&self.y);
+                adaptive.restart();
+                now
+            }
+        };
+        *until = None;
+        let (cause, end) = match adaptive.advance(system, begin, end) {
+            Ok(taken) => {
+                self.work += taken.work;
+                let reached = begin + taken.h;
+                constrain(system, reached, end);
+                *until = Some(reached);
+                let Stepper::Adaptive { end, .. } = &self.stepper else {
+                    return Ok(now);
+                };
+                (self.beyond(LOST, end), reached)
+            }
+            Err(error) => (Some(cause(error)?), begin),
+        };
+        self.judge(cause, end)?;
+        Ok(end)
+    }
+
+    /// Shows the state at a time (s) up to the end of an adaptive method's step.
+    fn show(&mut self, time: f64) {
+        let system = self.model.system();
+        if let Stepper::Adaptive {
+            adaptive,
+            end,
+            until,
+        } = &mut self.stepper
+        {
+            if *until == Some(time) {
+                self.y.copy_from_slice(end);
+            } else {
+                self.work += adaptive.interpolate(system, time, &mut self.y);
+                constrain(system, time, &mut self.y);
+            }
+            self.since = time;
+        }
+    }
+
+    /// The state or the system is no longer the one that an adaptive method's last step knows.
+    fn look_again(&mut self) {
+        if let Stepper::Adaptive { until, .. } = &mut self.stepper {
+            *until = None;
+        }
+    }
+
+    /// Counts a step that ends at `time`. One that was lost goes back to the last state in shape.
+    fn judge(&mut self, cause: Option<Cause>, time: f64) -> Result<(), Error> {
         self.steps += 1;
-        if let Some(mechanics) = system.mechanics() {
-            let half = self.y.len() / 2;
-            let (x, v) = self.y.split_at_mut(half);
-            mechanics.constrain(t + h, x, v);
-        }
-        if let Some(cause) = self.beyond(LOST) {
-            let blow_up = BlowUp {
-                method: self.method.title,
-                setting: self.step,
-                step: self.steps,
-                time: t + h,
-                cause,
-            };
-            self.blow_up = Some(blow_up);
-            self.y.copy_from_slice(&self.good.y);
-            self.since = self.good.time;
-            self.taken = 0;
-            self.steps = self.good.steps;
-            return Err(blow_up.into());
-        }
-        Ok(())
+        let Some(cause) = cause else { return Ok(()) };
+        let blow_up = BlowUp {
+            method: self.method.title,
+            setting: self.setting,
+            step: self.steps,
+            time,
+            cause,
+        };
+        self.blow_up = Some(blow_up);
+        self.y.copy_from_slice(&self.good.y);
+        self.since = self.good.time;
+        self.taken = 0;
+        self.steps = self.good.steps;
+        self.look_again();
+        Err(blow_up.into())
     }
 
     /// The first particle that is farther than this many radii from the middle, if there is one.
-    fn beyond(&self, radii: f64) -> Option<Cause> {
+    fn beyond(&self, radii: f64, y: &[f64]) -> Option<Cause> {
         let n = self.particles();
-        let x = &self.y[..3 * n];
-        let v = &self.y[3 * n..];
+        let (x, v) = y.split_at(3 * n);
         let c = self.middle;
         let limit = (radii * self.radius).powi(2);
         let squared = |i: usize| {
@@ -335,31 +457,69 @@ impl Simulation {
         self.y.copy_from_slice(&self.scene.state);
         (self.since, self.taken, self.steps) = (0.0, 0, 0);
         (self.work, self.blow_up, self.grabbed) = (Work::default(), None, None);
+        // The first step is chosen anew too: a run that was reset is the same run.
+        if let Ok(stepper) = Stepper::new(self.method, self.model.system(), self.setting) {
+            self.stepper = stepper;
+        }
         (self.swinging, self.swing_phase) = (false, 0.0);
         self.set_wind(windy);
         self.set_swinging(swinging);
     }
 
-    /// Goes on with another method.
+    /// Goes on with another method and another setting: a step (s), or a relative tolerance.
     ///
     /// # Errors
-    /// The method does not serve the scene; the run goes on as before.
-    pub fn set_method(&mut self, method: &'static Method) -> Result<(), Error> {
-        self.integrator = method.integrator(self.model.system())?;
-        self.method = method;
+    /// The method does not serve the scene, or the setting is not above 0; the run goes on as before.
+    pub fn set_method(&mut self, method: &'static Method, setting: f64) -> Result<(), Error> {
+        check_setting(method, setting)?;
+        self.stepper = Stepper::new(method, self.model.system(), setting)?;
+        self.since = self.time();
+        self.taken = 0;
+        (self.method, self.setting) = (method, setting);
         Ok(())
     }
 
-    /// Goes on in other steps (s).
+    /// Goes on in other steps (s), or to another relative tolerance.
     ///
     /// # Errors
-    /// The step is not above 0; the run goes on as before.
-    pub fn set_step(&mut self, step: f64) -> Result<(), Error> {
-        positive("the step", step)?;
+    /// The setting is not above 0; the run goes on as before.
+    pub fn set_setting(&mut self, setting: f64) -> Result<(), Error> {
+        if self.method.is_adaptive() {
+            return self.set_method(self.method, setting);
+        }
+        check_setting(self.method, setting)?;
         self.since = self.time();
         self.taken = 0;
-        self.step = step;
+        self.setting = setting;
         Ok(())
+    }
+}
+
+fn check_setting(method: &Method, setting: f64) -> Result<(), Error> {
+    positive(
+        if method.is_adaptive() {
+            "the tolerance"
+        } else {
+            "the step"
+        },
+        setting,
+    )
+}
+
+/// What forces cannot hold is put right after a step.
+fn constrain(system: &dyn ParticleSystem, t: f64, y: &mut [f64]) {
+    if let Some(mechanics) = system.mechanics() {
+        let (x, v) = y.split_at_mut(y.len() / 2);
+        mechanics.constrain(t, x, v);
+    }
+}
+
+/// The cause of a blow-up, if the error is of that kind.
+fn cause(error: Error) -> Result<Cause, Error> {
+    match error {
+        Error::StepTooSmall { step, .. } => Ok(Cause::StepTooSmall { step }),
+        Error::NoConvergence { residual } => Ok(Cause::NoConvergence { residual }),
+        error => Err(error),
     }
 }
 

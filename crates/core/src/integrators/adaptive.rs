@@ -1,0 +1,201 @@
+//! Steps of a pair's own choice: as long as its error estimate stays within the tolerance (Hairer, Norsett, Wanner,
+//! *Solving Ordinary Differential Equations I*, 1993, II.4).
+
+use super::Work;
+use super::embedded::{EmbeddedPair, Tableau};
+use crate::error::{Error, positive};
+use crate::system::ParticleSystem;
+
+/// No step is shorter (s): what asks for it has no solution, or a tolerance below what double precision holds.
+const SHORTEST: f64 = 1e-10;
+/// A step aims at this share of the error that would be tolerated.
+const SAFETY: f64 = 0.8;
+/// The least and the most that a step changes by.
+const CHANGE: (f64, f64) = (0.2, 8.0);
+
+/// How large an error a step may make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Relative to the state.
+    pub relative: f64,
+    /// In m and m/s.
+    pub absolute: f64,
+}
+
+impl Tolerance {
+    /// A relative tolerance, and a thousandth of it as the absolute one.
+    ///
+    /// # Errors
+    /// It is not a finite number above 0.
+    pub fn new(relative: f64) -> Result<Self, Error> {
+        positive("the tolerance", relative)?;
+        Ok(Self {
+            relative,
+            absolute: 1e-3 * relative,
+        })
+    }
+}
+
+/// What an error is measured against. The root mean square of a block of numbers, over absolute tolerance + relative
+/// tolerance x the block's own root mean square: positions are one block and velocities another, so that neither units
+/// nor the directions of the axes matter, and a number that happens to be near zero asks for no more digits than others.
+pub(super) struct Scale {
+    tolerance: Tolerance,
+    /// Length of a block.
+    block: usize,
+}
+
+impl Scale {
+    /// The error over what is tolerated in the block that has most of it.
+    pub fn norm(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> f64 {
+        let blocks = |a: &'_ [f64]| -> [f64; 2] {
+            let mut chunks = a.chunks(self.block).map(root_mean_square);
+            [chunks.next().unwrap_or(0.0), chunks.next().unwrap_or(0.0)]
+        };
+        let (y0, y1, error) = (blocks(y0), blocks(y1), blocks(error));
+        let Tolerance { relative, absolute } = self.tolerance;
+        let ratio = |b: usize| error[b] / (absolute + relative * y0[b].max(y1[b]));
+        let (a, b) = (ratio(0), ratio(1));
+        // NaN has to come out as such.
+        if a >= b || a.is_nan() { a } else { b }
+    }
+}
+
+fn root_mean_square(a: &[f64]) -> f64 {
+    (a.iter().map(|a| a * a).sum::<f64>() / a.len() as f64).sqrt()
+}
+
+/// A step that was taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Taken {
+    /// Where it began (s).
+    pub t: f64,
+    /// How long it was (s).
+    pub h: f64,
+    /// What it cost, attempts that failed included.
+    pub work: Work,
+}
+
+/// A pair with its tolerance. Beside scratch it remembers the length of its last step, as the first guess for the
+/// next, and the derivative at the end of it, which [`restart`](Self::restart) forgets.
+pub struct Adaptive {
+    pair: EmbeddedPair,
+    tolerance: Tolerance,
+    /// The length to try next (s); 0 before the first step.
+    next: f64,
+    last: Taken,
+    /// Whether the pair may go on from the end of its last step.
+    goes_on: bool,
+}
+
+impl Adaptive {
+    pub(super) fn new(tableau: &'static Tableau, dim: usize, tolerance: Tolerance) -> Self {
+        Self {
+            pair: EmbeddedPair::new(tableau, dim),
+            tolerance,
+            next: 0.0,
+            last: Taken::default(),
+            goes_on: false,
+        }
+    }
+
+    /// The step that was taken last.
+    #[must_use]
+    pub fn last(&self) -> Taken {
+        self.last
+    }
+
+    /// Tries a step of h (s) next.
+    pub fn try_first(&mut self, h: f64) {
+        self.next = h;
+    }
+
+    /// Forgets what depends on the system and the state: to be called when either changes between steps.
+    pub fn restart(&mut self) {
+        self.goes_on = false;
+    }
+
+    /// Takes y from t to the end of one step.
+    ///
+    /// # Errors
+    /// The state has another length than the system's; or no step that gets anywhere meets the tolerance: y is as
+    /// it was then.
+    pub fn advance(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        y: &mut [f64],
+    ) -> Result<Taken, Error> {
+        super::check_dim(self.pair.dim(), y)?;
+        let mut work = Work::default();
+        // What constraints put right after the last step has another derivative.
+        if self.goes_on && self.pair.end() == &*y {
+            self.pair.go_on();
+        } else {
+            work += self.pair.begin(system, t, y);
+        }
+        self.goes_on = false;
+        let scale = Scale {
+            tolerance: self.tolerance,
+            block: if system.mechanics().is_some() {
+                y.len() / 2
+            } else {
+                y.len()
+            }
+            .max(1),
+        };
+        if self.next == 0.0 {
+            self.next = self.first_step(system, t, y, &scale);
+            work += Work::of(1);
+        }
+        let exponent = -1.0 / self.pair.exponent();
+        let mut h = self.next;
+        loop {
+            if h < SHORTEST.max(16.0 * f64::EPSILON * t.abs()) {
+                // A guess for whoever tries again.
+                self.next = 0.0;
+                return Err(Error::StepTooSmall { time: t, step: h });
+            }
+            let (cost, error) = self.pair.attempt(system, t, h, &scale);
+            work += cost;
+            let change = SAFETY * libm::pow(error, exponent);
+            if error <= 1.0 {
+                y.copy_from_slice(self.pair.end());
+                // Not longer at once after it had to be shorter.
+                let most = if work.rejections > 0 { 1.0 } else { CHANGE.1 };
+                self.next = h * change.clamp(CHANGE.0, most);
+                self.last = Taken { t, h, work };
+                self.goes_on = true;
+                return Ok(self.last);
+            }
+            work.rejections += 1;
+            // NaN is as bad as can be.
+            h *= if change >= CHANGE.0 { change } else { CHANGE.0 };
+        }
+    }
+
+    /// The state at a time within the last step. What it costs: the first time in a step more than nothing.
+    pub fn interpolate(&mut self, system: &dyn ParticleSystem, time: f64, out: &mut [f64]) -> Work {
+        let Taken { t, h, .. } = self.last;
+        self.pair.interpolate(system, t, (time - t) / h, out)
+    }
+
+    /// A first step of which one of Euler's shows that it is not far off.
+    fn first_step(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64], scale: &Scale) -> f64 {
+        let f0 = self.pair.derivative();
+        let (size, slope) = (scale.norm(y, y, y), scale.norm(y, y, f0));
+        let h0 = if size < 1e-5 || slope < 1e-5 {
+            1e-6
+        } else {
+            0.01 * size / slope
+        };
+        let bend = scale.norm(y, y, self.pair.second_derivative(system, t, h0));
+        let steepest = slope.max(bend);
+        let h1 = if steepest <= 1e-15 {
+            (1e-3 * h0).max(1e-6)
+        } else {
+            libm::pow(0.01 / steepest, 1.0 / self.pair.exponent())
+        };
+        (100.0 * h0).min(h1)
+    }
+}

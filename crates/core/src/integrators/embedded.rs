@@ -1,0 +1,235 @@
+//! Explicit Runge-Kutta pairs by their tables: y1 = y + h sum b k with k_i = f(t + c_i h, y + h sum a_ij k_j), an
+//! estimate of its error from other weights, and a polynomial through the step (Hairer, Norsett, Wanner, *Solving
+//! Ordinary Differential Equations I*, 1993, II.4 to II.6).
+
+use super::adaptive::Scale;
+use super::{Integrator, Work, check_dim};
+use crate::error::Error;
+use crate::system::ParticleSystem;
+
+/// The numbers of a pair. After the stages comes k = f(t + h, y1), the first of the next step, and after that the
+/// stages that only the polynomial wants.
+#[derive(Debug)]
+pub struct Tableau {
+    /// Of each stage from the second on: when, and the weights of the stages before it.
+    pub(super) stages: &'static [(f64, &'static [f64])],
+    /// The weights of y1.
+    pub(super) weights: &'static [f64],
+    /// The weights of the error estimates: of one, or of those of order 5 and 3 that DOP853 weighs against each other.
+    pub(super) errors: &'static [&'static [f64]],
+    /// The local error that is estimated falls as h to this power.
+    pub(super) exponent: f64,
+    /// The polynomial's own stages.
+    pub(super) extra: &'static [(f64, &'static [f64])],
+    /// Weights of the polynomial's terms of degree 4 and more; those below follow from both ends.
+    pub(super) dense: &'static [&'static [f64]],
+}
+
+/// The most terms that a polynomial has.
+const TERMS: usize = 7;
+/// Numbers that are summed up together: few enough for all of their stages to stay in the cache.
+const BLOCK: usize = 512;
+
+/// A pair at work: a method of fixed steps by itself, an adaptive one in the hands of [`Adaptive`](super::Adaptive).
+pub(super) struct EmbeddedPair {
+    tableau: &'static Tableau,
+    k: Vec<Vec<f64>>,
+    stage: Vec<f64>,
+    /// The two ends of the step, and its length (s).
+    y0: Vec<f64>,
+    y1: Vec<f64>,
+    h: f64,
+    /// Whether the polynomial's own stages have been computed for it.
+    dense: bool,
+}
+
+impl EmbeddedPair {
+    pub fn new(tableau: &'static Tableau, dim: usize) -> Self {
+        let stages = tableau.stages.len() + 2 + tableau.extra.len();
+        Self {
+            tableau,
+            k: vec![vec![0.0; dim]; stages],
+            stage: vec![0.0; dim],
+            y0: vec![0.0; dim],
+            y1: vec![0.0; dim],
+            h: 0.0,
+            dense: false,
+        }
+    }
+
+    pub fn dim(&self) -> usize {
+        self.y0.len()
+    }
+
+    pub fn exponent(&self) -> f64 {
+        self.tableau.exponent
+    }
+
+    /// Where the step ends.
+    pub fn end(&self) -> &[f64] {
+        &self.y1
+    }
+
+    /// Goes on from y, whose derivative is not known.
+    pub fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
+        self.y0.copy_from_slice(y);
+        system.eval_f(t, y, &mut self.k[0]);
+        Work::of(1)
+    }
+
+    /// Goes on from the end of the step, whose derivative is its last stage.
+    pub fn go_on(&mut self) {
+        let last = self.tableau.stages.len() + 1;
+        self.k.swap(0, last);
+        std::mem::swap(&mut self.y0, &mut self.y1);
+    }
+
+    /// The derivative where the step begins.
+    pub fn derivative(&self) -> &[f64] {
+        &self.k[0]
+    }
+
+    /// How fast that changes, from one step of Euler's method.
+    pub fn second_derivative(&mut self, system: &dyn ParticleSystem, t: f64, h: f64) -> &[f64] {
+        let (first, rest) = self.k.split_at_mut(1);
+        let (f0, f1) = (&first[0], &mut rest[0]);
+        super::scaled_sum(&mut self.stage, &self.y0, h, f0);
+        system.eval_f(t + h, &self.stage, f1);
+        for (f1, f0) in f1.iter_mut().zip(f0) {
+            *f1 = (*f1 - f0) / h;
+        }
+        f1
+    }
+
+    /// A step of h from where [`begin`](Self::begin) or [`go_on`](Self::go_on) left it.
+    fn stages(&mut self, system: &dyn ParticleSystem, t: f64, h: f64) -> u64 {
+        let tableau = self.tableau;
+        self.h = h;
+        self.dense = false;
+        for (i, (c, a)) in tableau.stages.iter().enumerate() {
+            combine(&mut self.stage, &self.y0, h, a, &self.k);
+            system.eval_f(t + c * h, &self.stage, &mut self.k[i + 1]);
+        }
+        combine(&mut self.y1, &self.y0, h, tableau.weights, &self.k);
+        tableau.stages.len() as u64
+    }
+
+    /// Tries a step of h. Its cost, and its estimated error over the tolerated one: up to 1 it is good.
+    pub fn attempt(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        scale: &Scale,
+    ) -> (Work, f64) {
+        let mut work = Work::of(self.stages(system, t, h));
+        let reads_end = self.tableau.errors[0].len() > self.tableau.stages.len() + 1;
+        if reads_end {
+            work += self.finish(system, t);
+        }
+        let mut error = |weights: &[f64]| {
+            self.stage.fill(0.0);
+            add_combination(&mut self.stage, h, weights, &self.k);
+            scale.norm(&self.y0, &self.y1, &self.stage)
+        };
+        let error = match self.tableau.errors {
+            [fifth, third] => {
+                let (fifth, third) = (error(fifth), error(third));
+                if fifth == 0.0 {
+                    0.0
+                } else {
+                    fifth * fifth / (fifth * fifth + 0.01 * third * third).sqrt()
+                }
+            }
+            errors => error(errors[0]),
+        };
+        if !reads_end && error <= 1.0 {
+            work += self.finish(system, t);
+        }
+        (work, error)
+    }
+
+    /// The derivative at the step's end.
+    fn finish(&mut self, system: &dyn ParticleSystem, t: f64) -> Work {
+        let last = self.tableau.stages.len() + 1;
+        system.eval_f(t + self.h, &self.y1, &mut self.k[last]);
+        Work::of(1)
+    }
+
+    /// The state at the fraction theta of an accepted step that began at t.
+    pub fn interpolate(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        theta: f64,
+        out: &mut [f64],
+    ) -> Work {
+        let (h, tableau) = (self.h, self.tableau);
+        let last = tableau.stages.len() + 1;
+        let mut work = Work::default();
+        if !self.dense {
+            for (i, (c, a)) in tableau.extra.iter().enumerate() {
+                combine(&mut self.stage, &self.y0, h, a, &self.k);
+                system.eval_f(t + c * h, &self.stage, &mut self.k[last + 1 + i]);
+            }
+            self.dense = true;
+            work = Work::of(tableau.extra.len() as u64);
+        }
+        // y0 + theta (F0 + (1 - theta) (F1 + theta (F2 + (1 - theta) (F3 + ...)))): the factor of each term.
+        let mut factor = 1.0;
+        let factors: [f64; TERMS] = std::array::from_fn(|i| {
+            factor *= if i % 2 == 0 { theta } else { 1.0 - theta };
+            factor
+        });
+        let [p, q, r, rest @ ..] = factors;
+        // F0 = y1 - y0, F1 = h k0 - F0, F2 = 2 F0 - h (k0 + k1).
+        let (of_f0, of_k0, of_k1) = (p - q + 2.0 * r, h * (q - r), -h * r);
+        let ends = self
+            .y0
+            .iter()
+            .zip(&self.y1)
+            .zip(&self.k[0])
+            .zip(&self.k[last]);
+        for (out, (((y0, y1), k0), k1)) in out.iter_mut().zip(ends) {
+            *out = y0 + of_f0 * (y1 - y0) + of_k0 * k0 + of_k1 * k1;
+        }
+        for (factor, weights) in rest.iter().zip(tableau.dense) {
+            add_combination(out, factor * h, weights, &self.k);
+        }
+        work
+    }
+}
+
+impl Integrator for EmbeddedPair {
+    fn step(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
+        check_dim(self.dim(), y)?;
+        let mut work = self.begin(system, t, y);
+        work += Work::of(self.stages(system, t, h));
+        y.copy_from_slice(&self.y1);
+        Ok(work)
+    }
+}
+
+/// out = y + h sum weights k
+fn combine(out: &mut [f64], y: &[f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
+    out.copy_from_slice(y);
+    add_combination(out, h, weights, k);
+}
+
+/// out += h sum weights k
+fn add_combination(out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
+    for (block, out) in out.chunks_mut(BLOCK).enumerate() {
+        let start = block * BLOCK;
+        for (weight, k) in weights.iter().zip(k) {
+            if *weight != 0.0 {
+                super::add_scaled(out, h * weight, &k[start..start + out.len()]);
+            }
+        }
+    }
+}

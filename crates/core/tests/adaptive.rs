@@ -1,0 +1,227 @@
+//! Adaptive methods: true errors and costs, dense output, the first step, and what happens where no step will do.
+
+mod common;
+
+use std::f64::consts::TAU;
+
+use a3_core::integrators::{Taken, Tolerance};
+use a3_core::{Cause, Error, ParticleSystem, Simulation, integrators};
+use common::{distance, integrate, method, scene, simulation, size};
+
+/// Ten times around the circle: the largest error at the ends of the steps, and the steps taken.
+fn circle(name: &str, relative: f64) -> (f64, usize) {
+    let circle = scene("simple");
+    let system = circle.model.system();
+    let mut adaptive = method(name)
+        .adaptive(system, Tolerance::new(relative).unwrap())
+        .unwrap();
+    let (mut t, mut y, mut worst, mut steps) = (0.0, circle.state.clone(), 0.0f64, 0);
+    while t < 10.0 * TAU {
+        t += adaptive.advance(system, t, &mut y).unwrap().h;
+        steps += 1;
+        worst = worst.max((y[0] - t.cos()).hypot(y[1] - t.sin()));
+    }
+    (worst, steps)
+}
+
+#[test]
+fn errors_and_steps_on_the_circle() {
+    // Errors and accepted steps of SciPy's and others' at relative tolerance 1e-3, 1e-6, 1e-9.
+    for (name, listed) in [
+        ("dopri5", [(1.4e-2, 72), (6.1e-6, 329), (6.0e-9, 1337)]),
+        ("rkf45", [(4.8e-2, 82), (9.7e-5, 362), (3.6e-7, 1469)]),
+    ] {
+        for (relative, (error, steps)) in [1e-3, 1e-6, 1e-9].into_iter().zip(listed) {
+            let (e, n) = circle(name, relative);
+            println!("{name} at {relative:e}: error {e:.2e} ({error:.1e}), {n} steps ({steps})");
+            assert!(e < 2.0 * error && n < 2 * steps, "{name} {relative:e}");
+        }
+    }
+    let (error, steps) = circle("dop853", 1e-9);
+    assert!(error < 1e-7 && steps < 200, "{error:e}, {steps}");
+}
+
+/// Each polynomial has its order: the largest error within a step falls as h to the power order + 1.
+#[test]
+fn dense_output_has_its_order() {
+    for (name, order) in [("dopri5", 4), ("rkf45", 4), ("dop853", 7)] {
+        let circle = scene("simple");
+        let system = circle.model.system();
+        // One step of about this length, by a tolerance that lets it pass.
+        let error = |h: f64| {
+            let mut adaptive = method(name)
+                .adaptive(system, Tolerance::new(1e3).unwrap())
+                .unwrap();
+            adaptive.try_first(h);
+            let mut y = circle.state.clone();
+            let Taken { h: taken, .. } = adaptive.advance(system, 0.0, &mut y).unwrap();
+            assert_eq!(taken, h);
+            let mut worst: f64 = 0.0;
+            for k in 0..=20 {
+                let t = h * f64::from(k) / 20.0;
+                let mut out = vec![0.0; 3];
+                adaptive.interpolate(system, t, &mut out);
+                worst = worst.max((out[0] - t.cos()).hypot(out[1] - t.sin()));
+                if k == 20 {
+                    assert!(distance(&out, &y) < 1e-15);
+                }
+            }
+            worst
+        };
+        let (coarse, fine) = (error(0.4), error(0.2));
+        let measured = (coarse / fine).log2() - 1.0;
+        println!("{name}: {coarse:.2e} {fine:.2e}: order {measured:.2}");
+        assert!(
+            (measured - f64::from(order)).abs() < 0.25,
+            "{name}: {measured}"
+        );
+    }
+}
+
+/// The state at a time does not depend on how often one looks, and a frame costs no step.
+#[test]
+fn frames_cost_no_steps() {
+    for name in ["dopri5", "rkf45", "dop853"] {
+        for scene_name in ["mit", "chain"] {
+            let mut often = simulation(scene_name, name, 1e-5);
+            let mut once = simulation(scene_name, name, 1e-5);
+            for k in 1..=300 {
+                often.advance_to(f64::from(k) / 300.0).unwrap();
+            }
+            once.advance_to(1.0).unwrap();
+            assert_eq!(often.state(), once.state(), "{name} {scene_name}");
+            assert_eq!(often.steps(), once.steps());
+            assert_eq!(often.time(), 1.0);
+        }
+    }
+}
+
+#[test]
+fn an_adaptive_run_takes_part_in_everything() {
+    let mut run = simulation("cloth", "dopri5", 1e-4);
+    assert_eq!((run.setting(), run.step_size()), (1e-4, None));
+    run.take_steps(5).unwrap();
+    assert_eq!(run.steps(), 5);
+    assert!(run.step_size().unwrap() > 1e-4 && run.time() > 0.0);
+    // A hand in the middle of a step: what was stepped ahead is forgotten.
+    run.advance_to(run.time() + 0.001).unwrap();
+    run.grab(399).unwrap();
+    let from = run.position(399);
+    run.pull(from + a3_core::Vector3::new(0.3, 0.2, 0.5));
+    run.advance_to(run.time() + 0.2).unwrap();
+    assert!((run.position(399) - from).norm() > 0.5);
+    run.release();
+    run.set_wind(true);
+    run.set_swinging(true);
+    run.advance_to(1.0).unwrap();
+    assert!(run.largest_stretch().unwrap() < 3.0);
+    run.reset();
+    let fresh = {
+        let mut fresh = simulation("cloth", "dopri5", 1e-4);
+        fresh.set_wind(true);
+        fresh.set_swinging(true);
+        fresh.advance_to(0.3).unwrap();
+        fresh.state().to_vec()
+    };
+    run.advance_to(0.3).unwrap();
+    assert_eq!(run.state(), fresh);
+    run.set_method(method("rk4"), 0.002).unwrap();
+    run.take_steps(10).unwrap();
+    assert!((run.time() - 0.32).abs() < 1e-12);
+    run.set_method(method("dop853"), 1e-7).unwrap();
+    run.advance_to(0.5).unwrap();
+    assert_eq!(run.time(), 0.5);
+    assert!(run.set_setting(0.0).is_err());
+}
+
+/// The tolerance is kept where the motion is stiff, and rejections are counted.
+#[test]
+fn a_tighter_tolerance_is_more_accurate_on_cloth() {
+    let reference = {
+        let mut run = simulation("mit", "dop853", 1e-11);
+        run.advance_to(1.0).unwrap();
+        run.state().to_vec()
+    };
+    for name in ["dopri5", "rkf45", "dop853"] {
+        let mut last = f64::INFINITY;
+        for relative in [1e-3, 1e-5, 1e-7] {
+            let mut run = simulation("mit", name, relative);
+            run.advance_to(1.0).unwrap();
+            let error = distance(&run.state()[..675], &reference[..675]);
+            println!("{name} {relative:e}: {error:.2e} {:?}", run.work());
+            assert!(error < 0.1 * last && error < 1e4 * relative);
+            last = error;
+        }
+    }
+}
+
+/// y' = y^2 from 1 is infinite at t = 1.
+struct Pole;
+
+impl ParticleSystem for Pole {
+    fn dim(&self) -> usize {
+        3
+    }
+
+    fn eval_f(&self, _t: f64, y: &[f64], dydt: &mut [f64]) {
+        for (dydt, y) in dydt.iter_mut().zip(y) {
+            *dydt = y * y;
+        }
+    }
+}
+
+#[test]
+fn where_no_step_will_do_it_says_so() {
+    for m in integrators::METHODS.iter().filter(|m| m.is_adaptive()) {
+        let tolerance = Tolerance::new(1e-6).unwrap();
+        let mut adaptive = m.adaptive(&Pole, tolerance).unwrap();
+        let (mut t, mut y) = (0.0, vec![1.0; 3]);
+        let error = loop {
+            match adaptive.advance(&Pole, t, &mut y) {
+                Ok(taken) => t += taken.h,
+                Err(error) => break error,
+            }
+        };
+        assert!(matches!(error, Error::StepTooSmall { time, .. } if (time - 1.0).abs() < 1e-5));
+        assert!(size(&y).is_finite());
+        assert!(error.to_string().contains("no step meets the tolerance"));
+    }
+    // A run that ends so is a blow-up, not a hang and not a panic.
+    let mut bare = scene("simple");
+    bare.model = a3_core::Model::FirstOrder(std::sync::Arc::new(Pole));
+    bare.state = vec![1.0, 0.5, 0.25];
+    let mut run = Simulation::new(bare, method("dopri5"), 1e-6).unwrap();
+    let Err(Error::BlowUp(lost)) = run.advance_to(2.0) else {
+        panic!("past a pole");
+    };
+    assert!(matches!(
+        lost.cause,
+        Cause::StepTooSmall { .. } | Cause::Away { .. }
+    ));
+}
+
+#[test]
+fn tolerances_that_make_no_sense_are_refused() {
+    for relative in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = Tolerance::new(relative).unwrap_err().to_string();
+        assert!(error.contains("the tolerance must be"), "{error}");
+    }
+}
+
+/// At a fixed step they are methods like any other.
+#[test]
+fn pairs_take_fixed_steps_too() {
+    let circle = scene("simple");
+    for (name, error) in [("dopri5", 1e-8), ("rkf45", 1e-7), ("dop853", 1e-13)] {
+        let y = integrate(
+            circle.model.system(),
+            method(name),
+            &circle.state,
+            0.05,
+            100,
+        );
+        let (sin, cos) = 5f64.sin_cos();
+        let found = (y[0] - cos).hypot(y[1] - sin);
+        assert!(found < error, "{name}: {found:e}");
+    }
+}
