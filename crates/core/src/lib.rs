@@ -27,9 +27,11 @@ mod grid;
 pub mod integrators;
 mod network;
 mod path;
+mod random;
 pub mod scenes;
 mod simulation;
 mod spring;
+pub mod stability;
 mod system;
 
 pub use error::{BlowUp, Cause, Error};

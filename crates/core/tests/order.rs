@@ -56,7 +56,7 @@ fn every_method_has_its_order() {
         for m in integrators::METHODS {
             // Small enough for the leading term, large enough to stay clear of rounding.
             let (steps, slack) = match m.order {
-                8.. => (32, 0.4),
+                8.. => (24, 0.4),
                 5.. => (256, 0.1),
                 4 => (512, 0.05),
                 _ => (4096, 0.05),

@@ -59,6 +59,9 @@ enum Stepper {
 
 impl Stepper {
     fn new(method: &Method, system: &dyn ParticleSystem, setting: f64) -> Result<Self, Error> {
+        if !method.is_adaptive() {
+            positive("the step", setting)?;
+        }
         let tolerance = Tolerance::new(setting)?;
         Ok(match method.adaptive(system, tolerance) {
             None => Self::Fixed(method.integrator(system)?),
@@ -85,7 +88,30 @@ impl Simulation {
     /// The method does not serve the scene, the scene's state has not the length of its model's, or the setting is not
     /// above 0.
     pub fn new(scene: Scene, method: &'static Method, setting: f64) -> Result<Self, Error> {
-        check_setting(method, setting)?;
+        let stepper = Stepper::new(method, scene.model.system(), setting)?;
+        Self::with(scene, method, stepper, setting)
+    }
+
+    /// A run in steps of this size (s), also with a method that would choose its own: to see which steps it holds.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_fixed_steps(
+        scene: Scene,
+        method: &'static Method,
+        step: f64,
+    ) -> Result<Self, Error> {
+        positive("the step", step)?;
+        let stepper = Stepper::Fixed(method.integrator(scene.model.system())?);
+        Self::with(scene, method, stepper, step)
+    }
+
+    fn with(
+        scene: Scene,
+        method: &'static Method,
+        stepper: Stepper,
+        setting: f64,
+    ) -> Result<Self, Error> {
         let model = scene.model.clone();
         let (dim, length) = (model.system().dim(), scene.state.len());
         if length != dim {
@@ -99,7 +125,6 @@ impl Simulation {
                 "a scene's state is n x 3 positions, and this has {dim} numbers"
             )));
         }
-        let stepper = Stepper::new(method, model.system(), setting)?;
         let y = scene.state.clone();
         let (middle, radius) = bounds(&y[..3 * model.particles()]);
         let good = Good {
@@ -471,7 +496,6 @@ impl Simulation {
     /// # Errors
     /// The method does not serve the scene, or the setting is not above 0; the run goes on as before.
     pub fn set_method(&mut self, method: &'static Method, setting: f64) -> Result<(), Error> {
-        check_setting(method, setting)?;
         self.stepper = Stepper::new(method, self.model.system(), setting)?;
         self.since = self.time();
         self.taken = 0;
@@ -487,23 +511,12 @@ impl Simulation {
         if self.method.is_adaptive() {
             return self.set_method(self.method, setting);
         }
-        check_setting(self.method, setting)?;
+        positive("the step", setting)?;
         self.since = self.time();
         self.taken = 0;
         self.setting = setting;
         Ok(())
     }
-}
-
-fn check_setting(method: &Method, setting: f64) -> Result<(), Error> {
-    positive(
-        if method.is_adaptive() {
-            "the tolerance"
-        } else {
-            "the step"
-        },
-        setting,
-    )
 }
 
 /// What forces cannot hold is put right after a step.

@@ -1,0 +1,214 @@
+//! Where a method fails in fact: the nonlinear scene itself, stepped with longer and shorter steps.
+
+use super::{GROWTH, HORIZON, LargestMode};
+use crate::error::Error;
+use crate::integrators::{Method, find};
+use crate::scenes::Scene;
+use crate::simulation::Simulation;
+
+/// The largest step that was seen to hold is known to this fraction.
+const PRECISION: f64 = 0.005;
+/// No step longer than this is tried (s).
+const LONGEST: f64 = 1.0;
+/// Looks at a run that holds.
+const LOOKS: u64 = 200;
+/// The speed of the disturbance of a scene at rest (m/s, root of the sum of squares weighted with the masses in kg).
+const NUDGE: f64 = 1e-6;
+
+/// What bisection found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observation {
+    /// The largest step that held (s); infinite if every step did up to one second.
+    pub step: f64,
+    /// Runs that it took.
+    pub runs: u32,
+}
+
+/// The state in which the scene comes to rest, wind and swing off: found by implicit Euler in growing steps. `None` for
+/// a first-order scene, and for one that does not settle.
+///
+/// # Errors
+/// The scene cannot be run.
+pub fn rest(scene: &Scene) -> Result<Option<Vec<f64>>, Error> {
+    let Some(implicit) = find("implicit").filter(|_| scene.model.network().is_some()) else {
+        return Ok(None);
+    };
+    let mut run = Simulation::new(scene.clone(), implicit, 0.05)?;
+    for step in [0.05, 0.2, 1.0, 5.0] {
+        run.set_setting(step)?;
+        for _ in 0..400 {
+            let before = run.state().to_vec();
+            if run.take_steps(1).is_err() {
+                return Ok(None);
+            }
+            let half = before.len() / 2;
+            let moved = |part: &[f64], was: &[f64]| {
+                let squares = part.iter().zip(was).map(|(a, b)| (a - b).powi(2));
+                (squares.sum::<f64>() / half as f64).sqrt()
+            };
+            if moved(&run.state()[..half], &before[..half]) < 1e-9 * step {
+                break;
+            }
+        }
+    }
+    let mut y = run.state().to_vec();
+    let half = y.len() / 2;
+    let speed = y[half..].iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    y[half..].fill(0.0);
+    Ok((speed < 1e-4).then_some(y))
+}
+
+/// The largest step with which the scene, started from `rest` with its fastest mode nudged, keeps the nudge from growing
+/// [`GROWTH`] times in [`HORIZON`]. Bisection begins at `guess` (s).
+///
+/// # Errors
+/// The method does not serve the scene.
+pub fn observe_at_rest(
+    scene: &Scene,
+    rest: &[f64],
+    method: &'static Method,
+    guess: f64,
+) -> Result<Observation, Error> {
+    let mut still = scene.clone();
+    still.state = rest.to_vec();
+    let mut nudged = still.clone();
+    let half = rest.len() / 2;
+    let Some(network) = scene.model.network() else {
+        return Ok(Observation { step: 0.0, runs: 0 });
+    };
+    let mut fastest = LargestMode::default();
+    let mut frequency = 0.0;
+    // To the last digit, so that nothing but the mode is nudged.
+    for _ in 0..60 {
+        let mode = fastest.estimate(network, 0.0, &rest[..half]);
+        frequency = mode.map_or(0.0, |mode| mode.frequency());
+    }
+    let roots: Vec<f64> = network.masses().iter().map(|m| m.sqrt()).collect();
+    let weigh = |k: usize| roots[k % roots.len()];
+    for (k, z) in fastest.shape().iter().enumerate() {
+        nudged.state[half + k] = NUDGE * z / weigh(k);
+    }
+    // On an obstacle particles are pushed out at every step: what grows is told from a run beside it.
+    let obstacles = !network.spheres().is_empty() || network.floor().is_some();
+    let holds = |h: f64| {
+        let mut run = Simulation::with_fixed_steps(nudged.clone(), method, h)?;
+        let mut beside = if obstacles {
+            Some(Simulation::with_fixed_steps(still.clone(), method, h)?)
+        } else {
+            None
+        };
+        Ok(step_and_look(h, |count| {
+            let held = run.take_steps(count).is_ok()
+                && beside
+                    .as_mut()
+                    .is_none_or(|run| run.take_steps(count).is_ok());
+            let before = beside.as_ref().map_or(rest, Simulation::state);
+            let size: f64 = (0..half)
+                .map(|k| {
+                    let dx = frequency * (run.state()[k] - before[k]);
+                    let dv = run.state()[half + k] - before[half + k];
+                    (weigh(k) * dx).powi(2) + (weigh(k) * dv).powi(2)
+                })
+                .sum();
+            held && size.sqrt() < GROWTH * NUDGE
+        }))
+    };
+    bisect(guess, holds)
+}
+
+/// The largest step with which the scene runs from its start for [`HORIZON`] without gaining energy: no more than the
+/// most that it had in motion; a first-order scene without growing [`GROWTH`] times. Bisection begins at `guess` (s).
+///
+/// # Errors
+/// The method does not serve the scene.
+pub fn observe_from_start(
+    scene: &Scene,
+    method: &'static Method,
+    guess: f64,
+) -> Result<Observation, Error> {
+    let bound = match scene.model.network() {
+        None => GROWTH * norm(&scene.state),
+        Some(_) => {
+            let accurate = find("dop853").unwrap_or(method);
+            let mut run = Simulation::new(scene.clone(), accurate, 1e-6)?;
+            let energy = |run: &Simulation| run.energy().unwrap_or_default();
+            let start = energy(&run).total();
+            let mut motion: f64 = energy(&run).kinetic;
+            for look in 1..=LOOKS {
+                if run
+                    .advance_to(HORIZON * look as f64 / LOOKS as f64)
+                    .is_err()
+                {
+                    break;
+                }
+                motion = motion.max(energy(&run).kinetic);
+            }
+            start + motion
+        }
+    };
+    let holds = |h: f64| {
+        let mut run = Simulation::with_fixed_steps(scene.clone(), method, h)?;
+        Ok(step_and_look(h, |count| {
+            run.take_steps(count).is_ok()
+                && match run.energy() {
+                    None => norm(run.state()) < bound,
+                    Some(energy) => energy.total() < bound,
+                }
+        }))
+    };
+    bisect(guess, holds)
+}
+
+fn norm(y: &[f64]) -> f64 {
+    y.iter().map(|y| y * y).sum::<f64>().sqrt()
+}
+
+/// Takes [`HORIZON`] in steps of h, and looks after every few of them, at the end after each one.
+fn step_and_look(h: f64, mut look: impl FnMut(u64) -> bool) -> bool {
+    let steps = (HORIZON / h).ceil() as u64;
+    let mut left = steps;
+    while left > 0 {
+        let count = (steps / LOOKS).clamp(1, left);
+        if !look(count) {
+            return false;
+        }
+        left -= count;
+    }
+    (0..8).all(|_| look(1))
+}
+
+/// The largest step below which `holds` does, by bisection of its logarithm.
+fn bisect(guess: f64, holds: impl Fn(f64) -> Result<bool, Error>) -> Result<Observation, Error> {
+    let mut runs = 0;
+    let mut holds = |h: f64| {
+        runs += 1;
+        holds(h)
+    };
+    let guess = guess.clamp(1e-6, LONGEST);
+    let (mut low, mut high);
+    if holds(guess)? {
+        (low, high) = (guess, guess * 1.1);
+        while high < LONGEST && holds(high)? {
+            (low, high) = (high, high * 1.4);
+        }
+        if high >= LONGEST && holds(LONGEST)? {
+            let step = f64::INFINITY;
+            return Ok(Observation { step, runs });
+        }
+        high = high.min(LONGEST);
+    } else {
+        (low, high) = (guess / 1.1, guess);
+        while low > 1e-6 && !holds(low)? {
+            (low, high) = (low / 1.4, low);
+        }
+    }
+    while high / low > 1.0 + PRECISION {
+        let middle = (low * high).sqrt();
+        if holds(middle)? {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Ok(Observation { step: low, runs })
+}

@@ -1,0 +1,238 @@
+//! Predicted limits against those that mathematics gives, and against what the scenes themselves do.
+
+mod common;
+
+use a3_core::stability::{Growth, LargestMode, Mode, largest_step, spectrum};
+use a3_core::{
+    Grid, Mechanics, Network, Path, Spring, SpringKind, SpringLaw, Vector3, integrators,
+};
+use approx::assert_relative_eq;
+use common::{method, scene, scene_with_grid};
+
+fn undamped(frequency: f64) -> Mode {
+    Mode {
+        stiffness: frequency * frequency,
+        ..Mode::default()
+    }
+}
+
+#[test]
+fn growth_on_the_imaginary_axis() {
+    for w in [1.0, 30.0, 1e4] {
+        for y in [0.1, 0.5, 1.0, 2.0, 2.9, 7.0] {
+            for (name, expected) in [
+                ("euler", f64::hypot(1.0, y)),
+                ("trapezoid", (1.0 + y.powi(4) / 4.0).sqrt()),
+                ("midpoint", (1.0 + y.powi(4) / 4.0).sqrt()),
+                ("rk4", (1.0 - y.powi(6) / 72.0 + y.powi(8) / 576.0).sqrt()),
+            ] {
+                let radius = Growth::new(method(name), undamped(w))
+                    .unwrap()
+                    .of_step(y / w);
+                assert_relative_eq!(radius, expected, max_relative = 1e-11);
+            }
+        }
+    }
+}
+
+/// Each method's limits: on the real axis, on the imaginary one, and between them.
+#[test]
+fn limits_in_the_plane() {
+    let limit = |name: &str, mode: Mode| largest_step(method(name), &[mode]).unwrap().unwrap();
+    for (name, real) in [
+        ("euler", 2.0),
+        ("trapezoid", 2.0),
+        ("midpoint", 2.0),
+        ("rk4", 2.785_293_563),
+        ("rkf45", 3.677_706_621),
+        ("dopri5", 3.306_567_893),
+        ("dop853", 6.393_651_523),
+    ] {
+        let found = limit(name, Mode::of_eigenvalue(-1000.0, 0.0));
+        assert_relative_eq!(1000.0 * found.step, real, max_relative = 1e-3);
+        assert!(found.strict, "{name}");
+    }
+    // So fast a mode that what grows at all grows at once.
+    for (name, imaginary) in [
+        ("rk4", 2.828_427_125),
+        ("dopri5", 0.997_189_009),
+        ("dop853", 5.960_359_812),
+        ("symplectic", 2.0),
+        ("verlet", 2.0),
+        ("pefrl", 2.989_450),
+    ] {
+        let found = limit(name, undamped(1e6));
+        assert_relative_eq!(1e6 * found.step, imaginary, max_relative = 5e-3);
+        assert!(found.strict, "{name}");
+    }
+    for name in ["euler", "trapezoid", "midpoint", "rkf45"] {
+        let found = limit(name, undamped(100.0));
+        assert!(
+            !found.strict && 100.0 * found.step < 1.0,
+            "{name}: {found:?}"
+        );
+    }
+    let zetas = [0.01, 0.1, 0.5, 1.0, 2.0];
+    let w = 1e5;
+    for (name, limits) in [
+        (
+            "euler",
+            [0.020_000, 0.200_000, 1.000_000, 2.000_000, 0.535_898],
+        ),
+        (
+            "trapezoid",
+            [0.444_003, 1.049_755, 2.000_000, 2.000_000, 0.535_898],
+        ),
+        (
+            "rk4",
+            [2.848_570, 2.950_853, 2.622_542, 2.785_294, 0.746_317],
+        ),
+        (
+            "dopri5",
+            [1.872_130, 2.681_407, 3.398_992, 3.306_568, 0.885_992],
+        ),
+        (
+            "dop853",
+            [6.031_695, 6.281_012, 6.765_937, 6.393_652, 1.713_174],
+        ),
+        (
+            "symplectic",
+            [1.980_100, 1.809_975, 1.236_068, 0.828_427, 0.472_136],
+        ),
+        (
+            "verlet",
+            [2.000_133, 2.013_432, 2.399_357, 4.002_670, 8.000_000],
+        ),
+    ] {
+        for (zeta, expected) in zetas.into_iter().zip(limits) {
+            let mode = Mode {
+                stiffness: w * w,
+                drag: 2.0 * zeta * w,
+                damping: 0.0,
+            };
+            let found = limit(name, mode);
+            assert_relative_eq!(w * found.step, expected, max_relative = 2e-3);
+        }
+    }
+}
+
+/// 2 sqrt(k/m) cos(pi / (2n + 1)), for n free masses on a line, one end pinned.
+#[test]
+fn a_chain_has_its_frequency() {
+    for n in [1, 2, 5, 40] {
+        let mut network = Network::new(vec![0.5; n + 1]).unwrap();
+        let law = SpringLaw::new(200.0, 0.1, 0.0).unwrap();
+        for i in 0..n {
+            let kind = SpringKind::Structural;
+            network
+                .add_spring(Spring {
+                    kind,
+                    i,
+                    j: i + 1,
+                    law,
+                })
+                .unwrap();
+        }
+        network.pin(0, Path::Still(Vector3::zeros())).unwrap();
+        let mut y = vec![0.0; 6 * (n + 1)];
+        for (i, x) in y[..=n].iter_mut().enumerate() {
+            *x = 0.1 * i as f64;
+        }
+        let angle = std::f64::consts::PI / (2 * n + 1) as f64;
+        let expected = 2.0 * 400f64.sqrt() * angle.cos();
+        let found = spectrum(&network, 0.0, &y)[0].frequency();
+        assert_relative_eq!(found, expected, max_relative = 1e-4);
+    }
+}
+
+/// A flat square of springs of one stiffness, two corners pinned: w2 in units of k/m.
+#[test]
+fn a_cloth_has_its_frequency() {
+    for (side, expected) in [
+        (2, 2.707_107),
+        (3, 5.427_124),
+        (4, 7.140_427),
+        (5, 8.252_815),
+        (10, 9.589_049),
+        (20, 9.987_099),
+    ] {
+        let grid = Grid::new(side, side).unwrap();
+        let mut network = Network::new(vec![1.0; grid.particles()]).unwrap();
+        for family in grid.springs(1.0, [1.0; 3], 0.0).unwrap() {
+            network.add_family(family).unwrap();
+        }
+        let n = grid.particles();
+        let mut y = vec![0.0; 6 * n];
+        for k in 0..n {
+            (y[k], y[2 * n + k]) = ((k % side) as f64, (k / side) as f64);
+        }
+        for corner in [0, side - 1] {
+            let at = Vector3::new(y[corner], 0.0, y[2 * n + corner]);
+            network.pin(corner, Path::Still(at)).unwrap();
+        }
+        let found = spectrum(&network, 0.0, &y)[0].stiffness;
+        assert_relative_eq!(found, expected, max_relative = 2e-3);
+        let mut largest = LargestMode::default();
+        let quick = largest.estimate(&network, 0.0, &y[..3 * n]).unwrap();
+        assert_relative_eq!(quick.frequency(), expected.sqrt(), max_relative = 0.02);
+        for _ in 0..20 {
+            let _ = largest.estimate(&network, 0.0, &y[..3 * n]);
+        }
+        let again = largest.estimate(&network, 0.0, &y[..3 * n]).unwrap();
+        assert_relative_eq!(again.frequency(), expected.sqrt(), max_relative = 5e-3);
+    }
+}
+
+#[test]
+fn drag_and_spring_damping_are_told_apart() {
+    let mit = scene("mit");
+    let modes = spectrum(mit.model.system(), 0.0, &mit.state);
+    assert_relative_eq!(modes[0].frequency(), 81.87, max_relative = 1e-3);
+    assert_relative_eq!(modes[0].drag, 2.5, max_relative = 1e-9);
+    assert_eq!(modes[0].damping, 0.0);
+    let cloth = scene("cloth");
+    let network = cloth.model.network().unwrap();
+    let modes = spectrum(network, 0.0, &cloth.state);
+    assert_relative_eq!(modes[0].drag, 0.3, max_relative = 1e-9);
+    // 0.006 s times the stiffness, all of which is along the springs while none is stretched.
+    assert_relative_eq!(
+        modes[0].damping,
+        0.006 * modes[0].stiffness,
+        max_relative = 0.05
+    );
+    // The fastest are no faster than the sum of a particle's stiffnesses allows.
+    let bound = 2.0 * (4.0 * 2500.0 + 4.0 * 1250.0 + 4.0 * 625.0);
+    assert!(modes[0].stiffness < bound && modes[0].stiffness > 0.4 * bound);
+    let mut largest = LargestMode::default();
+    let (x, _) = cloth.state.split_at(network.inverse_masses().len() * 3);
+    let quick = largest.estimate(network, 0.0, x).unwrap();
+    assert_relative_eq!(quick.frequency(), modes[0].frequency(), max_relative = 0.02);
+}
+
+#[test]
+fn the_circle_has_one_mode() {
+    let circle = scene("simple");
+    let modes = spectrum(circle.model.system(), 0.0, &circle.state);
+    assert_eq!(modes.len(), 1);
+    assert_relative_eq!(modes[0].frequency(), 1.0, max_relative = 1e-8);
+    assert_eq!(modes[0].drag, 0.0);
+}
+
+#[test]
+fn a_scene_of_any_shape_has_a_spectrum() {
+    for entry in a3_core::scenes::SCENES {
+        let scene = entry.build(None).unwrap();
+        let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+        assert!(!modes.is_empty(), "{}", entry.name);
+        for m in integrators::METHODS {
+            if let Ok(Some(limit)) = largest_step(m, &modes) {
+                println!(
+                    "{:<10} {:<10} {:9.5} {}",
+                    entry.name, m.name, limit.step, limit.strict
+                );
+            }
+        }
+    }
+    let tall = scene_with_grid("cloth", 60, 4);
+    assert!(spectrum(tall.model.system(), 0.0, &tall.state)[0].frequency() > 0.0);
+}
