@@ -18,11 +18,19 @@ use crate::system::{Coupling, Mechanics};
 pub use observed::{Observation, observe_at_rest, observe_from_start, rest};
 pub use spectrum::{LargestMode, spectrum};
 
-/// A run is stable if no mode grows more than [`GROWTH`] times in this time (s). Methods that have a limit are as good
-/// as strict about it then; those that always grow, and slowly, get the step with which they do for so long.
+/// A run is stable if no mode grows more than [`GROWTH`] times in this time (s), or in [`STEPS`] if they take longer.
+/// Methods that have a limit are as good as strict about it then; those that always grow, and slowly, get the step with
+/// which they do for so long.
 pub const HORIZON: f64 = 10.0;
 /// See [`HORIZON`].
+pub const STEPS: f64 = 1000.0;
+/// See [`HORIZON`].
 pub const GROWTH: f64 = 10.0;
+
+/// The steps of h (s) in which nothing may grow.
+fn steps(h: f64) -> f64 {
+    (HORIZON / h).ceil().max(STEPS)
+}
 
 /// A mode of motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -179,7 +187,7 @@ impl Growth {
 pub struct Limit {
     /// In s; infinite where every step holds.
     pub step: f64,
-    /// Whether shorter steps do not grow at all. If not, they grow less than [`GROWTH`] times in [`HORIZON`].
+    /// Whether shorter steps do not grow at all. If not, they grow less than [`GROWTH`] times within [`HORIZON`].
     pub strict: bool,
     /// Which of the modes sets it.
     pub mode: usize,
@@ -194,9 +202,7 @@ pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Er
     let mut limit: Option<Limit> = None;
     for (k, mode) in modes.iter().enumerate().filter(|(_, m)| m.stiffness > 0.0) {
         let mut growth = Growth::new(method, *mode)?;
-        let fails = |growth: &mut Growth, h: f64| {
-            growth.of_step(h).ln() * (HORIZON / h).max(1.0) > GROWTH.ln()
-        };
+        let fails = |growth: &mut Growth, h: f64| growth.of_step(h).ln() * steps(h) > GROWTH.ln();
         // Fast motion by stiffness or by damping.
         let rate = mode.frequency().max(mode.drag + mode.damping);
         let longest = limit.map_or(1e4 / rate, |limit| limit.step.min(1e4 / rate));

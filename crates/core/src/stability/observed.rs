@@ -1,6 +1,6 @@
 //! Where a method fails in fact: the nonlinear scene itself, stepped with longer and shorter steps.
 
-use super::{GROWTH, HORIZON, LargestMode};
+use super::{GROWTH, HORIZON, LargestMode, steps};
 use crate::error::Error;
 use crate::integrators::{Method, find};
 use crate::scenes::Scene;
@@ -163,9 +163,9 @@ fn norm(y: &[f64]) -> f64 {
     y.iter().map(|y| y * y).sum::<f64>().sqrt()
 }
 
-/// Takes [`HORIZON`] in steps of h, and looks after every few of them, at the end after each one.
+/// Takes the steps in which nothing may grow, and looks after every few of them, at the end after each one.
 fn step_and_look(h: f64, mut look: impl FnMut(u64) -> bool) -> bool {
-    let steps = (HORIZON / h).ceil() as u64;
+    let steps = steps(h) as u64;
     let mut left = steps;
     while left > 0 {
         let count = (steps / LOOKS).clamp(1, left);
