@@ -20,6 +20,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod accuracy;
 pub mod colliders;
 mod error;
 pub mod forces;

@@ -269,6 +269,21 @@ impl Network {
         self.springs().filter(move |s| s.i == i || s.j == i)
     }
 
+    /// Makes every spring so many times as stiff, and damps it by the root of that more: its damping ratio stays.
+    ///
+    /// # Errors
+    /// The factor is not a finite number above 0.
+    pub fn scale_stiffness(&mut self, factor: f64) -> Result<(), Error> {
+        positive("the factor of the stiffness", factor)?;
+        let families = self.families.iter_mut().map(|family| &mut family.law);
+        let list = self.list.iter_mut().map(|spring| &mut spring.law);
+        for law in families.chain(list) {
+            law.stiffness *= factor;
+            law.damping *= factor.sqrt();
+        }
+        Ok(())
+    }
+
     fn laws(&self) -> impl Iterator<Item = SpringLaw> {
         self.families
             .iter()

@@ -116,8 +116,8 @@ pub fn observe_at_rest(
     bisect(guess, holds)
 }
 
-/// The largest step with which the scene runs from its start for [`HORIZON`] without gaining energy: no more than the
-/// most that it had in motion; a first-order scene without growing [`GROWTH`] times. Bisection begins at `guess` (s).
+/// The largest step with which the scene runs from its start for [`HORIZON`] without gaining energy: no more beyond
+/// the most that it has in truth than its motion has at most; a first-order scene without growing [`GROWTH`] times. Bisection begins at `guess` (s).
 ///
 /// # Errors
 /// The method does not serve the scene.
@@ -132,7 +132,7 @@ pub fn observe_from_start(
             let accurate = find("dop853").unwrap_or(method);
             let mut run = Simulation::new(scene.clone(), accurate, 1e-6)?;
             let energy = |run: &Simulation| run.energy().unwrap_or_default();
-            let start = energy(&run).total();
+            let mut most = energy(&run).total();
             let mut motion: f64 = energy(&run).kinetic;
             for look in 1..=LOOKS {
                 if run
@@ -141,9 +141,10 @@ pub fn observe_from_start(
                 {
                     break;
                 }
+                most = most.max(energy(&run).total());
                 motion = motion.max(energy(&run).kinetic);
             }
-            start + motion
+            most + motion
         }
     };
     let holds = |h: f64| {

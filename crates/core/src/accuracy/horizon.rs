@@ -1,0 +1,92 @@
+//! How long errors mean something: motion that is chaotic makes large ones of the smallest.
+
+use super::GoOn;
+use crate::error::Error;
+use crate::integrators::find;
+use crate::random::SplitMix;
+use crate::scenes::Scene;
+use crate::simulation::Simulation;
+use crate::stability::spectrum;
+
+/// Errors may grow by this much on their own.
+const AMPLIFICATION: f64 = 1e4;
+/// What two runs begin with between them, over the scene's radius.
+const SEPARATION: f64 = 1e-8;
+/// Horizons that are round numbers (s).
+const ROUND: [f64; 11] = [0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0];
+
+/// How far a scene can be foretold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Horizon {
+    /// A round time until which two runs that start side by side separate less than ten-thousandfold (s).
+    pub until: f64,
+    /// The time in which their separation grows by the factor e (s); infinite if it does not.
+    pub lyapunov: f64,
+}
+
+/// Estimates it from two runs that start side by side, up to ten seconds; three if the scene's fastest motion takes less
+/// than a tenth of a second. `None` if it was told to stop.
+///
+/// # Errors
+/// The scene cannot be run.
+pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
+    let accurate = find("dop853")
+        .ok_or_else(|| Error::Invalid("no method to look ahead with is in the table".into()))?;
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    let fastest = modes.first().map_or(1.0, crate::stability::Mode::frequency);
+    let longest = if fastest > 20.0 * std::f64::consts::PI {
+        3.0
+    } else {
+        10.0
+    };
+    let mut run = Simulation::new(scene.clone(), accurate, 1e-8)?;
+    let n = 3 * run.particles();
+    let mut random = SplitMix(2);
+    let mut beside = scene.clone();
+    let size = SEPARATION * run.extent().1;
+    for (k, x) in beside.state[..n].iter_mut().enumerate() {
+        let pinned = scene
+            .model
+            .network()
+            .is_some_and(|network| network.is_pinned(k % (n / 3)));
+        if !pinned {
+            *x += size * random.between(-1.0, 1.0);
+        }
+    }
+    let mut beside = Simulation::new(beside, accurate, 1e-8)?;
+    let distance = |a: &Simulation, b: &Simulation| {
+        let squares = a.state()[..n].iter().zip(&b.state()[..n]);
+        squares.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    };
+    let first = distance(&run, &beside);
+    let (mut until, mut most, mut grown) = (ROUND[0], 1.0f64, (ROUND[0], 1.0f64));
+    let parts = 10.0;
+    let mut time = 0.0;
+    'rounds: for round in ROUND.into_iter().filter(|t| *t <= longest) {
+        let begin = time;
+        for part in 1..=10 {
+            if !go_on() {
+                return Ok(None);
+            }
+            time = begin + (round - begin) * f64::from(part) / parts;
+            if run.advance_to(time).is_err() || beside.advance_to(time).is_err() {
+                break 'rounds;
+            }
+            most = most.max(distance(&run, &beside) / first);
+            if most > AMPLIFICATION {
+                grown = (time, most);
+                break 'rounds;
+            }
+        }
+        until = round;
+        grown = (time, most);
+    }
+    let exponent = grown.1.ln() / grown.0;
+    // A few times is no chaos.
+    let lyapunov = if grown.1 > 30.0 {
+        1.0 / exponent
+    } else {
+        f64::INFINITY
+    };
+    Ok(Some(Horizon { until, lyapunov }))
+}

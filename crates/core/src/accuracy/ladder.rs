@@ -1,0 +1,60 @@
+//! The settings at which a method is tried, from the coarsest that makes sense.
+
+use super::Frames;
+use crate::error::Error;
+use crate::integrators::Method;
+use crate::scenes::Scene;
+use crate::stability::{largest_step, spectrum};
+
+/// From one step to the next.
+const RUNG: f64 = 1.5;
+/// Steps past the limit begin at so many times it: one or two of them, to show that they fail.
+const PAST: f64 = 1.4;
+/// The tolerances of adaptive methods, powers of ten in halves.
+const TOLERANCES: (i32, i32) = (-2, -24);
+
+/// Steps (s) that fit the frames, from just past the method's limit down, or relative tolerances from 0.1 down: coarse
+/// ones first, and as many as have at most `most` steps in all.
+///
+/// # Errors
+/// The method does not serve the scene.
+pub fn ladder(
+    scene: &Scene,
+    method: &'static Method,
+    frames: &Frames,
+    most: u64,
+) -> Result<Vec<f64>, Error> {
+    let system = scene.model.system();
+    method.integrator(system)?;
+    if method.is_adaptive() {
+        return Ok((TOLERANCES.1..=TOLERANCES.0)
+            .rev()
+            .map(|half| {
+                let digits = if half % 2 == 0 { 1.0 } else { 3.0 };
+                let power = (f64::from(half) / 2.0).floor() as i32;
+                digits / 10f64.powi(-power)
+            })
+            .collect());
+    }
+    let modes = spectrum(system, 0.0, &scene.state);
+    let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
+    let longest = (PAST * limit).min(frames.until / 6.0);
+    let mut steps = vec![];
+    // Several frames a step, while that divides their number.
+    let spacing = frames.spacing();
+    let mut last = f64::INFINITY;
+    for stride in (2..=frames.count).rev() {
+        let h = stride as f64 * spacing;
+        if frames.count.is_multiple_of(stride) && h <= longest && h <= last / RUNG {
+            steps.push(h);
+            last = h;
+        }
+    }
+    // Several steps a frame.
+    let mut parts = (spacing / longest).ceil().max(1.0) as u64;
+    while parts * frames.count <= most {
+        steps.push(spacing / parts as f64);
+        parts = ((parts as f64 * RUNG) as u64).max(parts + 1);
+    }
+    Ok(steps)
+}

@@ -1,0 +1,218 @@
+//! How accurate a method is on a scene: true errors, against a reference that is made here and knows its own.
+
+mod choose;
+mod horizon;
+mod ladder;
+mod reference;
+
+use crate::error::{BlowUp, Error};
+use crate::forces::springs;
+use crate::integrators::{Method, Work};
+use crate::network::Network;
+use crate::scenes::Scene;
+use crate::simulation::Simulation;
+use crate::spring::SpringKind;
+
+pub use choose::{Candidate, choose};
+pub use horizon::{Horizon, horizon};
+pub use ladder::ladder;
+pub use reference::Reference;
+
+/// Asked between frames whether to go on.
+pub type GoOn<'a> = &'a dyn Fn() -> bool;
+
+/// The times at which runs are compared: `count` equal parts of `until`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frames {
+    /// The end (s).
+    pub until: f64,
+    /// How many, a multiple of 60, so that many steps fit.
+    pub count: u64,
+}
+
+impl Frames {
+    /// At least 60 a second, and at least 60.
+    #[must_use]
+    pub fn new(until: f64) -> Self {
+        Self {
+            until,
+            count: 60 * until.ceil().max(1.0) as u64,
+        }
+    }
+
+    /// From one to the next (s).
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.until / self.count as f64
+    }
+
+    /// When frame k is (s).
+    #[must_use]
+    pub fn time(&self, k: u64) -> f64 {
+        if k == self.count {
+            self.until
+        } else {
+            k as f64 * self.spacing()
+        }
+    }
+}
+
+/// What is compared of a state.
+#[derive(Clone, Debug, Default)]
+struct Snapshot {
+    positions: Vec<f64>,
+    energy: f64,
+    /// Length over rest length of each structural spring.
+    strains: Vec<f64>,
+}
+
+impl Snapshot {
+    fn of(run: &Simulation) -> Self {
+        let positions = run.state()[..3 * run.particles()].to_vec();
+        let strains = run.model().network().map_or(vec![], |network| {
+            structural(network)
+                .map(|s| springs::length(&positions, &s) / s.law.rest_length)
+                .collect()
+        });
+        Self {
+            energy: run.energy().map_or(0.0, |energy| energy.total()),
+            positions,
+            strains,
+        }
+    }
+
+    fn errors(&self, other: &Self) -> Errors {
+        let square =
+            |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum() };
+        let particles = (self.positions.len() / 3).max(1) as f64;
+        let springs = self.strains.len().max(1) as f64;
+        Errors {
+            position: (square(&self.positions, &other.positions) / particles).sqrt(),
+            energy: (self.energy - other.energy).abs(),
+            strain: (square(&self.strains, &other.strains) / springs).sqrt(),
+        }
+    }
+}
+
+fn structural(network: &Network) -> impl Iterator<Item = crate::Spring> {
+    network
+        .springs()
+        .filter(|s| s.kind == SpringKind::Structural && s.law.rest_length > 0.0)
+}
+
+/// The largest errors over the frames of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Root mean square over the particles of their distance from where they should be (m).
+    pub position: f64,
+    /// Of the total energy (J); 0 for a first-order scene.
+    pub energy: f64,
+    /// Root mean square over the structural springs of length over rest length; 0 without any.
+    pub strain: f64,
+}
+
+impl Errors {
+    fn max(self, other: Self) -> Self {
+        Self {
+            position: self.position.max(other.position),
+            energy: self.energy.max(other.energy),
+            strain: self.strain.max(other.strain),
+        }
+    }
+}
+
+/// Which of the errors counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Metric {
+    /// Of positions (m).
+    #[default]
+    Position,
+    /// Of the total energy (J).
+    Energy,
+    /// Of length over rest length.
+    Strain,
+}
+
+impl Metric {
+    /// That one.
+    #[must_use]
+    pub fn of(self, errors: &Errors) -> f64 {
+        match self {
+            Self::Position => errors.position,
+            Self::Energy => errors.energy,
+            Self::Strain => errors.strain,
+        }
+    }
+}
+
+/// How a run went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// Over the frames that it reached.
+    pub errors: Errors,
+    /// What it cost.
+    pub work: Work,
+    /// Where it was lost, if it was.
+    pub lost: Option<BlowUp>,
+}
+
+/// Takes a run from its beginning to the end of the frames, and visits each frame that is the end of a step, or, of an
+/// adaptive method, every frame. Steps that neither divide the spacing of the frames nor are a multiple of it are
+/// shortened at each frame. Where the run was lost, if it was; `None` if it was told to stop.
+///
+/// # Errors
+/// The run cannot go on, for another reason than a blow-up.
+pub fn run(
+    simulation: &mut Simulation,
+    frames: &Frames,
+    go_on: GoOn,
+    mut visit: impl FnMut(u64, &Simulation),
+) -> Result<Option<Option<BlowUp>>, Error> {
+    let ratio = simulation.setting() / frames.spacing();
+    let (stride, per_frame) = (ratio.round().max(1.0), (1.0 / ratio).round().max(1.0));
+    let fits = (ratio - stride / per_frame).abs() < 1e-9 * ratio;
+    let adaptive = simulation.method().is_adaptive();
+    let stride = if fits && !adaptive { stride as u64 } else { 1 };
+    let mut k = 0;
+    while k < frames.count {
+        if !go_on() {
+            return Ok(None);
+        }
+        k = (k + stride).min(frames.count);
+        // Counted steps gather no sliver of one at the end of a frame.
+        let result = if fits && !adaptive && k < frames.count {
+            simulation.take_steps(per_frame as u64)
+        } else {
+            simulation.advance_to(frames.time(k))
+        };
+        match result {
+            Ok(()) => visit(k, simulation),
+            Err(Error::BlowUp(lost)) => return Ok(Some(Some(lost))),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(Some(None))
+}
+
+/// Runs a scene and compares it with its reference. `None` if it was told to stop.
+///
+/// # Errors
+/// The method does not serve the scene, or the setting makes no sense.
+pub fn measure(
+    scene: &Scene,
+    method: &'static Method,
+    setting: f64,
+    reference: &Reference,
+    go_on: GoOn,
+) -> Result<Option<Outcome>, Error> {
+    let mut simulation = Simulation::new(scene.clone(), method, setting)?;
+    let mut errors = Errors::default();
+    let end = run(&mut simulation, &reference.frames, go_on, |k, run| {
+        errors = errors.max(reference.errors(k, run));
+    })?;
+    Ok(end.map(|lost| Outcome {
+        errors,
+        work: simulation.work(),
+        lost,
+    }))
+}

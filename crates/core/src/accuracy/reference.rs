@@ -1,0 +1,108 @@
+//! A reference: DOP853 at two tolerances, and PEFRL with its step halved and extrapolated, or, without masses, classical
+//! Runge-Kutta. What they disagree by is what the reference is not sure of.
+
+use super::{Errors, Frames, GoOn, Snapshot, run};
+use crate::error::Error;
+use crate::integrators::{Method, Work, find};
+use crate::scenes::Scene;
+use crate::simulation::Simulation;
+use crate::stability::{largest_step, spectrum};
+
+/// The tolerances of DOP853: tighter ones lose more to rounding than they gain.
+const TOLERANCES: [f64; 2] = [1e-12, 1e-11];
+/// The longer of the steps of the other family, over its largest stable one.
+const SHARE: f64 = 1.0 / 16.0;
+
+/// Where everything should be, frame by frame.
+pub struct Reference {
+    /// When.
+    pub frames: Frames,
+    /// What it is not sure of.
+    pub floor: Errors,
+    /// What it took to make.
+    pub work: Work,
+    snapshots: Vec<Snapshot>,
+}
+
+impl Reference {
+    /// Makes the reference of a scene, as it starts. `None` if it was told to stop.
+    ///
+    /// # Errors
+    /// The scene cannot be run, or the reference itself is lost.
+    pub fn new(scene: &Scene, frames: Frames, go_on: GoOn) -> Result<Option<Self>, Error> {
+        let mut work = Work::default();
+        let mut trajectory = |method: &'static Method, setting: f64| {
+            let mut simulation = Simulation::new(scene.clone(), method, setting)?;
+            let mut snapshots = vec![];
+            let end = run(&mut simulation, &frames, go_on, |_, run| {
+                snapshots.push(Snapshot::of(run));
+            })?;
+            work += simulation.work();
+            match end {
+                None => Ok(None),
+                Some(Some(lost)) => Err(Error::BlowUp(lost)),
+                Some(None) => Ok(Some(snapshots)),
+            }
+        };
+        let accurate = find("dop853").ok_or_else(missing)?;
+        let Some(best) = trajectory(accurate, TOLERANCES[0])? else {
+            return Ok(None);
+        };
+        let Some(looser) = trajectory(accurate, TOLERANCES[1])? else {
+            return Ok(None);
+        };
+        let system = scene.model.system();
+        let name = if system.mechanics().is_some() {
+            "pefrl"
+        } else {
+            "rk4"
+        };
+        let other = find(name).ok_or_else(missing)?;
+        let modes = spectrum(system, 0.0, &scene.state);
+        let limit = largest_step(other, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
+        let parts = (frames.spacing() / (SHARE * limit)).ceil().max(1.0);
+        let h = frames.spacing() / parts;
+        let Some(coarse) = trajectory(other, h)? else {
+            return Ok(None);
+        };
+        let Some(fine) = trajectory(other, 0.5 * h)? else {
+            return Ok(None);
+        };
+        let mut floor = Errors::default();
+        for (k, best) in best.iter().enumerate() {
+            floor = floor
+                .max(best.errors(&looser[k]))
+                .max(best.errors(&extrapolate(&coarse[k], &fine[k])));
+        }
+        Ok(Some(Self {
+            frames,
+            floor,
+            work,
+            snapshots: best,
+        }))
+    }
+
+    /// The errors of a run that is at frame k, from 1 on.
+    #[must_use]
+    pub fn errors(&self, k: u64, run: &Simulation) -> Errors {
+        Snapshot::of(run).errors(&self.snapshots[k as usize - 1])
+    }
+}
+
+fn missing() -> Error {
+    Error::Invalid("the methods that make a reference are not in the table".into())
+}
+
+/// Richardson's: the error of order 4 cancels.
+fn extrapolate(coarse: &Snapshot, fine: &Snapshot) -> Snapshot {
+    let both = |coarse: f64, fine: f64| fine + (fine - coarse) / 15.0;
+    let all = |coarse: &[f64], fine: &[f64]| {
+        let pairs = coarse.iter().zip(fine);
+        pairs.map(|(c, f)| both(*c, *f)).collect()
+    };
+    Snapshot {
+        positions: all(&coarse.positions, &fine.positions),
+        energy: both(coarse.energy, fine.energy),
+        strains: all(&coarse.strains, &fine.strains),
+    }
+}

@@ -1,0 +1,197 @@
+//! References that know what they are not sure of, errors that are true, and choices that are the best.
+
+mod common;
+
+use a3_core::accuracy::{Frames, Metric, Reference, choose, horizon, ladder, measure};
+use a3_core::{Scene, integrators, scenes};
+use common::{method, scene};
+
+const GO_ON: &dyn Fn() -> bool = &|| true;
+
+fn reference(scene: &Scene, until: f64) -> Reference {
+    Reference::new(scene, Frames::new(until), GO_ON)
+        .unwrap()
+        .unwrap()
+}
+
+#[test]
+fn on_the_circle_the_error_is_the_known_one() {
+    let circle = scene("simple");
+    let reference = reference(&circle, 10.0);
+    assert!(reference.floor.position < 1e-11, "{:?}", reference.floor);
+    for (name, setting) in [
+        ("rk4", 0.1),
+        ("euler", 1.0 / 120.0),
+        ("trapezoid", 0.05),
+        ("rk4", 0.5),
+    ] {
+        let outcome = measure(&circle, method(name), setting, &reference, GO_ON)
+            .unwrap()
+            .unwrap();
+        // On its own, step by step, against sine and cosine.
+        let mut y = circle.state.clone();
+        let mut integrator = method(name).integrator(circle.model.system()).unwrap();
+        let mut worst: f64 = 0.0;
+        let steps = (10.0 / setting).round() as u64;
+        for k in 0..steps {
+            let t = k as f64 * setting;
+            integrator
+                .step(circle.model.system(), t, setting, &mut y)
+                .unwrap();
+            let t = t + setting;
+            worst = worst.max((y[0] - t.cos()).hypot(y[1] - t.sin()));
+        }
+        let found = outcome.errors.position;
+        assert!(
+            (found / worst - 1.0).abs() < 0.02,
+            "{name}: {found:e}, {worst:e}"
+        );
+        assert!(outcome.lost.is_none());
+        assert!(outcome.work.evaluations >= steps);
+    }
+}
+
+/// The floor is what three independent runs disagree by, and no smaller than the error of the reference itself.
+#[test]
+fn references_agree_with_themselves() {
+    for entry in scenes::SCENES {
+        let scene = entry.build(None).unwrap();
+        let horizon = horizon(&scene, GO_ON).unwrap().unwrap();
+        let reference = reference(&scene, horizon.until);
+        println!(
+            "{:<11} until {} s, lyapunov {:.2} s, floor {:.1e} m {:.1e} J {:.1e}, {:?}",
+            entry.name,
+            horizon.until,
+            horizon.lyapunov,
+            reference.floor.position,
+            reference.floor.energy,
+            reference.floor.strain,
+            reference.work.evaluations,
+        );
+        if entry.name != "mit-sphere" {
+            assert!(reference.floor.position < 1e-7, "{}", entry.name);
+        }
+    }
+}
+
+#[test]
+fn errors_fall_with_the_step_as_the_order_says() {
+    let mit = scene("mit");
+    let reference = reference(&mit, 0.5);
+    for m in integrators::METHODS.iter().filter(|m| !m.is_adaptive()) {
+        let h = reference.frames.spacing() / 32.0;
+        let error = |h: f64| {
+            let outcome = measure(&mit, m, h, &reference, GO_ON).unwrap().unwrap();
+            outcome.errors.position
+        };
+        let (coarse, fine) = (error(h), error(0.5 * h));
+        let order = (coarse / fine).log2();
+        println!("{}: {coarse:.1e} {fine:.1e} {order:.2}", m.name);
+        assert!(
+            fine < 3.0 * reference.floor.position || (order - f64::from(m.order)).abs() < 0.3,
+            "{}: {order}",
+            m.name
+        );
+    }
+}
+
+#[test]
+fn ladders_go_down_from_just_past_the_limit() {
+    let mit = scene("mit");
+    let frames = Frames::new(1.0);
+    for m in integrators::METHODS {
+        let rungs = ladder(&mit, m, &frames, 20_000).unwrap();
+        assert!(rungs.len() > 5, "{}", m.name);
+        assert!(
+            rungs.windows(2).all(|w| w[0] > w[1]),
+            "{}: {rungs:?}",
+            m.name
+        );
+        if !m.is_adaptive() {
+            for h in &rungs {
+                let steps = 1.0 / h;
+                assert!((steps - steps.round()).abs() < 1e-6 && steps < 20_001.0);
+            }
+        }
+    }
+    assert!(ladder(&scene("simple"), method("verlet"), &frames, 1000).is_err());
+}
+
+#[test]
+fn a_run_can_be_stopped() {
+    let mit = scene("mit");
+    let stop: &dyn Fn() -> bool = &|| false;
+    assert!(
+        Reference::new(&mit, Frames::new(1.0), stop)
+            .unwrap()
+            .is_none()
+    );
+    assert!(horizon(&mit, stop).unwrap().is_none());
+    let reference = reference(&mit, 0.1);
+    assert!(
+        measure(&mit, method("rk4"), 0.01, &reference, stop)
+            .unwrap()
+            .is_none()
+    );
+    assert!(
+        choose(&mit, &reference, Metric::Position, 1e-3, stop)
+            .unwrap()
+            .is_none()
+    );
+}
+
+/// The choice costs at most 1.3 times the best that a search of every method at many settings finds.
+#[test]
+fn the_choice_is_the_best() {
+    for entry in scenes::SCENES {
+        let scene = entry.build(None).unwrap();
+        let horizon = horizon(&scene, GO_ON).unwrap().unwrap();
+        let reference = reference(&scene, horizon.until.min(1.0));
+        let mut runs: Vec<(f64, f64)> = vec![];
+        for m in integrators::METHODS {
+            let Ok(rungs) = ladder(&scene, m, &reference.frames, 4000) else {
+                continue;
+            };
+            for setting in rungs {
+                let outcome = measure(&scene, m, setting, &reference, GO_ON)
+                    .unwrap()
+                    .unwrap();
+                if outcome.lost.is_none() {
+                    runs.push((outcome.errors.position, outcome.work.total()));
+                }
+            }
+        }
+        for error in [1e-2, 1e-4, 1e-6] {
+            let best = runs
+                .iter()
+                .filter(|(e, _)| *e <= error)
+                .map(|(_, work)| *work)
+                .fold(f64::INFINITY, f64::min);
+            let found = choose(&scene, &reference, Metric::Position, error, GO_ON)
+                .unwrap()
+                .unwrap();
+            let Some(pick) = found.first() else {
+                assert!(
+                    best.is_infinite(),
+                    "{} at {error:e}: nothing, but {best}",
+                    entry.name
+                );
+                continue;
+            };
+            println!(
+                "{:<11} {error:e}: {} {:.3e}, {:.0} (best {best:.0}), then {:?}",
+                entry.name,
+                pick.method.name,
+                pick.setting,
+                pick.outcome.work.total(),
+                found.get(1).map(|c| (c.method.name, c.setting)),
+            );
+            assert!(pick.outcome.errors.position <= error);
+            assert!(
+                pick.outcome.work.total() <= 1.3 * best,
+                "{} at {error:e}",
+                entry.name
+            );
+        }
+    }
+}
