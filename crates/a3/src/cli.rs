@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use a3_core::{Error, Grid, Method, SceneEntry, Simulation, integrators, scenes};
+use a3_core::{Grid, Method, Scene, SceneEntry, Simulation, integrators, scenes};
 use clap::error::ErrorKind;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::Failure;
 
@@ -30,6 +30,12 @@ pub enum Command {
     Simulate(Simulate),
     /// Simulate without a window and write a picture as PNG
     Render(Render),
+    /// Chart speed against accuracy: every solver on your scene, its true error and its cost
+    Chart(Chart),
+    /// Show where each solver fails: its largest stable step on your scene, predicted and observed
+    Stability(Stability),
+    /// Choose the cheapest solver and step for an error, or the most accurate for a budget
+    Choose(Choose),
     /// List the scenes: particles, springs, length of the state, forces
     Scenes,
     /// List the solvers: order, evaluations per step, default step
@@ -104,6 +110,86 @@ pub struct Render {
     pub springs_of: Option<usize>,
 }
 
+/// What counts as the error.
+#[derive(Clone, Copy, ValueEnum, PartialEq)]
+pub enum Error {
+    /// Of positions, root mean square over the particles (m)
+    Position,
+    /// Of the total energy (J)
+    Energy,
+    /// Of the springs' lengths over their rest lengths, root mean square
+    Strain,
+}
+
+/// What counts as the cost.
+#[derive(Clone, Copy, ValueEnum, PartialEq)]
+pub enum Work {
+    /// Time on this machine
+    Seconds,
+    /// Evaluations of the forces: the same on every machine
+    Evaluations,
+}
+
+#[derive(Args)]
+pub struct Chart {
+    #[command(flatten)]
+    pub what: What,
+    /// Solvers to compare, such as t,r,v; without it, all that serve the scene
+    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = solver)]
+    pub solvers: Vec<&'static Method>,
+    /// Simulated seconds; without it, as long as errors mean something on this scene
+    #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
+    pub until: Option<f64>,
+    /// What counts as the error
+    #[arg(long, default_value = "position")]
+    pub error: Error,
+    /// What counts as the cost
+    #[arg(long, default_value = "seconds")]
+    pub work: Work,
+    /// A panel for each factor of the springs' stiffness, such as 1,10,100
+    #[arg(long, value_name = "FACTORS", value_delimiter = ',', default_value = "1", value_parser = factor, allow_negative_numbers = true)]
+    pub stiffness: Vec<f64>,
+    /// Picture to write, ending in .svg or .png; without it, a3-chart-SCENE.svg
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// File of all runs, ending in .csv or .json; if it is there, the chart goes on from it
+    #[arg(long, value_name = "FILE")]
+    pub data: Option<PathBuf>,
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = picture_size, allow_hyphen_values = true)]
+    pub size: (u32, u32),
+}
+
+#[derive(Args)]
+pub struct Stability {
+    #[command(flatten)]
+    pub what: What,
+    /// Solvers to look at, such as t,r,v; without it, all that serve the scene
+    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = solver)]
+    pub solvers: Vec<&'static Method>,
+    /// Picture to write, ending in .svg or .png; without it, a3-stability-SCENE.svg
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1400x1000", value_parser = picture_size, allow_hyphen_values = true)]
+    pub size: (u32, u32),
+}
+
+#[derive(Args)]
+pub struct Choose {
+    #[command(flatten)]
+    pub what: What,
+    /// Largest RMS error of the positions in m, such as 1e-3
+    #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true, required_unless_present = "budget", conflicts_with = "budget")]
+    pub error: Option<f64>,
+    /// Computing time for each frame of 1/60 s in ms: chooses the most accurate within it
+    #[arg(long, value_name = "MS_PER_FRAME", value_parser = budget, allow_negative_numbers = true)]
+    pub budget: Option<f64>,
+    /// Simulated seconds; without it, as long as errors mean something on this scene
+    #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
+    pub until: Option<f64>,
+}
+
 /// A run without a window.
 #[derive(Args)]
 pub struct Run {
@@ -141,7 +227,7 @@ impl What {
         }
         let step = step.unwrap_or_else(|| scene.default_setting(solver));
         let mut simulation = Simulation::new(scene, solver, step).map_err(|e| match e {
-            Error::NeedsMechanics { .. } => {
+            a3_core::Error::NeedsMechanics { .. } => {
                 let any = integrators::METHODS
                     .iter()
                     .filter(|m| !m.needs_mechanics)
@@ -154,6 +240,19 @@ impl What {
         simulation.set_wind(self.wind);
         simulation.set_swinging(self.swing);
         Ok(simulation)
+    }
+}
+
+impl What {
+    /// The scene, with the wind and the swing that were asked for.
+    pub fn scene(&self) -> Result<Scene, Failure> {
+        // Euler serves every scene.
+        let run = self.simulation(&integrators::METHODS[0], None)?;
+        Ok(Scene {
+            model: run.model().clone(),
+            state: run.state().to_vec(),
+            ..run.scene().clone()
+        })
     }
 }
 
@@ -200,6 +299,41 @@ fn until(text: &str) -> Result<f64, String> {
     }
 }
 
+fn horizon(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(time) if (0.01..=1000.0).contains(&time) => Ok(time),
+        _ => Err("the end is a number of seconds from 0.01 to 1000, such as 1".into()),
+    }
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(factor) if (1e-6..=1e6).contains(&factor) => Ok(factor),
+        _ => Err("a factor of the stiffness is a number from 1e-6 to 1e6, such as 10".into()),
+    }
+}
+
+fn error(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(error) if (1e-12..=10.0).contains(&error) => Ok(error),
+        _ => Err("an error is a number of metres from 1e-12 to 10, such as 1e-3".into()),
+    }
+}
+
+fn budget(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(budget) if (1e-4..=1e5).contains(&budget) => Ok(budget),
+        _ => Err("a budget is a number of milliseconds from 1e-4 to 1e5, such as 2".into()),
+    }
+}
+
+fn picture_size(text: &str) -> Result<(u32, u32), String> {
+    match pair(text) {
+        Some((w, h)) if (320..=8000).contains(&w) && (240..=8000).contains(&h) => Ok((w, h)),
+        _ => Err("a picture's size is WIDTHxHEIGHT, from 320x240 to 8000x8000, such as 1200x800".into()),
+    }
+}
+
 fn solver(text: &str) -> Result<&'static Method, String> {
     integrators::find(text).ok_or_else(|| {
         let names: Vec<_> = integrators::METHODS
@@ -207,7 +341,7 @@ fn solver(text: &str) -> Result<&'static Method, String> {
             .map(|m| format!("{} ({})", m.letter, m.name))
             .collect();
         format!(
-            "the solvers are {}; the commands, which come first, simulate, render, scenes, solvers",
+            "the solvers are {}; the commands, which come first, simulate, render, chart, stability, choose, scenes, solvers",
             names.join(", ")
         )
     })

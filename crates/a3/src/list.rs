@@ -4,8 +4,8 @@ use a3_core::{integrators, scenes};
 
 use crate::{Failure, output};
 
-/// Prints columns as wide as their widest cell; those whose heading starts with a space are right-aligned.
-fn print_table(rows: &[Vec<String>]) -> Result<(), Failure> {
+/// Columns as wide as their widest cell; those whose heading starts with a space are right-aligned.
+pub fn table(rows: &[Vec<String>]) -> String {
     let headings = &rows[0];
     let width = |c: usize| {
         rows.iter()
@@ -29,11 +29,9 @@ fn print_table(rows: &[Vec<String>]) -> Result<(), Failure> {
             .collect::<Vec<_>>()
             .join("  ")
     };
-    let text: String = rows
-        .iter()
+    rows.iter()
         .map(|row| line(row).trim_end().to_owned() + "\n")
-        .collect();
-    output::say(&text)
+        .collect()
 }
 
 pub fn scenes() -> Result<(), Failure> {
@@ -62,7 +60,7 @@ pub fn scenes() -> Result<(), Failure> {
             entry.summary.into(),
         ]);
     }
-    print_table(&rows)
+    output::say(&table(&rows))
 }
 
 pub fn solvers() -> Result<(), Failure> {
@@ -99,5 +97,5 @@ pub fn solvers() -> Result<(), Failure> {
             m.title.into(),
         ]);
     }
-    print_table(&rows)
+    output::say(&table(&rows))
 }

@@ -3,14 +3,19 @@
 #![forbid(unsafe_code)]
 
 mod app;
+mod chart;
+mod choose;
 mod cli;
 mod headless;
+mod interrupt;
 mod list;
 mod output;
+mod plot;
 mod progress;
 mod render;
 mod show;
 mod simulate;
+mod stability;
 
 use std::process::ExitCode;
 
@@ -23,6 +28,8 @@ enum Failure {
     Usage(String),
     /// It could have been, and was not: exit code 1.
     Run(String),
+    /// The user ended it: exit code 130.
+    Interrupted(String),
 }
 
 impl Failure {
@@ -41,6 +48,9 @@ fn main() -> ExitCode {
             None => app::run(&cli.window),
             Some(Command::Simulate(options)) => simulate::run(&options),
             Some(Command::Render(options)) => render::run(&options),
+            Some(Command::Chart(options)) => chart::run(&options),
+            Some(Command::Stability(options)) => stability::run(&options),
+            Some(Command::Choose(options)) => choose::run(&options),
             Some(Command::Scenes) => list::scenes(),
             Some(Command::Solvers) => list::solvers(),
         },
@@ -50,6 +60,10 @@ fn main() -> ExitCode {
         Ok(()) => return ExitCode::SUCCESS,
         Err(Failure::Usage(why)) => (why, 2),
         Err(Failure::Run(why)) => (why, 1),
+        Err(Failure::Interrupted(why)) => {
+            eprintln!("{why}");
+            return ExitCode::from(interrupt::EXIT_CODE);
+        }
     };
     eprintln!("error: {why}");
     ExitCode::from(code)

@@ -7,14 +7,16 @@ use std::path::{Path, PathBuf};
 use crate::Failure;
 
 /// `Ok` if the path ends as it should and its folder is there: said before the work, not after.
-pub fn check(path: &Path, extension: &str) -> Result<(), Failure> {
-    if !path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case(extension))
-    {
+pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
+    let ends_in = |extension: &&str| {
+        path.extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case(extension))
+    };
+    if !extensions.iter().any(ends_in) {
         return Err(Failure::usage(format!(
-            "{}: the file to write ends in .{extension}",
-            path.display()
+            "{}: the file to write ends in .{}",
+            path.display(),
+            extensions.join(" or .")
         )));
     }
     if path.is_dir() {

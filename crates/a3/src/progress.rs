@@ -1,5 +1,6 @@
 //! A long run, with a bar on the terminal once it takes long.
 
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use a3_core::{Error, Simulation};
@@ -52,8 +53,43 @@ pub fn advance(
     Ok(())
 }
 
+/// The bar of work that is measured in some unit, shown at once.
+pub struct Bar {
+    bar: ProgressBar,
+    expected: f64,
+    done: Cell<f64>,
+}
+
+impl Bar {
+    pub fn new(expected: f64) -> Self {
+        let bar = new_bar();
+        bar.enable_steady_tick(Duration::from_millis(250));
+        Self {
+            bar,
+            expected,
+            done: Cell::new(0.0),
+        }
+    }
+
+    /// So much more is done.
+    pub fn advance(&self, work: f64) {
+        self.done.set(self.done.get() + work);
+        self.bar
+            .set_position((1000.0 * self.done.get() / self.expected) as u64);
+    }
+
+    /// What is being done.
+    pub fn say(&self, what: String) {
+        self.bar.set_message(what);
+    }
+
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
 /// Draws to stderr, and nothing at all where that is no terminal.
 fn new_bar() -> ProgressBar {
-    let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {eta} left");
+    let style = ProgressStyle::with_template("{msg}{wide_bar} {percent:>3} %  {eta} left");
     ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }

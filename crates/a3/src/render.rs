@@ -13,7 +13,7 @@ const POINTS: f32 = 720.0;
 pub fn run(options: &Render) -> Result<(), Failure> {
     let mut simulation = options.run.simulation()?;
     cli::check_particle(&simulation, options.springs_of)?;
-    output::check(&options.output, "png")?;
+    output::check(&options.output, &["png"])?;
     let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
     // Before the work, not after: the device may not have pictures of this size.
     let offscreen = Offscreen::new(&gpu, options.size).map_err(Failure::usage)?;

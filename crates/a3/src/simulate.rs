@@ -30,7 +30,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     let to_stdout = options.output == Path::new("-");
     let mut simulation = options.run.simulation()?;
     if !to_stdout {
-        output::check(&options.output, "json")?;
+        output::check(&options.output, &["json"])?;
     }
     progress::advance(&mut simulation, options.run.until, |_| {}).map_err(Failure::run)?;
     let mut json = serde_json::to_string(&state(&simulation)).map_err(Failure::run)?;

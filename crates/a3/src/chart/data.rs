@@ -1,0 +1,160 @@
+//! The runs behind a chart, one line each, in a CSV or JSON file that a later chart goes on from.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use a3_core::accuracy::{Errors, Metric};
+use serde::{Deserialize, Serialize};
+
+use crate::{Failure, output};
+
+/// No data file of ours is larger.
+const LARGEST_FILE: u64 = 64 << 20;
+
+/// One run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Record {
+    /// Of this program.
+    pub version: String,
+    pub scene: String,
+    pub rows: usize,
+    pub cols: usize,
+    pub wind: bool,
+    pub swing: bool,
+    /// Factor of the scene's own.
+    pub stiffness: f64,
+    /// Simulated time (s).
+    pub until: f64,
+    pub solver: String,
+    /// The step (s), or the relative tolerance.
+    pub setting: f64,
+    /// Errors over the frames that it reached.
+    pub error_position: f64,
+    pub error_energy: f64,
+    pub error_strain: f64,
+    /// What the reference is not sure of.
+    pub floor_position: f64,
+    pub floor_energy: f64,
+    pub floor_strain: f64,
+    /// When it blew up (s).
+    pub lost_at: Option<f64>,
+    /// Of the whole run, if it was timed.
+    pub seconds: Option<f64>,
+    /// In evaluations, linear algebra included.
+    pub work: f64,
+    pub evaluations: u64,
+    pub solves: u64,
+    pub iterations: u64,
+    pub factorizations: u64,
+    pub rejections: u64,
+}
+
+impl Record {
+    /// Whether both are of the same scene.
+    pub fn same_scene(&self, other: &Self) -> bool {
+        (&self.version, &self.scene, self.rows, self.cols)
+            == (&other.version, &other.scene, other.rows, other.cols)
+            && (self.wind, self.swing) == (other.wind, other.swing)
+            && (self.stiffness, self.until) == (other.stiffness, other.until)
+    }
+
+    fn same_run(&self, other: &Self) -> bool {
+        self.same_scene(other) && self.solver == other.solver && self.setting == other.setting
+    }
+
+    pub fn error(&self, metric: Metric) -> f64 {
+        metric.of(&Errors {
+            position: self.error_position,
+            energy: self.error_energy,
+            strain: self.error_strain,
+        })
+    }
+
+    pub fn floor(&self, metric: Metric) -> f64 {
+        metric.of(&Errors {
+            position: self.floor_position,
+            energy: self.floor_energy,
+            strain: self.floor_strain,
+        })
+    }
+}
+
+/// The runs so far, and the file they are kept in.
+pub struct Data {
+    path: Option<PathBuf>,
+    pub records: Vec<Record>,
+}
+
+impl Data {
+    /// What the file holds, if it is there.
+    pub fn open(path: Option<&Path>) -> Result<Self, Failure> {
+        let mut data = Self {
+            path: path.map(Path::to_owned),
+            records: vec![],
+        };
+        let Some(path) = path else { return Ok(data) };
+        output::check(path, &["csv", "json"])?;
+        let Ok(there) = fs::metadata(path) else {
+            return Ok(data);
+        };
+        let wrong = |why: String| {
+            Failure::run(format!(
+                "{}: not the data of a chart: {why}; give another name",
+                path.display()
+            ))
+        };
+        if !there.is_file() || there.len() > LARGEST_FILE {
+            return Err(wrong("no file, or a huge one".into()));
+        }
+        let text = fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
+        if is_json(path) {
+            data.records = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+        } else {
+            let mut reader = csv::Reader::from_reader(text.as_bytes());
+            for line in reader.deserialize() {
+                data.records.push(line.map_err(|e| wrong(e.to_string()))?);
+            }
+        }
+        Ok(data)
+    }
+
+    /// The run like this one by the same version, timed if it has to be.
+    pub fn find(&self, like: &Record, timed: bool) -> Option<&Record> {
+        self.records.iter().find(|r| {
+            r.same_run(like) && (!timed || r.seconds.is_some() || r.lost_at.is_some())
+        })
+    }
+
+    /// Adds a run, in place of the same one without a time.
+    pub fn add(&mut self, record: Record) {
+        self.records.retain(|r| !r.same_run(&record));
+        self.records.push(record);
+    }
+
+    /// Writes the file, if there is one to write.
+    pub fn save(&self) -> Result<(), Failure> {
+        let Some(path) = &self.path else {
+            return Ok(());
+        };
+        let bytes = if is_json(path) {
+            let mut text = serde_json::to_string_pretty(&self.records).map_err(Failure::run)?;
+            text.push('\n');
+            text.into_bytes()
+        } else {
+            let mut writer = csv::Writer::from_writer(vec![]);
+            for record in &self.records {
+                writer.serialize(record).map_err(Failure::run)?;
+            }
+            writer.into_inner().map_err(Failure::run)?
+        };
+        output::write(path, &bytes)
+    }
+}
+
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+fn is_json(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("json"))
+}

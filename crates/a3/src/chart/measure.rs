@@ -1,0 +1,246 @@
+//! Runs of every method at every setting that says something, timed alone.
+
+use std::time::{Duration, Instant};
+
+use a3_core::accuracy::{self, Frames, Metric, Outcome, Reference, ladder};
+use a3_core::{Method, Model, Scene, Simulation};
+
+use super::data::{Data, Record, VERSION};
+use crate::progress::Bar;
+use crate::{Failure, interrupt};
+
+/// No run takes more evaluations.
+const MOST_EVALUATIONS: u64 = 60_000;
+/// The minimum of so many runs is their time ...
+const RUNS: u32 = 5;
+/// ... unless they take longer than this together: then of fewer, but of two ...
+const TOGETHER: Duration = Duration::from_millis(600);
+/// ... unless one takes longer than this.
+const ALONE: Duration = Duration::from_secs(2);
+
+/// A scene at one stiffness, with what is known of it.
+pub struct Study<'a> {
+    pub scene: Scene,
+    pub frames: Frames,
+    /// A record of this scene, of which the rest is to be filled in.
+    blank: Record,
+    reference: Option<Reference>,
+    methods: &'a [&'static Method],
+    metric: Metric,
+    timed: bool,
+}
+
+impl<'a> Study<'a> {
+    pub fn new(
+        scene: Scene,
+        (wind, swing): (bool, bool),
+        stiffness: f64,
+        until: f64,
+        methods: &'a [&'static Method],
+        (metric, timed): (Metric, bool),
+    ) -> Self {
+        let grid = scene.grid;
+        let blank = Record {
+            version: VERSION.into(),
+            scene: scene.name.into(),
+            rows: grid.map_or(0, |grid| grid.rows()),
+            cols: grid.map_or(0, |grid| grid.cols()),
+            wind,
+            swing,
+            stiffness,
+            until,
+            solver: String::new(),
+            setting: 0.0,
+            error_position: 0.0,
+            error_energy: 0.0,
+            error_strain: 0.0,
+            floor_position: 0.0,
+            floor_energy: 0.0,
+            floor_strain: 0.0,
+            lost_at: None,
+            seconds: None,
+            work: 0.0,
+            evaluations: 0,
+            solves: 0,
+            iterations: 0,
+            factorizations: 0,
+            rejections: 0,
+        };
+        Self {
+            frames: Frames::new(until),
+            scene,
+            blank,
+            reference: None,
+            methods,
+            metric,
+            timed,
+        }
+    }
+
+    /// The stiffness, as a factor.
+    pub fn stiffness(&self) -> f64 {
+        self.blank.stiffness
+    }
+
+    /// The runs that are this study's.
+    pub fn records<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
+        data.records.iter().filter(|r| r.same_scene(&self.blank))
+    }
+
+    /// The settings of a method.
+    fn rungs(&self, method: &'static Method) -> Result<Vec<f64>, Failure> {
+        let each = u64::from(method.damped_evaluations.max(method.evaluations));
+        ladder(&self.scene, method, &self.frames, MOST_EVALUATIONS / each).map_err(Failure::run)
+    }
+
+    /// About how long everything takes, in evaluations.
+    pub fn expected(&self) -> Result<f64, Failure> {
+        let mut sum = 0.0;
+        for method in self.methods {
+            sum += self
+                .rungs(method)?
+                .iter()
+                .map(|setting| self.expected_of(method, *setting))
+                .sum::<f64>();
+        }
+        Ok(sum)
+    }
+
+    fn expected_of(&self, method: &Method, setting: f64) -> f64 {
+        let steps = if method.is_adaptive() {
+            // As on most scenes, within a factor of three.
+            60.0 * self.frames.until * setting.powf(-0.9 / f64::from(method.order))
+        } else {
+            self.frames.until / setting
+        };
+        steps * f64::from(method.damped_evaluations.max(method.evaluations)) + 100.0
+    }
+
+    /// Measures what the data do not have yet. Whether it came to its end.
+    pub fn run(&mut self, data: &mut Data, bar: &Bar) -> Result<bool, Failure> {
+        for &method in self.methods {
+            let rungs = self.rungs(method)?;
+            for (i, &setting) in rungs.iter().enumerate() {
+                let like = Record {
+                    solver: method.name.into(),
+                    setting,
+                    ..self.blank.clone()
+                };
+                bar.say(format!("{:<10} ", method.name));
+                let record = match data.find(&like, self.timed) {
+                    Some(record) => record.clone(),
+                    None => match self.measure(method, like)? {
+                        Some(record) => {
+                            data.add(record.clone());
+                            record
+                        }
+                        None => return Ok(false),
+                    },
+                };
+                bar.advance(self.expected_of(method, setting));
+                // Below what the reference knows there is nothing to see.
+                let enough = 10.0 * record.floor(self.metric).max(1e-13);
+                if record.lost_at.is_none() && record.error(self.metric) < enough {
+                    let rest = rungs[i + 1..].iter();
+                    bar.advance(rest.map(|s| self.expected_of(method, *s)).sum());
+                    break;
+                }
+            }
+            data.save()?;
+        }
+        Ok(true)
+    }
+
+    /// `None` if it was interrupted.
+    fn measure(
+        &mut self,
+        method: &'static Method,
+        like: Record,
+    ) -> Result<Option<Record>, Failure> {
+        if self.reference.is_none() {
+            self.reference = Reference::new(&self.scene, self.frames, &interrupt::go_on)
+                .map_err(|e| Failure::run(format!("no reference: {e}")))?;
+        }
+        let Some(reference) = &self.reference else {
+            return Ok(None);
+        };
+        let outcome = accuracy::measure(
+            &self.scene,
+            method,
+            like.setting,
+            reference,
+            &interrupt::go_on,
+        )
+        .map_err(Failure::run)?;
+        let Some(Outcome { errors, work, lost }) = outcome else {
+            return Ok(None);
+        };
+        let seconds = if self.timed && lost.is_none() {
+            let Some(time) = time(&self.scene, method, like.setting, &self.frames)? else {
+                return Ok(None);
+            };
+            Some(time.as_secs_f64())
+        } else {
+            None
+        };
+        let floor = reference.floor;
+        Ok(Some(Record {
+            error_position: errors.position,
+            error_energy: errors.energy,
+            error_strain: errors.strain,
+            floor_position: floor.position,
+            floor_energy: floor.energy,
+            floor_strain: floor.strain,
+            lost_at: lost.map(|lost| lost.time),
+            seconds,
+            work: work.total(),
+            evaluations: work.evaluations,
+            solves: work.solves,
+            iterations: work.iterations,
+            factorizations: work.factorizations,
+            rejections: work.rejections,
+            ..like
+        }))
+    }
+}
+
+/// The shortest time that the whole run takes, after one that warmed up. `None` if it was interrupted.
+pub fn time(
+    scene: &Scene,
+    method: &'static Method,
+    setting: f64,
+    frames: &Frames,
+) -> Result<Option<Duration>, Failure> {
+    let (mut best, mut sum) = (Duration::MAX, Duration::ZERO);
+    for runs in 1..=RUNS {
+        let mut run = Simulation::new(scene.clone(), method, setting).map_err(Failure::run)?;
+        let begun = Instant::now();
+        let end = accuracy::run(&mut run, frames, &interrupt::go_on, |_, _| {});
+        let elapsed = begun.elapsed();
+        if end.map_err(Failure::run)?.is_none() {
+            return Ok(None);
+        }
+        best = best.min(elapsed);
+        sum += elapsed;
+        if elapsed > ALONE || (runs >= 2 && sum > TOGETHER) {
+            break;
+        }
+    }
+    Ok(Some(best))
+}
+
+/// The scene with springs so many times as stiff.
+pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
+    let mut scene = scene.clone();
+    match &mut scene.model {
+        Model::Network(network) => network.scale_stiffness(factor).map_err(Failure::usage)?,
+        Model::FirstOrder(_) if factor == 1.0 => {}
+        Model::FirstOrder(_) => {
+            return Err(Failure::usage(format!(
+                "the scene {} has no springs: leave out --stiffness",
+                scene.name
+            )));
+        }
+    }
+    Ok(scene)
+}

@@ -1,0 +1,177 @@
+//! `a3 chart`: speed against accuracy, measured on the user's own scene.
+
+pub mod data;
+pub mod measure;
+mod picture;
+mod table;
+
+use std::path::PathBuf;
+
+use a3_core::accuracy::{Horizon, Metric, horizon};
+use a3_core::{Method, Scene, integrators};
+
+use crate::cli::{Chart, Error, What, Work};
+use crate::progress::Bar;
+use crate::{Failure, interrupt, output, plot};
+use data::Data;
+use measure::{Study, stiffened};
+
+pub fn run(options: &Chart) -> Result<(), Failure> {
+    interrupt::listen();
+    let scene = options.what.scene()?;
+    let methods = methods(&scene, &options.solvers)?;
+    let path = match &options.output {
+        Some(path) => path.clone(),
+        None => PathBuf::from(format!("a3-chart-{}.svg", scene.name)),
+    };
+    output::check(&path, &["svg", "png"])?;
+    let metric = metric(options.error);
+    let timed = options.work == Work::Seconds;
+    if metric != Metric::Position && scene.model.network().is_none() {
+        return Err(Failure::usage(format!(
+            "the scene {} has neither energy nor springs: leave out --error",
+            scene.name
+        )));
+    }
+    let mut data = Data::open(options.data.as_deref())?;
+    let mut studies = vec![];
+    let mut until = options.until;
+    for &factor in &options.stiffness {
+        let scene = stiffened(&scene, factor)?;
+        // One horizon for all panels: that of the stiffest, which is the shortest.
+        if let Some(found) = look_ahead(&scene, options.until, factor)? {
+            until = Some(until.map_or(found, |until: f64| until.min(found)));
+        }
+        studies.push((factor, scene));
+    }
+    let until = until.ok_or_else(|| Failure::run("interrupted before anything was measured"))?;
+    let flags = (options.what.wind, options.what.swing);
+    let mut studies: Vec<_> = studies
+        .into_iter()
+        .map(|(factor, scene)| {
+            Study::new(scene, flags, factor, until, &methods, (metric, timed))
+        })
+        .collect();
+    let mut expected = 0.0;
+    for study in &studies {
+        expected += study.expected()?;
+    }
+    let bar = Bar::new(expected);
+    let mut complete = true;
+    for study in &mut studies {
+        if !study.run(&mut data, &bar)? {
+            complete = false;
+            break;
+        }
+    }
+    bar.clear();
+    data.save()?;
+    let studies: Vec<_> = studies
+        .iter()
+        .filter(|study| study.records(&data).next().is_some())
+        .collect();
+    if studies.is_empty() {
+        return Err(Failure::Interrupted(
+            "interrupted before anything was measured".into(),
+        ));
+    }
+    output::say(&table::text(&studies, &data, &methods, metric, timed))?;
+    let chart = picture::chart(&studies, &data, &methods, metric, timed, &options.what);
+    let figure = chart
+        .draw(f64::from(options.size.0), f64::from(options.size.1))
+        .map_err(Failure::usage)?;
+    write_picture(&path, &figure.svg())?;
+    output::say(&format!("chart: {}\n", path.display()))?;
+    if complete {
+        Ok(())
+    } else {
+        Err(Failure::Interrupted(
+            "interrupted: the chart has what was measured until then".into(),
+        ))
+    }
+}
+
+/// Writes an SVG, or a PNG of it.
+pub fn write_picture(path: &std::path::Path, svg: &str) -> Result<(), Failure> {
+    let is_png = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("png"));
+    if is_png {
+        output::write(path, &plot::png(svg, 1.0)?)
+    } else {
+        output::write(path, svg.as_bytes())
+    }
+}
+
+/// Those asked for, or all that serve the scene.
+pub fn methods(
+    scene: &Scene,
+    asked: &[&'static Method],
+) -> Result<Vec<&'static Method>, Failure> {
+    if asked.is_empty() {
+        let all = integrators::METHODS.iter();
+        return Ok(all
+            .filter(|m| m.integrator(scene.model.system()).is_ok())
+            .collect());
+    }
+    let mut methods: Vec<&'static Method> = vec![];
+    for &method in asked {
+        method
+            .integrator(scene.model.system())
+            .map_err(|e| Failure::usage(format!("scene {}: {e}", scene.name)))?;
+        if !methods.iter().any(|m| std::ptr::eq(*m, method)) {
+            methods.push(method);
+        }
+    }
+    Ok(methods)
+}
+
+pub fn metric(error: Error) -> Metric {
+    match error {
+        Error::Position => Metric::Position,
+        Error::Energy => Metric::Energy,
+        Error::Strain => Metric::Strain,
+    }
+}
+
+/// Says how far the scene can be foretold: the end of the runs, unless one was asked for. `None` if it was interrupted.
+pub fn look_ahead(
+    scene: &Scene,
+    asked: Option<f64>,
+    stiffness: f64,
+) -> Result<Option<f64>, Failure> {
+    let Some(Horizon { until, lyapunov }) =
+        horizon(scene, &interrupt::go_on).map_err(Failure::run)?
+    else {
+        return Ok(None);
+    };
+    let of = if stiffness == 1.0 {
+        scene.name.to_owned()
+    } else {
+        format!("{} at {stiffness} times its stiffness", scene.name)
+    };
+    let why = if lyapunov.is_finite() {
+        format!("errors grow by themselves e-fold every {lyapunov:.2} s (Lyapunov time)")
+    } else {
+        "errors hardly grow by themselves".to_owned()
+    };
+    match asked {
+        Some(asked) if asked > until * (1.0 + 1e-9) && lyapunov.is_finite() => eprintln!(
+            "warning: {of}: {why}: past {until} s an error in position says little; compare \
+             --error energy or strain, or leave out --until"
+        ),
+        Some(_) => {}
+        None => eprintln!("{of}: {why}; runs of {until} s"),
+    }
+    Ok(Some(asked.unwrap_or(until)))
+}
+
+/// The scene in words.
+pub fn describe(what: &What, scene: &Scene) -> String {
+    let grid = scene
+        .grid
+        .map_or(String::new(), |g| format!(" {} × {}", g.rows(), g.cols()));
+    let wind = if what.wind { ", wind" } else { "" };
+    let swing = if what.swing { ", swing" } else { "" };
+    format!("{}{grid}{wind}{swing}", scene.name)
+}

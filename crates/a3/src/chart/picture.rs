@@ -1,0 +1,98 @@
+//! From runs to a chart.
+
+use a3_core::Method;
+use a3_core::accuracy::Metric;
+
+use super::data::{Data, Record};
+use super::measure::Study;
+use super::{describe, table};
+use crate::cli::What;
+use crate::plot::precision::{Chart, Curve, Panel, Run};
+
+pub fn chart(
+    studies: &[&Study],
+    data: &Data,
+    methods: &[&'static Method],
+    metric: Metric,
+    timed: bool,
+    what: &What,
+) -> Chart {
+    let until = studies[0].frames.until;
+    let panels = studies
+        .iter()
+        .map(|study| panel(study, data, methods, metric, timed))
+        .collect();
+    Chart {
+        title: format!("Speed against accuracy: {}", describe(what, &studies[0].scene)),
+        subtitle: format!("{until} s of motion; each point is a run with another step or tolerance"),
+        x_label: match metric {
+            Metric::Position => "largest RMS error of positions (m)",
+            Metric::Energy => "largest error of the energy (J)",
+            Metric::Strain => "largest RMS error of the springs' stretch (1)",
+        }
+        .into(),
+        y_label: if timed {
+            "computing time per simulated second (s)"
+        } else {
+            "force evaluations per simulated second"
+        }
+        .into(),
+        panels,
+        foot: "Errors are true ones, against DOP853 at two tolerances and PEFRL extrapolated, whose disagreement is the \
+               shaded floor."
+            .into(),
+    }
+}
+
+fn panel(
+    study: &Study,
+    data: &Data,
+    methods: &[&'static Method],
+    metric: Metric,
+    timed: bool,
+) -> Panel {
+    let curves = methods.iter().map(|method| {
+        let mut records: Vec<_> = study
+            .records(data)
+            .filter(|r| r.solver == method.name)
+            .collect();
+        records.sort_by(|a, b| b.setting.total_cmp(&a.setting));
+        // What a lost run would have cost: its price per evaluation is that of the method's others.
+        let price = records
+            .iter()
+            .filter_map(|r| Some(r.seconds? / r.work))
+            .fold(f64::INFINITY, f64::min);
+        let run = |r: &&Record| {
+            let whole = |work: f64| r.lost_at.map_or(work, |at| work * r.until / at);
+            let work = if timed {
+                r.seconds.unwrap_or(whole(r.work) * price)
+            } else {
+                whole(r.work)
+            };
+            Run {
+                error: r.error(metric),
+                work: work / r.until,
+                lost: r.lost_at.is_some(),
+                label: Some(table::setting(method, r.setting)),
+            }
+        };
+        Curve {
+            letter: method.letter,
+            name: method.title.to_owned(),
+            runs: records.iter().map(run).collect(),
+        }
+    });
+    let floor = study
+        .records(data)
+        .map(|r| r.floor(metric))
+        .reduce(f64::max);
+    Panel {
+        title: if study.stiffness() == 1.0 {
+            String::new()
+        } else {
+            format!("stiffness × {}", study.stiffness())
+        },
+        curves: curves.collect(),
+        floor,
+    }
+}

@@ -1,0 +1,164 @@
+//! A chart in the terminal: what each method needs for each error, and who wins.
+
+use a3_core::Method;
+use a3_core::accuracy::Metric;
+
+use super::data::{Data, Record};
+use super::measure::Study;
+use crate::list;
+
+/// The errors that are asked for: 1e-2 ... 1e-8.
+const ERRORS: std::ops::RangeInclusive<i32> = 2..=8;
+
+/// The cheapest run with at most that error.
+fn cheapest<'a>(
+    records: impl Iterator<Item = &'a Record>,
+    metric: Metric,
+    timed: bool,
+    error: f64,
+) -> Option<&'a Record> {
+    records
+        .filter(|r| r.lost_at.is_none() && r.error(metric) <= error && cost(r, timed).is_finite())
+        .min_by(|a, b| cost(a, timed).total_cmp(&cost(b, timed)))
+}
+
+/// Milliseconds, or evaluations.
+fn cost(record: &Record, timed: bool) -> f64 {
+    if timed {
+        record.seconds.map_or(f64::INFINITY, |s| 1e3 * s)
+    } else {
+        record.work
+    }
+}
+
+/// Three digits.
+fn short(cost: f64) -> String {
+    if cost < 9.995 {
+        format!("{cost:.2}")
+    } else if cost < 99.95 {
+        format!("{cost:.1}")
+    } else {
+        format!("{cost:.0}")
+    }
+}
+
+/// A setting with its unit.
+pub fn setting(method: &Method, setting: f64) -> String {
+    if method.is_adaptive() {
+        format!("tolerance {setting:.0e}")
+    } else if setting < 1e-3 {
+        format!("step {:.3} µs", 1e6 * setting)
+    } else {
+        format!("step {:.3} ms", 1e3 * setting)
+    }
+}
+
+/// Every study, one after the other.
+pub fn text(
+    studies: &[&Study],
+    data: &Data,
+    methods: &[&'static Method],
+    metric: Metric,
+    timed: bool,
+) -> String {
+    let unit = match metric {
+        Metric::Position => "m",
+        Metric::Energy => "J",
+        Metric::Strain => "of length",
+    };
+    let what = if timed {
+        "computing time (ms)"
+    } else {
+        "work (force evaluations)"
+    };
+    studies
+        .iter()
+        .map(|study| {
+            let head = if study.stiffness() == 1.0 {
+                String::new()
+            } else {
+                format!(", stiffness x {}", study.stiffness())
+            };
+            let until = study.frames.until;
+            format!(
+                "\n{what} for {until} s of {}{head}, to keep the error within\n{}{}",
+                study.scene.name,
+                list::table(&rows(study, data, methods, metric, timed, unit)),
+                winners(study, data, methods, metric, timed, unit),
+            )
+        })
+        .collect()
+}
+
+fn rows(
+    study: &Study,
+    data: &Data,
+    methods: &[&'static Method],
+    metric: Metric,
+    timed: bool,
+    unit: &str,
+) -> Vec<Vec<String>> {
+    let heading = |digits: i32| format!(" 1e-{digits} {unit}");
+    let mut rows = vec![
+        ["solver".to_owned()]
+            .into_iter()
+            .chain(ERRORS.map(heading))
+            .collect::<Vec<_>>(),
+    ];
+    for method in methods {
+        let of = |r: &&Record| r.solver == method.name;
+        let cell = |digits: i32| {
+            let error = 10f64.powi(-digits);
+            let own = cheapest(study.records(data).filter(of), metric, timed, error);
+            let all = cheapest(study.records(data), metric, timed, error);
+            own.map_or("-".to_owned(), |own| {
+                let mark = if all.is_some_and(|all| std::ptr::eq(all, own)) {
+                    "*"
+                } else {
+                    ""
+                };
+                format!("{mark}{}", short(cost(own, timed)))
+            })
+        };
+        rows.push(
+            [method.name.to_owned()]
+                .into_iter()
+                .chain(ERRORS.map(cell))
+                .collect(),
+        );
+    }
+    rows
+}
+
+fn winners(
+    study: &Study,
+    data: &Data,
+    methods: &[&'static Method],
+    metric: Metric,
+    timed: bool,
+    unit: &str,
+) -> String {
+    let floor = study
+        .records(data)
+        .map(|r| r.floor(metric))
+        .fold(0.0, f64::max);
+    let mut text = String::from("* cheapest:\n");
+    for digits in ERRORS {
+        let error = 10f64.powi(-digits);
+        let line = if error < 10.0 * floor {
+            format!("the reference itself is known to {floor:.0e} {unit} only")
+        } else {
+            match cheapest(study.records(data), metric, timed, error) {
+                None => "no run was that accurate".to_owned(),
+                Some(r) => methods
+                    .iter()
+                    .find(|m| m.name == r.solver)
+                    .map_or(String::new(), |m| {
+                        format!("{}, {}", m.title, setting(m, r.setting))
+                    }),
+            }
+        };
+        text += &format!("  1e-{digits} {unit}  {line}\n");
+    }
+    text
+}

@@ -1,0 +1,201 @@
+//! `a3 choose`: the cheapest solver for an error, or the most accurate one for a budget.
+
+use a3_core::accuracy::{Candidate, Frames, Metric, Reference, choose, ladder, measure};
+use a3_core::{Method, Scene};
+
+use crate::chart::{describe, look_ahead, methods};
+use crate::chart::measure::time;
+use crate::cli::{Choose, What};
+use crate::progress::Bar;
+use crate::{Failure, interrupt, list, output};
+
+/// As a window has it (s).
+const FRAME: f64 = 1.0 / 60.0;
+
+pub fn run(options: &Choose) -> Result<(), Failure> {
+    interrupt::listen();
+    let stopped = || Failure::Interrupted("interrupted: nothing was chosen".into());
+    let scene = options.what.scene()?;
+    let until = look_ahead(&scene, options.until, 1.0)?.ok_or_else(stopped)?;
+    let reference = Reference::new(&scene, Frames::new(until), &interrupt::go_on)
+        .map_err(|e| Failure::run(format!("no reference: {e}")))?
+        .ok_or_else(stopped)?;
+    let (found, goal) = match (options.error, options.budget) {
+        (Some(error), _) => {
+            let floor = reference.floor.position;
+            if error < 10.0 * floor {
+                return Err(Failure::usage(format!(
+                    "the reference of this scene over {until} s is itself known to {floor:.0e} m only: ask for an \
+                     error of at least {:.0e}",
+                    10.0 * floor
+                )));
+            }
+            let found = choose(&scene, &reference, Metric::Position, error, &interrupt::go_on)
+                .map_err(Failure::run)?
+                .ok_or_else(stopped)?;
+            let found = found.into_iter().take(3).map(|candidate| {
+                let cost = milliseconds(&scene, &candidate, &reference)?.ok_or_else(stopped)?;
+                Ok((candidate, cost))
+            });
+            (found.collect::<Result<Vec<_>, Failure>>()?, format!("an error of {error:e} m"))
+        }
+        (None, Some(budget)) => (
+            within(&scene, &reference, budget)?.ok_or_else(stopped)?,
+            format!("{budget} ms a frame"),
+        ),
+        (None, None) => return Err(Failure::usage("give --error or --budget")),
+    };
+    let Some((best, _)) = found.first() else {
+        return Err(Failure::run(format!(
+            "no solver meets {goal} on {}: {}",
+            scene.name,
+            if options.error.is_some() {
+                "ask for a larger error"
+            } else {
+                "ask for a larger budget"
+            }
+        )));
+    };
+    output::say(&report(&options.what, &scene, until, &goal, &found))?;
+    output::say(&format!("run it:  {}\n", command(&options.what, best.method, best.setting)))
+}
+
+/// Computing time for a frame (ms), timed over the whole run.
+fn milliseconds(
+    scene: &Scene,
+    candidate: &Candidate,
+    reference: &Reference,
+) -> Result<Option<f64>, Failure> {
+    let Candidate {
+        method, setting, ..
+    } = candidate;
+    let time = time(scene, method, *setting, &reference.frames)?;
+    Ok(time.map(|time| 1e3 * time.as_secs_f64() * FRAME / reference.frames.until))
+}
+
+/// Each method at the finest setting whose frames take no longer than the budget (ms), the most accurate first.
+fn within(
+    scene: &Scene,
+    reference: &Reference,
+    budget: f64,
+) -> Result<Option<Vec<(Candidate, f64)>>, Failure> {
+    let mut found = vec![];
+    let methods = methods(scene, &[])?;
+    let bar = Bar::new(methods.len() as f64);
+    for method in methods {
+        bar.say(format!("{:<10} ", method.name));
+        let mut best: Option<(Candidate, f64)> = None;
+        for setting in ladder(scene, method, &reference.frames, 1_000_000).map_err(Failure::run)? {
+            let outcome = measure(scene, method, setting, reference, &interrupt::go_on)
+                .map_err(Failure::run)?;
+            let Some(outcome) = outcome else {
+                return Ok(None);
+            };
+            let candidate = Candidate {
+                method,
+                setting,
+                outcome,
+            };
+            let Some(cost) = milliseconds(scene, &candidate, reference)? else {
+                return Ok(None);
+            };
+            if cost > budget {
+                break;
+            }
+            let error = |c: &Candidate| c.outcome.errors.position;
+            if outcome.lost.is_none()
+                && best
+                    .as_ref()
+                    .is_none_or(|(best, _)| error(&candidate) < error(best))
+            {
+                best = Some((candidate, cost));
+            }
+            if error(&candidate) < 10.0 * reference.floor.position {
+                break;
+            }
+        }
+        found.extend(best);
+        bar.advance(1.0);
+    }
+    bar.clear();
+    found.sort_by(|(a, _), (b, _)| {
+        let error = |c: &Candidate| c.outcome.errors.position;
+        error(a).total_cmp(&error(b))
+    });
+    found.truncate(3);
+    Ok(Some(found))
+}
+
+fn report(
+    what: &What,
+    scene: &Scene,
+    until: f64,
+    goal: &str,
+    found: &[(Candidate, f64)],
+) -> String {
+    let mut rows = vec![
+        ["", "solver", " setting", " error (m)", " evaluations/s", " ms/frame"]
+            .map(String::from)
+            .to_vec(),
+    ];
+    for (k, (c, cost)) in found.iter().enumerate() {
+        rows.push(vec![
+            ["best", "runner-up", "then"][k.min(2)].into(),
+            c.method.title.into(),
+            if c.method.is_adaptive() {
+                format!("tolerance {}", typed(c.setting))
+            } else {
+                format!("step {} s", typed(c.setting))
+            },
+            format!("{:.1e}", c.outcome.errors.position),
+            format!("{:.0}", c.outcome.work.total() / until),
+            format!("{cost:.3}"),
+        ]);
+    }
+    format!(
+        "{} for {until} s, {goal}:\n{}",
+        describe(what, scene),
+        list::table(&rows)
+    )
+}
+
+/// A setting as one would type it: four digits, rounded down, so that the run is no coarser.
+fn typed(setting: f64) -> String {
+    let power = 10f64.powi(3 - setting.log10().floor() as i32);
+    let rounded = (setting * power * (1.0 + 1e-12)).floor() / power;
+    format!("{rounded}")
+}
+
+fn command(what: &What, method: &Method, setting: f64) -> String {
+    let mut words = format!("a3 {} {}", method.letter, typed(setting));
+    if what.scene.name != "cloth" {
+        words += &format!(" --scene {}", what.scene.name);
+    }
+    if let Some(grid) = what.grid {
+        words += &format!(" --grid {}x{}", grid.rows(), grid.cols());
+    }
+    for (on, option) in [(what.wind, " --wind"), (what.swing, " --swing")] {
+        if on {
+            words += option;
+        }
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_typed_short_and_never_coarser() {
+        for (setting, expected) in [
+            (1.0 / 60.0, "0.01666"),
+            (0.01, "0.01"),
+            (1.0 / 120.0, "0.008333"),
+            (1.7783e-5, "0.00001778"),
+            (0.5, "0.5"),
+        ] {
+            assert_eq!(typed(setting), expected);
+        }
+    }
+}

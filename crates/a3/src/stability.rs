@@ -1,0 +1,247 @@
+//! `a3 stability`: the largest step that each solver holds, predicted and observed, and the plane in which one sees why.
+
+use std::cell::RefCell;
+use std::path::PathBuf;
+
+use a3_core::stability::{
+    Growth, Limit, Mode, Observation, largest_step, observe_at_rest, observe_from_start, rest,
+    spectrum,
+};
+use a3_core::{Method, Scene};
+
+use crate::chart::{describe, methods, write_picture};
+use crate::cli::Stability;
+use crate::plot::regions::{Chart, Panel};
+use crate::progress::Bar;
+use crate::{Failure, interrupt, list, output};
+
+/// What is known of a method.
+struct Row {
+    method: &'static Method,
+    /// As the scene starts, and as it hangs at rest.
+    start: Pair,
+    rest: Option<Pair>,
+}
+
+/// A limit as it was predicted, and as it was seen.
+struct Pair {
+    predicted: Option<Limit>,
+    observed: Observation,
+}
+
+pub fn run(options: &Stability) -> Result<(), Failure> {
+    interrupt::listen();
+    let scene = options.what.scene()?;
+    let methods = methods(&scene, &options.solvers)?;
+    let path = match &options.output {
+        Some(path) => path.clone(),
+        None => PathBuf::from(format!("a3-stability-{}.svg", scene.name)),
+    };
+    output::check(&path, &["svg", "png"])?;
+    let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
+    let hanging = rest(&scene).map_err(Failure::run)?;
+    let at_rest = hanging
+        .as_ref()
+        .map(|y| spectrum(scene.model.system(), 0.0, y));
+    let bar = Bar::new(2.0 * methods.len() as f64);
+    let mut rows = vec![];
+    for method in methods {
+        if !interrupt::go_on() {
+            break;
+        }
+        bar.say(format!("{:<10} ", method.name));
+        let start = pair(method, &at_start, |guess| {
+            observe_from_start(&scene, method, guess)
+        })?;
+        bar.advance(1.0);
+        let rest = match (&hanging, &at_rest) {
+            (Some(y), Some(modes)) => Some(pair(method, modes, |guess| {
+                observe_at_rest(&scene, y, method, guess)
+            })?),
+            _ => None,
+        };
+        bar.advance(1.0);
+        rows.push(Row {
+            method,
+            start,
+            rest,
+        });
+    }
+    bar.clear();
+    if rows.is_empty() {
+        return Err(Failure::Interrupted(
+            "interrupted before anything was measured".into(),
+        ));
+    }
+    output::say(&text(&scene, &rows, &at_start, at_rest.as_deref()))?;
+    let title = format!(
+        "Where solvers fail: {}",
+        describe(&options.what, &scene)
+    );
+    let figure = chart(title, &rows, &at_start)
+        .draw(f64::from(options.size.0), f64::from(options.size.1))
+        .map_err(Failure::usage)?;
+    write_picture(&path, &figure.svg())?;
+    output::say(&format!("chart: {}\n", path.display()))?;
+    if interrupt::go_on() {
+        Ok(())
+    } else {
+        Err(Failure::Interrupted(
+            "interrupted: the chart has what was measured until then".into(),
+        ))
+    }
+}
+
+fn pair(
+    method: &'static Method,
+    modes: &[Mode],
+    observe: impl FnOnce(f64) -> Result<Observation, a3_core::Error>,
+) -> Result<Pair, Failure> {
+    let predicted = largest_step(method, modes).map_err(Failure::run)?;
+    let guess = predicted.map_or(1.0, |limit| limit.step);
+    let observed = observe(guess).map_err(Failure::run)?;
+    Ok(Pair {
+        predicted,
+        observed,
+    })
+}
+
+/// A step in ms, to three digits.
+fn step(seconds: f64) -> String {
+    let ms = 1e3 * seconds;
+    match ms {
+        _ if ms.is_infinite() => "any".into(),
+        _ if ms < 0.999_5 => format!("{ms:.3}"),
+        _ if ms < 9.995 => format!("{ms:.2}"),
+        _ if ms < 99.95 => format!("{ms:.1}"),
+        _ => format!("{ms:.0}"),
+    }
+}
+
+/// A prediction in ms, with a mark where shorter steps grow too.
+fn prediction(pair: &Pair) -> String {
+    pair.predicted.map_or("-".into(), |limit| {
+        step(limit.step) + if limit.strict { "" } else { "~" }
+    })
+}
+
+fn ratio(pair: &Pair) -> String {
+    match pair.predicted {
+        Some(limit) if limit.step.is_finite() && pair.observed.step.is_finite() => {
+            format!("{:.3}", pair.observed.step / limit.step)
+        }
+        _ => "-".into(),
+    }
+}
+
+fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> String {
+    let heading = [
+        "solver",
+        " start: predicted",
+        " observed",
+        " ratio",
+        " at rest: predicted",
+        " observed",
+        " ratio",
+    ];
+    let mut cells = vec![heading.map(String::from).to_vec()];
+    for row in rows {
+        let mut line = vec![
+            row.method.name.to_owned(),
+            prediction(&row.start),
+            step(row.start.observed.step),
+            ratio(&row.start),
+        ];
+        line.extend(row.rest.as_ref().map_or(
+            ["-", "-", "-"].map(String::from),
+            |pair| [prediction(pair), step(pair.observed.step), ratio(pair)],
+        ));
+        cells.push(line);
+    }
+    let frequency = |modes: &[Mode]| {
+        modes.first().map_or("-".to_owned(), |mode| {
+            let damping = 0.5 * (mode.drag + mode.damping) / mode.frequency();
+            format!("{:.1} rad/s, damping ratio {damping:.3}", mode.frequency())
+        })
+    };
+    let mut text = format!(
+        "{}: fastest motion {} at the start",
+        scene.name,
+        frequency(start)
+    );
+    if let Some(rest) = rest {
+        text += &format!(", {} at rest", frequency(rest));
+    }
+    text += &format!(
+        "\n\nlargest stable step (ms), that of the fixed step for adaptive solvers\n{}",
+        list::table(&cells)
+    );
+    if rows.iter().any(|row| {
+        let pairs = [Some(&row.start), row.rest.as_ref()];
+        pairs
+            .into_iter()
+            .flatten()
+            .any(|pair| pair.predicted.is_some_and(|limit| !limit.strict))
+    }) {
+        text += "~ shorter steps grow too, but less than tenfold in 10 s or 1000 steps\n";
+    }
+    text
+}
+
+fn chart(title: String, rows: &[Row], modes: &[Mode]) -> Chart {
+    Chart {
+        title,
+        subtitle: "Each panel: the solver's stable region, and the eigenvalues of the scene as it starts times the largest \
+                   stable step"
+            .into(),
+        panels: rows.iter().map(|row| panel(row, modes)).collect(),
+    }
+}
+
+fn panel(row: &Row, modes: &[Mode]) -> Panel {
+    let limit = row.start.predicted.map_or(f64::INFINITY, |limit| limit.step);
+    // Where every step holds, one that a window would take.
+    let h = if limit.is_finite() { limit } else { 1.0 / 60.0 };
+    let method = row.method;
+    let subtitle = if limit.is_finite() {
+        format!(
+            "largest step: predicted {} ms, observed {} ms",
+            prediction(&row.start),
+            step(row.start.observed.step)
+        )
+    } else {
+        format!("any step; observed: {} ms", step(row.start.observed.step))
+    };
+    // A Runge-Kutta step is the same for every mode with these eigenvalues; a splitting one is that of a mode that
+    // shares its damping between drag and springs as the scene's fastest does.
+    let share = modes
+        .first()
+        .map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300));
+    let growth = RefCell::new(None::<(Mode, Growth)>);
+    let radius = move |re: f64, im: f64| {
+        let mode = Mode::of_eigenvalue(re, im);
+        let mode = Mode {
+            stiffness: mode.stiffness,
+            drag: (1.0 - share) * mode.drag,
+            damping: share * mode.drag,
+        };
+        let mut slot = growth.borrow_mut();
+        if !slot.as_ref().is_some_and(|(known, _)| *known == mode) {
+            *slot = Growth::new(method, mode).ok().map(|growth| (mode, growth));
+        }
+        slot.as_mut()
+            .map_or(f64::INFINITY, |(_, growth)| growth.of_step(1.0))
+    };
+    Panel {
+        letter: method.letter,
+        title: format!("{}, step {} ms", method.title, step(h)),
+        subtitle,
+        radius: Box::new(radius),
+        eigenvalues: modes
+            .iter()
+            .filter(|mode| mode.stiffness > 0.0)
+            .flat_map(Mode::eigenvalues)
+            .map(|[re, im]| [h * re, h * im])
+            .collect(),
+    }
+}
