@@ -1,6 +1,8 @@
 //! Axes: from numbers to places, and where the ticks are.
 
-use super::figure::{Anchor, Figure, INK, Point, Rect, Text, width};
+use super::figure::{Figure, stroke};
+use super::rect::{Point, Rect};
+use super::text::{Anchor, Text, width};
 
 /// One direction of a chart, linear or logarithmic.
 #[derive(Clone, Copy, Debug)]
@@ -149,9 +151,12 @@ pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
         } else {
             ("#d9d9d9", 0.07)
         };
-        format!("stroke=\"{colour}\" stroke-width=\"{:.2}\"", width * size)
+        stroke(colour, width * size)
     };
-    let (xs, ys) = (x.ticks(3.4 * size), y.ticks(1.6 * size));
+    let (xs, ys) = (
+        x.ticks(if x.log { 3.4 } else { 2.6 } * size),
+        y.ticks(1.6 * size),
+    );
     // Those with numbers are drawn over those without.
     for named in [false, true] {
         for tick in xs.iter().filter(|tick| tick.label.is_empty() != named) {
@@ -165,10 +170,7 @@ pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
     }
     figure.rect(
         area,
-        &format!(
-            "fill=\"none\" stroke=\"#8a8a8a\" stroke-width=\"{:.2}\"",
-            0.07 * size
-        ),
+        &format!("fill=\"none\" {}", stroke("#8a8a8a", 0.07 * size)),
     );
     let mut number = |at: Point, text: Text| {
         if figure.free(text.room(at)) {
@@ -176,13 +178,11 @@ pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
         }
     };
     for tick in xs.iter().filter(|_| numbers[0]) {
-        let text = Text::new(&tick.label, size)
-            .colour(INK)
-            .anchor(Anchor::Middle);
+        let text = Text::new(&tick.label, size).anchor(Anchor::Middle);
         number([x.at(tick.value), area.y1 + 1.15 * size], text);
     }
     for tick in ys.iter().filter(|_| numbers[1]) {
-        let text = Text::new(&tick.label, size).colour(INK).anchor(Anchor::End);
+        let text = Text::new(&tick.label, size).anchor(Anchor::End);
         number([area.x0 - 0.4 * size, y.at(tick.value) + 0.34 * size], text);
     }
 }

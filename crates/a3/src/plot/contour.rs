@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::figure::{Point, Rect};
+use super::rect::{Point, Rect};
 
 /// Closed outlines of where `inside` holds in the window, with the region on one side throughout; it ends at the window's edges.
 /// The window reaches as far below 0 as above. `columns` squares fit into its width.

@@ -1,207 +1,21 @@
 //! A sheet to draw on that remembers where its texts are: SVG, and PNG from it.
 
 use std::fmt::Write;
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use epaint_default_fonts::UBUNTU_LIGHT;
 use resvg::{tiny_skia, usvg};
-use skrifa::instance::{LocationRef, Size};
-use skrifa::{FontRef, MetadataProvider};
 
+use super::rect::{Point, Rect};
+use super::text::{Anchor, GREY, RAISED, Text, pieces};
 use crate::Failure;
-
-/// Horizontal, then vertical; down is positive on the sheet.
-pub type Point = [f64; 2];
-
-/// For what is to be read first.
-pub const INK: &str = "#1b1b1b";
-/// For what explains.
-pub const GREY: &str = "#5a5a5a";
 
 /// The first is the font that texts are measured with.
 const FONTS: &str = "Ubuntu, 'Ubuntu Light', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif";
 
-/// An upright rectangle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rect {
-    pub x0: f64,
-    pub y0: f64,
-    pub x1: f64,
-    pub y1: f64,
-}
-
-impl Rect {
-    pub fn new(x0: f64, y0: f64, x1: f64, y1: f64) -> Self {
-        Self { x0, y0, x1, y1 }
-    }
-
-    /// The square of half side `r` around a point.
-    pub fn around([x, y]: Point, r: f64) -> Self {
-        Self::new(x - r, y - r, x + r, y + r)
-    }
-
-    pub fn width(self) -> f64 {
-        self.x1 - self.x0
-    }
-
-    pub fn height(self) -> f64 {
-        self.y1 - self.y0
-    }
-
-    pub fn centre(self) -> Point {
-        [
-            f64::midpoint(self.x0, self.x1),
-            f64::midpoint(self.y0, self.y1),
-        ]
-    }
-
-    pub fn overlaps(self, other: Self) -> bool {
-        self.x0 < other.x1 && other.x0 < self.x1 && self.y0 < other.y1 && other.y0 < self.y1
-    }
-
-    pub fn holds(self, other: Self) -> bool {
-        self.x0 <= other.x0 && other.x1 <= self.x1 && self.y0 <= other.y0 && other.y1 <= self.y1
-    }
-
-    pub fn corners(self) -> [Point; 4] {
-        [
-            [self.x0, self.y0],
-            [self.x1, self.y0],
-            [self.x1, self.y1],
-            [self.x0, self.y1],
-        ]
-    }
-
-    /// Whether the line from a to b passes through (Liang and Barsky).
-    pub fn meets(self, a: Point, b: Point) -> bool {
-        let (mut from, mut to) = (0.0_f64, 1.0_f64);
-        for (start, end, lo, hi) in [
-            (a[0], b[0], self.x0, self.x1),
-            (a[1], b[1], self.y0, self.y1),
-        ] {
-            let d = end - start;
-            if d == 0.0 {
-                if start < lo || start > hi {
-                    return false;
-                }
-                continue;
-            }
-            let (near, far) = ((lo - start) / d, (hi - start) / d);
-            from = from.max(near.min(far));
-            to = to.min(near.max(far));
-        }
-        from <= to
-    }
-}
-
-/// Which part of a text is at its place.
-#[derive(Clone, Copy, Debug)]
-pub enum Anchor {
-    Start,
-    Middle,
-    End,
-}
-
-/// A line of text; `10^{-3}` in it has a superscript.
-#[derive(Clone, Copy, Debug)]
-pub struct Text<'a> {
-    text: &'a str,
-    size: f64,
-    colour: &'a str,
-    anchor: Anchor,
-    bold: bool,
-    turned: bool,
-}
-
-impl<'a> Text<'a> {
-    pub fn new(text: &'a str, size: f64) -> Self {
-        Self {
-            text,
-            size,
-            colour: INK,
-            anchor: Anchor::Start,
-            bold: false,
-            turned: false,
-        }
-    }
-
-    pub fn colour(self, colour: &'a str) -> Self {
-        Self { colour, ..self }
-    }
-
-    pub fn anchor(self, anchor: Anchor) -> Self {
-        Self { anchor, ..self }
-    }
-
-    pub fn bold(self) -> Self {
-        Self { bold: true, ..self }
-    }
-
-    /// Read from below.
-    pub fn turned(self) -> Self {
-        Self {
-            turned: true,
-            ..self
-        }
-    }
-
-    /// The room it takes with its anchor, on the base line, at `at`.
-    pub fn room(self, [x, y]: Point) -> Rect {
-        let length = width(self.text, self.size);
-        let before = length
-            * match self.anchor {
-                Anchor::Start => 0.0,
-                Anchor::Middle => 0.5,
-                Anchor::End => 1.0,
-            };
-        let (up, down) = (0.78 * self.size, 0.22 * self.size);
-        if self.turned {
-            Rect::new(x - up, y + before - length, x + down, y + before)
-        } else {
-            Rect::new(x - before, y - up, x - before + length, y + down)
-        }
-    }
-}
-
-/// The pieces of a text, and which of them are superscripts.
-fn pieces(text: &str) -> impl Iterator<Item = (&str, bool)> {
-    text.split("^{").enumerate().flat_map(|(k, part)| {
-        let (raised, flat) = if k == 0 {
-            ("", part)
-        } else {
-            part.split_once('}').unwrap_or(("", part))
-        };
-        [(raised, true), (flat, false)]
-    })
-}
-
-const RAISED: f64 = 0.7;
-
-/// How long a text of this size is.
-pub fn width(text: &str, size: f64) -> f64 {
-    static FONT: LazyLock<Option<FontRef<'static>>> =
-        LazyLock::new(|| FontRef::new(UBUNTU_LIGHT).ok());
-    let Some(font) = &*FONT else {
-        return 0.6 * size * text.chars().count() as f64;
-    };
-    let (letters, metrics) = (
-        font.charmap(),
-        font.glyph_metrics(Size::new(size as f32), LocationRef::default()),
-    );
-    let advance = |c| {
-        letters
-            .map(c)
-            .and_then(|glyph| metrics.advance_width(glyph))
-    };
-    pieces(text)
-        .map(|(piece, raised)| {
-            let sum: f64 = piece
-                .chars()
-                .map(|c| advance(c).map_or(0.6 * size, f64::from))
-                .sum();
-            sum * if raised { RAISED } else { 1.0 }
-        })
-        .sum()
+/// A line's colour and width, as attributes of SVG.
+pub fn stroke(colour: &str, width: f64) -> String {
+    format!("stroke=\"{colour}\" stroke-width=\"{width:.2}\"")
 }
 
 /// What is drawn, in order.
@@ -274,10 +88,7 @@ impl Figure {
         let length = dx.hypot(dy).max(1e-9);
         let (u, v) = (4.0 * width * dx / length, 4.0 * width * dy / length);
         let neck = [to[0] - u, to[1] - v];
-        self.line(
-            &[from, neck],
-            &format!("stroke=\"{GREY}\" stroke-width=\"{width:.2}\""),
-        );
+        self.line(&[from, neck], &stroke(GREY, width));
         let head = [
             to,
             [neck[0] - v / 2.0, neck[1] + u / 2.0],
@@ -295,9 +106,16 @@ impl Figure {
         let Text { size, colour, .. } = text;
         let _ = write!(
             self.body,
-            "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size:.2}\" fill=\"{colour}\" textLength=\"{:.2}\" lengthAdjust=\"spacingAndGlyphs\"",
-            room.width().max(room.height()).min(width(text.text, size)),
+            "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size:.2}\" fill=\"{colour}\""
         );
+        // Whatever font is there, the text keeps to its room. Superscripts are short, and stretched wrongly by some.
+        if !text.text.contains("^{") {
+            let length = room.width().max(room.height());
+            let _ = write!(
+                self.body,
+                " textLength=\"{length:.2}\" lengthAdjust=\"spacingAndGlyphs\""
+            );
+        }
         match text.anchor {
             Anchor::Start => {}
             Anchor::Middle => self.body.push_str(" text-anchor=\"middle\""),
@@ -305,11 +123,7 @@ impl Figure {
         }
         if text.bold {
             // The font has no bold: its outline, drawn.
-            let _ = write!(
-                self.body,
-                " stroke=\"{colour}\" stroke-width=\"{:.2}\"",
-                0.035 * size
-            );
+            let _ = write!(self.body, " {}", stroke(colour, 0.035 * size));
         }
         if text.turned {
             let _ = write!(self.body, " transform=\"rotate(-90 {x:.2} {y:.2})\"");
@@ -317,7 +131,7 @@ impl Figure {
         self.body.push('>');
         for (piece, raised) in pieces(text.text).filter(|(piece, _)| !piece.is_empty()) {
             if raised {
-                let (rise, small) = (0.36 * size, RAISED * size);
+                let (rise, small) = (0.33 * size, RAISED * size);
                 let _ = write!(
                     self.body,
                     "<tspan dy=\"-{rise:.2}\" font-size=\"{small:.2}\">{}</tspan>",

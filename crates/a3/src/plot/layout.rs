@@ -1,6 +1,8 @@
 //! What all charts share: heads and foot, a legend, a grid of panels, and sizes of text that fit.
 
-use super::figure::{Anchor, Figure, GREY, Point, Rect, Text, width};
+use super::figure::Figure;
+use super::rect::{Point, Rect};
+use super::text::{Anchor, GREY, Text, width};
 
 /// No letters are smaller.
 const SMALLEST: f64 = 7.0;
@@ -72,16 +74,19 @@ pub fn elide(text: &str, size: f64, room: f64) -> String {
     String::new()
 }
 
-/// The text in lines that fit into the room.
+/// The text in lines that fit into the room. A line break breaks, a no-break space does not.
 pub fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = vec![];
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if width(&format!("{line} {word}"), size) <= room => {
-                line.push(' ');
-                line.push_str(word);
+    for paragraph in text.lines() {
+        let first = lines.len();
+        for word in paragraph.split(' ').filter(|word| !word.is_empty()) {
+            match lines[first..].last_mut() {
+                Some(line) if width(&format!("{line} {word}"), size) <= room => {
+                    line.push(' ');
+                    line.push_str(word);
+                }
+                _ => lines.push(elide(word, size, room)),
             }
-            _ => lines.push(elide(word, size, room)),
         }
     }
     lines
@@ -123,6 +128,7 @@ pub fn heads(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: Lev
         );
         left.y1 -= 1.25 * size;
     }
+    left.y1 -= 0.4 * level.size;
     left.y0 += 0.3 * level.size;
     left
 }
@@ -132,7 +138,7 @@ pub type Sign<'a> = Box<dyn Fn(&mut Figure, Point) + 'a>;
 
 /// Draws a legend in columns from the top of the area down, and takes its room away.
 pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], size: f64) {
-    let (sign, gap) = (3.2 * size, 1.6 * size);
+    let (sign, gap) = (4.0 * size, 1.6 * size);
     let longest = entries
         .iter()
         .map(|(name, _)| width(name, size))
@@ -155,18 +161,24 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
     area.y0 += (1.4 * rows as f64 + 0.4) * size;
 }
 
-/// Columns and rows for `n` panels, each about `aspect` times as wide as high.
-pub fn grid(n: usize, area: Rect, aspect: f64) -> [usize; 2] {
-    let badness = |columns: usize| {
-        let rows = n.div_ceil(columns);
-        let shape = area.width() / columns as f64 / (area.height() / rows as f64) / aspect;
-        let empty = (columns * rows - n) as f64 / n as f64;
-        shape.ln().abs() + 0.8 * empty
+/// Rooms for `n` panels, row by row, `gap` apart, and the number of columns: whichever makes a panel of these measures best.
+pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Vec<Rect>, usize) {
+    let cell = |columns: usize| {
+        let share = |length: f64, parts: usize| (length + gap) / parts as f64 - gap;
+        [
+            share(area.width(), columns),
+            share(area.height(), n.div_ceil(columns)),
+        ]
     };
-    let columns = (1..=n.max(1))
-        .min_by(|a, b| badness(*a).total_cmp(&badness(*b)))
-        .unwrap_or(1);
-    [columns, n.div_ceil(columns)]
+    let better = |a: &usize, b: &usize| merit(cell(*a)).total_cmp(&merit(cell(*b)));
+    let columns = (1..=n).rev().max_by(better).unwrap_or(1);
+    let [w, h] = cell(columns);
+    let room = |k: usize| {
+        let x0 = area.x0 + (k % columns) as f64 * (w + gap);
+        let y0 = area.y0 + (k / columns) as f64 * (h + gap);
+        Rect::new(x0, y0, x0 + w, y0 + h)
+    };
+    ((0..n).map(room).collect(), columns)
 }
 
 /// The label below all panels, with an arrow of what is better towards the left, if any.

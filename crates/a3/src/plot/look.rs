@@ -3,7 +3,8 @@
 
 use std::f64::consts::TAU;
 
-use super::figure::{Figure, Point};
+use super::figure::{Figure, stroke};
+use super::rect::Point;
 
 /// Colour, dash and marker of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +43,7 @@ pub fn of(letter: char) -> Look {
         'p' => ("#332288", SYMPLECTIC, Polygon(3, 0.25)),
         'f' => ("#cc79a7", ADAPTIVE, Star(4, 0.4)),
         'a' => ("#a03494", ADAPTIVE, Star(5, 0.42)),
-        'x' => ("#000000", ADAPTIVE, Star(3, 0.3)),
+        'x' => ("#000000", ADAPTIVE, Star(6, 0.45)),
         'i' => ("#35a596", IMPLICIT, Cross(0.0)),
         'b' => ("#009e73", IMPLICIT, Cross(0.125)),
         'n' => ("#117733", IMPLICIT, Polygon(6, 0.0)),
@@ -68,22 +69,16 @@ impl Look {
         } else {
             format!(" stroke-dasharray=\"{}\"", dash.join(" "))
         };
-        format!(
-            "stroke=\"{}\" stroke-width=\"{width:.2}\"{dash}",
-            self.colour
-        )
+        stroke(self.colour, width) + &dash
     }
 
     /// A marker of this method: filled, or open for a run that was lost.
     pub fn marker(self, figure: &mut Figure, centre: Point, radius: f64, open: bool) {
         let (colour, line) = (self.colour, 0.22 * radius);
         let style = if open {
-            format!(
-                "fill=\"#ffffff\" stroke=\"{colour}\" stroke-width=\"{:.2}\"",
-                1.3 * line
-            )
+            format!("fill=\"#ffffff\" {}", stroke(colour, 1.3 * line))
         } else {
-            format!("fill=\"{colour}\" stroke=\"#ffffff\" stroke-width=\"{line:.2}\"")
+            format!("fill=\"{colour}\" {}", stroke("#ffffff", line))
         };
         figure.area(&[self.outline(centre, radius)], &style);
     }

@@ -6,8 +6,10 @@ mod figure;
 mod layout;
 mod look;
 pub mod precision;
+mod rect;
 pub mod regions;
 #[cfg(test)]
 mod tests;
+mod text;
 
 pub use figure::png;

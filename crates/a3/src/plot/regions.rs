@@ -4,9 +4,11 @@ use std::collections::HashSet;
 
 use super::axis::{self, Axis};
 use super::contour;
-use super::figure::{Figure, GREY, Point, Rect, Text};
+use super::figure::{Figure, stroke};
 use super::layout::{self, Level, Sign};
 use super::look;
+use super::rect::{Point, Rect};
+use super::text::{GREY, Text};
 
 /// One method at one step.
 pub struct Panel {
@@ -29,7 +31,7 @@ pub struct Chart {
     pub panels: Vec<Panel>,
 }
 
-const FOOT: &str = "h in s, λ in 1/s, h λ without unit. Of λ is shown what moves: real parts are decay, imaginary parts are frequency.";
+const FOOT: &str = "h in s, λ in 1/s, so h λ has no unit. Real parts are growth or decay, imaginary parts oscillation. Where λ is inside, its motion does not grow.";
 const INSIDE: &str = "#222222";
 const OUTSIDE: &str = "#d0021b";
 
@@ -52,6 +54,12 @@ impl Extent {
     fn with_all(self, other: Self) -> Self {
         self.with([other.real[0], other.imaginary])
             .with([other.real[1], 0.0])
+    }
+
+    /// How long 1 is on a panel that just shows this, with a margin.
+    fn unit(self, width: f64, height: f64) -> f64 {
+        let [low, high] = self.real;
+        (width / (high - low)).min(height / (2.0 * self.imaginary)) / 1.12
     }
 
     fn size(self) -> f64 {
@@ -102,23 +110,30 @@ impl Chart {
         })
     }
 
-    /// One for all panels, but for those that would need a much larger one, or be lost in it.
+    /// One for as many panels as possible: those that need between two fifths of it and all. Whether it is shared by the most.
     fn extents(&self) -> Vec<(Extent, bool)> {
         let own: Vec<_> = self.panels.iter().map(Panel::extent).collect();
-        let mut sizes: Vec<_> = own.iter().map(|extent| extent.size()).collect();
-        sizes.sort_by(f64::total_cmp);
-        let median = sizes[(sizes.len() - 1) / 2];
-        let is_common = |extent: &Extent| (median / 3.0..=2.5 * median).contains(&extent.size());
-        let common = own
-            .iter()
-            .copied()
-            .filter(is_common)
-            .reduce(Extent::with_all);
-        let choose = |own: Extent| match common {
-            Some(common) if is_common(&own) => (common, true),
-            _ => (own, false),
+        let mut sorted = own.clone();
+        sorted.sort_by(|a, b| b.size().total_cmp(&a.size()));
+        let mut groups: Vec<(Extent, f64, usize)> = vec![];
+        for extent in sorted {
+            match groups.last_mut() {
+                Some((all, largest, count)) if extent.size() >= 0.4 * *largest => {
+                    *all = all.with_all(extent);
+                    *count += 1;
+                }
+                _ => groups.push((extent, extent.size(), 1)),
+            }
+        }
+        let most = groups.iter().map(|group| group.2).max();
+        let group = |own: &Extent| {
+            let mut fitting = groups.iter().rev();
+            let found = fitting.find(|(_, largest, _)| own.size() <= *largest);
+            found.map_or((*own, false), |(all, _, count)| {
+                (*all, Some(*count) == most)
+            })
         };
-        own.into_iter().map(choose).collect()
+        own.iter().map(group).collect()
     }
 
     fn try_draw(
@@ -151,16 +166,18 @@ impl Chart {
             "",
             size,
         );
-        let [columns, rows] = layout::grid(self.panels.len(), inner, 1.15);
-        let gap = 1.2 * size;
-        let cell = [
-            (inner.width() + gap) / columns as f64 - gap,
-            (inner.height() + gap) / rows as f64 - gap,
-        ];
-        // As many lines below the titles as the longest needs, so that panels of a row are alike.
         let small = 0.85 * size;
+        let room = |[w, h]: Point| [w - 2.4 * small, h - 4.6 * size];
+        let merit = |cell: Point| {
+            let [w, h] = room(cell);
+            let unit = |(extent, _): &(Extent, bool)| extent.unit(w, h);
+            extents.iter().map(unit).fold(f64::INFINITY, f64::min)
+        };
+        let (rooms, _) = layout::grid(self.panels.len(), inner, 1.2 * size, merit);
+        let width = rooms[0].width();
+        // As many lines below the titles as the longest needs, so that panels of a row are alike.
         let most = if level.full { 3 } else { 1 };
-        let lines = |panel: &Panel| layout::wrap(&panel.subtitle, small, cell[0]);
+        let lines = |panel: &Panel| layout::wrap(&panel.subtitle, small, width);
         let depth = self
             .panels
             .iter()
@@ -168,26 +185,28 @@ impl Chart {
             .max()
             .unwrap_or(0)
             .min(most);
-        for (k, panel) in self.panels.iter().enumerate() {
-            let x0 = inner.x0 + (k % columns) as f64 * (cell[0] + gap);
-            let mut y = inner.y0 + (k / columns) as f64 * (cell[1] + gap);
-            let bottom = y + cell[1] - 1.3 * small;
-            let title = layout::elide(&panel.title, size, cell[0]);
+        for ((panel, cell), (extent, is_common)) in self.panels.iter().zip(rooms).zip(extents) {
+            let (x0, mut y) = (cell.x0, cell.y0);
+            let title = layout::elide(&panel.title, size, width);
             figure.text([x0, y + 0.8 * size], Text::new(&title, size).bold());
             y += 1.25 * size;
             for line in lines(panel).iter().take(depth) {
                 figure.text([x0, y + 0.75 * small], Text::new(line, small).colour(GREY));
                 y += 1.15 * small;
             }
-            y += depth as f64 * 1.15 * small - lines(panel).len().min(depth) as f64 * 1.15 * small;
-            let area = Rect::new(x0 + 2.2 * small, y + 0.3 * size, x0 + cell[0], bottom);
+            y = cell.y0 + 1.25 * size + depth as f64 * 1.15 * small;
+            let area = Rect::new(
+                cell.x0 + 2.4 * small,
+                y + 0.3 * size,
+                cell.x1,
+                cell.y1 - 1.3 * small,
+            );
             if area.width() < 5.5 * size || area.height() < 5.0 * size {
                 return None;
             }
-            let (extent, is_common) = extents[k];
-            draw_panel(&mut figure, panel, area, extent, small);
+            draw_panel(&mut figure, panel, area, *extent, small);
             if !is_common {
-                let text = Text::new("other scale", small).colour(GREY);
+                let text = Text::new("another scale", small).colour(GREY);
                 let at = [area.x0 + 0.4 * small, area.y0 + small];
                 if area.holds(text.room(at)) {
                     figure.text(at, text);
@@ -198,7 +217,6 @@ impl Chart {
     }
 
     fn entries(&self, size: f64) -> Vec<(String, Sign<'_>)> {
-        let colour = look::of(self.panels.first().map_or('e', |panel| panel.letter)).colour;
         let region: Sign = Box::new(move |figure, [x, y]| {
             let sample = Rect::new(
                 x - 1.2 * size,
@@ -206,35 +224,28 @@ impl Chart {
                 x + 1.2 * size,
                 y + 0.45 * size,
             );
-            figure.rect(sample, &region_style(colour, 0.1 * size));
+            figure.rect(sample, &region_style(GREY, 0.1 * size));
         });
         let mark =
             |inside| -> Sign { Box::new(move |figure, at| dot(figure, at, 0.85 * size, inside)) };
         vec![
-            (
-                "stable region: no step of the method grows".to_owned(),
-                region,
-            ),
-            ("eigenvalue times step, stable".to_owned(), mark(true)),
-            ("unstable".to_owned(), mark(false)),
+            ("stable region".to_owned(), region),
+            ("eigenvalue times step".to_owned(), mark(true)),
+            ("the same, unstable".to_owned(), mark(false)),
         ]
     }
 }
 
 fn region_style(colour: &str, width: f64) -> String {
     format!(
-        "fill=\"{colour}\" fill-opacity=\"0.2\" stroke=\"{colour}\" stroke-width=\"{width:.2}\""
+        "fill=\"{colour}\" fill-opacity=\"0.2\" {}",
+        stroke(colour, width)
     )
 }
 
 fn draw_panel(figure: &mut Figure, panel: &Panel, area: Rect, extent: Extent, size: f64) {
-    // A margin around what has to be seen, then whatever else the panel's shape has room for.
     let middle = f64::midpoint(extent.real[0], extent.real[1]);
-    let (wide, high) = (
-        1.12 * (extent.real[1] - extent.real[0]),
-        1.12 * 2.0 * extent.imaginary,
-    );
-    let unit = (area.width() / wide).min(area.height() / high);
+    let unit = extent.unit(area.width(), area.height());
     let (dx, dy) = (area.width() / unit / 2.0, area.height() / unit / 2.0);
     let x = Axis::linear([middle - dx, middle + dx]).between(area.x0, area.x1);
     let y = Axis::linear([-dy, dy]).between(area.y1, area.y0);
@@ -262,10 +273,11 @@ fn draw_panel(figure: &mut Figure, panel: &Panel, area: Rect, extent: Extent, si
             figure.area(&outlines, &region_style(colour, 0.13 * size));
         }
         let zero = place([0.0, 0.0]);
-        let style = format!("stroke=\"#555555\" stroke-width=\"{:.2}\"", 0.07 * size);
+        let style = stroke("#555555", 0.07 * size);
         figure.line(&[[area.x0, zero[1]], [area.x1, zero[1]]], &style);
         figure.line(&[[zero[0], area.y0], [zero[0], area.y1]], &style);
-        // Thousands may share a place.
+        // The more there are, the smaller; thousands may share a place.
+        let small = size * (40.0 / panel.eigenvalues.len().max(40) as f64).powf(0.25);
         let mut seen = HashSet::new();
         for z in panel
             .eigenvalues
@@ -291,7 +303,7 @@ fn draw_panel(figure: &mut Figure, panel: &Panel, area: Rect, extent: Extent, si
                     if inside { INSIDE } else { OUTSIDE },
                 );
             } else {
-                dot(figure, [px, py], size, inside);
+                dot(figure, [px, py], small, inside);
             }
         }
     });
@@ -307,19 +319,10 @@ fn dot(figure: &mut Figure, [x, y]: Point, size: f64, inside: bool) {
             .into_iter()
             .map(|a| [x + 0.2 * size * a.cos(), y + 0.2 * size * a.sin()])
             .collect();
-        figure.area(
-            &[round],
-            &format!(
-                "fill=\"{INSIDE}\" stroke=\"#ffffff\" stroke-width=\"{:.2}\"",
-                0.05 * size
-            ),
-        );
+        figure.area(&[round], &format!("fill=\"{INSIDE}\""));
     } else {
         let r = 0.26 * size;
-        let style = format!(
-            "stroke=\"{OUTSIDE}\" stroke-width=\"{:.2}\" stroke-linecap=\"round\"",
-            0.15 * size
-        );
+        let style = stroke(OUTSIDE, 0.15 * size);
         figure.line(&[[x - r, y - r], [x + r, y + r]], &style);
         figure.line(&[[x - r, y + r], [x + r, y - r]], &style);
     }

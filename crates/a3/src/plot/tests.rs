@@ -2,8 +2,11 @@
 
 use resvg::usvg::roxmltree;
 
-use super::figure::{Figure, Rect, Text};
-use super::{axis::Axis, layout, png, precision, regions};
+use super::axis::Axis;
+use super::figure::Figure;
+use super::rect::Rect;
+use super::text::Text;
+use super::{layout, png, precision, regions};
 
 const SIZES: [[f64; 2]; 4] = [
     [480.0, 360.0],
@@ -175,7 +178,7 @@ fn region_chart(n: usize) -> regions::Chart {
             letter,
             title: format!("{name}, h = {step} ms"),
             subtitle: format!(
-                "largest stable step: predicted {:.2} ms, observed {:.1} ms",
+                "largest stable step: predicted\u{a0}{:.2}\u{a0}ms, observed\u{a0}{:.1}\u{a0}ms",
                 step * 1.042,
                 step * 1.06
             ),
@@ -377,7 +380,11 @@ fn long_texts_are_wrapped_or_cut() {
 #[test]
 fn panels_fill_the_sheet() {
     let wide = Rect::new(0.0, 0.0, 1200.0, 600.0);
-    assert_eq!(layout::grid(1, wide, 1.2), [1, 1]);
-    assert_eq!(layout::grid(2, wide, 1.2), [2, 1]);
-    assert_eq!(layout::grid(6, wide, 1.2), [3, 2]);
+    let columns = |n| {
+        let (rooms, columns) = layout::grid(n, wide, 10.0, |[w, h]| (w / 1.2).min(h));
+        assert_eq!(rooms.len(), n);
+        assert!(rooms.iter().all(|room| wide.holds(*room)));
+        columns
+    };
+    assert_eq!([1, 2, 6, 8].map(columns), [1, 2, 3, 4]);
 }
