@@ -65,6 +65,12 @@ impl Axis {
         self.places[0] + part.clamp(0.0, 1.0) * (self.places[1] - self.places[0])
     }
 
+    /// Whether there is some of the axis on either side of a number.
+    pub fn is_inside(&self, value: f64) -> bool {
+        let value = if self.log { value.log10() } else { value };
+        self.ends[0] < value && value < self.ends[1]
+    }
+
     /// The grid: numbers at least `gap` apart on the sheet.
     pub fn ticks(&self, gap: f64) -> Vec<Tick> {
         let span = self.ends[1] - self.ends[0];
@@ -154,7 +160,7 @@ pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
         stroke(colour, width * size)
     };
     let (xs, ys) = (
-        x.ticks(if x.log { 3.4 } else { 2.6 } * size),
+        x.ticks(if x.log { 3.4 } else { 2.3 } * size),
         y.ticks(1.6 * size),
     );
     // Those with numbers are drawn over those without.

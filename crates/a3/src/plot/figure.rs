@@ -110,7 +110,11 @@ impl Figure {
         );
         // Whatever font is there, the text keeps to its room. Superscripts are short, and stretched wrongly by some.
         if !text.text.contains("^{") {
-            let length = room.width().max(room.height());
+            let length = if text.turned {
+                room.height()
+            } else {
+                room.width()
+            };
             let _ = write!(
                 self.body,
                 " textLength=\"{length:.2}\" lengthAdjust=\"spacingAndGlyphs\""

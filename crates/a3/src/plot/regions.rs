@@ -1,6 +1,7 @@
 //! Regions of stability: a panel a method, in the plane of h λ, with the eigenvalues of a problem times the step.
 
 use std::collections::HashSet;
+use std::f64::consts::TAU;
 
 use super::axis::{self, Axis};
 use super::contour;
@@ -31,7 +32,7 @@ pub struct Chart {
     pub panels: Vec<Panel>,
 }
 
-const FOOT: &str = "h in s, λ in 1/s, so h λ has no unit. Real parts are growth or decay, imaginary parts oscillation. Where λ is inside, its motion does not grow.";
+const FOOT: &str = "h in s, λ in 1/s, so h λ has no unit. Real parts are growth or decay, imaginary parts oscillation; what lies in the region does not grow.";
 const INSIDE: &str = "#222222";
 const OUTSIDE: &str = "#d0021b";
 
@@ -144,28 +145,20 @@ impl Chart {
     ) -> Option<Figure> {
         let size = level.size;
         let mut left = layout::heads(&mut figure, [&self.title, &self.subtitle, FOOT], level);
-        layout::legend(&mut figure, &mut left, &self.entries(size), size);
+        layout::legend(&mut figure, &mut left, &self.entries(size, extents), size);
         let inner = Rect::new(left.x0 + 1.6 * size, left.y0, left.x1, left.y1 - 1.5 * size);
-        layout::label_below(
-            &mut figure,
+        let (below, beside) = (
             Rect {
                 x0: inner.x0,
                 ..left
             },
-            "Re(h λ)",
-            "",
-            size,
-        );
-        layout::label_left(
-            &mut figure,
             Rect {
                 y1: inner.y1,
                 ..left
             },
-            "Im(h λ)",
-            "",
-            size,
         );
+        layout::label_below(&mut figure, below, "Re(h λ)", "", size);
+        layout::label_left(&mut figure, beside, "Im(h λ)", "", size);
         let small = 0.85 * size;
         let room = |[w, h]: Point| [w - 2.4 * small, h - 4.6 * size];
         let merit = |cell: Point| {
@@ -175,29 +168,34 @@ impl Chart {
         };
         let (rooms, _) = layout::grid(self.panels.len(), inner, 1.2 * size, merit);
         let width = rooms[0].width();
-        // As many lines below the titles as the longest needs, so that panels of a row are alike.
+        // As many lines above each panel as the longest words need, so that panels of a row are alike.
         let most = if level.full { 3 } else { 1 };
-        let lines = |panel: &Panel| layout::wrap(&panel.subtitle, small, width);
-        let depth = self
-            .panels
-            .iter()
-            .map(|panel| lines(panel).len())
-            .max()
-            .unwrap_or(0)
-            .min(most);
+        let words = |panel: &Panel| {
+            let mut lines = [(&panel.title, size), (&panel.subtitle, small)]
+                .map(|(text, size)| layout::wrap(text, size, width));
+            lines.iter_mut().for_each(|lines| lines.truncate(most));
+            lines
+        };
+        let depth = |k: usize| self.panels.iter().map(|panel| words(panel)[k].len()).max();
+        let depth = [0, 1].map(|k| depth(k).unwrap_or(0) as f64);
+        let above = 1.2 * size * depth[0] + 1.2 * small * depth[1] + 0.3 * size;
         for ((panel, cell), (extent, is_common)) in self.panels.iter().zip(rooms).zip(extents) {
-            let (x0, mut y) = (cell.x0, cell.y0);
-            let title = layout::elide(&panel.title, size, width);
-            figure.text([x0, y + 0.8 * size], Text::new(&title, size).bold());
-            y += 1.25 * size;
-            for line in lines(panel).iter().take(depth) {
-                figure.text([x0, y + 0.75 * small], Text::new(line, small).colour(GREY));
-                y += 1.15 * small;
+            let mut y = cell.y0;
+            let [title, subtitle] = words(panel);
+            for line in &title {
+                figure.text([cell.x0, y + 0.8 * size], Text::new(line, size).bold());
+                y += 1.2 * size;
             }
-            y = cell.y0 + 1.25 * size + depth as f64 * 1.15 * small;
+            for line in &subtitle {
+                figure.text(
+                    [cell.x0, y + 0.8 * small],
+                    Text::new(line, small).colour(GREY),
+                );
+                y += 1.2 * small;
+            }
             let area = Rect::new(
                 cell.x0 + 2.4 * small,
-                y + 0.3 * size,
+                cell.y0 + above,
                 cell.x1,
                 cell.y1 - 1.3 * small,
             );
@@ -216,7 +214,7 @@ impl Chart {
         Some(figure)
     }
 
-    fn entries(&self, size: f64) -> Vec<(String, Sign<'_>)> {
+    fn entries(&self, size: f64, extents: &[(Extent, bool)]) -> Vec<(String, Sign<'_>)> {
         let region: Sign = Box::new(move |figure, [x, y]| {
             let sample = Rect::new(
                 x - 1.2 * size,
@@ -228,11 +226,21 @@ impl Chart {
         });
         let mark =
             |inside| -> Sign { Box::new(move |figure, at| dot(figure, at, 0.85 * size, inside)) };
-        vec![
+        let mut entries = vec![
             ("stable region".to_owned(), region),
             ("eigenvalue times step".to_owned(), mark(true)),
             ("the same, unstable".to_owned(), mark(false)),
-        ]
+        ];
+        let is_beyond = |(panel, (extent, _)): (&Panel, &(Extent, bool))| {
+            panel.eigenvalues.iter().any(|z| extent.with(*z) != *extent)
+        };
+        if self.panels.iter().zip(extents).any(is_beyond) {
+            let wedge: Sign = Box::new(move |figure, [x, y]| {
+                beyond(figure, [x, y], [x - 1.0, y], 0.3 * size, GREY)
+            });
+            entries.push(("farther out".to_owned(), wedge));
+        }
+        entries
     }
 }
 
@@ -289,19 +297,13 @@ fn draw_panel(figure: &mut Figure, panel: &Panel, area: Rect, extent: Extent, si
             if !seen.insert(((px * 4.0) as i64, (py * 4.0) as i64, inside)) {
                 continue;
             }
-            let edge = 0.5 * size;
+            let (edge, colour) = (0.5 * size, if inside { INSIDE } else { OUTSIDE });
             let at = [
                 px.clamp(area.x0 + edge, area.x1 - edge),
                 py.clamp(area.y0 + edge, area.y1 - edge),
             ];
             if (px - at[0]).hypot(py - at[1]) > 1.5 * edge {
-                beyond(
-                    figure,
-                    at,
-                    [px, py],
-                    0.7 * edge,
-                    if inside { INSIDE } else { OUTSIDE },
-                );
+                beyond(figure, at, [px, py], 0.7 * edge, colour);
             } else {
                 dot(figure, [px, py], small, inside);
             }
@@ -312,12 +314,10 @@ fn draw_panel(figure: &mut Figure, panel: &Panel, area: Rect, extent: Extent, si
 /// A dot, or a cross where the method is unstable.
 fn dot(figure: &mut Figure, [x, y]: Point, size: f64, inside: bool) {
     if inside {
+        let corner = |k: u8| (f64::from(k) * TAU / 12.0).sin_cos();
         let round: Vec<_> = (0..12)
-            .map(|k| f64::from(k) * std::f64::consts::TAU / 12.0)
-            .collect();
-        let round: Vec<_> = round
-            .into_iter()
-            .map(|a| [x + 0.2 * size * a.cos(), y + 0.2 * size * a.sin()])
+            .map(corner)
+            .map(|(sin, cos)| [x + 0.2 * size * cos, y + 0.2 * size * sin])
             .collect();
         figure.area(&[round], &format!("fill=\"{INSIDE}\""));
     } else {

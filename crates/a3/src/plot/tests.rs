@@ -174,6 +174,7 @@ fn region_chart(n: usize) -> regions::Chart {
             let [re, im] = [-0.0006 * omega * omega, omega];
             [[re, im], [re, -im]].map(|z| z.map(|part| part * step * 1e-3))
         });
+        let far = (letter == 'i').then_some([-50.0, 0.0]);
         regions::Panel {
             letter,
             title: format!("{name}, h = {step} ms"),
@@ -183,7 +184,7 @@ fn region_chart(n: usize) -> regions::Chart {
                 step * 1.06
             ),
             radius: Box::new(radii[radius]),
-            eigenvalues: eigenvalues.collect(),
+            eigenvalues: eigenvalues.chain(far).collect(),
         }
     };
     regions::Chart {

@@ -156,7 +156,7 @@ impl Chart {
             [&self.title, &self.subtitle, &self.foot],
             level,
         );
-        layout::legend(&mut figure, &mut left, &self.entries(size), size);
+        layout::legend(&mut figure, &mut left, &self.entries(size, &x), size);
         let numbers = axis::widest(&y.between(0.0, left.height()), size) + 0.6 * size;
         let inner = Rect::new(
             left.x0 + 1.4 * size + numbers,
@@ -225,7 +225,7 @@ impl Chart {
     }
 
     /// The legend: each method once, the front, and what else needs a word.
-    fn entries(&self, size: f64) -> Vec<(String, Sign<'_>)> {
+    fn entries(&self, size: f64, x: &Axis) -> Vec<(String, Sign<'_>)> {
         let mut seen = vec![];
         let mut entries: Vec<(String, Sign)> = vec![];
         for curve in self.panels.iter().flat_map(|panel| &panel.curves) {
@@ -248,7 +248,7 @@ impl Chart {
             figure.line(&line, &(stroke(FRONT, 0.7 * size) + ROUND));
         });
         entries.push(("fastest for its error".to_owned(), front));
-        if self.panels.iter().any(|panel| panel.trusted() > 0.0) {
+        if self.panels.iter().any(|panel| x.is_inside(panel.trusted())) {
             let shade: Sign = Box::new(move |figure, [x, y]| {
                 let sample = Rect::new(
                     x - 1.6 * size,

@@ -74,6 +74,8 @@ impl<'a> Drawing<'a> {
             .collect();
         let line: Vec<_> = front.iter().map(|(_, run)| self.at(run)).collect();
         figure.line(&line, &(stroke(FRONT, 0.9 * self.fine) + ROUND));
+        self.lines
+            .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
         self.curves(figure);
         self.lost(figure, strip);
         if limit > 0.0 {
