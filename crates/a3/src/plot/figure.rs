@@ -99,7 +99,7 @@ impl Figure {
 
     pub fn text(&mut self, at: Point, text: Text) -> Rect {
         let room = text.room(at);
-        if text.text.is_empty() {
+        if text.words.is_empty() {
             return room;
         }
         let [x, y] = at;
@@ -109,7 +109,7 @@ impl Figure {
             "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size:.2}\" fill=\"{colour}\""
         );
         // Whatever font is there, the text keeps to its room. Superscripts are short, and stretched wrongly by some.
-        if !text.text.contains("^{") {
+        if !text.words.contains("^{") {
             let length = if text.turned {
                 room.height()
             } else {
@@ -133,7 +133,7 @@ impl Figure {
             let _ = write!(self.body, " transform=\"rotate(-90 {x:.2} {y:.2})\"");
         }
         self.body.push('>');
-        for (piece, raised) in pieces(text.text).filter(|(piece, _)| !piece.is_empty()) {
+        for (piece, raised) in pieces(text.words).filter(|(piece, _)| !piece.is_empty()) {
             if raised {
                 let (rise, small) = (0.33 * size, RAISED * size);
                 let _ = write!(
@@ -148,6 +148,11 @@ impl Figure {
         self.body.push_str("</text>\n");
         self.texts.push(room);
         room
+    }
+
+    /// Keeps texts out of this room.
+    pub fn reserve(&mut self, room: Rect) {
+        self.texts.push(room);
     }
 
     /// Whether no text is in this room yet, and the sheet has it.

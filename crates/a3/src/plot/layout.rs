@@ -153,6 +153,7 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
         let x = area.x0 + (k % columns) as f64 * column;
         let y = area.y0 + (1.4 * (k / columns) as f64 + 0.7) * size;
         draw(figure, [x + 0.45 * sign, y]);
+        figure.reserve(Rect::new(x, y - 0.5 * size, x + 0.9 * sign, y + 0.5 * size));
         figure.text(
             [x + sign, y + 0.34 * size],
             Text::new(&elide(name, size, longest + 0.01), size),

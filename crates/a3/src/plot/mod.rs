@@ -2,7 +2,7 @@
 
 mod axis;
 mod contour;
-mod figure;
+pub mod figure;
 mod layout;
 mod look;
 pub mod precision;
@@ -11,5 +11,3 @@ pub mod regions;
 #[cfg(test)]
 mod tests;
 mod text;
-
-pub use figure::png;

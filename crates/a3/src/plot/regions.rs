@@ -14,7 +14,7 @@ use super::text::{GREY, Text};
 /// One method at one step.
 pub struct Panel {
     pub letter: char,
-    /// The method, and its step.
+    /// The method, and its step. No-break spaces keep together what belongs together, here and below.
     pub title: String,
     /// Such as the largest stable step, predicted and observed.
     pub subtitle: String,
@@ -173,7 +173,9 @@ impl Chart {
         let words = |panel: &Panel| {
             let mut lines = [(&panel.title, size), (&panel.subtitle, small)]
                 .map(|(text, size)| layout::wrap(text, size, width));
-            lines.iter_mut().for_each(|lines| lines.truncate(most));
+            for lines in &mut lines {
+                lines.truncate(most);
+            }
             lines
         };
         let depth = |k: usize| self.panels.iter().map(|panel| words(panel)[k].len()).max();
@@ -204,7 +206,7 @@ impl Chart {
             }
             draw_panel(&mut figure, panel, area, *extent, small);
             if !is_common {
-                let text = Text::new("another scale", small).colour(GREY);
+                let text = Text::new("own scale", small).colour(GREY);
                 let at = [area.x0 + 0.4 * small, area.y0 + small];
                 if area.holds(text.room(at)) {
                     figure.text(at, text);
@@ -236,7 +238,7 @@ impl Chart {
         };
         if self.panels.iter().zip(extents).any(is_beyond) {
             let wedge: Sign = Box::new(move |figure, [x, y]| {
-                beyond(figure, [x, y], [x - 1.0, y], 0.3 * size, GREY)
+                beyond(figure, [x, y], [x - 1.0, y], 0.3 * size, GREY);
             });
             entries.push(("farther out".to_owned(), wedge));
         }

@@ -3,10 +3,10 @@
 use resvg::usvg::roxmltree;
 
 use super::axis::Axis;
-use super::figure::Figure;
+use super::figure::{Figure, png};
 use super::rect::Rect;
 use super::text::Text;
-use super::{layout, png, precision, regions};
+use super::{layout, precision, regions};
 
 const SIZES: [[f64; 2]; 4] = [
     [480.0, 360.0],
@@ -177,7 +177,7 @@ fn region_chart(n: usize) -> regions::Chart {
         let far = (letter == 'i').then_some([-50.0, 0.0]);
         regions::Panel {
             letter,
-            title: format!("{name}, h = {step} ms"),
+            title: format!("{name}, h\u{a0}=\u{a0}{step}\u{a0}ms"),
             subtitle: format!(
                 "largest stable step: predicted\u{a0}{:.2}\u{a0}ms, observed\u{a0}{:.1}\u{a0}ms",
                 step * 1.042,
@@ -238,6 +238,38 @@ fn no_text_of_a_stability_chart_covers_another() {
         let chart = region_chart(panels);
         check(&format!("regions-{panels}"), &|w, h| chart.draw(w, h));
     }
+}
+
+#[test]
+fn eigenvalues_outside_the_region_are_crosses() {
+    let chart = |radius: Radius, eigenvalues| regions::Chart {
+        title: String::new(),
+        subtitle: String::new(),
+        panels: vec![regions::Panel {
+            letter: 'e',
+            title: String::new(),
+            subtitle: String::new(),
+            radius: Box::new(radius),
+            eigenvalues,
+        }],
+    };
+    let crosses = |radius, eigenvalues| {
+        let figure = chart(radius, eigenvalues).draw(800.0, 600.0).unwrap();
+        // Two lines each, and those of the legend.
+        figure.svg().matches("#d0021b").count() / 2 - 1
+    };
+    let z = || {
+        vec![
+            [-1.0, 0.9],
+            [-1.0, 1.1],
+            [0.1, 0.0],
+            [f64::NAN, 0.0],
+            [2.5, 0.0],
+        ]
+    };
+    assert_eq!(crosses(|x, y| taylor(1, x, y), z()), 3);
+    assert_eq!(crosses(|x, y| 1.0 / (1.0 - x).hypot(y), z()), 1);
+    assert_eq!(crosses(|_, _| f64::NAN, z()), 4);
 }
 
 #[test]

@@ -24,7 +24,7 @@ pub enum Anchor {
 /// A line of text; `10^{-3}` in it has a superscript.
 #[derive(Clone, Copy, Debug)]
 pub struct Text<'a> {
-    pub text: &'a str,
+    pub words: &'a str,
     pub size: f64,
     pub colour: &'a str,
     pub anchor: Anchor,
@@ -33,9 +33,9 @@ pub struct Text<'a> {
 }
 
 impl<'a> Text<'a> {
-    pub fn new(text: &'a str, size: f64) -> Self {
+    pub fn new(words: &'a str, size: f64) -> Self {
         Self {
-            text,
+            words,
             size,
             colour: INK,
             anchor: Anchor::Start,
@@ -66,7 +66,7 @@ impl<'a> Text<'a> {
 
     /// The room it takes with its anchor, on the base line, at `at`.
     pub fn room(self, [x, y]: Point) -> Rect {
-        let length = width(self.text, self.size);
+        let length = width(self.words, self.size);
         let before = length
             * match self.anchor {
                 Anchor::Start => 0.0,
