@@ -1,6 +1,5 @@
 //! `a3 stability`: the largest step that each solver holds, predicted and observed, and the plane in which one sees why.
 
-use std::cell::RefCell;
 use std::path::PathBuf;
 
 use a3_core::stability::{
@@ -217,20 +216,14 @@ fn panel(row: &Row, modes: &[Mode]) -> Panel {
     let share = modes
         .first()
         .map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300));
-    let growth = RefCell::new(None::<(Mode, Growth)>);
     let radius = move |re: f64, im: f64| {
         let mode = Mode::of_eigenvalue(re, im);
         let mode = Mode {
-            stiffness: mode.stiffness,
             drag: (1.0 - share) * mode.drag,
             damping: share * mode.drag,
+            ..mode
         };
-        let mut slot = growth.borrow_mut();
-        if !slot.as_ref().is_some_and(|(known, _)| *known == mode) {
-            *slot = Growth::new(method, mode).ok().map(|growth| (mode, growth));
-        }
-        slot.as_mut()
-            .map_or(f64::INFINITY, |(_, growth)| growth.of_step(1.0))
+        Growth::new(method, mode).map_or(f64::INFINITY, |mut growth| growth.of_step(1.0))
     };
     Panel {
         letter: method.letter,

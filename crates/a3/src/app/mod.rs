@@ -162,7 +162,7 @@ impl App {
                 };
                 let message = match graphics.save_picture(&mut self.session) {
                     Ok(name) => format!("saved {name}"),
-                    Err(Failure::Run(why) | Failure::Usage(why)) => why,
+                    Err(Failure::Run(why) | Failure::Usage(why) | Failure::Interrupted(why)) => why,
                 };
                 self.session.say(message);
             }

@@ -97,7 +97,7 @@ pub fn write_picture(path: &std::path::Path, svg: &str) -> Result<(), Failure> {
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("png"));
     if is_png {
-        output::write(path, &plot::png(svg, 1.0)?)
+        output::write(path, &plot::figure::png(svg, 1.0)?)
     } else {
         output::write(path, svg.as_bytes())
     }

@@ -1,0 +1,194 @@
+//! Axes: from numbers to places, and where the ticks are.
+
+use super::figure::{Figure, stroke};
+use super::rect::{Point, Rect};
+use super::text::{Anchor, Text, width};
+
+/// One direction of a chart, linear or logarithmic.
+#[derive(Clone, Copy, Debug)]
+pub struct Axis {
+    log: bool,
+    /// The ends, as numbers (their decimal logarithms where logarithmic).
+    ends: [f64; 2],
+    /// The ends, on the sheet.
+    places: [f64; 2],
+}
+
+/// A line of the grid, with a number or without.
+#[derive(Debug, PartialEq)]
+pub struct Tick {
+    pub value: f64,
+    pub label: String,
+}
+
+impl Axis {
+    pub fn linear(ends: [f64; 2]) -> Self {
+        Self {
+            log: false,
+            ends,
+            places: [0.0, 1.0],
+        }
+    }
+
+    /// Around positive numbers: ends are 1, 2 or 5 times a power of ten.
+    pub fn log(low: f64, high: f64) -> Self {
+        let marks = [0.0, 2_f64.log10(), 5_f64.log10(), 1.0];
+        let (low, high) = (low.log10() - 0.03, high.log10() + 0.03);
+        let down = low.floor()
+            + marks
+                .into_iter()
+                .rfind(|m| *m <= low - low.floor())
+                .unwrap_or(0.0);
+        let up = high.floor()
+            + marks
+                .into_iter()
+                .find(|m| *m >= high - high.floor())
+                .unwrap_or(1.0);
+        Self {
+            log: true,
+            ends: [down, up],
+            places: [0.0, 1.0],
+        }
+    }
+
+    pub fn between(self, from: f64, to: f64) -> Self {
+        Self {
+            places: [from, to],
+            ..self
+        }
+    }
+
+    /// Where a number is; one beyond the ends is at the end.
+    pub fn at(&self, value: f64) -> f64 {
+        let value = if self.log { value.log10() } else { value };
+        let part = (value - self.ends[0]) / (self.ends[1] - self.ends[0]);
+        self.places[0] + part.clamp(0.0, 1.0) * (self.places[1] - self.places[0])
+    }
+
+    /// Whether there is some of the axis on either side of a number.
+    pub fn is_inside(&self, value: f64) -> bool {
+        let value = if self.log { value.log10() } else { value };
+        self.ends[0] < value && value < self.ends[1]
+    }
+
+    /// The grid: numbers at least `gap` apart on the sheet.
+    pub fn ticks(&self, gap: f64) -> Vec<Tick> {
+        let span = self.ends[1] - self.ends[0];
+        let unit = (self.places[1] - self.places[0]).abs() / span;
+        if self.log {
+            self.decades(unit, gap)
+        } else {
+            self.steps((gap / unit).max(span / 12.0))
+        }
+    }
+
+    fn decades(&self, unit: f64, gap: f64) -> Vec<Tick> {
+        let stride = [1.0, 2.0, 3.0, 5.0, 10.0]
+            .into_iter()
+            .find(|s| s * unit >= gap)
+            .unwrap_or(20.0);
+        // 2 and 5 get their numbers too where there would be hardly any.
+        let rich = self.ends[1] - self.ends[0] < 2.5 && 0.3 * unit > 1.3 * gap;
+        let mut ticks = vec![];
+        let mut power = self.ends[0].floor();
+        while power <= self.ends[1] {
+            for digit in 1..10 {
+                let place = power + f64::from(digit).log10();
+                if place < self.ends[0] - 1e-9
+                    || place > self.ends[1] + 1e-9
+                    || (digit > 1 && unit < 2.0 * gap / 3.0)
+                {
+                    continue;
+                }
+                let label = match digit {
+                    1 if power.rem_euclid(stride) == 0.0 => power_of_ten(power),
+                    2 | 5 if rich => format!("{digit}×{}", power_of_ten(power)),
+                    _ => String::new(),
+                };
+                ticks.push(Tick {
+                    value: 10_f64.powf(place),
+                    label,
+                });
+            }
+            power += 1.0;
+        }
+        ticks
+    }
+
+    fn steps(&self, least: f64) -> Vec<Tick> {
+        let power = 10_f64.powf(least.log10().floor());
+        let step = [1.0, 2.0, 5.0, 10.0]
+            .map(|m| m * power)
+            .into_iter()
+            .find(|s| *s >= least * (1.0 - 1e-9))
+            .unwrap_or(10.0 * power);
+        let digits = (-step.log10().floor()).max(0.0) as usize;
+        let (first, last) = (
+            (self.ends[0] / step).ceil() as i64,
+            (self.ends[1] / step).floor() as i64,
+        );
+        (first..=last)
+            .map(|k| k as f64 * step)
+            .map(|value| Tick {
+                value,
+                label: format!("{value:.digits$}").replace('-', "−"),
+            })
+            .collect()
+    }
+}
+
+fn power_of_ten(power: f64) -> String {
+    format!("10^{{{power}}}").replace('-', "−")
+}
+
+/// The widest number of an axis.
+pub fn widest(axis: &Axis, size: f64) -> f64 {
+    axis.ticks(1.6 * size)
+        .iter()
+        .map(|tick| width(&tick.label, size))
+        .fold(0.0, f64::max)
+}
+
+/// Draws grid, frame and numbers of a panel; `numbers` says whether those of x and of y.
+pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numbers: [bool; 2]) {
+    let grid = |label: &str| {
+        let (colour, width) = if label.is_empty() {
+            ("#efefef", 0.045)
+        } else {
+            ("#d9d9d9", 0.07)
+        };
+        stroke(colour, width * size)
+    };
+    let (xs, ys) = (
+        x.ticks(if x.log { 3.4 } else { 2.3 } * size),
+        y.ticks(1.6 * size),
+    );
+    // Those with numbers are drawn over those without.
+    for named in [false, true] {
+        for tick in xs.iter().filter(|tick| tick.label.is_empty() != named) {
+            let at = x.at(tick.value);
+            figure.line(&[[at, area.y0], [at, area.y1]], &grid(&tick.label));
+        }
+        for tick in ys.iter().filter(|tick| tick.label.is_empty() != named) {
+            let at = y.at(tick.value);
+            figure.line(&[[area.x0, at], [area.x1, at]], &grid(&tick.label));
+        }
+    }
+    figure.rect(
+        area,
+        &format!("fill=\"none\" {}", stroke("#8a8a8a", 0.07 * size)),
+    );
+    let mut number = |at: Point, text: Text| {
+        if figure.free(text.room(at)) {
+            figure.text(at, text);
+        }
+    };
+    for tick in xs.iter().filter(|_| numbers[0]) {
+        let text = Text::new(&tick.label, size).anchor(Anchor::Middle);
+        number([x.at(tick.value), area.y1 + 1.15 * size], text);
+    }
+    for tick in ys.iter().filter(|_| numbers[1]) {
+        let text = Text::new(&tick.label, size).anchor(Anchor::End);
+        number([area.x0 - 0.4 * size, y.at(tick.value) + 0.34 * size], text);
+    }
+}

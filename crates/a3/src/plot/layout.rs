@@ -1,0 +1,231 @@
+//! What all charts share: heads and foot, a legend, a grid of panels, and sizes of text that fit.
+
+use super::figure::Figure;
+use super::rect::{Point, Rect};
+use super::text::{Anchor, GREY, Text, width};
+
+/// No letters are smaller.
+const SMALLEST: f64 = 7.0;
+
+/// How a chart is drawn: the size of its text, and whether with all that explains.
+#[derive(Clone, Copy, Debug)]
+pub struct Level {
+    pub size: f64,
+    pub full: bool,
+}
+
+/// The drawing with the largest text that fits; what explains is dropped last.
+///
+/// # Errors
+/// The size is too small for any.
+pub fn fit(size: Point, draw: impl Fn(Figure, Level) -> Option<Figure>) -> Result<Figure, String> {
+    let at = |size: Point| {
+        let base = ((size[0] * size[1]).sqrt() / 75.0).max(9.0);
+        let levels = [
+            (1.0, true),
+            (0.9, true),
+            (0.8, true),
+            (0.7, true),
+            (0.7, false),
+            (0.6, false),
+        ];
+        levels.into_iter().find_map(|(part, full)| {
+            let level = Level {
+                size: (part * base).max(SMALLEST),
+                full,
+            };
+            draw(Figure::new(size), level).filter(Figure::is_sound)
+        })
+    };
+    if !size.iter().all(|length| (1.0..=20_000.0).contains(length)) {
+        return Err(format!(
+            "{} x {}: a chart is 1 to 20000 units wide and high",
+            size[0], size[1]
+        ));
+    }
+    at(size).ok_or_else(|| {
+        let larger = (1..40)
+            .map(|k| 1.1_f64.powi(k))
+            .map(|by| size.map(|length| (by * length).ceil()));
+        let enough = larger.into_iter().find(|size| at(*size).is_some());
+        let hint = enough.map_or_else(
+            || "fewer panels would do".to_owned(),
+            |[w, h]| format!("{w} x {h} would do"),
+        );
+        format!(
+            "{} x {}: too small for this chart; {hint}",
+            size[0], size[1]
+        )
+    })
+}
+
+/// The text, cut off with an ellipsis where it is longer than the room.
+pub fn elide(text: &str, size: f64, room: f64) -> String {
+    if width(text, size) <= room {
+        return text.to_owned();
+    }
+    let mut kept: Vec<_> = text.chars().collect();
+    while kept.pop().is_some() {
+        let shorter: String = kept.iter().collect::<String>().trim_end().to_owned() + "…";
+        if width(&shorter, size) <= room {
+            return shorter;
+        }
+    }
+    String::new()
+}
+
+/// The text in lines that fit into the room. A line break breaks, a no-break space does not.
+pub fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = vec![];
+    for paragraph in text.lines() {
+        let first = lines.len();
+        for word in paragraph.split(' ').filter(|word| !word.is_empty()) {
+            match lines[first..].last_mut() {
+                Some(line) if width(&format!("{line} {word}"), size) <= room => {
+                    line.push(' ');
+                    line.push_str(word);
+                }
+                _ => lines.push(elide(word, size, room)),
+            }
+        }
+    }
+    lines
+}
+
+/// Title, subtitle and foot, if any; what is left of the sheet.
+pub fn heads(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: Level) -> Rect {
+    let sheet = figure.sheet();
+    let margin = level.size;
+    let mut left = Rect::new(
+        margin,
+        0.8 * margin,
+        sheet.x1 - margin,
+        sheet.y1 - 0.6 * margin,
+    );
+    let parts = [
+        (title, 1.45, true),
+        (if level.full { subtitle } else { "" }, 1.0, false),
+    ];
+    for (text, factor, bold) in parts {
+        let size = factor * level.size;
+        for line in wrap(text, size, left.width()) {
+            let text = Text::new(&line, size);
+            figure.text(
+                [left.x0, left.y0 + 0.8 * size],
+                if bold { text.bold() } else { text.colour(GREY) },
+            );
+            left.y0 += 1.25 * size;
+        }
+    }
+    let size = 0.85 * level.size;
+    for line in wrap(if level.full { foot } else { "" }, size, left.width())
+        .iter()
+        .rev()
+    {
+        figure.text(
+            [left.x0, left.y1 - 0.3 * size],
+            Text::new(line, size).colour(GREY),
+        );
+        left.y1 -= 1.25 * size;
+    }
+    left.y1 -= 0.4 * level.size;
+    left.y0 += 0.3 * level.size;
+    left
+}
+
+/// What draws the sign of an entry of a legend, around a point.
+pub type Sign<'a> = Box<dyn Fn(&mut Figure, Point) + 'a>;
+
+/// Draws a legend in columns from the top of the area down, and takes its room away.
+pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], size: f64) {
+    let (sign, gap) = (4.0 * size, 1.6 * size);
+    let longest = entries
+        .iter()
+        .map(|(name, _)| width(name, size))
+        .fold(0.0, f64::max)
+        .min(area.width() - sign - gap);
+    let column = sign + longest + gap;
+    let fitting = ((area.width() + gap) / column).floor().max(1.0) as usize;
+    // Rows of about the same length.
+    let rows = entries.len().div_ceil(fitting).max(1);
+    let columns = entries.len().div_ceil(rows).max(1);
+    for (k, (name, draw)) in entries.iter().enumerate() {
+        let x = area.x0 + (k % columns) as f64 * column;
+        let y = area.y0 + (1.4 * (k / columns) as f64 + 0.7) * size;
+        draw(figure, [x + 0.45 * sign, y]);
+        figure.reserve(Rect::new(x, y - 0.5 * size, x + 0.9 * sign, y + 0.5 * size));
+        figure.text(
+            [x + sign, y + 0.34 * size],
+            Text::new(&elide(name, size, longest + 0.01), size),
+        );
+    }
+    area.y0 += (1.4 * rows as f64 + 0.4) * size;
+}
+
+/// Rooms for `n` panels, row by row, `gap` apart, and the number of columns: whichever makes a panel of these measures best.
+pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Vec<Rect>, usize) {
+    let cell = |columns: usize| {
+        let share = |length: f64, parts: usize| (length + gap) / parts as f64 - gap;
+        [
+            share(area.width(), columns),
+            share(area.height(), n.div_ceil(columns)),
+        ]
+    };
+    let better = |a: &usize, b: &usize| merit(cell(*a)).total_cmp(&merit(cell(*b)));
+    let columns = (1..=n).rev().max_by(better).unwrap_or(1);
+    let [w, h] = cell(columns);
+    let room = |k: usize| {
+        let x0 = area.x0 + (k % columns) as f64 * (w + gap);
+        let y0 = area.y0 + (k / columns) as f64 * (h + gap);
+        Rect::new(x0, y0, x0 + w, y0 + h)
+    };
+    ((0..n).map(room).collect(), columns)
+}
+
+/// The label below all panels, with an arrow of what is better towards the left, if any.
+pub fn label_below(figure: &mut Figure, room: Rect, label: &str, better: &str, size: f64) {
+    let y = room.y1 - 0.3 * size;
+    let mut x0 = room.x0;
+    if !better.is_empty() {
+        figure.arrow(
+            [x0 + 2.0 * size, y - 0.28 * size],
+            [x0, y - 0.28 * size],
+            0.1 * size,
+        );
+        x0 = figure
+            .text([x0 + 2.4 * size, y], Text::new(better, size).colour(GREY))
+            .x1
+            + 1.5 * size;
+    }
+    let label = elide(label, size, room.x1 - x0);
+    let half = width(&label, size) / 2.0;
+    let x = room.centre()[0].clamp(x0 + half, (room.x1 - half).max(x0 + half));
+    figure.text([x, y], Text::new(&label, size).anchor(Anchor::Middle));
+}
+
+/// The label left of all panels, with an arrow of what is better downwards, if any.
+pub fn label_left(figure: &mut Figure, room: Rect, label: &str, better: &str, size: f64) {
+    let x = room.x0 + 0.8 * size;
+    let mut y1 = room.y1;
+    if !better.is_empty() {
+        figure.arrow(
+            [x - 0.28 * size, y1 - 2.0 * size],
+            [x - 0.28 * size, y1],
+            0.1 * size,
+        );
+        y1 = figure
+            .text(
+                [x, y1 - 2.4 * size],
+                Text::new(better, size).colour(GREY).turned(),
+            )
+            .y0
+            - 1.5 * size;
+    }
+    let label = elide(label, size, y1 - room.y0);
+    let half = width(&label, size) / 2.0;
+    let y = room.centre()[1].clamp(room.y0 + half, (y1 - half).max(room.y0 + half));
+    figure.text(
+        [x, y],
+        Text::new(&label, size).anchor(Anchor::Middle).turned(),
+    );
+}

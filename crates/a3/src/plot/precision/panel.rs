@@ -1,0 +1,237 @@
+//! One panel: its shade, its curves, its front, and their names where there is room.
+
+use super::{FRONT, Panel, ROUND, Run, SHADE};
+use crate::plot::axis::{self, Axis};
+use crate::plot::figure::{Figure, stroke};
+use crate::plot::look;
+use crate::plot::rect::{Point, Rect};
+use crate::plot::text::{Anchor, GREY, Text};
+
+/// A panel while it is drawn.
+pub struct Drawing<'a> {
+    panel: &'a Panel,
+    axes: [Axis; 2],
+    main: Rect,
+    /// Of text.
+    size: f64,
+    /// Of lines and markers.
+    fine: f64,
+    /// Where markers are.
+    taken: Vec<Rect>,
+    lines: Vec<[Point; 2]>,
+}
+
+impl<'a> Drawing<'a> {
+    pub fn new(panel: &'a Panel, axes: [Axis; 2], main: Rect, size: f64, fine: f64) -> Self {
+        Self {
+            panel,
+            axes,
+            main,
+            size,
+            fine,
+            taken: vec![],
+            lines: vec![],
+        }
+    }
+
+    fn at(&self, run: &Run) -> Point {
+        [
+            self.axes[0].at(run.error.max(f64::MIN_POSITIVE)),
+            self.axes[1].at(run.work),
+        ]
+    }
+
+    /// With a strip of this width for runs that were lost, and numbers on x and y or not.
+    pub fn draw(&mut self, figure: &mut Figure, strip: f64, numbers: [bool; 2]) {
+        let (main, size) = (self.main, self.size);
+        let limit = self.panel.trusted();
+        let shade = Rect {
+            x1: if limit > 0.0 {
+                self.axes[0].at(limit)
+            } else {
+                main.x0
+            },
+            ..main
+        };
+        figure.rect(shade, SHADE);
+        let strip = Rect {
+            x0: main.x1,
+            x1: main.x1 + strip,
+            ..main
+        };
+        if strip.width() > 0.0 {
+            figure.rect(strip, "fill=\"#fbefec\"");
+            if numbers[0] {
+                let text = Text::new("blew up", size)
+                    .colour("#8c2d19")
+                    .anchor(Anchor::Middle);
+                figure.text([strip.centre()[0], main.y1 + 1.15 * size], text);
+            }
+        }
+        axis::draw(figure, main, [&self.axes[0], &self.axes[1]], size, numbers);
+        let front: Vec<_> = (self.panel.front().into_iter())
+            .map(|[c, r]| (c, &self.panel.curves[c].runs[r]))
+            .collect();
+        let line: Vec<_> = front.iter().map(|(_, run)| self.at(run)).collect();
+        figure.line(&line, &(stroke(FRONT, 0.9 * self.fine) + ROUND));
+        self.lines
+            .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
+        self.curves(figure);
+        self.lost(figure, strip);
+        if limit > 0.0 {
+            self.explain_shade(figure, shade);
+        }
+        self.name_front(figure, &front);
+        self.name_steps(figure, &front);
+    }
+
+    fn curves(&mut self, figure: &mut Figure) {
+        let radius = 0.38 * self.fine;
+        for curve in &self.panel.curves {
+            let look = look::of(curve.letter);
+            let mut runs: Vec<_> = curve
+                .runs
+                .iter()
+                .filter(|run| run.is_drawn() && !run.is_lost())
+                .collect();
+            runs.sort_by(|a, b| a.work.total_cmp(&b.work));
+            let points: Vec<_> = runs.into_iter().map(|run| self.at(run)).collect();
+            figure.line(&points, &look.stroke(0.14 * self.fine));
+            self.lines
+                .extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
+            for point in points {
+                look.marker(figure, point, radius, false);
+                self.taken.push(Rect::around(point, 1.2 * radius));
+            }
+        }
+    }
+
+    /// Runs that were lost: open markers beside the chart, side by side where they would hide each other.
+    fn lost(&mut self, figure: &mut Figure, strip: Rect) {
+        let radius = 0.36 * self.fine.min(0.9 * self.size);
+        let mut taken: Vec<Rect> = vec![];
+        for curve in &self.panel.curves {
+            let look = look::of(curve.letter);
+            for run in curve
+                .runs
+                .iter()
+                .filter(|run| run.is_drawn() && run.is_lost())
+            {
+                let [middle, y] = [strip.centre()[0], self.axes[1].at(run.work)];
+                let aside = [0.0, -1.0, 1.0].map(|k| [middle + 2.6 * k * radius, y]);
+                let room = |point: &Point| Rect::around(*point, radius);
+                let free = |point: &&Point| !taken.iter().any(|other| other.overlaps(room(point)));
+                let point = *aside.iter().find(free).unwrap_or(&aside[0]);
+                taken.push(room(&point));
+                look.marker(figure, point, radius, true);
+            }
+        }
+    }
+
+    /// Whether a text there would cover nothing.
+    fn is_clear(&self, figure: &Figure, room: Rect) -> bool {
+        self.main.holds(room)
+            && figure.free(room)
+            && !self.taken.iter().any(|other| other.overlaps(room))
+            && !self.lines.iter().any(|[a, b]| room.meets(*a, *b))
+    }
+
+    /// Writes the text at the first of the places where it is clear.
+    fn place(
+        &self,
+        figure: &mut Figure,
+        text: Text,
+        mut places: impl Iterator<Item = Point>,
+    ) -> bool {
+        let found = places.find(|at| self.is_clear(figure, text.room(*at)));
+        if let Some(at) = found {
+            figure.text(at, text);
+        }
+        found.is_some()
+    }
+
+    fn explain_shade(&self, figure: &mut Figure, shade: Rect) {
+        let size = 0.85 * self.size;
+        for words in [
+            "finer than the reference can tell",
+            "reference unsure",
+            "unsure",
+        ] {
+            let text = Text::new(words, size).colour(GREY);
+            let flat =
+                (1..40).map(|k| [shade.x0 + 0.5 * size, shade.y1 - f64::from(k) * 0.7 * size]);
+            let fits = |at: &Point| shade.holds(text.room(*at));
+            if self.place(figure, text, flat.filter(fits)) {
+                return;
+            }
+            let text = text.turned();
+            let across = (1..12).map(|k| shade.x0 + f64::from(k) * size);
+            let up = |x| (1..30).map(move |k| [x, shade.y1 - f64::from(k) * 0.6 * size]);
+            if self.place(
+                figure,
+                text,
+                across.flat_map(up).filter(|at| shade.holds(text.room(*at))),
+            ) {
+                return;
+            }
+        }
+    }
+
+    /// Names each method where it is on the front, on the side where no curve can be.
+    fn name_front(&self, figure: &mut Figure, front: &[(usize, &Run)]) {
+        let size = self.size;
+        for part in front.chunk_by(|a, b| a.0 == b.0) {
+            let curve = &self.panel.curves[part[0].0];
+            let mut runs: Vec<_> = (0..part.len()).collect();
+            runs.sort_by_key(|k| k.abs_diff(part.len() / 2));
+            let text = Text::new(&curve.name, size)
+                .colour(look::of(curve.letter).colour)
+                .bold();
+            let places = |text: Text| {
+                let room = text.room([0.0, 0.0]);
+                let offsets = [
+                    [-1.0, 1.1],
+                    [-0.5, 1.5],
+                    [-1.2, 0.4],
+                    [-0.2, 2.0],
+                    [-1.6, 1.6],
+                    [-1.0, 2.6],
+                    [-2.4, 1.0],
+                ];
+                let mut found = vec![];
+                for offset in offsets {
+                    for k in &runs {
+                        let [x, y] = self.at(part[*k].1);
+                        found.push([x + offset[0] * size - room.width(), y + offset[1] * size]);
+                        found.push([
+                            x + (offset[0] + 0.6) * size - room.width() / 2.0,
+                            y + (offset[1] + 0.3) * size,
+                        ]);
+                    }
+                }
+                found.into_iter()
+            };
+            self.place(figure, text, places(text));
+        }
+    }
+
+    /// The steps of the runs on the front, small, where they cover nothing.
+    fn name_steps(&self, figure: &mut Figure, front: &[(usize, &Run)]) {
+        let size = (0.75 * self.size).max(6.5);
+        for (_, run) in front {
+            let [x, y] = self.at(run);
+            let text = Text::new(run.label.as_deref().unwrap_or_default(), size).colour(GREY);
+            let length = text.room([0.0, 0.0]).width();
+            let places = [
+                [-0.7 * size - length, 1.0 * size],
+                [-length / 2.0, 1.5 * size],
+                [0.8 * size, -0.4 * size],
+            ];
+            self.place(
+                figure,
+                text,
+                places.into_iter().map(|[dx, dy]| [x + dx, y + dy]),
+            );
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Places on the sheet.
+
+/// Horizontal, then vertical; down is positive on the sheet.
+pub type Point = [f64; 2];
+
+/// An upright rectangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rect {
+    pub x0: f64,
+    pub y0: f64,
+    pub x1: f64,
+    pub y1: f64,
+}
+
+impl Rect {
+    pub fn new(x0: f64, y0: f64, x1: f64, y1: f64) -> Self {
+        Self { x0, y0, x1, y1 }
+    }
+
+    /// The square of half side `r` around a point.
+    pub fn around([x, y]: Point, r: f64) -> Self {
+        Self::new(x - r, y - r, x + r, y + r)
+    }
+
+    pub fn width(self) -> f64 {
+        self.x1 - self.x0
+    }
+
+    pub fn height(self) -> f64 {
+        self.y1 - self.y0
+    }
+
+    pub fn centre(self) -> Point {
+        [
+            f64::midpoint(self.x0, self.x1),
+            f64::midpoint(self.y0, self.y1),
+        ]
+    }
+
+    pub fn overlaps(self, other: Self) -> bool {
+        self.x0 < other.x1 && other.x0 < self.x1 && self.y0 < other.y1 && other.y0 < self.y1
+    }
+
+    pub fn holds(self, other: Self) -> bool {
+        self.x0 <= other.x0 && other.x1 <= self.x1 && self.y0 <= other.y0 && other.y1 <= self.y1
+    }
+
+    pub fn corners(self) -> [Point; 4] {
+        [
+            [self.x0, self.y0],
+            [self.x1, self.y0],
+            [self.x1, self.y1],
+            [self.x0, self.y1],
+        ]
+    }
+
+    /// Whether the line from a to b passes through (Liang and Barsky).
+    pub fn meets(self, a: Point, b: Point) -> bool {
+        let (mut from, mut to) = (0.0_f64, 1.0_f64);
+        for (start, end, lo, hi) in [
+            (a[0], b[0], self.x0, self.x1),
+            (a[1], b[1], self.y0, self.y1),
+        ] {
+            let d = end - start;
+            if d == 0.0 {
+                if start < lo || start > hi {
+                    return false;
+                }
+                continue;
+            }
+            let (near, far) = ((lo - start) / d, (hi - start) / d);
+            from = from.max(near.min(far));
+            to = to.min(near.max(far));
+        }
+        from <= to
+    }
+}

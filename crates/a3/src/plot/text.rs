@@ -1,0 +1,127 @@
+//! Lines of text: how they look, and the room they take.
+
+use std::sync::LazyLock;
+
+use epaint_default_fonts::UBUNTU_LIGHT;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::{FontRef, MetadataProvider};
+
+use super::rect::{Point, Rect};
+
+/// For what is to be read first.
+pub const INK: &str = "#1b1b1b";
+/// For what explains.
+pub const GREY: &str = "#5a5a5a";
+
+/// Which part of a text is at its place.
+#[derive(Clone, Copy, Debug)]
+pub enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A line of text; `10^{-3}` in it has a superscript.
+#[derive(Clone, Copy, Debug)]
+pub struct Text<'a> {
+    pub words: &'a str,
+    pub size: f64,
+    pub colour: &'a str,
+    pub anchor: Anchor,
+    pub bold: bool,
+    pub turned: bool,
+}
+
+impl<'a> Text<'a> {
+    pub fn new(words: &'a str, size: f64) -> Self {
+        Self {
+            words,
+            size,
+            colour: INK,
+            anchor: Anchor::Start,
+            bold: false,
+            turned: false,
+        }
+    }
+
+    pub fn colour(self, colour: &'a str) -> Self {
+        Self { colour, ..self }
+    }
+
+    pub fn anchor(self, anchor: Anchor) -> Self {
+        Self { anchor, ..self }
+    }
+
+    pub fn bold(self) -> Self {
+        Self { bold: true, ..self }
+    }
+
+    /// Read from below.
+    pub fn turned(self) -> Self {
+        Self {
+            turned: true,
+            ..self
+        }
+    }
+
+    /// The room it takes with its anchor, on the base line, at `at`.
+    pub fn room(self, [x, y]: Point) -> Rect {
+        let length = width(self.words, self.size);
+        let before = length
+            * match self.anchor {
+                Anchor::Start => 0.0,
+                Anchor::Middle => 0.5,
+                Anchor::End => 1.0,
+            };
+        let (up, down) = (UP * self.size, 0.22 * self.size);
+        if self.turned {
+            Rect::new(x - up, y + before - length, x + down, y + before)
+        } else {
+            Rect::new(x - before, y - up, x - before + length, y + down)
+        }
+    }
+}
+
+/// The pieces of a text, and which of them are superscripts.
+pub fn pieces(text: &str) -> impl Iterator<Item = (&str, bool)> {
+    text.split("^{").enumerate().flat_map(|(k, part)| {
+        let (raised, flat) = if k == 0 {
+            ("", part)
+        } else {
+            part.split_once('}').unwrap_or(("", part))
+        };
+        [(raised, true), (flat, false)]
+    })
+}
+
+/// How large a superscript is.
+pub const RAISED: f64 = 0.7;
+/// How high letters and superscripts reach.
+const UP: f64 = 0.84;
+
+/// How long a text of this size is.
+pub fn width(text: &str, size: f64) -> f64 {
+    static FONT: LazyLock<Option<FontRef<'static>>> =
+        LazyLock::new(|| FontRef::new(UBUNTU_LIGHT).ok());
+    let Some(font) = &*FONT else {
+        return 0.6 * size * text.chars().count() as f64;
+    };
+    let (letters, metrics) = (
+        font.charmap(),
+        font.glyph_metrics(Size::new(size as f32), LocationRef::default()),
+    );
+    let advance = |c| {
+        letters
+            .map(c)
+            .and_then(|glyph| metrics.advance_width(glyph))
+    };
+    pieces(text)
+        .map(|(piece, raised)| {
+            let sum: f64 = piece
+                .chars()
+                .map(|c| advance(c).map_or(0.6 * size, f64::from))
+                .sum();
+            sum * if raised { RAISED } else { 1.0 }
+        })
+        .sum()
+}
