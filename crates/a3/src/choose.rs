@@ -3,8 +3,8 @@
 use a3_core::accuracy::{Candidate, Frames, Metric, Reference, choose, ladder, measure};
 use a3_core::{Method, Scene};
 
-use crate::chart::{describe, look_ahead, methods};
 use crate::chart::measure::time;
+use crate::chart::{describe, look_ahead, methods};
 use crate::cli::{Choose, What};
 use crate::progress::Bar;
 use crate::{Failure, interrupt, list, output};
@@ -30,14 +30,23 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
                     10.0 * floor
                 )));
             }
-            let found = choose(&scene, &reference, Metric::Position, error, &interrupt::go_on)
-                .map_err(Failure::run)?
-                .ok_or_else(stopped)?;
+            let found = choose(
+                &scene,
+                &reference,
+                Metric::Position,
+                error,
+                &interrupt::go_on,
+            )
+            .map_err(Failure::run)?
+            .ok_or_else(stopped)?;
             let found = found.into_iter().take(3).map(|candidate| {
                 let cost = milliseconds(&scene, &candidate, &reference)?.ok_or_else(stopped)?;
                 Ok((candidate, cost))
             });
-            (found.collect::<Result<Vec<_>, Failure>>()?, format!("an error of {error:e} m"))
+            (
+                found.collect::<Result<Vec<_>, Failure>>()?,
+                format!("an error of {error:e} m"),
+            )
         }
         (None, Some(budget)) => (
             within(&scene, &reference, budget)?.ok_or_else(stopped)?,
@@ -57,7 +66,10 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         )));
     };
     output::say(&report(&options.what, &scene, until, &goal, &found))?;
-    output::say(&format!("run it:  {}\n", command(&options.what, best.method, best.setting)))
+    output::say(&format!(
+        "run it:  {}\n",
+        command(&options.what, best.method, best.setting)
+    ))
 }
 
 /// Computing time for a frame (ms), timed over the whole run.
@@ -134,9 +146,16 @@ fn report(
     found: &[(Candidate, f64)],
 ) -> String {
     let mut rows = vec![
-        ["", "solver", " setting", " error (m)", " evaluations/s", " ms/frame"]
-            .map(String::from)
-            .to_vec(),
+        [
+            "",
+            "solver",
+            " setting",
+            " error (m)",
+            " evaluations/s",
+            " ms/frame",
+        ]
+        .map(String::from)
+        .to_vec(),
     ];
     for (k, (c, cost)) in found.iter().enumerate() {
         rows.push(vec![
@@ -163,7 +182,11 @@ fn report(
 fn typed(setting: f64) -> String {
     let power = 10f64.powi(3 - setting.log10().floor() as i32);
     let rounded = (setting * power * (1.0 + 1e-12)).floor() / power;
-    format!("{rounded}")
+    if rounded < 1e-3 {
+        format!("{rounded:e}")
+    } else {
+        format!("{rounded}")
+    }
 }
 
 fn command(what: &What, method: &Method, setting: f64) -> String {
@@ -192,7 +215,7 @@ mod tests {
             (1.0 / 60.0, "0.01666"),
             (0.01, "0.01"),
             (1.0 / 120.0, "0.008333"),
-            (1.7783e-5, "0.00001778"),
+            (1.7783e-5, "1.778e-5"),
             (0.5, "0.5"),
         ] {
             assert_eq!(typed(setting), expected);

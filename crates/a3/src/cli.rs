@@ -64,7 +64,7 @@ pub struct Window {
     /// Solver by letter or name: e, t, r, ... (`a3 solvers` lists them)
     #[arg(default_value = "t", value_parser = solver)]
     pub solver: &'static Method,
-    /// Step in seconds; without it, the solver's own
+    /// Step in seconds, or relative tolerance of an adaptive solver; without it, the solver's own
     #[arg(value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
     #[command(flatten)]
@@ -167,6 +167,9 @@ pub struct Stability {
     /// Solvers to look at, such as t,r,v; without it, all that serve the scene
     #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = solver)]
     pub solvers: Vec<&'static Method>,
+    /// Step in seconds at which the picture shows the eigenvalues; without it, one radian of the fastest motion
+    #[arg(long, value_name = "STEP", value_parser = step, allow_negative_numbers = true)]
+    pub step: Option<f64>,
     /// Picture to write, ending in .svg or .png; without it, a3-stability-SCENE.svg
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -196,7 +199,7 @@ pub struct Run {
     /// Solver by letter or name
     #[arg(value_parser = solver)]
     pub solver: &'static Method,
-    /// Step in seconds
+    /// Step in seconds, or relative tolerance of an adaptive solver (a, x, f)
     #[arg(value_parser = step, allow_negative_numbers = true)]
     pub step: f64,
     /// Simulated seconds; the last step is shortened to end exactly there
@@ -226,6 +229,7 @@ impl What {
             }
         }
         let step = step.unwrap_or_else(|| scene.default_setting(solver));
+        check_setting(solver, step)?;
         let mut simulation = Simulation::new(scene, solver, step).map_err(|e| match e {
             a3_core::Error::NeedsMechanics { .. } => {
                 let any = integrators::METHODS
@@ -278,9 +282,40 @@ pub const LARGEST_STEP: f64 = 10.0;
 /// The smallest (s).
 pub const SMALLEST_STEP: f64 = 1e-7;
 
+/// The tolerances of adaptive methods: larger ones promise nothing, smaller ones are lost in rounding.
+pub const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-13..=1.0;
+
+/// The settings that a method takes.
+pub fn settings(method: &Method) -> std::ops::RangeInclusive<f64> {
+    if method.is_adaptive() {
+        TOLERANCES
+    } else {
+        SMALLEST_STEP..=LARGEST_STEP
+    }
+}
+
+/// `Ok` if the method takes that setting.
+fn check_setting(method: &Method, setting: f64) -> Result<(), Failure> {
+    let range = settings(method);
+    if range.contains(&setting) {
+        return Ok(());
+    }
+    let (low, high) = (range.start(), range.end());
+    Err(Failure::usage(if method.is_adaptive() {
+        format!(
+            "{} takes a relative tolerance from {low:e} to {high}, such as 1e-4, and not {setting}",
+            method.name
+        )
+    } else {
+        format!(
+            "a step is a number of seconds from {low} to {high}, such as 0.01, and not {setting}"
+        )
+    }))
+}
+
 fn step(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(step) if (SMALLEST_STEP..=LARGEST_STEP).contains(&step) => Ok(step),
+        Ok(step) if (*TOLERANCES.start()..=LARGEST_STEP).contains(&step) => Ok(step),
         _ => Err(format!(
             "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01"
         )),
@@ -330,7 +365,9 @@ fn budget(text: &str) -> Result<f64, String> {
 fn picture_size(text: &str) -> Result<(u32, u32), String> {
     match pair(text) {
         Some((w, h)) if (320..=8000).contains(&w) && (240..=8000).contains(&h) => Ok((w, h)),
-        _ => Err("a picture's size is WIDTHxHEIGHT, from 320x240 to 8000x8000, such as 1200x800".into()),
+        _ => Err(
+            "a picture's size is WIDTHxHEIGHT, from 320x240 to 8000x8000, such as 1200x800".into(),
+        ),
     }
 }
 

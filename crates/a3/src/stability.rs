@@ -73,11 +73,13 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
         ));
     }
     output::say(&text(&scene, &rows, &at_start, at_rest.as_deref()))?;
-    let title = format!(
-        "Where solvers fail: {}",
-        describe(&options.what, &scene)
-    );
-    let figure = chart(title, &rows, &at_start)
+    let title = format!("Where solvers fail: {}", describe(&options.what, &scene));
+    // By default the fastest motion turns by one radian a step.
+    let fastest = at_start.first().map_or(1.0, Mode::frequency);
+    let h = options
+        .step
+        .unwrap_or_else(|| format!("{:.1e}", 1.0 / fastest).parse().unwrap_or(1.0));
+    let figure = chart(title, &rows, &at_start, h)
         .draw(f64::from(options.size.0), f64::from(options.size.1))
         .map_err(Failure::usage)?;
     write_picture(&path, &figure.svg())?;
@@ -151,10 +153,13 @@ fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> S
             step(row.start.observed.step),
             ratio(&row.start),
         ];
-        line.extend(row.rest.as_ref().map_or(
-            ["-", "-", "-"].map(String::from),
-            |pair| [prediction(pair), step(pair.observed.step), ratio(pair)],
-        ));
+        line.extend(
+            row.rest
+                .as_ref()
+                .map_or(["-", "-", "-"].map(String::from), |pair| {
+                    [prediction(pair), step(pair.observed.step), ratio(pair)]
+                }),
+        );
         cells.push(line);
     }
     let frequency = |modes: &[Mode]| {
@@ -187,29 +192,31 @@ fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> S
     text
 }
 
-fn chart(title: String, rows: &[Row], modes: &[Mode]) -> Chart {
+fn chart(title: String, rows: &[Row], modes: &[Mode], h: f64) -> Chart {
     Chart {
         title,
-        subtitle: "Each panel: the solver's stable region, and the eigenvalues of the scene as it starts times the largest \
-                   stable step"
-            .into(),
-        panels: rows.iter().map(|row| panel(row, modes)).collect(),
+        subtitle: format!(
+            "Where the eigenvalues of the scene as it starts, times a step of {} ms, lie in each solver's stable region",
+            step(h)
+        ),
+        panels: rows.iter().map(|row| panel(row, modes, h)).collect(),
     }
 }
 
-fn panel(row: &Row, modes: &[Mode]) -> Panel {
-    let limit = row.start.predicted.map_or(f64::INFINITY, |limit| limit.step);
-    // Where every step holds, one that a window would take.
-    let h = if limit.is_finite() { limit } else { 1.0 / 60.0 };
+fn panel(row: &Row, modes: &[Mode], h: f64) -> Panel {
+    let limit = row
+        .start
+        .predicted
+        .map_or(f64::INFINITY, |limit| limit.step);
     let method = row.method;
     let subtitle = if limit.is_finite() {
         format!(
-            "largest step: predicted {} ms, observed {} ms",
+            "largest stable step {} ms, observed {} ms",
             prediction(&row.start),
             step(row.start.observed.step)
         )
     } else {
-        format!("any step; observed: {} ms", step(row.start.observed.step))
+        "stable at any step".to_owned()
     };
     // A Runge-Kutta step is the same for every mode with these eigenvalues; a splitting one is that of a mode that
     // shares its damping between drag and springs as the scene's fastest does.
@@ -227,7 +234,7 @@ fn panel(row: &Row, modes: &[Mode]) -> Panel {
     };
     Panel {
         letter: method.letter,
-        title: format!("{}, step {} ms", method.title, step(h)),
+        title: method.title.to_owned(),
         subtitle,
         radius: Box::new(radius),
         eigenvalues: modes

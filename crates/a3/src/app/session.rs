@@ -8,7 +8,7 @@ use a3_render::{Camera, Style};
 use super::hud::Readings;
 use super::keys::Action;
 use crate::Failure;
-use crate::cli::{self, LARGEST_STEP, SMALLEST_STEP};
+use crate::cli;
 use crate::show::{self, Show};
 
 /// Real time a frame may spend on steps. What does not fit is not caught up: the run is slower than real time then.
@@ -267,7 +267,9 @@ impl Session {
     }
 
     fn set_step(&mut self, longer: bool) {
-        let step = next_step(self.simulation.setting(), longer);
+        let range = cli::settings(self.simulation.method());
+        let next = next_step(self.simulation.setting(), longer);
+        let step = next.clamp(*range.start(), *range.end());
         if let Err(why) = self.simulation.set_setting(step) {
             self.say(why.to_string());
         }
@@ -327,19 +329,20 @@ fn next_step(step: f64, longer: bool) -> f64 {
             .filter(|rung| *rung < step * (1.0 - 1e-9))
             .reduce(f64::max)
     };
-    next.unwrap_or(step).clamp(SMALLEST_STEP, LARGEST_STEP)
+    next.unwrap_or(step)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::{LARGEST_STEP, SMALLEST_STEP};
     use clap::Parser;
 
     fn session(words: &[&str]) -> Session {
         let words = ["a3"].iter().chain(words);
         match Session::new(&cli::Cli::try_parse_from(words).unwrap().window) {
             Ok(session) => session,
-            Err(Failure::Usage(why) | Failure::Run(why)) => panic!("{why}"),
+            Err(Failure::Usage(why) | Failure::Run(why) | Failure::Interrupted(why)) => panic!("{why}"),
         }
     }
 
@@ -448,7 +451,17 @@ mod tests {
         assert_eq!(next_step(0.008, true), 0.01);
         assert_eq!(next_step(0.0123, false), 0.012);
         assert_eq!(next_step(8.0, true), 10.0);
-        assert_eq!(next_step(LARGEST_STEP, true), LARGEST_STEP);
-        assert_eq!(next_step(SMALLEST_STEP, false), SMALLEST_STEP);
+        let ends = |solver, end: f64, longer| {
+            let action = if longer {
+                Action::LongerStep
+            } else {
+                Action::ShorterStep
+            };
+            let mut session = session(&[solver, &end.to_string(), "--scene", "chain"]);
+            session.act(action);
+            session.simulation.setting() == end
+        };
+        assert!(ends("r", LARGEST_STEP, true) && ends("r", SMALLEST_STEP, false));
+        assert!(ends("a", 1.0, true) && ends("a", 1e-13, false));
     }
 }

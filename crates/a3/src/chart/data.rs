@@ -121,9 +121,9 @@ impl Data {
 
     /// The run like this one by the same version, timed if it has to be.
     pub fn find(&self, like: &Record, timed: bool) -> Option<&Record> {
-        self.records.iter().find(|r| {
-            r.same_run(like) && (!timed || r.seconds.is_some() || r.lost_at.is_some())
-        })
+        self.records
+            .iter()
+            .find(|r| r.same_run(like) && (!timed || r.seconds.is_some() || r.lost_at.is_some()))
     }
 
     /// Adds a run, in place of the same one without a time.

@@ -48,9 +48,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     let flags = (options.what.wind, options.what.swing);
     let mut studies: Vec<_> = studies
         .into_iter()
-        .map(|(factor, scene)| {
-            Study::new(scene, flags, factor, until, &methods, (metric, timed))
-        })
+        .map(|(factor, scene)| Study::new(scene, flags, factor, until, &methods, (metric, timed)))
         .collect();
     let mut expected = 0.0;
     for study in &studies {
@@ -104,10 +102,7 @@ pub fn write_picture(path: &std::path::Path, svg: &str) -> Result<(), Failure> {
 }
 
 /// Those asked for, or all that serve the scene.
-pub fn methods(
-    scene: &Scene,
-    asked: &[&'static Method],
-) -> Result<Vec<&'static Method>, Failure> {
+pub fn methods(scene: &Scene, asked: &[&'static Method]) -> Result<Vec<&'static Method>, Failure> {
     if asked.is_empty() {
         let all = integrators::METHODS.iter();
         return Ok(all

@@ -36,7 +36,10 @@ pub fn choose(
     go_on: GoOn,
 ) -> Result<Option<Vec<Candidate>>, Error> {
     let mut found: Vec<Candidate> = vec![];
-    for method in METHODS {
+    // High orders first: what they cost spares the long runs of low ones.
+    let mut methods: Vec<_> = METHODS.iter().collect();
+    methods.sort_by_key(|method| std::cmp::Reverse(method.order));
+    for method in methods {
         if method.integrator(scene.model.system()).is_err() {
             continue;
         }

@@ -8,8 +8,10 @@ use crate::simulation::Simulation;
 
 /// The largest step that was seen to hold is known to this fraction.
 const PRECISION: f64 = 0.005;
-/// No step longer than this is tried (s).
+/// Where every step should hold, no longer one than this is tried (s) ...
 const LONGEST: f64 = 1.0;
+/// ... and where a limit is predicted, none longer than so many times that.
+const BEYOND: f64 = 4.0;
 /// Looks at a run that holds.
 const LOOKS: u64 = 200;
 /// The speed of the disturbance of a scene at rest (m/s, root of the sum of squares weighted with the masses in kg).
@@ -18,7 +20,8 @@ const NUDGE: f64 = 1e-6;
 /// What bisection found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
-    /// The largest step that held (s); infinite if every step did up to one second.
+    /// The largest step that held (s); infinite if every step did that was tried: up to one second, or to four times the
+    /// limit that was predicted.
     pub step: f64,
     /// Runs that it took.
     pub runs: u32,
@@ -116,8 +119,8 @@ pub fn observe_at_rest(
     bisect(guess, holds)
 }
 
-/// The largest step with which the scene runs from its start for [`HORIZON`] without gaining energy: no more beyond
-/// the most that it has in truth than its motion has at most; a first-order scene without growing [`GROWTH`] times. Bisection begins at `guess` (s).
+/// The largest step with which the scene runs from its start for [`HORIZON`] without gaining energy: never more
+/// beyond what it has in truth than half of what its motion has at most; a first-order scene without growing [`GROWTH`] times. Bisection begins at `guess` (s).
 ///
 /// # Errors
 /// The method does not serve the scene.
@@ -126,38 +129,58 @@ pub fn observe_from_start(
     method: &'static Method,
     guess: f64,
 ) -> Result<Observation, Error> {
-    let bound = match scene.model.network() {
-        None => GROWTH * norm(&scene.state),
-        Some(_) => {
-            let accurate = find("dop853").unwrap_or(method);
-            let mut run = Simulation::new(scene.clone(), accurate, 1e-6)?;
-            let energy = |run: &Simulation| run.energy().unwrap_or_default();
-            let mut most = energy(&run).total();
-            let mut motion: f64 = energy(&run).kinetic;
-            for look in 1..=LOOKS {
-                if run
-                    .advance_to(HORIZON * look as f64 / LOOKS as f64)
-                    .is_err()
-                {
-                    break;
-                }
-                most = most.max(energy(&run).total());
-                motion = motion.max(energy(&run).kinetic);
-            }
-            most + motion
-        }
+    let truth = match scene.model.network() {
+        None => None,
+        Some(_) => Some(energies(scene, find("dop853").unwrap_or(method))?),
     };
     let holds = |h: f64| {
         let mut run = Simulation::with_fixed_steps(scene.clone(), method, h)?;
         Ok(step_and_look(h, |count| {
             run.take_steps(count).is_ok()
-                && match run.energy() {
-                    None => norm(run.state()) < bound,
-                    Some(energy) => energy.total() < bound,
+                && match (&truth, run.energy()) {
+                    (Some(truth), Some(energy)) => energy.total() < truth.at(run.time()),
+                    _ => norm(run.state()) < GROWTH * norm(&scene.state),
                 }
         }))
     };
     bisect(guess, holds)
+}
+
+/// The energy that a run has in truth, and how much more is too much (J).
+struct Energies {
+    /// At equal times from the start to [`HORIZON`]: the larger of both ends of each part.
+    total: Vec<f64>,
+    slack: f64,
+}
+
+impl Energies {
+    fn at(&self, time: f64) -> f64 {
+        let part = (time / HORIZON * LOOKS as f64) as usize;
+        self.total[part.min(self.total.len() - 1)] + self.slack
+    }
+}
+
+/// Of an accurate run. The slack is half of the most energy that its motion has.
+fn energies(scene: &Scene, accurate: &'static Method) -> Result<Energies, Error> {
+    let mut run = Simulation::new(scene.clone(), accurate, 1e-6)?;
+    let energy = |run: &Simulation| run.energy().unwrap_or_default();
+    let mut last = energy(&run);
+    let (mut total, mut motion) = (vec![], last.kinetic);
+    for look in 1..=LOOKS {
+        if run
+            .advance_to(HORIZON * look as f64 / LOOKS as f64)
+            .is_err()
+        {
+            break;
+        }
+        let next = energy(&run);
+        total.push(last.total().max(next.total()));
+        motion = motion.max(next.kinetic);
+        last = next;
+    }
+    total.push(last.total());
+    let slack = 0.5 * motion;
+    Ok(Energies { total, slack })
 }
 
 fn norm(y: &[f64]) -> f64 {
@@ -185,18 +208,23 @@ fn bisect(guess: f64, holds: impl Fn(f64) -> Result<bool, Error>) -> Result<Obse
         runs += 1;
         holds(h)
     };
-    let guess = guess.clamp(1e-6, LONGEST);
+    let longest = if guess.is_finite() {
+        BEYOND * guess
+    } else {
+        LONGEST
+    };
+    let guess = guess.clamp(1e-6, longest);
     let (mut low, mut high);
     if holds(guess)? {
         (low, high) = (guess, guess * 1.1);
-        while high < LONGEST && holds(high)? {
+        while high < longest && holds(high)? {
             (low, high) = (high, high * 1.4);
         }
-        if high >= LONGEST && holds(LONGEST)? {
+        if high >= longest && holds(longest)? {
             let step = f64::INFINITY;
             return Ok(Observation { step, runs });
         }
-        high = high.min(LONGEST);
+        high = high.min(longest);
     } else {
         (low, high) = (guess / 1.1, guess);
         while low > 1e-6 && !holds(low)? {
