@@ -233,6 +233,27 @@ fn no_text_of_a_precision_chart_covers_another() {
 }
 
 #[test]
+fn long_names_are_cut_and_change_nothing_else() {
+    let long = "name".repeat(60);
+    let mut chart = precision_chart(13, 2);
+    for text in [
+        &mut chart.title,
+        &mut chart.subtitle,
+        &mut chart.x_label,
+        &mut chart.y_label,
+    ] {
+        text.clone_from(&long);
+    }
+    for panel in &mut chart.panels {
+        panel.title.clone_from(&long);
+        for curve in &mut panel.curves {
+            curve.name.clone_from(&long);
+        }
+    }
+    check("long", &|w, h| chart.draw(w, h.max(600.0)));
+}
+
+#[test]
 fn no_text_of_a_stability_chart_covers_another() {
     for panels in [1, 4, 13] {
         let chart = region_chart(panels);

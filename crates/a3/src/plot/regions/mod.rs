@@ -1,15 +1,12 @@
 //! Regions of stability: a panel a method, in the plane of h λ, with the eigenvalues of a problem times the step.
 
-use std::collections::HashSet;
-use std::f64::consts::TAU;
+mod panel;
 
-use super::axis::{self, Axis};
-use super::contour;
-use super::figure::{Figure, stroke};
+use super::figure::Figure;
 use super::layout::{self, Level, Sign};
-use super::look;
 use super::rect::{Point, Rect};
 use super::text::{GREY, Text};
+use panel::{Extent, beyond, dot, region_style};
 
 /// One method at one step.
 pub struct Panel {
@@ -33,68 +30,6 @@ pub struct Chart {
 }
 
 const FOOT: &str = "h in s, λ in 1/s, so h λ has no unit. Real parts are growth or decay, imaginary parts oscillation; what lies in the region does not grow.";
-const INSIDE: &str = "#222222";
-const OUTSIDE: &str = "#d0021b";
-
-/// The part of the plane that a panel shows at least: ends on the real axis, and the end of the imaginary one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Extent {
-    real: [f64; 2],
-    imaginary: f64,
-}
-
-impl Extent {
-    fn with(self, [re, im]: Point) -> Self {
-        let [low, high] = self.real;
-        Self {
-            real: [low.min(re), high.max(re)],
-            imaginary: self.imaginary.max(im.abs()),
-        }
-    }
-
-    fn with_all(self, other: Self) -> Self {
-        self.with([other.real[0], other.imaginary])
-            .with([other.real[1], 0.0])
-    }
-
-    /// How long 1 is on a panel that just shows this, with a margin.
-    fn unit(self, width: f64, height: f64) -> f64 {
-        let [low, high] = self.real;
-        (width / (high - low)).min(height / (2.0 * self.imaginary)) / 1.12
-    }
-
-    fn size(self) -> f64 {
-        (self.real[1] - self.real[0]).max(2.0 * self.imaginary)
-    }
-}
-
-impl Panel {
-    fn is_stable(&self, [re, im]: Point) -> bool {
-        (self.radius)(re, im) <= 1.0 + 1e-9
-    }
-
-    /// Around the region's edge, where that has an end, and the eigenvalues, unless they are far off.
-    fn extent(&self) -> Extent {
-        const FAR: f64 = 16.0;
-        let start = Extent {
-            real: [-0.5, 0.5],
-            imaginary: 0.5,
-        };
-        let window = Rect::new(-FAR, -FAR, FAR, FAR);
-        let ends = contour::outlines(|z| self.is_stable(z), window, 320)
-            .into_iter()
-            .filter(|outline| outline.iter().flatten().all(|part| part.abs() < FAR - 0.15))
-            .flatten()
-            .fold(start, Extent::with);
-        let limit = 8.0 * ends.size().max(2.0);
-        let near = |z: &&Point| z.iter().all(|part| part.abs() <= limit);
-        self.eigenvalues
-            .iter()
-            .filter(near)
-            .copied()
-            .fold(ends, Extent::with)
-    }
-}
 
 impl Chart {
     /// Draws the chart on a sheet of this size.
@@ -204,7 +139,7 @@ impl Chart {
             if area.width() < 5.5 * size || area.height() < 5.0 * size {
                 return None;
             }
-            draw_panel(&mut figure, panel, area, *extent, small);
+            panel.draw(&mut figure, area, *extent, small);
             if !is_common {
                 let text = Text::new("own scale", small).colour(GREY);
                 let at = [area.x0 + 0.4 * small, area.y0 + small];
@@ -244,101 +179,4 @@ impl Chart {
         }
         entries
     }
-}
-
-fn region_style(colour: &str, width: f64) -> String {
-    format!(
-        "fill=\"{colour}\" fill-opacity=\"0.2\" {}",
-        stroke(colour, width)
-    )
-}
-
-fn draw_panel(figure: &mut Figure, panel: &Panel, area: Rect, extent: Extent, size: f64) {
-    let middle = f64::midpoint(extent.real[0], extent.real[1]);
-    let unit = extent.unit(area.width(), area.height());
-    let (dx, dy) = (area.width() / unit / 2.0, area.height() / unit / 2.0);
-    let x = Axis::linear([middle - dx, middle + dx]).between(area.x0, area.x1);
-    let y = Axis::linear([-dy, dy]).between(area.y1, area.y0);
-    axis::draw(figure, area, [&x, &y], size, [true, true]);
-    let place = |[re, im]: Point| {
-        [
-            area.centre()[0] + (re - middle) * unit,
-            area.centre()[1] - im * unit,
-        ]
-    };
-    // Sampled a little beyond the edges, so that the end of the sample is not drawn.
-    let window = Rect::new(
-        middle - 1.04 * dx,
-        -1.04 * dy,
-        middle + 1.04 * dx,
-        1.04 * dy,
-    );
-    let outlines: Vec<Vec<_>> = contour::outlines(|z| panel.is_stable(z), window, 240)
-        .into_iter()
-        .map(|outline| outline.into_iter().map(place).collect())
-        .collect();
-    let colour = look::of(panel.letter).colour;
-    figure.clipped(area, |figure| {
-        if !outlines.is_empty() {
-            figure.area(&outlines, &region_style(colour, 0.13 * size));
-        }
-        let zero = place([0.0, 0.0]);
-        let style = stroke("#555555", 0.07 * size);
-        figure.line(&[[area.x0, zero[1]], [area.x1, zero[1]]], &style);
-        figure.line(&[[zero[0], area.y0], [zero[0], area.y1]], &style);
-        // The more there are, the smaller; thousands may share a place.
-        let small = size * (40.0 / panel.eigenvalues.len().max(40) as f64).powf(0.25);
-        let mut seen = HashSet::new();
-        for z in panel
-            .eigenvalues
-            .iter()
-            .filter(|z| z.iter().all(|part| part.is_finite()))
-        {
-            let [px, py] = place(*z);
-            let inside = panel.is_stable(*z);
-            if !seen.insert(((px * 4.0) as i64, (py * 4.0) as i64, inside)) {
-                continue;
-            }
-            let (edge, colour) = (0.5 * size, if inside { INSIDE } else { OUTSIDE });
-            let at = [
-                px.clamp(area.x0 + edge, area.x1 - edge),
-                py.clamp(area.y0 + edge, area.y1 - edge),
-            ];
-            if (px - at[0]).hypot(py - at[1]) > 1.5 * edge {
-                beyond(figure, at, [px, py], 0.7 * edge, colour);
-            } else {
-                dot(figure, [px, py], small, inside);
-            }
-        }
-    });
-}
-
-/// A dot, or a cross where the method is unstable.
-fn dot(figure: &mut Figure, [x, y]: Point, size: f64, inside: bool) {
-    if inside {
-        let corner = |k: u8| (f64::from(k) * TAU / 12.0).sin_cos();
-        let round: Vec<_> = (0..12)
-            .map(corner)
-            .map(|(sin, cos)| [x + 0.2 * size * cos, y + 0.2 * size * sin])
-            .collect();
-        figure.area(&[round], &format!("fill=\"{INSIDE}\""));
-    } else {
-        let r = 0.26 * size;
-        let style = stroke(OUTSIDE, 0.15 * size);
-        figure.line(&[[x - r, y - r], [x + r, y + r]], &style);
-        figure.line(&[[x - r, y + r], [x + r, y - r]], &style);
-    }
-}
-
-/// A point outside the panel: a wedge at its edge.
-fn beyond(figure: &mut Figure, [x, y]: Point, to: Point, r: f64, colour: &str) {
-    let (dx, dy) = (to[0] - x, to[1] - y);
-    let length = dx.hypot(dy);
-    let (u, v) = (r * dx / length, r * dy / length);
-    let wedge = [
-        [x + u, y + v],
-        [x - u - v, y - v + u],
-        [x - u + v, y - v - u],
-    ];
-    figure.area(&[wedge], &format!("fill=\"{colour}\""));
 }
