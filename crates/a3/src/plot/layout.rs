@@ -4,7 +4,7 @@ use super::figure::Figure;
 use super::rect::{Point, Rect};
 use super::text::{Anchor, GREY, Text, width};
 
-/// No letters are smaller.
+/// Text is no smaller; notes have four fifths of it.
 const SMALLEST: f64 = 7.0;
 
 /// How a chart is drawn: the size of its text, and whether with all that explains.

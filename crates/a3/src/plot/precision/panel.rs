@@ -209,7 +209,7 @@ impl<'a> Drawing<'a> {
 
     /// The steps of the runs on the front, small, where they cover nothing.
     fn name_steps(&self, figure: &mut Figure, front: &[(usize, &Run)]) {
-        let size = (0.75 * self.size).max(6.5);
+        let size = 0.8 * self.size;
         for (_, run) in front {
             let [x, y] = self.at(run);
             let text = Text::new(run.label.as_deref().unwrap_or_default(), size).colour(GREY);

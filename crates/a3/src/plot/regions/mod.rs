@@ -104,26 +104,32 @@ impl Chart {
         let (rooms, _) = layout::grid(self.panels.len(), inner, 1.2 * size, merit);
         let width = rooms[0].width();
         // As many lines above each panel as the longest words need, so that panels of a row are alike.
-        let most = if level.full { 3 } else { 1 };
         let words = |panel: &Panel| {
-            let mut lines = [(&panel.title, size), (&panel.subtitle, small)]
-                .map(|(text, size)| layout::wrap(text, size, width));
-            for lines in &mut lines {
-                lines.truncate(most);
-            }
-            lines
+            [(&panel.title, size), (&panel.subtitle, small)]
+                .map(|(text, size)| layout::wrap(text, size, width))
         };
-        let depth = |k: usize| self.panels.iter().map(|panel| words(panel)[k].len()).max();
+        let mut words: Vec<_> = self.panels.iter().map(words).collect();
+        if level.full && words.iter().flatten().any(|lines| lines.len() > 3) {
+            return None;
+        }
+        if !level.full {
+            words
+                .iter_mut()
+                .flatten()
+                .for_each(|lines| lines.truncate(1));
+        }
+        let depth = |k: usize| words.iter().map(|words| words[k].len()).max();
         let depth = [0, 1].map(|k| depth(k).unwrap_or(0) as f64);
         let above = 1.2 * size * depth[0] + 1.2 * small * depth[1] + 0.3 * size;
-        for ((panel, cell), (extent, is_common)) in self.panels.iter().zip(rooms).zip(extents) {
+        for (k, (panel, cell)) in self.panels.iter().zip(rooms).enumerate() {
+            let (extent, is_common) = extents[k];
+            let [title, subtitle] = &words[k];
             let mut y = cell.y0;
-            let [title, subtitle] = words(panel);
-            for line in &title {
+            for line in title {
                 figure.text([cell.x0, y + 0.8 * size], Text::new(line, size).bold());
                 y += 1.2 * size;
             }
-            for line in &subtitle {
+            for line in subtitle {
                 figure.text(
                     [cell.x0, y + 0.8 * small],
                     Text::new(line, small).colour(GREY),
@@ -136,10 +142,10 @@ impl Chart {
                 cell.x1,
                 cell.y1 - 1.3 * small,
             );
-            if area.width() < 5.5 * size || area.height() < 5.0 * size {
+            if area.width() < 4.5 * size || area.height() < 4.5 * size {
                 return None;
             }
-            panel.draw(&mut figure, area, *extent, small);
+            panel.draw(&mut figure, area, extent, small);
             if !is_common {
                 let text = Text::new("own scale", small).colour(GREY);
                 let at = [area.x0 + 0.4 * small, area.y0 + small];

@@ -59,18 +59,28 @@ impl Panel {
             imaginary: 0.5,
         };
         let window = Rect::new(-FAR, -FAR, FAR, FAR);
-        let ends = contour::outlines(|z| self.is_stable(z), window, 320)
-            .into_iter()
-            .filter(|outline| outline.iter().flatten().all(|part| part.abs() < FAR - 0.15))
+        let outlines = contour::outlines(|z| self.is_stable(z), window, 320);
+        let ends =
+            |outline: &&Vec<Point>| outline.iter().flatten().all(|part| part.abs() < FAR - 0.15);
+        let edge = outlines
+            .iter()
+            .filter(ends)
             .flatten()
+            .copied()
             .fold(start, Extent::with);
-        let limit = 8.0 * ends.size().max(2.0);
+        // A region without end may be shown smaller: there is less to see at its edge.
+        let far = if outlines.iter().all(|outline| ends(&outline)) {
+            3.0
+        } else {
+            8.0
+        };
+        let limit = far * edge.size().max(2.0);
         let near = |z: &&Point| z.iter().all(|part| part.abs() <= limit);
         self.eigenvalues
             .iter()
             .filter(near)
             .copied()
-            .fold(ends, Extent::with)
+            .fold(edge, Extent::with)
     }
 
     /// Grid, region and eigenvalues, with numbers of this size.
