@@ -33,7 +33,8 @@ impl Axis {
     /// Around positive numbers: ends are 1, 2 or 5 times a power of ten.
     pub fn log(low: f64, high: f64) -> Self {
         let marks = [0.0, 2_f64.log10(), 5_f64.log10(), 1.0];
-        let (low, high) = (low.log10() - 0.03, high.log10() + 0.03);
+        let [low, high] = [low, high].map(|end| end.max(f64::MIN_POSITIVE).log10());
+        let (low, high) = (low - 0.03, high + 0.03);
         let down = low.floor()
             + marks
                 .into_iter()

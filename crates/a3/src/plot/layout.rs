@@ -4,7 +4,7 @@ use super::figure::Figure;
 use super::rect::{Point, Rect};
 use super::text::{Anchor, GREY, Text, width};
 
-/// No letters are smaller.
+/// Text is no smaller; notes have four fifths of it.
 const SMALLEST: f64 = 7.0;
 
 /// How a chart is drawn: the size of its text, and whether with all that explains.
@@ -159,7 +159,7 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
             Text::new(&elide(name, size, longest + 0.01), size),
         );
     }
-    area.y0 += (1.4 * rows as f64 + 0.4) * size;
+    area.y0 += (1.4 * rows as f64 + 0.7) * size;
 }
 
 /// Rooms for `n` panels, row by row, `gap` apart, and the number of columns: whichever makes a panel of these measures best.

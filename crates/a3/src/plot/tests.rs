@@ -233,6 +233,27 @@ fn no_text_of_a_precision_chart_covers_another() {
 }
 
 #[test]
+fn long_names_are_cut_and_change_nothing_else() {
+    let long = "name".repeat(60);
+    let mut chart = precision_chart(13, 2);
+    for text in [
+        &mut chart.title,
+        &mut chart.subtitle,
+        &mut chart.x_label,
+        &mut chart.y_label,
+    ] {
+        text.clone_from(&long);
+    }
+    for panel in &mut chart.panels {
+        panel.title.clone_from(&long);
+        for curve in &mut panel.curves {
+            curve.name.clone_from(&long);
+        }
+    }
+    check("long", &|w, h| chart.draw(w, h.max(600.0)));
+}
+
+#[test]
 fn no_text_of_a_stability_chart_covers_another() {
     for panels in [1, 4, 13] {
         let chart = region_chart(panels);
@@ -355,6 +376,13 @@ fn ticks_are_round_and_apart() {
     assert_eq!(labels, ["10^{−3}", "10^{−2}", "10^{−1}", "10^{0}"]);
     assert!(ticks.len() > 25, "no minor ticks");
     assert!((log.at(1e-2) - f64::midpoint(log.at(1e-3), log.at(1e-1))).abs() < 1e-9);
+    // The ends of what numbers can be.
+    let all = Axis::log(0.0, f64::MAX).between(0.0, 200.0);
+    assert!(
+        all.ticks(40.0)
+            .iter()
+            .all(|tick| all.at(tick.value).is_finite())
+    );
     // Many decades in little room: fewer numbers.
     let long = Axis::log(1e-12, 1.0).between(0.0, 200.0);
     let labels = long

@@ -150,28 +150,20 @@ impl<'a> Drawing<'a> {
         found.is_some()
     }
 
+    /// Says what the shade is, read from below, if it is wide enough; the legend says it too.
     fn explain_shade(&self, figure: &mut Figure, shade: Rect) {
         let size = 0.85 * self.size;
-        for words in [
-            "finer than the reference can tell",
-            "reference unsure",
-            "unsure",
-        ] {
-            let text = Text::new(words, size).colour(GREY);
-            let flat =
-                (1..40).map(|k| [shade.x0 + 0.5 * size, shade.y1 - f64::from(k) * 0.7 * size]);
-            let fits = |at: &Point| shade.holds(text.room(*at));
-            if self.place(figure, text, flat.filter(fits)) {
-                return;
-            }
-            let text = text.turned();
-            let across = (1..12).map(|k| shade.x0 + f64::from(k) * size);
-            let up = |x| (1..30).map(move |k| [x, shade.y1 - f64::from(k) * 0.6 * size]);
-            if self.place(
-                figure,
-                text,
-                across.flat_map(up).filter(|at| shade.holds(text.room(*at))),
-            ) {
+        for words in ["finer than the reference can tell", "reference unsure"] {
+            let text = Text::new(words, size).colour(GREY).turned();
+            let places = (0..240).map(|k| {
+                let (column, row) = (f64::from(k / 30), f64::from(k % 30));
+                [
+                    shade.x0 + (1.1 + column) * size,
+                    shade.y1 - (0.6 + 0.6 * row) * size,
+                ]
+            });
+            let fitting = places.filter(|at| shade.holds(text.room(*at)));
+            if self.place(figure, text, fitting) {
                 return;
             }
         }
@@ -217,7 +209,7 @@ impl<'a> Drawing<'a> {
 
     /// The steps of the runs on the front, small, where they cover nothing.
     fn name_steps(&self, figure: &mut Figure, front: &[(usize, &Run)]) {
-        let size = (0.75 * self.size).max(6.5);
+        let size = 0.8 * self.size;
         for (_, run) in front {
             let [x, y] = self.at(run);
             let text = Text::new(run.label.as_deref().unwrap_or_default(), size).colour(GREY);
