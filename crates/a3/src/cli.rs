@@ -431,6 +431,11 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
     Err(Failure::Usage(match (error.kind(), tip) {
         // Its own words end with what is right.
         (ErrorKind::ValueValidation, _) => line,
+        (ErrorKind::ArgumentConflict | ErrorKind::MissingRequiredArgument, _)
+            if line.contains("--error") =>
+        {
+            "choose takes either --error E, in m, or --budget MS, in ms a frame".into()
+        }
         (ErrorKind::ArgumentConflict, _) => {
             "beside options there is a solver and a step, as in `a3 t 0.01`, or a command before all else".into()
         }

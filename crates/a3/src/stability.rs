@@ -196,7 +196,7 @@ fn chart(title: String, rows: &[Row], modes: &[Mode], h: f64) -> Chart {
     Chart {
         title,
         subtitle: format!(
-            "Where the eigenvalues of the scene as it starts, times a step of {} ms, lie in each solver's stable region",
+            "Where the eigenvalues of the scene as it starts, times a step of {}\u{a0}ms, lie in each solver's stable region",
             step(h)
         ),
         panels: rows.iter().map(|row| panel(row, modes, h)).collect(),
@@ -211,7 +211,7 @@ fn panel(row: &Row, modes: &[Mode], h: f64) -> Panel {
     let method = row.method;
     let subtitle = if limit.is_finite() {
         format!(
-            "largest stable step {} ms, observed {} ms",
+            "largest stable step {}\u{a0}ms, observed {}\u{a0}ms",
             prediction(&row.start),
             step(row.start.observed.step)
         )

@@ -342,7 +342,9 @@ mod tests {
         let words = ["a3"].iter().chain(words);
         match Session::new(&cli::Cli::try_parse_from(words).unwrap().window) {
             Ok(session) => session,
-            Err(Failure::Usage(why) | Failure::Run(why) | Failure::Interrupted(why)) => panic!("{why}"),
+            Err(Failure::Usage(why) | Failure::Run(why) | Failure::Interrupted(why)) => {
+                panic!("{why}")
+            }
         }
     }
 

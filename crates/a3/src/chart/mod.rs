@@ -156,7 +156,7 @@ pub fn look_ahead(
              --error energy or strain, or leave out --until"
         ),
         Some(_) => {}
-        None => eprintln!("{of}: {why}; runs of {until} s"),
+        None => output::say(&format!("{of}: {why}; runs of {until} s\n"))?,
     }
     Ok(Some(asked.unwrap_or(until)))
 }

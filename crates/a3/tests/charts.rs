@@ -1,0 +1,392 @@
+//! Charts as a user makes them: measured, resumed, interrupted, and refused in one line.
+
+#![allow(missing_docs, reason = "a test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+fn command(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_a3"));
+    command
+        .args(words)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+fn a3(folder: &Path, words: &[&str]) -> Output {
+    command(folder, words).output().unwrap()
+}
+
+/// What it wrote to stdout, of a program that went well.
+fn said(folder: &Path, words: &[&str]) -> String {
+    let output = a3(folder, words);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{words:?}: {stderr}");
+    assert!(!stderr.contains("error"), "{stderr}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+const CHAIN: [&str; 5] = ["chart", "--scene", "chain", "--work", "evaluations"];
+
+#[test]
+fn a_chart_of_evaluations_has_the_same_bits_every_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = ["a.csv", "a.svg", "b.csv", "b.svg"].map(|name| folder.path().join(name));
+    let words = |data, picture| [&CHAIN[..], &["--data", data, "--output", picture]].concat();
+    let first = said(folder.path(), &words("a.csv", "a.svg"));
+    let second = said(folder.path(), &words("b.csv", "b.svg"));
+    assert_eq!(first.replace("a.svg", "b.svg"), second);
+    let [a, drawn_a, b, drawn_b] = files.map(|file| fs::read(file).unwrap());
+    assert!(a == b);
+    assert!(drawn_a == drawn_b);
+    for said in [
+        "errors",
+        "1e-2 m",
+        "1e-8 m",
+        "* cheapest:",
+        "chart: a.svg",
+        "rk4",
+        "dop853",
+    ] {
+        assert!(first.contains(said), "{said} in\n{first}");
+    }
+    let svg = String::from_utf8(drawn_a).unwrap();
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    for word in [
+        "Speed against accuracy: chain",
+        "force evaluations",
+        "blew up",
+    ] {
+        assert!(svg.contains(word), "{word}");
+    }
+    // Every number is finite, every run has its scene, solver and version.
+    let mut reader = csv::Reader::from_reader(&a[..]);
+    let headers = reader.headers().unwrap().clone();
+    let column = |name: &str| headers.iter().position(|h| h == name).unwrap();
+    let (error, work, solver) = (column("error_position"), column("work"), column("solver"));
+    let (mut solvers, mut runs) = (std::collections::BTreeSet::new(), 0);
+    for line in reader.records() {
+        let line = line.unwrap();
+        assert!(line[error].parse::<f64>().unwrap().is_finite());
+        assert!(line[work].parse::<f64>().unwrap() > 0.0);
+        assert_eq!(&line[column("scene")], "chain");
+        assert_eq!(&line[column("version")], env!("CARGO_PKG_VERSION"));
+        assert_eq!(&line[column("seconds")], "");
+        solvers.insert(line[solver].to_owned());
+        runs += 1;
+    }
+    assert_eq!(solvers.len(), a3_core::integrators::METHODS.len());
+    assert!(runs > 80, "{runs}");
+}
+
+#[test]
+fn a_chart_goes_on_from_its_data() {
+    let folder = tempfile::tempdir().unwrap();
+    for data in ["d.csv", "d.json"] {
+        let words = |solvers, output| {
+            let more = ["--data", data, "--solvers", solvers, "--output", output];
+            [&CHAIN[..], &more].concat()
+        };
+        said(folder.path(), &words("r,v", "one.svg"));
+        let path = folder.path().join(data);
+        let before = fs::read_to_string(&path).unwrap();
+        said(folder.path(), &words("r,v,x", "two.svg"));
+        let after = fs::read_to_string(&path).unwrap();
+        assert!(after.contains("dop853") && !before.contains("dop853"));
+        assert!(after.len() > before.len());
+        said(folder.path(), &words("r,v,x", "three.svg"));
+        let [two, three] =
+            ["two.svg", "three.svg"].map(|name| fs::read(folder.path().join(name)).unwrap());
+        assert!(two == three);
+        assert!(after == fs::read_to_string(&path).unwrap(), "{data}");
+    }
+    // What is in the file is believed, not measured again: here, that Verlet's method needs no work.
+    let path = folder.path().join("d.csv");
+    let mut reader = csv::Reader::from_path(&path).unwrap();
+    let headers = reader.headers().unwrap().clone();
+    let mut writer = csv::Writer::from_path(folder.path().join("e.csv")).unwrap();
+    writer.write_record(&headers).unwrap();
+    for line in reader.records() {
+        let line = line.unwrap();
+        let is_verlet = line.iter().any(|cell| cell == "verlet");
+        let cells = line.iter().zip(&headers).map(|(cell, name)| {
+            if is_verlet && name == "work" {
+                "0.125"
+            } else {
+                cell
+            }
+        });
+        writer.write_record(cells).unwrap();
+    }
+    writer.flush().unwrap();
+    let words = ["--data", "e.csv", "--solvers", "r,v", "--output", "e.svg"];
+    let text = said(folder.path(), &[&CHAIN[..], &words].concat());
+    assert!(text.contains("*0.12"), "{text}");
+}
+
+/// Ctrl-C in the middle: what was measured is drawn and kept, and the next run ends where this one would have.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_chart_draws_what_it_has() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = |data, output| {
+        let mut words = vec![
+            "chart",
+            "--scene",
+            "mit",
+            "--work",
+            "evaluations",
+            "--until",
+            "1",
+        ];
+        words.extend(["--solvers", "t,r,v,a", "--data", data, "--output", output]);
+        words
+    };
+    let mut child = command(folder.path(), &words("i.csv", "i.svg"))
+        .spawn()
+        .unwrap();
+    // Once the first method is in the file.
+    let data = folder.path().join("i.csv");
+    while !data.exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let interrupt = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(interrupt.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{stderr}");
+    assert!(
+        stderr.contains("interrupted: the chart has what was measured"),
+        "{stderr}"
+    );
+    assert!(folder.path().join("i.svg").exists());
+    let partial = fs::read_to_string(&data).unwrap();
+    said(folder.path(), &words("i.csv", "i.svg"));
+    said(folder.path(), &words("j.csv", "j.svg"));
+    let [whole, straight] =
+        ["i.csv", "j.csv"].map(|n| fs::read_to_string(folder.path().join(n)).unwrap());
+    assert!(partial.len() < whole.len());
+    assert!(whole == straight);
+}
+
+#[test]
+fn stiffness_makes_panels_and_other_errors_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = [
+        "--stiffness",
+        "1,100",
+        "--solvers",
+        "v,r",
+        "--error",
+        "energy",
+        "--until",
+        "0.5",
+        "-o",
+        "p.png",
+        "--size",
+        "800x500",
+    ];
+    let text = said(folder.path(), &[&CHAIN[..], &words].concat());
+    assert!(
+        text.contains("stiffness x 100") && text.contains("1e-4 J"),
+        "{text}"
+    );
+    let picture = image::open(folder.path().join("p.png")).unwrap();
+    assert_eq!((picture.width(), picture.height()), (800, 500));
+}
+
+#[test]
+fn seconds_are_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = [
+        "chart",
+        "--scene",
+        "simple",
+        "--solvers",
+        "e,r",
+        "--until",
+        "2",
+        "--data",
+        "s.json",
+    ];
+    let text = said(folder.path(), &words);
+    assert!(text.contains("computing time (ms)"), "{text}");
+    assert!(folder.path().join("a3-chart-simple.svg").exists());
+    let runs: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("s.json")).unwrap()).unwrap();
+    let runs = runs.as_array().unwrap();
+    assert!(
+        runs.iter()
+            .any(|run| run["seconds"].as_f64().is_some_and(|s| s > 0.0))
+    );
+    for run in runs {
+        assert!(run["seconds"].is_number() || run["lost_at"].is_number());
+    }
+}
+
+#[test]
+fn a_long_horizon_is_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut words = vec!["chart", "--scene", "mit-sphere", "--until", "2"];
+    words.extend(["--solvers", "v", "--work", "evaluations"]);
+    let output = a3(folder.path(), &words);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        stderr.contains("warning: ") && stderr.contains("Lyapunov time"),
+        "{stderr}"
+    );
+}
+
+#[test]
+fn limits_are_predicted_and_observed() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = [
+        "stability",
+        "--scene",
+        "mit",
+        "--solvers",
+        "t,r,v,x,s",
+        "-o",
+        "s.svg",
+    ];
+    let text = said(folder.path(), &words);
+    let mut rows = 0;
+    for line in text.lines() {
+        let cells: Vec<_> = line.split_whitespace().collect();
+        if let [solver, predicted, observed, ratio, ..] = cells[..]
+            && let (Ok(predicted), Ok(observed), Ok(ratio)) = (
+                predicted.parse::<f64>(),
+                observed.parse::<f64>(),
+                ratio.parse::<f64>(),
+            )
+        {
+            assert!((observed / predicted - ratio).abs() < 0.01, "{line}");
+            assert!((0.9..1.1).contains(&ratio), "{solver}: {line}");
+            rows += 1;
+        }
+    }
+    assert_eq!(rows, 5, "{text}");
+    let svg = fs::read_to_string(folder.path().join("s.svg")).unwrap();
+    for word in ["Where solvers fail: mit", "Re(h", "stable region"] {
+        assert!(svg.contains(word), "{word}");
+    }
+}
+
+#[test]
+fn a_choice_comes_with_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = said(
+        folder.path(),
+        &["choose", "--error", "1e-4", "--scene", "chain"],
+    );
+    for word in ["best", "runner-up", "an error of 1e-4 m", "ms/frame"] {
+        assert!(text.contains(word), "{word} in\n{text}");
+    }
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("run it:  a3 "))
+        .unwrap();
+    let mut words: Vec<_> = line.split_whitespace().collect();
+    assert!(
+        words.contains(&"--scene") && words.contains(&"chain"),
+        "{line}"
+    );
+    // The same words, without a window.
+    words.splice(0..0, ["simulate"]);
+    words.extend(["--until", "1", "--output", "c.json"]);
+    said(folder.path(), &words);
+    let text = said(
+        folder.path(),
+        &[
+            "choose", "--budget", "5", "--scene", "simple", "--until", "2",
+        ],
+    );
+    assert!(
+        text.contains("5 ms a frame") && text.contains("run it:  a3 "),
+        "{text}"
+    );
+}
+
+#[test]
+fn wrong_usage_is_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("bad.csv"), "a,b\n1,2\n").unwrap();
+    fs::write(folder.path().join("bad.json"), "[{\"scene\": 1}]").unwrap();
+    for (words, right, code) in [
+        (vec!["chart", "--solvers", "t,q"], "the solvers are", 2),
+        (vec!["chart", "--stiffness", "1,0"], "such as 10", 2),
+        (vec!["chart", "--stiffness", "-1"], "such as 10", 2),
+        (
+            vec!["chart", "--stiffness", "2", "--scene", "simple"],
+            "has no springs",
+            2,
+        ),
+        (vec!["chart", "--until", "0"], "such as 1", 2),
+        (vec!["chart", "--until", "nan"], "such as 1", 2),
+        (vec!["chart", "--error", "speed"], "position", 2),
+        (
+            vec!["chart", "--error", "energy", "--scene", "simple"],
+            "neither energy nor springs",
+            2,
+        ),
+        (vec!["chart", "--work", "joules"], "evaluations", 2),
+        (vec!["chart", "--output", "x.gif"], ".svg or .png", 2),
+        (vec!["chart", "--data", "x.txt"], ".csv or .json", 2),
+        (
+            vec!["chart", "--data", "bad.csv"],
+            "not the data of a chart",
+            1,
+        ),
+        (
+            vec!["chart", "--data", "bad.json"],
+            "not the data of a chart",
+            1,
+        ),
+        (
+            vec!["chart", "--output", "no/x.svg"],
+            "there is no folder no",
+            1,
+        ),
+        (vec!["chart", "--size", "10x10"], "320x240", 2),
+        (
+            vec!["chart", "--solvers", "v", "--scene", "simple"],
+            "needs forces",
+            2,
+        ),
+        (vec!["stability", "--step", "0"], "such as 0.01", 2),
+        (vec!["stability", "--output", "s.pdf"], ".svg or .png", 2),
+        (vec!["choose"], "--error", 2),
+        (vec!["choose", "--error", "0"], "such as 1e-3", 2),
+        (vec!["choose", "--budget", "-1"], "such as 2", 2),
+        (
+            vec!["choose", "--error", "1e-3", "--budget", "1"],
+            "--error",
+            2,
+        ),
+        (
+            vec!["choose", "--error", "1e-12", "--scene", "chain"],
+            "at least",
+            2,
+        ),
+        (vec!["a", "3"], "relative tolerance", 2),
+        (vec!["x", "1e-20"], "such as 0.01", 2),
+    ] {
+        let output = a3(folder.path(), &words);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{words:?}: {stderr}");
+        assert_eq!(stderr.lines().count(), 1, "{words:?}: {stderr}");
+        assert!(
+            stderr.starts_with("error: ") && stderr.contains(right),
+            "{words:?}: {stderr}"
+        );
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+}
