@@ -26,6 +26,7 @@ mod error;
 pub mod forces;
 mod grid;
 pub mod integrators;
+mod linear;
 mod network;
 mod path;
 mod random;

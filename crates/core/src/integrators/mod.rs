@@ -6,6 +6,7 @@ mod dormand_prince;
 mod embedded;
 mod euler;
 mod heun;
+mod implicit;
 mod midpoint;
 mod pefrl;
 mod rk4;
@@ -146,7 +147,10 @@ pub static METHODS: &[Method] = &[
     pefrl::METHOD,
     dormand_prince::METHOD,
     dop853::METHOD,
+    implicit::EULER,
     rkf45::METHOD,
+    implicit::TR_BDF2,
+    implicit::MIDPOINT,
 ];
 
 /// The method of this letter, name or alias.

@@ -1,0 +1,52 @@
+//! The implicit midpoint rule, Y = y + h/2 f(t + h/2, Y), y1 = 2 Y - y, its equations solved to the end: symplectic, so
+//! that energy is kept, and any step is stable while they have a solution. Order 2.
+
+use super::super::{Integrator, Method, Work, check_dim};
+use super::{Newton, Stage, place};
+use crate::error::Error;
+use crate::system::ParticleSystem;
+
+pub(in super::super) const METHOD: Method = Method {
+    name: "implicit-midpoint",
+    letter: 'n',
+    aliases: &[],
+    title: "implicit midpoint",
+    order: 2,
+    default_setting: 0.01,
+    evaluations: 3,
+    damped_evaluations: 3,
+    pair: None,
+    needs_mechanics: false,
+    create: |system| {
+        Box::new(ImplicitMidpoint {
+            stage: Stage::new(system),
+            base: vec![0.0; system.dim()],
+        })
+    },
+};
+
+struct ImplicitMidpoint {
+    stage: Stage,
+    base: Vec<f64>,
+}
+
+impl Integrator for ImplicitMidpoint {
+    fn step(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
+        let Self { stage, base } = self;
+        check_dim(base.len(), y)?;
+        base.copy_from_slice(y);
+        let half = 0.5 * h;
+        let work = stage.solve(system, t + half, half, base, y, Newton::Full)?;
+        for (y, base) in y.iter_mut().zip(&*base) {
+            *y = 2.0 * *y - base;
+        }
+        place(system, t + h, y);
+        Ok(work)
+    }
+}

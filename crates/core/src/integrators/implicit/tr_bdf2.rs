@@ -1,0 +1,75 @@
+//! TR-BDF2 (Bank et al. 1985) as a diagonally implicit Runge-Kutta method (Hosea, Shampine, *Analysis and implementation
+//! of TR-BDF2*, 1996): with g = 1 - 1/sqrt 2 and w = sqrt 2 / 4,
+//! Y2 = y + g h (f(t, y) + f(t + 2 g h, Y2)), y1 = y + h (w f(t, y) + w f2 + g f(t + h, y1)).
+//! Any step is stable, and what is stiff dies out. Order 2.
+
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+
+use super::super::{Integrator, Method, Work, check_dim};
+use super::{Newton, Stage};
+use crate::error::Error;
+use crate::system::ParticleSystem;
+
+pub(in super::super) const METHOD: Method = Method {
+    name: "tr-bdf2",
+    letter: 'b',
+    aliases: &["trbdf2"],
+    title: "TR-BDF2, implicit",
+    order: 2,
+    default_setting: 0.01,
+    evaluations: 7,
+    damped_evaluations: 7,
+    pair: None,
+    needs_mechanics: false,
+    create: |system| {
+        let zeros = || vec![0.0; system.dim()];
+        Box::new(TrBdf2 {
+            stage: Stage::new(system),
+            f1: zeros(),
+            base: zeros(),
+            last: zeros(),
+        })
+    },
+};
+
+const G: f64 = 1.0 - FRAC_1_SQRT_2;
+const W: f64 = SQRT_2 / 4.0;
+
+struct TrBdf2 {
+    stage: Stage,
+    f1: Vec<f64>,
+    base: Vec<f64>,
+    /// The base of the last stage.
+    last: Vec<f64>,
+}
+
+impl Integrator for TrBdf2 {
+    fn step(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
+        let Self {
+            stage,
+            f1,
+            base,
+            last,
+        } = self;
+        check_dim(base.len(), y)?;
+        system.eval_f(t, y, f1);
+        let mut work = Work::of(1);
+        for (((y, f1), base), last) in y.iter().zip(&*f1).zip(&mut *base).zip(&mut *last) {
+            *base = y + G * h * f1;
+            *last = y + W * h * f1;
+        }
+        work += stage.solve(system, t + 2.0 * G * h, G * h, base, y, Newton::Full)?;
+        // f2 is what the stage was solved for.
+        for ((last, y), base) in last.iter_mut().zip(&*y).zip(&*base) {
+            *last += W / G * (y - base);
+        }
+        work += stage.solve(system, t + h, G * h, last, y, Newton::Full)?;
+        Ok(work)
+    }
+}
