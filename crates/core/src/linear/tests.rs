@@ -1,0 +1,217 @@
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use super::*;
+use crate::random::SplitMix;
+use crate::spring::{Spring, SpringKind, SpringLaw};
+use crate::{Grid, Network, Path, Vector3};
+
+/// A flat square of springs of one stiffness, a corner pinned and everything a little out of place.
+fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
+    let grid = Grid::new(side, side).unwrap();
+    let spacing = 1.0 / (side - 1) as f64;
+    let mut network = Network::new(vec![1.0 / grid.particles() as f64; grid.particles()]).unwrap();
+    for family in grid
+        .springs(spacing, [stiffness, stiffness, 0.25 * stiffness], 0.0)
+        .unwrap()
+    {
+        network.add_family(family).unwrap();
+    }
+    let n = grid.particles();
+    let mut random = SplitMix(7);
+    let mut x = vec![0.0; 3 * n];
+    for k in 0..n {
+        (x[k], x[2 * n + k]) = ((k % side) as f64 * spacing, (k / side) as f64 * spacing);
+        for axis in 0..3 {
+            x[axis * n + k] += 0.05 * spacing * random.between(-1.0, 1.0);
+        }
+    }
+    for corner in [0, side - 1] {
+        let at = Vector3::new(x[corner], x[n + corner], x[2 * n + corner]);
+        network.pin(corner, Path::Still(at)).unwrap();
+    }
+    (network, x)
+}
+
+/// A line of springs, its first particle pinned.
+fn chain(count: usize, stiffness: f64) -> (Network, Vec<f64>) {
+    let mut network = Network::new(vec![1.0 / count as f64; count]).unwrap();
+    let spacing = 1.0 / count as f64;
+    let law = SpringLaw::new(stiffness, spacing, 0.0).unwrap();
+    for i in 0..count - 1 {
+        let (kind, j) = (SpringKind::Structural, i + 1);
+        network.add_spring(Spring { kind, i, j, law }).unwrap();
+    }
+    network.pin(0, Path::Still(Vector3::zeros())).unwrap();
+    let mut random = SplitMix(3);
+    let x = (0..3 * count)
+        .map(|k| if k < count { k as f64 * spacing } else { 0.0 } + 0.05 * spacing * random.between(-1.0, 1.0))
+        .collect();
+    (network, x)
+}
+
+fn right_hand_side(network: &Network) -> Vec<f64> {
+    let n = network.particles();
+    let mut random = SplitMix(5);
+    (0..3 * n)
+        .map(|k| {
+            let b = random.between(-1.0, 1.0);
+            if network.is_pinned(k % n) { 0.0 } else { b }
+        })
+        .collect()
+}
+
+fn residual(tangent: &Tangent, b: &[f64], x: &[f64]) -> f64 {
+    let mut product = vec![0.0; b.len()];
+    tangent.product(x, &mut product);
+    let norm = |a: &mut dyn Iterator<Item = f64>| a.map(|a| a * a).sum::<f64>().sqrt();
+    norm(&mut b.iter().zip(&product).map(|(b, p)| b - p)) / norm(&mut b.iter().copied())
+}
+
+#[test]
+fn iterations_and_factors_agree_and_report_the_true_residual() {
+    for (network, x) in [cloth(7, 300.0), chain(30, 1000.0)] {
+        let b = right_hand_side(&network);
+        let mut solver = Solver::new(&network);
+        let _ = solver.gather(&network, &x, 1.0 / 60.0, true);
+        let (mut by_iterations, mut by_factors) = (vec![0.0; b.len()], vec![0.0; b.len()]);
+        for tolerance in [1e-3, 1e-6, 1e-12] {
+            solver.direct_always = Some(false);
+            let (work, reported) = solver.solve(&b, &mut by_iterations, tolerance);
+            let found = residual(&solver.tangent, &b, &by_iterations);
+            assert!(reported.unwrap() <= tolerance && work.iterations > 0);
+            assert!((found - reported.unwrap()).abs() < 1e-13 + 0.01 * found);
+        }
+        solver.direct_always = Some(true);
+        let (work, _) = solver.solve(&b, &mut by_factors, 1e-12);
+        assert_eq!((work.factorizations, work.iterations), (1, 0));
+        assert!(residual(&solver.tangent, &b, &by_factors) < 1e-12);
+        for (a, b) in by_iterations.iter().zip(&by_factors) {
+            assert!((a - b).abs() < 1e-9 * by_factors.iter().fold(0.0, |m: f64, b| m.max(b.abs())));
+        }
+        // The factor is kept for the next right-hand side.
+        let (work, _) = solver.solve(&b, &mut by_factors, 1e-12);
+        assert_eq!(work.factorizations, 0);
+    }
+}
+
+#[test]
+fn what_is_pinned_stays_however_many_iterations_there_are() {
+    let (network, x) = cloth(6, 1e4);
+    let b = right_hand_side(&network);
+    let mut tangent = Tangent::new(&network);
+    tangent.gather(&network, &x, 0.1, true);
+    let n = network.particles();
+    let mut iterative = ConjugateGradients::new(n);
+    for most in 0..20 {
+        let mut dv = vec![1.0; 3 * n];
+        let solution = iterative.solve(&tangent, &b, &mut dv, 0.0, most);
+        assert_eq!(solution.iterations, most);
+        for (k, dv) in dv.iter().enumerate() {
+            assert!(!network.is_pinned(k % n) || *dv == 0.0);
+        }
+    }
+}
+
+/// Cloth squeezed by a tenth: at 1/60 s its matrix is indefinite, and with the clamp it is not.
+#[test]
+fn compressed_cloth_needs_the_clamp() {
+    let (network, x) = cloth(20, 2000.0);
+    let squeezed: Vec<_> = x.iter().map(|x| 0.9 * x).collect();
+    let b = right_hand_side(&network);
+    for clamped in [false, true] {
+        let mut solver = Solver::new(&network);
+        let mut dv = vec![0.0; b.len()];
+        let _ = solver.gather(&network, &squeezed, 1.0 / 60.0, clamped);
+        for direct in [false, true] {
+            solver.direct_always = Some(direct);
+            let (_, solved) = solver.solve(&b, &mut dv, 1e-8);
+            assert_eq!(
+                solved.is_some(),
+                clamped,
+                "direct: {direct}, clamped: {clamped}"
+            );
+        }
+    }
+}
+
+/// The shortest of some runs.
+fn time(mut run: impl FnMut()) -> f64 {
+    let (mut best, begun) = (Duration::MAX, Instant::now());
+    for k in 0..1000 {
+        let start = Instant::now();
+        run();
+        best = best.min(start.elapsed());
+        if k >= 2 && begun.elapsed() > Duration::from_millis(150) {
+            break;
+        }
+    }
+    best.as_secs_f64()
+}
+
+/// `cargo test --release -p a3-core solves_measured -- --ignored --nocapture`
+#[test]
+#[ignore = "measures"]
+fn solves_measured() {
+    println!(
+        "case                    a w     F us  gather/F  iter/F  iterations (guess)  PCG/F  factor/F  solve/F  ops/coupling  size/coupling  picked  best"
+    );
+    for (name, (network, x)) in [
+        ("chain 100", chain(100, 1e2)),
+        ("chain 1000", chain(1000, 1e2)),
+        ("cloth 20", cloth(20, 1e2)),
+        ("cloth 64", cloth(64, 1e2)),
+        ("cloth 128", cloth(128, 1e2)),
+    ] {
+        let b = right_hand_side(&network);
+        let mut f = vec![0.0; b.len()];
+        let zero = vec![0.0; b.len()];
+        use crate::Mechanics;
+        let force = time(|| network.forces(0.0, black_box(&x), &zero, &mut f));
+        for a_w in [1.0, 3.0, 10.0, 30.0, 100.0, 300.0] {
+            let mut solver = Solver::new(&network);
+            let _ = solver.gather(&network, &x, 1.0, true);
+            let a = a_w / solver.stiffness().sqrt();
+            let _ = solver.gather(&network, &x, a, true);
+            let gather = time(|| {
+                let _ = solver.gather(&network, black_box(&x), a, true);
+            });
+            let mut dv = vec![0.0; b.len()];
+            let tolerance = FORCING;
+            solver.direct_always = Some(false);
+            let mut iterations = 0;
+            let pcg =
+                time(|| iterations = solver.solve(black_box(&b), &mut dv, tolerance).0.iterations);
+            let direct = solver.direct.as_mut().unwrap();
+            let (operations, size) = (direct.operations, direct.size);
+            let factor = time(|| {
+                black_box(direct.factorise(&solver.tangent));
+            });
+            let solve = time(|| direct.solve(black_box(&b), &mut dv));
+            solver.direct_always = None;
+            solver.factorised = false;
+            let picked = solver.solve(&b, &mut dv, tolerance).0.factorizations == 1;
+            let couplings = solver.tangent.couplings().len() as f64;
+            let guess = SPREAD * (1.0 + solver.stiffness()).sqrt() * (2.0 / tolerance).ln();
+            println!(
+                "{name:<18} {a_w:>8} {:>8.2} {:>9.2} {:>7.2} {iterations:>11} ({guess:>5.0}) {:>6.0} {:>9.0} {:>8.1} {:>13.0} {:>14.1}  {}  {:.2}",
+                1e6 * force,
+                gather / force,
+                pcg / force / iterations as f64,
+                pcg / force,
+                factor / force,
+                solve / force,
+                operations / couplings,
+                size / couplings,
+                if picked { "direct" } else { "pcg   " },
+                if picked {
+                    (factor + solve) / pcg
+                } else {
+                    pcg / (factor + solve)
+                },
+            );
+        }
+    }
+}
+
+const FORCING: f64 = 1e-5;
