@@ -4,6 +4,7 @@
 
 mod app;
 mod cli;
+mod compare;
 mod headless;
 mod list;
 mod output;
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
     let result = match Cli::try_parse() {
         Ok(cli) => match cli.command {
             None => app::run(&cli.window),
+            Some(Command::Compare(options)) => compare::run(&options),
             Some(Command::Simulate(options)) => simulate::run(&options),
             Some(Command::Render(options)) => render::run(&options),
             Some(Command::Scenes) => list::scenes(),

@@ -1,18 +1,24 @@
-//! A run that keeps up with real time, and what the keys do to it. Knows no window.
+//! Runs that keep up with real time, and what the keys do to them. Knows no window.
 
 use std::time::{Duration, Instant};
 
-use a3_core::{Method, SceneEntry, Simulation, integrators, scenes};
+use a3_core::{Error, Method, SceneEntry, Simulation, Vector3, integrators, scenes};
 use a3_render::{Camera, Style};
 
 use super::hud::Readings;
 use super::keys::Action;
+use super::pane::Pane;
+use super::reference::Reference;
 use crate::Failure;
 use crate::cli::{self, LARGEST_STEP, SMALLEST_STEP};
 use crate::show::{self, Show};
 
-/// Real time a frame may spend on steps. What does not fit is not caught up: the run is slower than real time then.
+/// Real time a frame may spend on steps. What does not fit is not caught up: all runs are slower than real time then.
 const BUDGET: Duration = Duration::from_millis(12);
+/// Real time a frame may spend on the reference.
+const REFERENCE_BUDGET: Duration = Duration::from_millis(4);
+/// Real time that a key may take, other than a frame.
+const KEY_BUDGET: Duration = Duration::from_millis(200);
 /// No frame owes more than this (s), however long it took: neither a slow one nor a laptop's sleep.
 const MOST_OWED: f64 = 0.1;
 /// How long a message stays.
@@ -20,21 +26,21 @@ const MESSAGE_TIME: Duration = Duration::from_secs(4);
 /// Steps of the keys + and -, in each decade.
 const LADDER: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
 
-/// A run on the screen.
+/// One run on the screen, or several of one scene side by side.
 pub struct Session {
-    pub simulation: Simulation,
-    pub show: Show,
+    /// At least one.
+    pub panes: Vec<Pane>,
     pub camera: Camera,
     pub readings: Readings,
     /// The scene and grid asked for, to come back to.
     asked: cli::What,
     entry: &'static SceneEntry,
-    /// The solver asked for, also while a scene is shown that it cannot serve.
-    wanted: &'static Method,
-    /// Real time not yet simulated (s).
-    owed: f64,
+    /// Where there are several panes.
+    reference: Option<Reference>,
+    /// Simulated time that the panes have been brought to (s): each is less than a step behind.
+    clock: f64,
     message_ends: Option<Instant>,
-    /// At how many steps, and when, the state was last read.
+    /// At how many steps, and when, the states were last read.
     read: Option<(u64, Instant)>,
     meter: Meter,
 }
@@ -61,81 +67,158 @@ impl Meter {
 }
 
 impl Session {
-    /// The session that the command line asks for.
-    pub fn new(options: &cli::Window) -> Result<Self, Failure> {
-        let simulation = options.what.simulation(options.solver, options.step)?;
-        cli::check_particle(&simulation, options.springs_of)?;
+    /// These methods, each with its step (s) or in the solver's own, on one scene.
+    pub fn new(
+        what: &cli::What,
+        methods: &[(&'static Method, Option<f64>)],
+        look: &cli::Look,
+        springs_of: Option<usize>,
+    ) -> Result<Self, Failure> {
+        let pane = |(method, step): &(&'static Method, Option<f64>)| {
+            let simulation = what.simulation(method, *step)?;
+            cli::check_particle(&simulation, springs_of)?;
+            let show = Show::new(look.wireframe, springs_of);
+            Ok(Pane::new(simulation, show))
+        };
+        let panes: Vec<_> = methods.iter().map(pane).collect::<Result<_, Failure>>()?;
         Ok(Self {
-            camera: show::camera(&simulation),
-            show: Show::new(options.wireframe, options.springs_of),
+            camera: show::camera(&panes[0].simulation),
             readings: Readings {
-                paused: options.paused,
+                paused: look.paused,
                 ..Readings::default()
             },
-            asked: options.what.clone(),
-            entry: options.what.scene,
-            wanted: options.solver,
-            owed: 0.0,
+            asked: what.clone(),
+            entry: what.scene,
+            reference: Reference::new(&panes)?,
+            clock: 0.0,
             message_ends: None,
             read: None,
             meter: Meter::new(),
-            simulation,
+            panes,
         })
+    }
+
+    /// The first run: what is the same in all of them is asked of it.
+    pub fn first(&self) -> &Simulation {
+        &self.panes[0].simulation
     }
 
     /// Whether the next frame will look different by itself.
     pub fn animated(&self) -> bool {
-        !self.readings.paused && self.simulation.blow_up().is_none()
+        !self.readings.paused && self.panes.iter().any(Pane::alive)
     }
 
-    /// Goes on by `real` seconds of real time, in steps of exactly the size asked for.
+    /// Goes on by `real` seconds of real time, in steps of exactly the sizes asked for.
     pub fn tick(&mut self, real: f64) {
-        if !self.animated() {
-            self.owed = 0.0;
+        if self.animated() {
+            let until = self.clock + real.min(MOST_OWED);
+            self.advance(until, BUDGET, REFERENCE_BUDGET);
+        } else {
+            self.settle();
+        }
+    }
+
+    /// Brings all panes to a simulated time (s), together: in slices, so that none runs ahead when the budget of real
+    /// time is over before.
+    fn advance(&mut self, until: f64, budget: Duration, reference_budget: Duration) {
+        let (begun, start) = (Instant::now(), self.clock);
+        let steps = self.panes.iter().map(|pane| pane.simulation.step_size());
+        let mut slice = steps.fold(f64::INFINITY, f64::min);
+        while self.clock < until && begun.elapsed() < budget && self.panes.iter().any(Pane::alive) {
+            self.clock = (self.clock + slice).min(until);
+            for pane in &mut self.panes {
+                pane.take_due_steps(self.clock);
+            }
+            if begun.elapsed() < budget / 16 {
+                slice *= 2.0;
+            }
+        }
+        if let Some(reference) = &mut self.reference {
+            reference.follow(&mut self.panes, reference_budget);
+            self.readings.no_error = reference.stopped();
+        }
+        self.meter.simulated += self.clock - start;
+        self.meter.simulating += begun.elapsed();
+        for pane in &mut self.panes {
+            pane.follow();
+        }
+    }
+
+    /// Owes nothing: the time is that of the pane that is farthest.
+    fn settle(&mut self) {
+        let alive = self.panes.iter().filter(|pane| pane.alive());
+        let times = alive.map(|pane| pane.simulation.time());
+        self.clock = times.reduce(f64::max).unwrap_or(self.clock);
+    }
+
+    /// Goes on to `time` (s) exactly, however long that takes: without a window.
+    pub fn run_to(&mut self, time: f64) {
+        for pane in &mut self.panes {
+            pane.run_to(time);
+        }
+        if let Some(reference) = &mut self.reference {
+            reference.run_to(time, &mut self.panes);
+            self.readings.no_error = reference.stopped();
+        }
+        self.settle();
+    }
+
+    /// Every run that goes on, the reference's too.
+    fn runs(&mut self) -> impl Iterator<Item = &mut Simulation> {
+        let alive = self.panes.iter_mut().filter(|pane| pane.alive());
+        let reference = self.reference.as_mut().and_then(Reference::run);
+        alive.map(|pane| &mut pane.simulation).chain(reference)
+    }
+
+    /// Brings several panes to the same time exactly, by a shorter step where need be: what a hand does from then on, it
+    /// does to all of them at once.
+    fn align(&mut self) {
+        if self.panes.len() < 2 {
             return;
         }
-        let step = self.simulation.step_size();
-        self.owed = (self.owed + real.min(MOST_OWED)).min(MOST_OWED.max(step));
-        let mut left = (self.owed / step + 1e-9).floor() as u64;
-        let begun = Instant::now();
-        let mut portion = 1;
-        while left > 0 && begun.elapsed() < BUDGET {
-            let count = portion.min(left);
+        self.settle();
+        let clock = self.clock;
+        if let Some(reference) = &mut self.reference
+            && reference.run().is_some()
+            && !reference.reach(clock, KEY_BUDGET)
+        {
+            reference.stop("the reference is too slow");
+        }
+        for run in self.runs() {
             // A blow-up is on the screen from now on.
-            if self.simulation.take_steps(count).is_err() {
-                break;
-            }
-            left -= count;
-            self.owed -= count as f64 * step;
-            self.meter.simulated += count as f64 * step;
-            if begun.elapsed() < BUDGET / 16 {
-                portion *= 2;
-            }
-        }
-        if left > 0 {
-            self.owed = 0.0;
-        }
-        self.meter.simulating += begun.elapsed();
-        self.follow();
-    }
-
-    /// The trail goes on, unless the run is lost: it would lead to where the particle no longer is.
-    fn follow(&mut self) {
-        if self.simulation.blow_up().is_none() {
-            self.show.follow(&self.simulation);
+            let _ = run.advance_to(clock);
         }
     }
 
-    /// Energy and stretch of the state as it is now: ten times a second while it moves, and when it stands still.
+    /// Takes hold of particle i in every run. Whether there is something to hold.
+    pub fn grab(&mut self, i: usize) -> bool {
+        self.align();
+        self.runs()
+            .fold(false, |held, run| held | run.grab(i).is_ok())
+    }
+
+    /// Pulls it to the same place (m) in every run.
+    pub fn pull(&mut self, target: Vector3<f64>) {
+        self.runs().for_each(|run| run.pull(target));
+    }
+
+    /// Lets go of it.
+    pub fn release(&mut self) {
+        if self.runs().any(|run| run.grabbed().is_some()) {
+            self.align();
+        }
+        self.toggle(Simulation::release);
+    }
+
+    /// The states as they are now: ten times a second while they move, and when they stand still.
     pub fn read_state(&mut self) {
-        let due = self.read.is_none_or(|(steps, when)| {
-            steps != self.simulation.steps()
-                && (!self.animated() || when.elapsed() > Duration::from_millis(100))
+        let steps = self.panes.iter().map(|pane| pane.simulation.steps()).sum();
+        let due = self.read.is_none_or(|(before, when)| {
+            before != steps && (!self.animated() || when.elapsed() > Duration::from_millis(100))
         });
         if due {
-            self.read = Some((self.simulation.steps(), Instant::now()));
-            self.readings.energy = self.simulation.energy().map(|energy| energy.total());
-            self.readings.stretch = self.simulation.largest_stretch();
+            self.read = Some((steps, Instant::now()));
+            self.panes.iter_mut().for_each(Pane::read_state);
         }
     }
 
@@ -158,11 +241,12 @@ impl Session {
         self.readings.factor = meter.simulated as f32 / elapsed;
         self.readings.simulating = meter.simulating.as_secs_f32() * 1e3 / frames;
         self.readings.drawing = meter.drawing.as_secs_f32() * 1e3 / frames;
+        self.panes.iter_mut().for_each(Pane::read_cost);
     }
 
     /// Owes nothing, and begins to measure anew: after a time in which nothing was simulated.
     pub fn stand(&mut self) {
-        self.owed = 0.0;
+        self.settle();
         self.read = None;
         self.meter = Meter::new();
     }
@@ -182,30 +266,45 @@ impl Session {
         self.message_ends
     }
 
-    /// Does what a key asks for, except what needs the window. Whether the scene is another one now.
-    pub fn act(&mut self, action: Action) -> bool {
-        let simulation = &mut self.simulation;
+    /// Does what a key asks for, except what needs the window. A solver is for the pane `at`, all else for every pane.
+    /// Whether the scene is another one now.
+    pub fn act(&mut self, action: Action, at: usize) -> bool {
         match action {
             Action::NextScene => {
                 self.next_scene();
                 return true;
             }
             Action::Reset => {
-                simulation.reset();
-                self.show.clear_trail();
+                self.panes.iter_mut().for_each(Pane::reset);
+                if let Some(reference) = &mut self.reference {
+                    reference.reset();
+                    self.readings.no_error = None;
+                }
                 self.stand();
             }
-            Action::Swing if simulation.scene().swing.is_none() => {
+            Action::Swing if self.first().scene().swing.is_none() => {
                 self.say("There is nothing to swing here.");
             }
-            Action::Swing => simulation.set_swinging(!simulation.swinging()),
-            Action::Wind if simulation.scene().wind.is_none() => self.say("There is no wind here."),
-            Action::Wind => simulation.set_wind(!simulation.windy()),
+            Action::Swing => {
+                let on = !self.first().swinging();
+                self.align();
+                self.toggle(|run| run.set_swinging(on));
+            }
+            Action::Wind if self.first().scene().wind.is_none() => {
+                self.say("There is no wind here.");
+            }
+            Action::Wind => {
+                let on = !self.first().windy();
+                self.align();
+                self.toggle(|run| run.set_wind(on));
+            }
             Action::Wireframe => {
-                self.show.style = match self.show.style {
-                    Style::Shaded => Style::Wireframe,
-                    Style::Wireframe => Style::Shaded,
-                };
+                for pane in &mut self.panes {
+                    pane.show.style = match pane.show.style {
+                        Style::Shaded => Style::Wireframe,
+                        Style::Wireframe => Style::Shaded,
+                    };
+                }
             }
             Action::Pause => {
                 self.readings.paused = !self.readings.paused;
@@ -213,65 +312,106 @@ impl Session {
             }
             Action::Step => {
                 self.readings.paused = true;
-                // A blow-up is on the screen from now on.
-                let _ = self.simulation.take_steps(1);
-                self.follow();
+                self.settle();
+                // The longest, and as many of the shorter ones as fit.
+                let alive = self.panes.iter().filter(|pane| pane.alive());
+                let step = alive.map(|pane| pane.simulation.step_size());
+                let step = step.fold(0.0, f64::max);
+                self.advance(self.clock + step, KEY_BUDGET, KEY_BUDGET);
             }
             Action::Solver(i) => match integrators::METHODS.get(i) {
-                Some(method) => self.set_method(method),
+                Some(method) => self.set_method(method, at),
                 None => self.say(format!("There are {} solvers.", integrators::METHODS.len())),
             },
-            Action::LongerStep => self.set_step(true),
-            Action::ShorterStep => self.set_step(false),
-            Action::Camera => self.camera = show::camera(&self.simulation),
+            Action::LongerStep => self.set_steps(true),
+            Action::ShorterStep => self.set_steps(false),
+            Action::Camera => self.camera = show::camera(self.first()),
             Action::Help => self.readings.help = !self.readings.help,
             Action::Picture | Action::Quit => {}
         }
         false
     }
 
-    fn set_method(&mut self, method: &'static Method) {
-        match self.simulation.set_method(method) {
-            Ok(()) => self.wanted = method,
+    /// In every run, one that is lost too: what is on stays on when it starts again.
+    fn toggle(&mut self, mut switch: impl FnMut(&mut Simulation)) {
+        for pane in &mut self.panes {
+            switch(&mut pane.simulation);
+        }
+        if let Some(reference) = &mut self.reference {
+            switch(reference.any_run());
+        }
+    }
+
+    fn set_method(&mut self, method: &'static Method, at: usize) {
+        let at = at.min(self.panes.len() - 1);
+        let pane = &mut self.panes[at];
+        match pane.simulation.set_method(method) {
+            Ok(()) => {
+                pane.wanted = method;
+                pane.count();
+            }
             Err(why) => self.say(why.to_string()),
         }
+        self.adapt();
     }
 
-    fn set_step(&mut self, longer: bool) {
-        let step = next_step(self.simulation.step_size(), longer);
-        if let Err(why) = self.simulation.set_step(step) {
-            self.say(why.to_string());
+    fn set_steps(&mut self, longer: bool) {
+        for k in 0..self.panes.len() {
+            let pane = &mut self.panes[k];
+            let step = next_step(pane.simulation.step_size(), longer);
+            if let Err(why) = pane.simulation.set_step(step) {
+                self.say(why.to_string());
+            } else {
+                pane.count();
+            }
+        }
+        self.adapt();
+    }
+
+    fn adapt(&mut self) {
+        if let Some(reference) = &mut self.reference {
+            reference.adapt(&self.panes);
         }
     }
 
-    /// The next scene of the table, with the same solver if it can be, and the same step.
+    /// The next scene of the table, with the same solvers if it can be, and the same steps.
     fn next_scene(&mut self) {
         let here = scenes::SCENES
             .iter()
             .position(|entry| std::ptr::eq(entry, self.entry))
             .unwrap_or(0);
         let entry = &scenes::SCENES[(here + 1) % scenes::SCENES.len()];
-        let step = self.simulation.step_size();
         let grid = self
             .asked
             .grid
             .filter(|_| std::ptr::eq(entry, self.asked.scene));
-        let start = |method| Simulation::new(entry.build(grid)?, method, step);
-        // Heun serves every scene.
-        let simulation = start(self.wanted).or_else(|why| {
-            self.say(format!("{why}: the explicit trapezoid steps in"));
-            start(integrators::find("trapezoid").unwrap_or(self.wanted))
-        });
-        match simulation {
-            Ok(simulation) => {
-                self.camera = show::camera(&simulation);
-                self.simulation = simulation;
+        let mut said = None;
+        let mut start = |pane: &Pane| {
+            let start =
+                |method| Simulation::new(entry.build(grid)?, method, pane.simulation.step_size());
+            // Heun serves every scene.
+            start(pane.wanted).or_else(|why| {
+                said = Some(format!("{why}: the explicit trapezoid steps in"));
+                start(integrators::find("trapezoid").unwrap_or(pane.wanted))
+            })
+        };
+        let simulations: Result<Vec<_>, Error> = self.panes.iter().map(&mut start).collect();
+        match simulations {
+            Ok(simulations) => {
+                self.camera = show::camera(&simulations[0]);
+                for (pane, simulation) in self.panes.iter_mut().zip(simulations) {
+                    pane.set_simulation(simulation);
+                }
+                // What builds a pane builds the reference.
+                self.reference = Reference::new(&self.panes).ok().flatten();
+                self.readings.no_error = None;
                 self.entry = entry;
-                self.show.clear_trail();
-                self.show.springs_of = None;
                 self.stand();
             }
-            Err(why) => self.say(why.to_string()),
+            Err(why) => said = Some(why.to_string()),
+        }
+        if let Some(said) = said {
+            self.say(said);
         }
     }
 }
@@ -308,7 +448,12 @@ mod tests {
 
     fn session(words: &[&str]) -> Session {
         let words = ["a3"].iter().chain(words);
-        match Session::new(&cli::Cli::try_parse_from(words).unwrap().window) {
+        let options = cli::Cli::try_parse_from(words).unwrap();
+        let session = match options.command {
+            Some(cli::Command::Compare(options)) => options.session(),
+            _ => options.window.session(),
+        };
+        match session {
             Ok(session) => session,
             Err(Failure::Usage(why) | Failure::Run(why)) => panic!("{why}"),
         }
@@ -322,9 +467,9 @@ mod tests {
                 session.tick(1.0 / rate);
             }
             assert!(
-                (session.simulation.time() - 3.0).abs() < 0.011,
+                (session.panes[0].simulation.time() - 3.0).abs() < 0.011,
                 "{rate}: {}",
-                session.simulation.time()
+                session.panes[0].simulation.time()
             );
         }
     }
@@ -333,8 +478,8 @@ mod tests {
     fn a_frame_of_minutes_is_no_huge_step() {
         let mut session = session(&["t", "0.01", "--scene", "chain"]);
         session.tick(300.0);
-        assert!(session.simulation.time() <= MOST_OWED + 1e-9);
-        assert!(session.simulation.steps() <= 10);
+        assert!(session.panes[0].simulation.time() <= MOST_OWED + 1e-9);
+        assert!(session.panes[0].simulation.steps() <= 10);
     }
 
     #[test]
@@ -343,19 +488,19 @@ mod tests {
         for _ in 0..65 {
             session.tick(1.0 / 60.0);
         }
-        assert_eq!(session.simulation.steps(), 2);
+        assert_eq!(session.panes[0].simulation.steps(), 2);
     }
 
     #[test]
     fn paused_it_stands_still() {
         let mut session = session(&["t", "0.01", "--paused"]);
         session.tick(0.05);
-        assert_eq!(session.simulation.steps(), 0);
-        session.act(Action::Step);
-        assert_eq!(session.simulation.steps(), 1);
-        session.act(Action::Pause);
+        assert_eq!(session.panes[0].simulation.steps(), 0);
+        session.act(Action::Step, 0);
+        assert_eq!(session.panes[0].simulation.steps(), 1);
+        session.act(Action::Pause, 0);
         session.tick(0.05);
-        assert_eq!(session.simulation.steps(), 6);
+        assert_eq!(session.panes[0].simulation.steps(), 6);
     }
 
     #[test]
@@ -364,10 +509,10 @@ mod tests {
         let mut seen = vec![];
         for _ in 0..scenes::SCENES.len() {
             seen.push((
-                session.simulation.scene().name,
-                session.simulation.method().name,
+                session.panes[0].simulation.scene().name,
+                session.panes[0].simulation.method().name,
             ));
-            assert!(session.act(Action::NextScene));
+            assert!(session.act(Action::NextScene, 0));
         }
         let expected = ["cloth", "simple", "pendulum", "chain", "mit", "mit-sphere"];
         assert_eq!(
@@ -387,29 +532,29 @@ mod tests {
                 "verlet"
             ]
         );
-        assert_eq!(session.simulation.scene().name, "cloth");
+        assert_eq!(session.panes[0].simulation.scene().name, "cloth");
     }
 
     #[test]
     fn the_grid_asked_for_comes_back() {
         let mut session = session(&["t", "0.005", "--grid", "30x25"]);
         for _ in 0..scenes::SCENES.len() {
-            session.act(Action::NextScene);
+            session.act(Action::NextScene, 0);
         }
-        assert_eq!(session.simulation.particles(), 750);
+        assert_eq!(session.panes[0].simulation.particles(), 750);
     }
 
     #[test]
     fn a_lost_run_leaves_no_line_across_the_picture() {
         let mut session = session(&["e", "2", "--scene", "simple"]);
-        while session.simulation.blow_up().is_none() {
-            session.act(Action::Step);
+        while session.panes[0].simulation.blow_up().is_none() {
+            session.act(Action::Step, 0);
         }
         let radius = |p: &[f32; 3]| p[0].hypot(p[1]);
-        assert!(session.show.trail().all(|p| radius(p) <= 100.0));
-        let last = session.show.trail().last().copied();
-        session.act(Action::Step);
-        assert_eq!(session.show.trail().last().copied(), last);
+        assert!(session.panes[0].show.trail().all(|p| radius(p) <= 100.0));
+        let last = session.panes[0].show.trail().last().copied();
+        session.act(Action::Step, 0);
+        assert_eq!(session.panes[0].show.trail().last().copied(), last);
     }
 
     #[test]
