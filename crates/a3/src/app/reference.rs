@@ -150,3 +150,43 @@ impl Reference {
 fn distance(a: &Simulation, b: &Simulation) -> f64 {
     (a.positions() - b.positions()).norm() / (a.particles() as f64).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::show::Show;
+    use a3_core::scenes;
+
+    #[test]
+    fn one_that_never_keeps_up_is_stopped_until_the_next_reset() {
+        let scene = scenes::find("chain").unwrap().build(None).unwrap();
+        let pane = |method: &str| {
+            let method = integrators::find(method).unwrap();
+            let simulation = Simulation::new(scene.clone(), method, 0.01).unwrap();
+            Pane::new(simulation, Show::new(false, None))
+        };
+        assert!(Reference::new(&[pane("t")]).ok().unwrap().is_none());
+        let mut panes = [pane("t"), pane("r")];
+        let mut reference = Reference::new(&panes).ok().flatten().unwrap();
+        // A frame that is late is made up for.
+        panes.iter_mut().for_each(|pane| pane.take_due_steps(0.5));
+        reference.follow(&mut panes, Duration::ZERO);
+        assert_eq!(panes[0].error, None);
+        reference.follow(&mut panes, Duration::MAX);
+        assert!(panes[0].error.unwrap() > panes[1].error.unwrap());
+        for _ in 0..=PATIENCE {
+            panes.iter_mut().for_each(|pane| {
+                let _ = pane.simulation.take_steps(1);
+            });
+            assert_eq!(reference.stopped(), None);
+            reference.follow(&mut panes, Duration::ZERO);
+        }
+        assert!(reference.stopped().unwrap().contains("too slow"));
+        assert_eq!(panes[0].error, None);
+        panes.iter_mut().for_each(Pane::reset);
+        reference.reset();
+        panes.iter_mut().for_each(|pane| pane.take_due_steps(0.5));
+        reference.follow(&mut panes, Duration::MAX);
+        assert!(panes[0].error.is_some() && reference.stopped().is_none());
+    }
+}

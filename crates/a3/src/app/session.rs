@@ -567,4 +567,148 @@ mod tests {
         assert_eq!(next_step(LARGEST_STEP, true), LARGEST_STEP);
         assert_eq!(next_step(SMALLEST_STEP, false), SMALLEST_STEP);
     }
+
+    /// Several panes, brought to a time in frames of 60 Hz.
+    fn compared(words: &[&str], time: f64) -> Session {
+        let mut session = session(&[&["compare"], words].concat());
+        frames(&mut session, time);
+        session
+    }
+
+    fn frames(session: &mut Session, time: f64) {
+        for _ in 0..(60.0 * time).round() as u32 {
+            session.tick(1.0 / 60.0);
+        }
+    }
+
+    fn times(session: &Session) -> Vec<f64> {
+        let times = session.panes.iter().map(|pane| pane.simulation.time());
+        times.collect()
+    }
+
+    #[test]
+    fn panes_keep_the_same_time() {
+        let session = compared(&["t:0.03", "r:0.07", "v", "--scene", "chain"], 2.0);
+        for pane in &session.panes {
+            let (run, step) = (&pane.simulation, pane.simulation.step_size());
+            assert!(
+                run.time() < 2.0 + 1e-9 && run.time() > 2.0 - step - 1e-9,
+                "{}",
+                run.time()
+            );
+            assert!((run.time() - step * run.steps() as f64).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn when_one_is_slow_all_are() {
+        let mut session = session(&["compare", "e:0.0000001", "r:0.0001"]);
+        for _ in 0..4 {
+            session.tick(0.1);
+        }
+        let times = times(&session);
+        assert!(times[0] > 0.0 && times[0] < 0.2, "{times:?}");
+        assert!(
+            times[1] <= times[0] + 1e-9 && times[0] - times[1] < 1.1e-4,
+            "{times:?}"
+        );
+    }
+
+    #[test]
+    fn the_error_is_the_distance_from_the_truth() {
+        let session = compared(&["e:0.05", "r:0.07", "--scene", "simple"], 5.0);
+        for (pane, bound) in session.panes.iter().zip([0.2, 1e-5]) {
+            let (run, error) = (&pane.simulation, pane.error.unwrap());
+            let (sin, cos) = run.time().sin_cos();
+            let truth = (run.position(0) - Vector3::new(cos, sin, 0.0)).norm();
+            assert!(
+                error < bound && (error - truth).abs() < 0.02 * truth,
+                "{error} {truth}"
+            );
+        }
+    }
+
+    /// All that a hand does to the panes, it does to the reference, at the same time.
+    #[test]
+    fn the_reference_gets_the_same_hands() {
+        let mut session = compared(&["r:0.013", "r:0.005", "--scene", "cloth"], 0.5);
+        let small = |session: &Session, what: &str| {
+            let errors: Vec<_> = session.panes.iter().map(|pane| pane.error).collect();
+            assert!(
+                errors.iter().all(|e| e.is_some_and(|e| e < 2e-3)),
+                "{what}: {errors:?}"
+            );
+        };
+        small(&session, "still");
+        session.act(Action::Swing, 0);
+        let aligned = times(&session);
+        assert_eq!(aligned[0], aligned[1]);
+        frames(&mut session, 0.5);
+        small(&session, "swinging");
+        session.act(Action::Wind, 0);
+        frames(&mut session, 0.5);
+        small(&session, "in the wind");
+        assert!(session.grab(399));
+        for _ in 0..20 {
+            session.pull(Vector3::new(1.0, 1.0, 1.5));
+            frames(&mut session, 1.0 / 60.0);
+        }
+        let places = session
+            .panes
+            .iter()
+            .map(|pane| pane.simulation.position(399));
+        assert!(
+            places
+                .clone()
+                .all(|p| (p - Vector3::new(1.0, 1.0, 1.5)).norm() < 0.1)
+        );
+        session.release();
+        frames(&mut session, 0.2);
+        // Each was pulled from its own place in its own time.
+        assert!(session.panes.iter().all(|pane| pane.error.unwrap() < 0.1));
+        session.act(Action::Reset, 0);
+        assert_eq!(times(&session), [0.0, 0.0]);
+        frames(&mut session, 0.5);
+        small(&session, "again");
+    }
+
+    #[test]
+    fn one_that_is_lost_leaves_the_others_alone() {
+        let mut session = compared(&["e:0.05", "r:0.01", "--scene", "mit"], 2.0);
+        assert!(!session.panes[0].alive() && session.panes[0].error.is_none());
+        assert!(session.animated() && session.panes[1].error.unwrap() < 1e-3);
+        assert!((times(&session)[1] - 2.0).abs() < 0.011);
+        session.act(Action::Reset, 0);
+        assert!(session.panes[0].alive());
+    }
+
+    #[test]
+    fn a_digit_is_for_one_pane_and_plus_for_all() {
+        let mut session = compared(&["e:0.05", "r:0.01", "--scene", "chain"], 0.1);
+        session.act(Action::Solver(1), 1);
+        session.act(Action::LongerStep, 1);
+        let methods: Vec<_> = session
+            .panes
+            .iter()
+            .map(|pane| (pane.simulation.method().name, pane.simulation.step_size()))
+            .collect();
+        assert_eq!(methods, [("euler", 0.06), ("trapezoid", 0.012)]);
+        // One step of the longest.
+        session.act(Action::Reset, 0);
+        session.act(Action::Step, 0);
+        let steps: Vec<_> = session.panes.iter().map(|p| p.simulation.steps()).collect();
+        assert_eq!(steps, [1, 5]);
+    }
+
+    #[test]
+    fn without_a_window_all_end_at_the_same_time() {
+        let mut session = session(&["compare", "e:0.03", "r:0.07", "--scene", "simple"]);
+        session.run_to(1.0);
+        assert_eq!(times(&session), [1.0, 1.0]);
+        let errors: Vec<_> = session.panes.iter().map(|p| p.error.unwrap()).collect();
+        assert!(errors[0] > 0.01 && errors[1] < 1e-5, "{errors:?}");
+        let cost = session.panes[0].cost.unwrap();
+        assert_eq!(cost.evaluations, 34.0);
+        assert!(cost.computing > 0.0);
+    }
 }

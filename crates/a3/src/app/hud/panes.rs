@@ -4,7 +4,7 @@ use egui::{Area, Context, Frame, Id, Margin, Pos2, Rect, Ui};
 
 use super::super::layout;
 use super::{PAPER, states, text, time, title};
-use super::{Pane, Readings, blow_up, each, energy, faint, frames, method, scene, sheet, speed};
+use super::{Pane, Readings, blow_up, each, energy, faint, frames, scene, sheet, speed};
 
 /// From the edge of a pane (points).
 const MARGIN: f32 = 8.0;
@@ -28,6 +28,10 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
             [tile.x, tile.y, tile.width, tile.height].map(|side| side as f32 / scale);
         let rect = Rect::from_min_size(Pos2::new(x, y), egui::vec2(width, height));
         within(ctx, &format!("pane {k}"), rect, |ui| {
+            // Narrow, so that it hides little; in a low pane wide, so that it fits.
+            let narrow = (0.42 * width).max(210.0).min(width);
+            let width = if height < 230.0 { width } else { narrow };
+            ui.set_max_width(width);
             Frame::new()
                 .outer_margin(MARGIN)
                 .show(ui, |ui| sheet(ui, |ui| caption(ui, pane, readings)));
@@ -89,7 +93,7 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
 /// What a pane shows, and how well.
 fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings) {
     let run = &pane.simulation;
-    ui.label(title(method(run)).size(14.0));
+    ui.label(title(run.method().title).size(14.0));
     if let Some(lost) = run.blow_up() {
         return blow_up(ui, &lost);
     }
@@ -106,6 +110,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings) {
         }
         ui.label(line);
     };
+    row(ui, "step", &format!("{} s", run.step_size()));
     row(ui, "time", &time(run));
     row(ui, "error", &error(pane, readings));
     let (name, value) = energy(pane);
@@ -221,8 +226,10 @@ mod tests {
                     "mit-sphere  15 × 15",
                     "0.98 × real time",
                     "h  help",
-                    "explicit trapezoid (Heun),  step 0.0025 s",
-                    "explicit Euler,  step 0.0002 s",
+                    "explicit trapezoid (Heun)",
+                    "step  0.0025 s",
+                    "explicit Euler",
+                    "step  0.0002 s",
                     "time  0.025 s",
                     "time  0.0020 s",
                     "error  1.23e-4 m",
