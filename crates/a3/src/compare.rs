@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use a3_core::Simulation;
 use a3_render::{Gpu, Offscreen};
 
 use crate::app::{self, Pane, Session, digits};
@@ -33,19 +32,20 @@ pub fn run(options: &Compare) -> Result<(), Failure> {
 
 /// A line a method: what the picture says.
 pub fn table(session: &Session) -> String {
-    let mut lines = String::from(
-        "  solver       step [s]   time [s]    error [m]   evaluations/s   computing [ms/s]\n",
-    );
-    for pane in &session.panes {
-        lines += &line(pane, &pane.simulation);
-    }
-    if let Some(why) = session.readings.no_error {
-        lines += &format!("no errors: {why}\n");
-    }
-    lines
+    let head =
+        "  solver       step [s]   time [s]    error [m]   evaluations/s   computing [ms/s]\n";
+    let lines = session.panes.iter().map(line);
+    let why = session.readings.no_error;
+    let why = why.map(|why| format!("no errors: {why}\n"));
+    [head.to_owned()]
+        .into_iter()
+        .chain(lines)
+        .chain(why)
+        .collect()
 }
 
-fn line(pane: &Pane, run: &Simulation) -> String {
+fn line(pane: &Pane) -> String {
+    let run = &pane.simulation;
     let start = format!("  {:<10}   {:>8}", run.method().name, run.step_size());
     if let Some(lost) = run.blow_up() {
         return format!("{start}   {lost}\n");

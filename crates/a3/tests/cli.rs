@@ -159,6 +159,17 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
             ],
             "0 to 399",
         ),
+    ] {
+        let line = complaint(folder.path(), &words, 2);
+        println!("a3 {}\n{line}", words.join(" "));
+        assert!(line.contains(says), "{words:?}: {line}");
+    }
+}
+
+#[test]
+fn wrong_comparisons_too() {
+    let folder = tempfile::tempdir().unwrap();
+    for (words, says) in [
         (vec!["compare"], "2 to 4"),
         (vec!["compare", "e:0.05"], "a3 compare e:0.05 r:0.05"),
         (vec!["compare", "e", "t", "r", "s", "v"], "not 5"),
@@ -189,7 +200,6 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
         ),
     ] {
         let line = complaint(folder.path(), &words, 2);
-        println!("a3 {}\n{line}", words.join(" "));
         assert!(line.contains(says), "{words:?}: {line}");
     }
 }

@@ -91,7 +91,6 @@ impl Renderer {
             let [x, y, width, height] =
                 [tile.x, tile.y, tile.width, tile.height].map(|side| side as f32);
             pass.set_viewport(x, y, width, height, 0.0, 1.0);
-            pass.set_scissor_rect(tile.x, tile.y, tile.width, tile.height);
             self.draw_view(pass, view);
         }
     }

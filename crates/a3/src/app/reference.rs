@@ -166,18 +166,21 @@ mod tests {
             Pane::new(simulation, Show::new(false, None))
         };
         assert!(Reference::new(&[pane("t")]).ok().unwrap().is_none());
+        let go = |panes: &mut [Pane], time| {
+            for pane in panes {
+                pane.take_due_steps(time);
+            }
+        };
         let mut panes = [pane("t"), pane("r")];
         let mut reference = Reference::new(&panes).ok().flatten().unwrap();
         // A frame that is late is made up for.
-        panes.iter_mut().for_each(|pane| pane.take_due_steps(0.5));
+        go(&mut panes, 0.5);
         reference.follow(&mut panes, Duration::ZERO);
         assert_eq!(panes[0].error, None);
         reference.follow(&mut panes, Duration::MAX);
         assert!(panes[0].error.unwrap() > panes[1].error.unwrap());
-        for _ in 0..=PATIENCE {
-            panes.iter_mut().for_each(|pane| {
-                let _ = pane.simulation.take_steps(1);
-            });
+        for late in 1..=PATIENCE + 1 {
+            go(&mut panes, 0.5 + 0.01 * f64::from(late));
             assert_eq!(reference.stopped(), None);
             reference.follow(&mut panes, Duration::ZERO);
         }
@@ -185,7 +188,7 @@ mod tests {
         assert_eq!(panes[0].error, None);
         panes.iter_mut().for_each(Pane::reset);
         reference.reset();
-        panes.iter_mut().for_each(|pane| pane.take_due_steps(0.5));
+        go(&mut panes, 0.5);
         reference.follow(&mut panes, Duration::MAX);
         assert!(panes[0].error.is_some() && reference.stopped().is_none());
     }
