@@ -81,11 +81,14 @@ fn faint(words: impl Into<String>) -> RichText {
 /// Writes everything. Sheets stand below one another, and the help alone: nothing overlaps, however small the window.
 pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     match panes {
-        _ if readings.help => column(ctx, "help", Align2::CENTER_CENTER, [0.0, 0.0], |ui| {
-            sheet(ui, |ui| help(ui, panes.len() > 1));
-        }),
-        [pane] => show_one(ctx, pane, readings),
+        [pane] if !readings.help => show_one(ctx, pane, readings),
+        [_] => {}
         panes => panes::show(ctx, panes, readings),
+    }
+    if readings.help {
+        column(ctx, "help", Align2::CENTER_CENTER, [0.0, 0.0], |ui| {
+            sheet(ui, |ui| help(ui, panes.len() > 1));
+        });
     }
 }
 
@@ -262,7 +265,7 @@ fn help(ui: &mut Ui, several: bool) {
         rows(ui, "Keys", &keys);
         ui.vertical(|ui| {
             let heading = if several {
-                "Solvers, of the pane under the pointer"
+                "Solvers, under the pointer"
             } else {
                 "Solvers"
             };

@@ -8,6 +8,7 @@ mod pane;
 mod pick;
 mod reference;
 mod session;
+mod status;
 mod text;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -27,6 +28,7 @@ use crate::{Failure, cli, headless, show};
 use graphics::{Graphics, Outcome};
 use keys::Action;
 use pick::Grip;
+use status::Status;
 
 pub use hud::{Readings, digits};
 pub use pane::Pane;
@@ -128,14 +130,6 @@ struct App {
     devices: u32,
     status: Option<Status>,
     failure: Option<Failure>,
-}
-
-/// For tests: what is on the screen, as text.
-#[derive(Default)]
-struct Status {
-    frames: u64,
-    state: String,
-    said: Option<Instant>,
 }
 
 impl App {
@@ -337,79 +331,9 @@ impl App {
     }
 
     fn say_status(&mut self) {
-        let (Some(status), Some(graphics)) = (&mut self.status, &self.graphics) else {
-            return;
-        };
-        let run = self.session.first();
-        let readings = &self.session.readings;
-        let panes = &self.session.panes;
-        let grabbed = run.grabbed().map_or("-".into(), |i| i.to_string());
-        // Where the grabbed particle is, in the pane and in the window.
-        let place = |pane: &Pane, tile: Tile| {
-            let p = pane.simulation.position(pane.simulation.grabbed()?);
-            let point = [p.x as f32, p.y as f32, p.z as f32];
-            let ([x, y], _) = self.session.camera.project(point, tile.aspect())?;
-            let (x, y) = (x * tile.width as f32, y * tile.height as f32);
-            Some(format!("{:.0},{:.0}", tile.x as f32 + x, tile.y as f32 + y))
-        };
-        let hands: Vec<_> = panes
-            .iter()
-            .zip(graphics.tiles(panes.len()))
-            .map(|(pane, tile)| place(pane, tile).unwrap_or("-".into()))
-            .collect();
-        let each = |value: &dyn Fn(&Pane) -> String| {
-            let values: Vec<_> = panes.iter().map(value).collect();
-            values.join(",")
-        };
-        let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} blown={} grabbed={grabbed} \
-             size={}x{} visible={} devices={}",
-            run.scene().name,
-            run.method().name,
-            run.step_size(),
-            panes[0].show.style,
-            run.windy(),
-            run.swinging(),
-            readings.paused,
-            readings.help,
-            run.blow_up().is_some(),
-            graphics.size().0,
-            graphics.size().1,
-            self.visible,
-            self.devices,
-        );
-        let now = Instant::now();
-        let quiet = status
-            .said
-            .is_some_and(|said| now.duration_since(said) < Duration::from_millis(200));
-        if quiet && state == status.state {
-            return;
+        if let (Some(status), Some(graphics)) = (&mut self.status, &self.graphics) {
+            status.say(&self.session, graphics, self.visible, self.devices);
         }
-        eprintln!(
-            "status {state} time={:.4} steps={} frames={} hand={} rate={:.1} factor={:.2} \
-             simulating={:.2} drawing={:.2} adapter={} panes={} hands={} solvers={} step_sizes={} times={} lost={} \
-             errors={}",
-            run.time(),
-            run.steps(),
-            status.frames,
-            hands[0],
-            readings.rate,
-            readings.factor,
-            readings.simulating,
-            readings.drawing,
-            graphics.adapter(),
-            panes.len(),
-            hands.join(";"),
-            each(&|pane| pane.simulation.method().name.into()),
-            each(&|pane| pane.simulation.step_size().to_string()),
-            each(&|pane| format!("{:.4}", pane.simulation.time())),
-            each(&|pane| (!pane.alive()).to_string()),
-            each(&|pane| pane
-                .error
-                .map_or("-".into(), |error| format!("{error:.3e}"))),
-        );
-        status.state = state;
-        status.said = Some(now);
     }
 }
 

@@ -9,32 +9,36 @@ use super::{Pane, Readings, blow_up, each, energy, faint, frames, scene, sheet, 
 /// From the edge of a pane (points).
 const MARGIN: f32 = 8.0;
 
+/// A pane that is lower than this (points) has room for less.
+const LOW: f32 = 230.0;
+
 pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     let scale = ctx.pixels_per_point();
     let window = ctx.content_rect();
     let size = window.size() * scale;
-    let tiles = layout::tiles(
-        panes.len(),
-        (size.x.round() as u32, size.y.round() as u32),
-        scale,
-    );
-    let bar_rect = Rect::from_min_max(
-        window.min,
-        Pos2::new(window.right(), tiles[0].y as f32 / scale),
-    );
-    within(ctx, "bar", bar_rect, |ui| bar(ui, panes, readings));
-    for (k, (pane, tile)) in panes.iter().zip(tiles).enumerate() {
-        let [x, y, width, height] =
-            [tile.x, tile.y, tile.width, tile.height].map(|side| side as f32 / scale);
-        let rect = Rect::from_min_size(Pos2::new(x, y), egui::vec2(width, height));
+    let size = (size.x.round() as u32, size.y.round() as u32);
+    let tiles = layout::tiles(panes.len(), size, scale).into_iter();
+    let rects: Vec<_> = tiles
+        .map(|tile| {
+            let [x, y, width, height] =
+                [tile.x, tile.y, tile.width, tile.height].map(|side| side as f32 / scale);
+            Rect::from_min_size(Pos2::new(x, y), egui::vec2(width, height))
+        })
+        .collect();
+    let above = Rect::from_min_max(window.min, Pos2::new(window.right(), rects[0].top()));
+    within(ctx, "bar", above, |ui| bar(ui, panes, readings));
+    if readings.help {
+        return;
+    }
+    for (k, (pane, rect)) in panes.iter().zip(rects).enumerate() {
         within(ctx, &format!("pane {k}"), rect, |ui| {
+            let low = rect.height() < LOW;
             // Narrow, so that it hides little; in a low pane wide, so that it fits.
-            let narrow = (0.42 * width).max(210.0).min(width);
-            let width = if height < 230.0 { width } else { narrow };
-            ui.set_max_width(width);
+            let narrow = (0.42 * rect.width()).max(210.0).min(rect.width());
+            ui.set_max_width(if low { rect.width() } else { narrow });
             Frame::new()
                 .outer_margin(MARGIN)
-                .show(ui, |ui| sheet(ui, |ui| caption(ui, pane, readings)));
+                .show(ui, |ui| sheet(ui, |ui| caption(ui, pane, readings, low)));
         });
     }
 }
@@ -63,7 +67,9 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
             ui.set_width(width - 24.0);
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(14.0, 1.0);
-                ui.label(title(scene(run)).size(15.0));
+                // Whole, in the next line if need be.
+                let mut say = |words| ui.add(egui::Label::new(words).extend());
+                say(title(scene(run)).size(15.0));
                 if let Some(message) = &readings.message {
                     ui.label(text(message));
                     return;
@@ -73,55 +79,66 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                     .iter()
                     .map(|pane| &pane.simulation)
                     .max_by(|a, b| a.time().total_cmp(&b.time()));
-                ui.label(text(time(latest.unwrap_or(run))));
+                say(text(time(latest.unwrap_or(run))));
                 if readings.rate > 0.0 || readings.paused {
-                    ui.label(text(speed(readings)));
+                    say(text(speed(readings)));
                 }
                 if readings.rate > 0.0 && width > 900.0 {
-                    ui.label(text(format!("{},  {}", frames(readings), each(readings))));
+                    say(text(format!("{},  {}", frames(readings), each(readings))));
                 }
                 if width > 600.0 {
-                    ui.label(states(run, readings));
+                    say(states(run, readings));
                 }
                 if readings.in_window {
-                    ui.label(faint("h  help"));
+                    say(faint("h  help"));
                 }
             });
         });
 }
 
-/// What a pane shows, and how well.
-fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings) {
+/// What a pane shows, and how well: a line a reading, or in a low pane two to a line, and the most important ones.
+fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let run = &pane.simulation;
     ui.label(title(run.method().title).size(14.0));
     if let Some(lost) = run.blow_up() {
         return blow_up(ui, &lost);
     }
-    let row = |ui: &mut Ui, name: &str, value: &str| {
-        let mut line = egui::text::LayoutJob::default();
-        let style = ui.style().clone();
-        for words in [faint(format!("{name}  ")), text(value)] {
-            words.append_to(
-                &mut line,
-                &style,
-                egui::FontSelection::Default,
-                egui::Align::BOTTOM,
-            );
-        }
-        ui.label(line);
-    };
-    row(ui, "step", &format!("{} s", run.step_size()));
-    row(ui, "time", &time(run));
-    row(ui, "error", &error(pane, readings));
-    let (name, value) = energy(pane);
-    row(ui, name, &value);
-    if let Some(cost) = pane.cost {
-        let words = format!(
+    let cost = pane.cost.map_or("-".into(), |cost| {
+        format!(
             "{:.0} evaluations, {} ms per simulated s",
             cost.evaluations,
             digits(cost.computing)
-        );
-        row(ui, "cost", &words);
+        )
+    });
+    let step = ("step", format!("{} s", run.step_size()));
+    let time = ("time", time(run));
+    let error = ("error", error(pane, readings));
+    let cost = ("cost", cost);
+    let lines = if low {
+        vec![vec![step, time], vec![error], vec![cost]]
+    } else {
+        vec![
+            vec![step],
+            vec![time],
+            vec![error],
+            vec![energy(pane)],
+            vec![cost],
+        ]
+    };
+    for line in &lines {
+        let mut job = egui::text::LayoutJob::default();
+        for (k, (name, value)) in line.iter().enumerate() {
+            let gap = if k > 0 { "    " } else { "" };
+            for words in [faint(format!("{gap}{name}  ")), text(value)] {
+                words.append_to(
+                    &mut job,
+                    ui.style(),
+                    egui::FontSelection::Default,
+                    egui::Align::BOTTOM,
+                );
+            }
+        }
+        ui.label(job);
     }
 }
 
@@ -219,6 +236,8 @@ mod tests {
             in_window: true,
             ..Readings::default()
         };
+        let (words, _) = read(&panes(4), &readings, SIZES[0]);
+        assert!(words.contains("energy  -12345.679 J"), "{words}");
         for count in 2..=4 {
             for words in check(&panes(count), &readings) {
                 let words = words.replace('\n', " ");
@@ -228,12 +247,12 @@ mod tests {
                     "h  help",
                     "explicit trapezoid (Heun)",
                     "step  0.0025 s",
+                    "h  help",
                     "explicit Euler",
                     "step  0.0002 s",
                     "time  0.025 s",
                     "time  0.0020 s",
                     "error  1.23e-4 m",
-                    "energy  -12345.679 J",
                     "cost  10000 evaluations, 123 ms per simulated s",
                 ] {
                     assert!(words.contains(said), "{said} in {words}");
