@@ -310,6 +310,15 @@ pub mod tests {
         }
         let (mut words, mut sheets) = (String::new(), vec![]);
         for clipped in &output.shapes {
+            let cut = clipped.clip_rect.intersect(screen).expand(1.0);
+            if let egui::Shape::Text(text) = &clipped.shape {
+                let rect = text.visual_bounding_rect();
+                assert!(
+                    cut.contains_rect(rect),
+                    "{:?} is cut off in {size:?}",
+                    text.galley.text()
+                );
+            }
             collect(&clipped.shape, &mut words, &mut sheets);
         }
         output.textures_delta.set.clear();

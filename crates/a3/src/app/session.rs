@@ -16,8 +16,8 @@ use crate::show::{self, Show};
 
 /// Real time a frame may spend on steps. What does not fit is not caught up: all runs are slower than real time then.
 const BUDGET: Duration = Duration::from_millis(12);
-/// Real time a frame may spend on the reference.
-const REFERENCE_BUDGET: Duration = Duration::from_millis(4);
+/// Real time a frame may spend on the reference, at least, and as a share of the time it stands for.
+const REFERENCE_BUDGET: (Duration, f64) = (Duration::from_millis(4), 0.1);
 /// Real time that a key may take, other than a frame.
 const KEY_BUDGET: Duration = Duration::from_millis(200);
 /// No frame owes more than this (s), however long it took: neither a slow one nor a laptop's sleep.
@@ -110,8 +110,10 @@ impl Session {
     /// Goes on by `real` seconds of real time, in steps of exactly the sizes asked for.
     pub fn tick(&mut self, real: f64) {
         if self.animated() {
-            let until = self.clock + real.min(MOST_OWED);
-            self.advance(until, BUDGET, REFERENCE_BUDGET);
+            let real = real.min(MOST_OWED);
+            let (least, share) = REFERENCE_BUDGET;
+            let reference_budget = least.max(Duration::from_secs_f64(share * real));
+            self.advance(self.clock + real, BUDGET, reference_budget);
         } else {
             self.settle();
         }
