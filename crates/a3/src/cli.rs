@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use a3_core::{Grid, Method, Scene, SceneEntry, Simulation, integrators, scenes};
 use clap::error::ErrorKind;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
 use crate::Failure;
+use crate::app::Session;
 
 /// Physical simulation of mass-spring systems: pull at cloth, and see which integrator holds.
 #[derive(Parser)]
@@ -15,7 +16,8 @@ use crate::Failure;
     after_help = "Examples:\n  a3 t 0.01                          the default cloth, explicit trapezoid, 10 ms\n  \
     a3 e 0.05 --scene simple           watch Euler's circle spiral outwards\n  \
     a3 simulate rk4 0.001 --until 2 --output state.json\n  \
-    a3 render v 0.005 --until 3 --output cloth.png --size 1920x1080\n\nIn the window, h shows the keys."
+    a3 render v 0.005 --until 3 --output cloth.png --size 1920x1080\n  \
+    a3 compare e:0.05 r:0.05 --scene simple\n\nIn the window, h shows the keys."
 )]
 pub struct Cli {
     #[command(subcommand)]
@@ -36,6 +38,8 @@ pub enum Command {
     Stability(Stability),
     /// Choose the cheapest solver and step for an error, or the most accurate for a budget
     Choose(Choose),
+    /// Compare two to four methods side by side, in a window or as PNG
+    Compare(Compare),
     /// List the scenes: particles, springs, length of the state, forces
     Scenes,
     /// List the solvers: order, evaluations per step, default step
@@ -72,6 +76,13 @@ pub struct Window {
     /// Show the springs attached to particle I, and list them
     #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
     pub springs_of: Option<usize>,
+    #[command(flatten)]
+    pub look: Look,
+}
+
+/// How a window begins.
+#[derive(Args)]
+pub struct Look {
     /// Begin with the wireframe
     #[arg(long)]
     pub wireframe: bool,
@@ -193,6 +204,26 @@ pub struct Choose {
     pub until: Option<f64>,
 }
 
+#[derive(Args)]
+pub struct Compare {
+    /// Two to four solvers by letter or name, each with its step in seconds (or tolerance): e:0.05 r:0.05; without it, the solver's own
+    #[arg(value_name = "SOLVER[:STEP]", value_parser = solver_and_step)]
+    pub methods: Vec<(&'static Method, Option<f64>)>,
+    #[command(flatten)]
+    pub what: What,
+    #[command(flatten)]
+    pub look: Look,
+    /// File to write instead of opening a window, ending in .png
+    #[arg(long, short, value_name = "FILE.png", requires = "until")]
+    pub output: Option<PathBuf>,
+    /// Simulated seconds up to the picture; the last step is shortened to end exactly there
+    #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true, requires = "output")]
+    pub until: Option<f64>,
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true, requires = "output")]
+    pub size: Option<(u32, u32)>,
+}
+
 /// A run without a window.
 #[derive(Args)]
 pub struct Run {
@@ -207,6 +238,25 @@ pub struct Run {
     pub until: f64,
     #[command(flatten)]
     pub what: What,
+}
+
+impl Window {
+    pub fn session(&self) -> Result<Session, Failure> {
+        let method = (self.solver, self.step);
+        Session::new(&self.what, &[method], &self.look, self.springs_of)
+    }
+}
+
+impl Compare {
+    pub fn session(&self) -> Result<Session, Failure> {
+        let count = self.methods.len();
+        if !(2..=4).contains(&count) {
+            return Err(Failure::usage(format!(
+                "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
+            )));
+        }
+        Session::new(&self.what, &self.methods, &self.look, None)
+    }
 }
 
 impl What {
@@ -322,6 +372,13 @@ fn step(text: &str) -> Result<f64, String> {
     }
 }
 
+fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), String> {
+    match text.split_once(':') {
+        Some((name, number)) => Ok((solver(name)?, Some(step(number)?))),
+        None => Ok((solver(text)?, None)),
+    }
+}
+
 fn particle(text: &str) -> Result<usize, String> {
     text.parse()
         .map_err(|_| "a particle is a whole number from 0, such as 12".into())
@@ -377,9 +434,12 @@ fn solver(text: &str) -> Result<&'static Method, String> {
             .iter()
             .map(|m| format!("{} ({})", m.letter, m.name))
             .collect();
+        let cli = Cli::command();
+        let commands: Vec<_> = cli.get_subcommands().map(clap::Command::get_name).collect();
         format!(
-            "the solvers are {}; the commands, which come first, simulate, render, chart, stability, choose, scenes, solvers",
-            names.join(", ")
+            "the solvers are {}; the commands, which come first, {}",
+            names.join(", "),
+            commands.join(", ")
         )
     })
 }

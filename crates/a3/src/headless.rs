@@ -3,33 +3,47 @@
 use a3_core::Simulation;
 use a3_render::{Gpu, Offscreen};
 
-use crate::show::Show;
-use crate::{Failure, output, progress, render};
+use crate::app::{Pane, Session};
+use crate::compare::{self, SIZE};
+use crate::{Failure, output, progress};
 
 const SECONDS: u32 = 10;
-const SIZE: (u32, u32) = (1280, 720);
 
 /// `why` there is no window, and what is done instead.
-pub fn run(why: &str, mut simulation: Simulation, mut show: Show) -> Result<(), Failure> {
+pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     eprintln!("{why}: simulating {SECONDS} seconds without a window.");
-    output::say("  time [s]   energy [J]   lowest [m]   stretch\n")?;
-    output::say(&line(&simulation))?;
-    for second in 1..=SECONDS {
-        progress::advance(&mut simulation, f64::from(second), |simulation| {
-            show.follow(simulation);
-        })
-        .map_err(Failure::run)?;
-        output::say(&line(&simulation))?;
+    let scene = session.first().scene().name;
+    if session.panes.len() > 1 {
+        session.run_to(f64::from(SECONDS));
+        output::say(&compare::table(&session))?;
+    } else {
+        tell(&mut session.panes[0])?;
     }
     match pollster::block_on(Gpu::headless()) {
         Ok(gpu) => {
             let offscreen = Offscreen::new(&gpu, SIZE).map_err(Failure::run)?;
-            let pixels = render::draw(&gpu, &offscreen, &simulation, &mut show, SIZE)?;
-            let name = output::free_picture_name(simulation.scene().name)?;
-            output::write(name.as_ref(), &output::png(&pixels, SIZE)?)?;
+            let name = output::free_picture_name(scene)?;
+            compare::save(&gpu, &offscreen, &mut session, name.as_ref())?;
             output::say(&format!("picture: {name}\n"))?;
         }
         Err(why) => eprintln!("no picture: {why}"),
+    }
+    Ok(())
+}
+
+/// Simulates, and says a line a second.
+fn tell(pane: &mut Pane) -> Result<(), Failure> {
+    let Pane {
+        simulation, show, ..
+    } = pane;
+    output::say("  time [s]   energy [J]   lowest [m]   stretch\n")?;
+    output::say(&line(simulation))?;
+    for second in 1..=SECONDS {
+        progress::advance(simulation, f64::from(second), |simulation| {
+            show.follow(simulation);
+        })
+        .map_err(Failure::run)?;
+        output::say(&line(simulation))?;
     }
     Ok(())
 }

@@ -6,6 +6,7 @@ mod app;
 mod chart;
 mod choose;
 mod cli;
+mod compare;
 mod headless;
 mod interrupt;
 mod list;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
     let result = match Cli::try_parse() {
         Ok(cli) => match cli.command {
             None => app::run(&cli.window),
+            Some(Command::Compare(options)) => compare::run(&options),
             Some(Command::Simulate(options)) => simulate::run(&options),
             Some(Command::Render(options)) => render::run(&options),
             Some(Command::Chart(options)) => chart::run(&options),

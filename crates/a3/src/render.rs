@@ -1,8 +1,8 @@
 //! `a3 render`: a picture without a window.
 
-use a3_core::Simulation;
-use a3_render::{Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer};
+use a3_render::{Camera, Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer};
 
+use crate::app::{Pane, Readings, Text, hud, layout};
 use crate::cli::{self, Render};
 use crate::show::{self, Show};
 use crate::{Failure, output, progress};
@@ -25,24 +25,59 @@ pub fn run(options: &Render) -> Result<(), Failure> {
         show.follow(simulation);
     })
     .map_err(Failure::run)?;
-    let pixels = draw(&gpu, &offscreen, &simulation, &mut show, options.size)?;
+    let pixels = draw_one(&gpu, &offscreen, Pane::new(simulation, show))?;
     output::write(&options.output, &output::png(&pixels, options.size)?)
 }
 
-/// The run as it is now, seen from where its scene wants it.
+/// Pixels per point in a picture of this size.
+pub fn scale(size: (u32, u32)) -> f32 {
+    (size.1 as f32 / POINTS).max(0.5)
+}
+
+/// A run as it is now, seen from where its scene wants it.
+pub fn draw_one(gpu: &Gpu, offscreen: &Offscreen, pane: Pane) -> Result<Vec<u8>, Failure> {
+    let camera = show::camera(&pane.simulation);
+    let scale = scale(offscreen.size());
+    draw(
+        gpu,
+        offscreen,
+        &mut [pane],
+        camera,
+        scale,
+        &Readings::default(),
+    )
+}
+
+/// Panes as they are now, several of them with the text over them.
 pub fn draw(
     gpu: &Gpu,
     offscreen: &Offscreen,
-    simulation: &Simulation,
-    show: &mut Show,
-    size: (u32, u32),
+    panes: &mut [Pane],
+    camera: Camera,
+    scale: f32,
+    readings: &Readings,
 ) -> Result<Vec<u8>, Failure> {
+    let size = offscreen.size();
     let samples = gpu.samples(OFFSCREEN_FORMAT);
-    let mut renderer = Renderer::new(gpu, OFFSCREEN_FORMAT, samples, &show::topology(simulation));
-    show.compose(simulation);
-    let scale = (size.1 as f32 / POINTS).max(0.5);
-    let picture = show.picture(show::camera(simulation), scale);
+    let topology = show::topology(&panes[0].simulation);
+    let mut renderer = Renderer::new(gpu, OFFSCREEN_FORMAT, samples, &topology);
+    for pane in &mut *panes {
+        pane.show.compose(&pane.simulation);
+    }
+    let panes = &*panes;
+    let pictures: Vec<_> = panes
+        .iter()
+        .map(|pane| pane.show.picture(camera, scale))
+        .zip(layout::tiles(panes.len(), size, scale))
+        .collect();
+    let text =
+        |encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView, format| match panes.len() {
+            1 => vec![],
+            _ => Text::new(gpu, format).write(gpu, encoder, view, (size, scale), |ctx| {
+                hud::show(ctx, panes, readings);
+            }),
+        };
     offscreen
-        .render(gpu, &mut renderer, &picture)
+        .render_tiles(gpu, &mut renderer, &pictures, text)
         .map_err(Failure::run)
 }

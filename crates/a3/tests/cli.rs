@@ -167,6 +167,44 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
 }
 
 #[test]
+fn wrong_comparisons_too() {
+    let folder = tempfile::tempdir().unwrap();
+    for (words, says) in [
+        (vec!["compare"], "2 to 4"),
+        (vec!["compare", "e:0.05"], "a3 compare e:0.05 r:0.05"),
+        (vec!["compare", "e", "t", "r", "s", "v"], "not 5"),
+        (vec!["compare", "e:0.05", "q:0.05"], "r (rk4)"),
+        (vec!["compare", "e:0.05", "r:"], "such as 0.01"),
+        (vec!["compare", "e:0.05", "r:-1"], "such as 0.01"),
+        (vec!["compare", "e", "r:0.01:0.02"], "such as 0.01"),
+        (
+            vec!["compare", "e", "v", "--scene", "simple"],
+            "first order",
+        ),
+        (
+            vec!["compare", "e", "r", "--springs-of", "3"],
+            "--springs-of",
+        ),
+        (vec!["compare", "e", "r", "--until", "1"], "--output"),
+        (vec!["compare", "e", "r", "--output", "x.png"], "--until"),
+        (vec!["compare", "e", "r", "--size", "80x60"], "--output"),
+        (
+            vec!["compare", "e", "r", "--until", "1", "--output", "x.jpg"],
+            ".png",
+        ),
+        (
+            vec![
+                "compare", "e", "r", "--paused", "--until", "1", "--output", "x.png",
+            ],
+            "--paused",
+        ),
+    ] {
+        let line = complaint(folder.path(), &words, 2);
+        assert!(line.contains(says), "{words:?}: {line}");
+    }
+}
+
+#[test]
 fn huge_grids_are_refused_before_memory_is_taken() {
     let folder = tempfile::tempdir().unwrap();
     let begun = Instant::now();
@@ -196,6 +234,7 @@ fn help_and_version() {
     for word in [
         "simulate",
         "render",
+        "compare",
         "scenes",
         "solvers",
         "--scene",
@@ -521,6 +560,69 @@ fn pictures_without_a_window() {
     assert!(text(&output.stderr).contains("99999x99999"));
 }
 
+/// The panes of a picture that differ from the first, pixel by pixel, below the text.
+#[test]
+fn methods_side_by_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = [
+        "compare", "e:0.05", "r:0.05", "r:0.025", "--scene", "simple", "--until", "20", "--output",
+        "x.png", "--size", "906x500",
+    ];
+    let output = a3(folder.path(), &words);
+    if gpu_may_be_missing(text(&output.stderr)) {
+        return;
+    }
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    // What is said: Euler's radius grows as sqrt(1 + h^2) a step, and RK4 is late by h^4 / 120 a second.
+    let stdout = text(&output.stdout);
+    let rows: Vec<Vec<&str>> = stdout
+        .lines()
+        .skip(1)
+        .map(|line| line.split_whitespace().collect())
+        .collect();
+    let error = |row: usize| rows[row][3].parse::<f64>().unwrap();
+    assert_eq!(rows.len(), 3, "{stdout}");
+    assert!((error(0) - 0.648).abs() < 0.01, "{stdout}");
+    assert!((error(1) - 1.04e-6).abs() < 0.02e-6, "{stdout}");
+    assert!((error(2) - 6.5e-8).abs() < 0.1e-8, "{stdout}");
+    assert_eq!(
+        (rows[0][4], rows[1][4], rows[2][4]),
+        ("20.0", "80.0", "160")
+    );
+
+    // What is seen: the trail of the second is that of the third, and the first leads elsewhere.
+    let picture = image::open(folder.path().join("x.png")).unwrap().to_rgb8();
+    assert_eq!(picture.dimensions(), (906, 500));
+    let pane = |k: u32| image::imageops::crop_imm(&picture, 303 * k, 190, 300, 310).to_image();
+    let different = |a: u32, b: u32| {
+        let (a, b) = (pane(a), pane(b));
+        let pairs = a.pixels().zip(b.pixels());
+        pairs
+            .filter(|(p, q)| p.0.iter().zip(q.0).any(|(p, q)| p.abs_diff(q) > 40))
+            .count()
+    };
+    let (euler, rk4) = (different(0, 1), different(1, 2));
+    assert!(euler > 1000 && 4 * rk4 < euler, "{euler} {rk4}");
+    // Dark letters on light paper, in each pane.
+    for k in 0..3 {
+        let caption = image::imageops::crop_imm(&picture, 303 * k + 12, 45, 180, 130).to_image();
+        let dark = caption.pixels().filter(|p| p.0[0] < 90).count();
+        let light = caption.pixels().filter(|p| p.0[0] > 225).count();
+        assert!(dark > 150 && light > 10_000, "{dark} {light}");
+    }
+
+    // One that blows up says so, and the others are there all the same.
+    let words = [
+        "compare", "e:0.05", "r", "--scene", "mit", "--until", "1", "--output", "y.png", "--size",
+        "400x300",
+    ];
+    let output = a3(folder.path(), &words);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let stdout = text(&output.stdout);
+    assert!(stdout.contains("blew up at step") && stdout.contains("1.00"));
+    image::open(folder.path().join("y.png")).unwrap();
+}
+
 #[test]
 fn without_a_display_the_job_is_done_all_the_same() {
     let folder = tempfile::tempdir().unwrap();
@@ -542,6 +644,23 @@ fn without_a_display_the_job_is_done_all_the_same() {
         assert_eq!(stderr.lines().count(), 1, "{stderr}");
         assert!(stdout.contains("a3-cloth-1.png"));
         image::open(folder.path().join("a3-cloth-1.png")).unwrap();
+    }
+}
+
+#[test]
+fn without_a_display_methods_are_compared_all_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["compare", "e:0.05", "r:0.05", "--scene", "simple"];
+    let output = a3(folder.path(), &words);
+    let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
+    assert!(output.status.success() && stderr.starts_with("no display"));
+    assert!(
+        stdout.contains("euler") && stdout.contains("10.00"),
+        "{stdout}"
+    );
+    if !gpu_may_be_missing(stderr) {
+        assert_eq!(stderr.lines().count(), 1, "{stderr}");
+        image::open(folder.path().join("a3-simple-1.png")).unwrap();
     }
 }
 

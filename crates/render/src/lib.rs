@@ -5,6 +5,7 @@
 
 #![forbid(unsafe_code)]
 
+mod buffers;
 mod camera;
 mod gpu;
 mod offscreen;
@@ -13,10 +14,11 @@ mod pipelines;
 mod renderer;
 mod shapes;
 mod targets;
+mod view;
 
 pub use camera::Camera;
 pub use gpu::{Gpu, GpuError};
 pub use offscreen::{OFFSCREEN_FORMAT, Offscreen};
-pub use picture::{Ball, Line, Picture, Style, Topology};
+pub use picture::{Ball, Line, Picture, Style, Tile, Topology};
 pub use renderer::Renderer;
 pub use targets::Targets;

@@ -1,12 +1,24 @@
 //! A picture without a window.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::picture::Picture;
+use crate::picture::{Picture, Tile};
 use crate::renderer::Renderer;
 use crate::targets::Targets;
 
 /// Eight bits each of red, green, blue and opacity.
 pub const OFFSCREEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// The same bytes, blended as they are.
+const TEXT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// The format of the view that text is written to: not sRGB where the backend can have two views of one texture.
+fn text_format(gpu: &Gpu) -> wgpu::TextureFormat {
+    let flags = gpu.adapter.get_downlevel_capabilities().flags;
+    if flags.contains(wgpu::DownlevelFlags::VIEW_FORMATS) {
+        TEXT_FORMAT
+    } else {
+        OFFSCREEN_FORMAT
+    }
+}
 
 /// A texture to draw into, and the way back from the GPU.
 pub struct Offscreen {
@@ -41,7 +53,11 @@ impl Offscreen {
             dimension: wgpu::TextureDimension::D2,
             format: OFFSCREEN_FORMAT,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
+            view_formats: if text_format(gpu) == OFFSCREEN_FORMAT {
+                &[]
+            } else {
+                &[TEXT_FORMAT]
+            },
         });
         let stride = (size.0 * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -59,7 +75,13 @@ impl Offscreen {
         })
     }
 
-    /// Draws, and brings the pixels back: rows from the top, four bytes a pixel.
+    /// In px.
+    #[must_use]
+    pub fn size(&self) -> (u32, u32) {
+        self.targets.size()
+    }
+
+    /// Draws one picture, and brings the pixels back: rows from the top, four bytes a pixel.
     ///
     /// # Errors
     /// The device was lost, or refused something.
@@ -69,12 +91,38 @@ impl Offscreen {
         renderer: &mut Renderer,
         picture: &Picture,
     ) -> Result<Vec<u8>, GpuError> {
-        let size = self.targets.size();
-        renderer.prepare(gpu, picture, size);
+        let tile = Tile::whole(self.size());
+        self.render_tiles(gpu, renderer, &[(*picture, tile)], |_, _, _| vec![])
+    }
+
+    /// Draws several pictures, each in its own part, and brings the pixels back. `text` writes over them, into that view
+    /// of that format; what it returns is submitted before it.
+    ///
+    /// # Errors
+    /// The device was lost, or refused something.
+    pub fn render_tiles(
+        &self,
+        gpu: &Gpu,
+        renderer: &mut Renderer,
+        pictures: &[(Picture, Tile)],
+        text: impl FnOnce(
+            &mut wgpu::CommandEncoder,
+            &wgpu::TextureView,
+            wgpu::TextureFormat,
+        ) -> Vec<wgpu::CommandBuffer>,
+    ) -> Result<Vec<u8>, GpuError> {
+        let size = self.size();
+        renderer.prepare(gpu, pictures);
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         renderer.draw(&mut self.targets.pass(&mut encoder, &self.view));
+        let format = text_format(gpu);
+        let view = self.texture.create_view(&wgpu::TextureViewDescriptor {
+            format: Some(format),
+            ..Default::default()
+        });
+        let before = text(&mut encoder, &view, format);
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(self.stride),
@@ -88,7 +136,8 @@ impl Offscreen {
             },
             self.texture.size(),
         );
-        gpu.queue.submit([encoder.finish()]);
+        gpu.queue
+            .submit(before.into_iter().chain([encoder.finish()]));
         let slice = self.buffer.slice(..);
         slice.map_async(wgpu::MapMode::Read, |_| {});
         gpu.device

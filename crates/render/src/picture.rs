@@ -84,3 +84,52 @@ pub struct Picture<'a> {
     /// Height of the floor (m), if there is one.
     pub floor: Option<f32>,
 }
+
+/// A part of the target (px), inside it and not empty.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tile {
+    /// From the left.
+    pub x: u32,
+    /// From the top.
+    pub y: u32,
+    /// At least 1.
+    pub width: u32,
+    /// At least 1.
+    pub height: u32,
+}
+
+impl Tile {
+    /// All of a target of this size.
+    #[must_use]
+    pub fn whole((width, height): (u32, u32)) -> Self {
+        Self {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        }
+    }
+
+    /// Width over height.
+    #[must_use]
+    pub fn aspect(&self) -> f32 {
+        self.width as f32 / self.height as f32
+    }
+
+    /// Whether that place of the target (px) is in it.
+    #[must_use]
+    pub fn contains(&self, [x, y]: [f32; 2]) -> bool {
+        let (left, top) = (self.x as f32, self.y as f32);
+        (left..left + self.width as f32).contains(&x)
+            && (top..top + self.height as f32).contains(&y)
+    }
+
+    /// That place of the target (px) in shares of the part: 0..1 from its left and from its top.
+    #[must_use]
+    pub fn place(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        [
+            (x - self.x as f32) / self.width as f32,
+            (y - self.y as f32) / self.height as f32,
+        ]
+    }
+}

@@ -1,75 +1,34 @@
-//! The buffers of a picture, and the order in which its parts are drawn.
+//! What pictures of one topology share, and the order in which their parts are drawn.
 
-use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
 
+use crate::buffers::{Shape, filled};
 use crate::gpu::Gpu;
-use crate::picture::{Picture, Style, Topology};
+use crate::picture::{Picture, Tile, Topology};
 use crate::pipelines::{Pipelines, SOURCE, layout};
-use crate::shapes::sphere;
-
-/// Towards the light: over the left shoulder, high.
-const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
-/// How far the floor is seen (m), at least, and in distances of the eye from what it looks at.
-const FLOOR_REACH: (f32, f32) = (14.0, 1.4);
-/// Balls from this radius on (m) are drawn with more triangles.
-const LARGE: f32 = 0.25;
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Globals {
-    view_projection: [[f32; 4]; 4],
-    eye: [f32; 4],
-    light: [f32; 4],
-    viewport: [f32; 4],
-    floor: [f32; 4],
-    depth: [f32; 4],
-}
+use crate::view::View;
 
 /// Draws [`Picture`]s of one topology.
 pub struct Renderer {
     pipelines: Pipelines,
     layout: wgpu::BindGroupLayout,
-    globals: wgpu::Buffer,
     small_sphere: Shape,
     large_sphere: Shape,
-    balls: Instances,
-    lines: Instances,
-    particles: Particles,
-    frame: Frame,
-}
-
-/// What of the last prepared picture the draw calls depend on.
-#[derive(Clone, Copy, Default)]
-struct Frame {
-    floor: bool,
-    mesh: bool,
-    wires: bool,
-    small_balls: u32,
-    balls: u32,
-    lines: u32,
-}
-
-struct Shape {
-    corners: wgpu::Buffer,
-    triangles: wgpu::Buffer,
-    indices: u32,
-}
-
-/// A vertex buffer that grows.
-struct Instances {
-    label: &'static str,
-    buffer: wgpu::Buffer,
+    mesh: Mesh,
+    /// As many as were ever drawn at once.
+    views: Vec<View>,
+    /// How many of them were prepared last.
+    prepared: usize,
 }
 
 /// The buffers of a topology.
-struct Particles {
-    points: wgpu::Buffer,
+pub(crate) struct Mesh {
+    pub(crate) first: wgpu::Buffer,
+    pub(crate) around: wgpu::Buffer,
     triangles: wgpu::Buffer,
     wires: wgpu::Buffer,
-    bind: wgpu::BindGroup,
-    count: usize,
-    indices: u32,
+    pub(crate) points: usize,
+    pub(crate) indices: u32,
     wire_count: u32,
 }
 
@@ -87,83 +46,65 @@ impl Renderer {
         samples: u32,
         topology: &Topology,
     ) -> Self {
-        let device = &gpu.device;
-        let layout = layout(device);
-        let globals = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("globals"),
-            size: size_of::<Globals>() as u64,
-            usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let layout = layout(&gpu.device);
         Self {
-            pipelines: Pipelines::new(device, source, &layout, color, samples),
+            pipelines: Pipelines::new(&gpu.device, source, &layout, color, samples),
             small_sphere: Shape::sphere(gpu, 8),
             large_sphere: Shape::sphere(gpu, 40),
-            balls: Instances::new(device, "balls"),
-            lines: Instances::new(device, "lines"),
-            particles: Particles::new(gpu, &layout, &globals, topology),
-            frame: Frame::default(),
+            mesh: Mesh::new(gpu, topology),
+            views: vec![],
+            prepared: 0,
             layout,
-            globals,
         }
     }
 
     /// Goes on with another scene.
     pub fn set_topology(&mut self, gpu: &Gpu, topology: &Topology) {
-        self.particles = Particles::new(gpu, &self.layout, &self.globals, topology);
-        self.frame = Frame::default();
+        self.mesh = Mesh::new(gpu, topology);
+        self.views.clear();
+        self.prepared = 0;
     }
 
-    /// Sends a picture of `size` (px) to the GPU: positions once, and what changes from frame to frame beside them.
+    /// Sends pictures to the GPU, each for its own part of the target.
     ///
     /// # Panics
-    /// The picture has another number of particles than the topology.
-    pub fn prepare(&mut self, gpu: &Gpu, picture: &Picture, size: (u32, u32)) {
-        assert_eq!(
-            picture.points.len(),
-            self.particles.count,
-            "particles of the picture and of the topology"
-        );
-        let queue = &gpu.queue;
-        queue.write_buffer(
-            &self.particles.points,
-            0,
-            bytemuck::cast_slice(picture.points),
-        );
-        let mut balls = picture.balls.to_vec();
-        balls.sort_by(|a, b| a.radius.total_cmp(&b.radius));
-        self.balls.write(gpu, &balls);
-        self.lines.write(gpu, picture.lines);
-        queue.write_buffer(
-            &self.globals,
-            0,
-            bytemuck::bytes_of(&globals(picture, size)),
-        );
-        let mesh = picture.style == Style::Shaded && self.particles.indices > 0;
-        self.frame = Frame {
-            // From below it would hide everything.
-            floor: picture
-                .floor
-                .is_some_and(|height| picture.camera.eye().y > height),
-            mesh,
-            wires: !mesh,
-            small_balls: balls.iter().filter(|ball| ball.radius < LARGE).count() as u32,
-            balls: balls.len() as u32,
-            lines: picture.lines.len() as u32,
-        };
+    /// A picture has another number of particles than the topology.
+    pub fn prepare(&mut self, gpu: &Gpu, pictures: &[(Picture, Tile)]) {
+        while self.views.len() < pictures.len() {
+            self.views.push(View::new(gpu, &self.layout, &self.mesh));
+        }
+        for ((picture, tile), view) in pictures.iter().zip(&mut self.views) {
+            assert_eq!(
+                picture.points.len(),
+                self.mesh.points,
+                "particles of the picture and of the topology"
+            );
+            view.prepare(gpu, picture, *tile, &self.mesh);
+        }
+        self.prepared = pictures.len();
     }
 
-    /// Draws the prepared picture.
+    /// Draws the prepared pictures.
     pub fn draw(&self, pass: &mut wgpu::RenderPass) {
-        let (p, particles, frame) = (&self.pipelines, &self.particles, self.frame);
-        pass.set_bind_group(0, &particles.bind, &[]);
+        for view in &self.views[..self.prepared] {
+            let tile = view.frame.tile;
+            let [x, y, width, height] =
+                [tile.x, tile.y, tile.width, tile.height].map(|side| side as f32);
+            pass.set_viewport(x, y, width, height, 0.0, 1.0);
+            self.draw_view(pass, view);
+        }
+    }
+
+    fn draw_view(&self, pass: &mut wgpu::RenderPass, view: &View) {
+        let (p, mesh, frame) = (&self.pipelines, &self.mesh, view.frame);
+        pass.set_bind_group(0, &view.bind, &[]);
         // What hides comes first, so that no pixel is shaded twice; then what is blended over it.
         if frame.mesh {
             pass.set_pipeline(&p.mesh);
-            particles.draw_mesh(pass);
+            mesh.draw(pass);
         }
         pass.set_pipeline(&p.ball);
-        self.draw_balls(pass);
+        self.draw_balls(pass, view);
         if frame.floor {
             pass.set_pipeline(&p.floor);
             pass.draw(0..4, 0..1);
@@ -174,34 +115,32 @@ impl Renderer {
             pass.set_stencil_reference(0);
             if frame.mesh {
                 pass.set_pipeline(&p.mesh_shadow);
-                particles.draw_mesh(pass);
+                mesh.draw(pass);
             }
             pass.set_pipeline(&p.ball_shadow);
-            self.draw_balls(pass);
+            self.draw_balls(pass, view);
         }
-        if frame.wires {
+        if !frame.mesh {
             pass.set_pipeline(&p.wire);
-            pass.set_vertex_buffer(0, particles.wires.slice(..));
-            pass.draw(0..4, 0..particles.wire_count);
+            pass.set_vertex_buffer(0, mesh.wires.slice(..));
+            pass.draw(0..4, 0..mesh.wire_count);
         }
         if frame.lines > 0 {
             pass.set_pipeline(&p.line);
-            pass.set_vertex_buffer(0, self.lines.buffer.slice(..));
+            pass.set_vertex_buffer(0, view.lines.buffer.slice(..));
             pass.draw(0..4, 0..frame.lines);
         }
     }
 
-    fn draw_balls(&self, pass: &mut wgpu::RenderPass) {
-        let Frame {
-            small_balls, balls, ..
-        } = self.frame;
+    fn draw_balls(&self, pass: &mut wgpu::RenderPass, view: &View) {
+        let (small, all) = (view.frame.small_balls, view.frame.balls);
         for (shape, range) in [
-            (&self.small_sphere, 0..small_balls),
-            (&self.large_sphere, small_balls..balls),
+            (&self.small_sphere, 0..small),
+            (&self.large_sphere, small..all),
         ] {
             if !range.is_empty() {
                 pass.set_vertex_buffer(0, shape.corners.slice(..));
-                pass.set_vertex_buffer(1, self.balls.buffer.slice(..));
+                pass.set_vertex_buffer(1, view.balls.buffer.slice(..));
                 pass.set_index_buffer(shape.triangles.slice(..), wgpu::IndexFormat::Uint16);
                 pass.draw_indexed(0..shape.indices, 0, range);
             }
@@ -209,143 +148,34 @@ impl Renderer {
     }
 }
 
-fn globals(picture: &Picture, size: (u32, u32)) -> Globals {
-    let (width, height) = (size.0.max(1) as f32, size.1.max(1) as f32);
-    let eye = picture.camera.eye();
-    let target = picture.camera.target();
-    let length = LIGHT.iter().map(|l| l * l).sum::<f32>().sqrt();
-    let (near, far) = picture
-        .points
-        .iter()
-        .fold((f32::INFINITY, 0.0f32), |(near, far), p| {
-            let d =
-                ((p[0] - eye.x).powi(2) + (p[1] - eye.y).powi(2) + (p[2] - eye.z).powi(2)).sqrt();
-            (near.min(d), far.max(d))
-        });
-    Globals {
-        view_projection: picture.camera.view_projection(width / height).into(),
-        eye: [eye.x, eye.y, eye.z, 1.0],
-        light: [LIGHT[0] / length, LIGHT[1] / length, LIGHT[2] / length, 0.0],
-        viewport: [width, height, picture.scale, 0.0],
-        floor: [
-            picture.floor.unwrap_or(0.0),
-            FLOOR_REACH.0.max(FLOOR_REACH.1 * (eye - target).norm()),
-            target.x,
-            target.z,
-        ],
-        depth: [near, far, 0.0, 0.0],
-    }
-}
-
-impl Shape {
-    fn sphere(gpu: &Gpu, rings: u16) -> Self {
-        let (corners, triangles) = sphere(rings);
-        Self {
-            corners: filled(
-                gpu,
-                "sphere",
-                BufferUsages::VERTEX,
-                bytemuck::cast_slice(&corners),
-            ),
-            triangles: filled(
-                gpu,
-                "sphere",
-                BufferUsages::INDEX,
-                bytemuck::cast_slice(&triangles),
-            ),
-            indices: triangles.len() as u32,
-        }
-    }
-}
-
-impl Instances {
-    fn new(device: &wgpu::Device, label: &'static str) -> Self {
-        Self {
-            label,
-            buffer: buffer(device, label, BufferUsages::VERTEX, 4096),
-        }
-    }
-
-    fn write<T: Pod>(&mut self, gpu: &Gpu, instances: &[T]) {
-        let bytes: &[u8] = bytemuck::cast_slice(instances);
-        if bytes.len() as u64 > self.buffer.size() {
-            let size = bytes.len().next_power_of_two();
-            self.buffer = buffer(&gpu.device, self.label, BufferUsages::VERTEX, size);
-        }
-        gpu.queue.write_buffer(&self.buffer, 0, bytes);
-    }
-}
-
-impl Particles {
-    fn new(
-        gpu: &Gpu,
-        layout: &wgpu::BindGroupLayout,
-        globals: &wgpu::Buffer,
-        topology: &Topology,
-    ) -> Self {
+impl Mesh {
+    fn new(gpu: &Gpu, topology: &Topology) -> Self {
         let (first, around) = triangles_around(topology);
-        let points = buffer(
-            &gpu.device,
-            "points",
-            BufferUsages::STORAGE,
-            16 * topology.points,
-        );
-        let first = filled(
-            gpu,
-            "first",
-            BufferUsages::STORAGE,
-            bytemuck::cast_slice(&first),
-        );
-        let around = filled(
-            gpu,
-            "around",
-            BufferUsages::STORAGE,
-            bytemuck::cast_slice(&around),
-        );
-        let bind = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("particles"),
-            layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: globals.as_entire_binding(),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: points.as_entire_binding(),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 2,
-                    resource: first.as_entire_binding(),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 3,
-                    resource: around.as_entire_binding(),
-                },
-            ],
-        });
+        let filled = |label, usage, bytes| filled(gpu, label, usage, bytes);
         Self {
-            points,
+            first: filled("first", BufferUsages::STORAGE, bytemuck::cast_slice(&first)),
+            around: filled(
+                "around",
+                BufferUsages::STORAGE,
+                bytemuck::cast_slice(&around),
+            ),
             triangles: filled(
-                gpu,
                 "triangles",
                 BufferUsages::INDEX,
                 bytemuck::cast_slice(&topology.triangles),
             ),
             wires: filled(
-                gpu,
                 "wires",
                 BufferUsages::VERTEX,
                 bytemuck::cast_slice(&topology.wires),
             ),
-            bind,
-            count: topology.points,
+            points: topology.points,
             indices: 3 * topology.triangles.len() as u32,
             wire_count: topology.wires.len() as u32,
         }
     }
 
-    fn draw_mesh(&self, pass: &mut wgpu::RenderPass) {
+    fn draw(&self, pass: &mut wgpu::RenderPass) {
         pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..self.indices, 0, 0..1);
     }
@@ -372,31 +202,12 @@ fn triangles_around(topology: &Topology) -> (Vec<u32>, Vec<[u32; 2]>) {
     (first, around)
 }
 
-/// An empty buffer of at least 16 bytes: a binding may not be empty.
-fn buffer(device: &wgpu::Device, label: &str, usage: BufferUsages, bytes: usize) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size: bytes.max(16) as u64,
-        usage: usage | BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
-}
-
-fn filled(gpu: &Gpu, label: &str, usage: BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
-    // Writes come in multiples of four bytes.
-    let mut bytes = bytes.to_vec();
-    bytes.resize(bytes.len().next_multiple_of(4), 0);
-    let buffer = buffer(&gpu.device, label, usage, bytes.len());
-    gpu.queue.write_buffer(&buffer, 0, &bytes);
-    buffer
-}
-
 #[cfg(test)]
 mod tests {
     use std::io::Write;
 
     use super::*;
-    use crate::{Camera, OFFSCREEN_FORMAT, Offscreen};
+    use crate::{Camera, OFFSCREEN_FORMAT, Offscreen, Style};
 
     #[test]
     fn every_point_knows_its_triangles() {

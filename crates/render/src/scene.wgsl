@@ -6,11 +6,11 @@ struct Globals {
     eye: vec4<f32>,
     // Towards the light, in world space.
     light: vec4<f32>,
-    // Width, height [px], pixels per point, unused.
-    viewport: vec4<f32>,
+    // Left, top, width, height of the picture in its target [px].
+    tile: vec4<f32>,
     // Height of the floor [m], how far it is seen [m], x and z of its middle [m].
     floor: vec4<f32>,
-    // Distance of the nearest and the farthest particle from the eye [m].
+    // Distance of the nearest and the farthest particle from the eye [m], pixels per point, unused.
     depth: vec4<f32>,
 };
 
@@ -33,7 +33,7 @@ const LINING = vec3(0.50, 0.17, 0.05);
 }
 
 fn background(pixel: vec2<f32>) -> vec3<f32> {
-    let p = (pixel / globals.viewport.xy - vec2(0.5, 0.42)) * vec2(1.0, 1.15);
+    let p = ((pixel - globals.tile.xy) / globals.tile.zw - vec2(0.5, 0.42)) * vec2(1.0, 1.15);
     return mix(PAPER, SHADE, min(2.1 * dot(p, p), 1.0));
 }
 
@@ -66,7 +66,7 @@ fn floor_fade(world: vec3<f32>) -> f32 {
 
 @fragment fn floor_fragment(in: Floor) -> @location(0) vec4<f32> {
     let width = max(fwidth(in.world.xz), vec2(1e-5));
-    let line = 1.0 - min(abs(fract(in.world.xz - 0.5) - 0.5) / width / globals.viewport.z, vec2(1.0));
+    let line = 1.0 - min(abs(fract(in.world.xz - 0.5) - 0.5) / width / globals.depth.z, vec2(1.0));
     let grid = max(line.x, line.y) * min(1.0, 0.2 / max(width.x, width.y));
     let color = mix(vec3(0.90, 0.895, 0.88), SHADE * 0.8, 0.35 * grid);
     let grazing = smoothstep(0.0, 0.12, abs(normalize(globals.eye.xyz - in.world).y));
@@ -182,12 +182,12 @@ fn line(a: vec3<f32>, b: vec3<f32>, points_wide: f32, color: vec4<f32>, i: u32) 
     var cb = globals.view_proj * vec4(b, 1.0);
     if ca.z < 0.0 && cb.z > 0.0 { ca = mix(ca, cb, ca.z / (ca.z - cb.z)); }
     if cb.z < 0.0 && ca.z > 0.0 { cb = mix(cb, ca, cb.z / (cb.z - ca.z)); }
-    let half_size = globals.viewport.xy * 0.5;
+    let half_size = globals.tile.zw * 0.5;
     let along = (cb.xy / cb.w - ca.xy / ca.w) * half_size;
     let direction = select(vec2(1.0, 0.0), normalize(along), dot(along, along) > 1e-12);
     let end = select(ca, cb, i >= 2u);
     let side = f32(i & 1u) * 2.0 - 1.0;
-    let half_width = 0.5 * points_wide * globals.viewport.z;
+    let half_width = 0.5 * points_wide * globals.depth.z;
     let reach = half_width + 1.0;
     // Half a width beyond each end, so that lines join; not where one would see through both.
     let beyond = direction * half_width * select(-1.0, 1.0, i >= 2u) * step(0.999, color.a);

@@ -5,6 +5,14 @@ use crate::gpu::Gpu;
 /// Depth for what hides what, stencil so that a shadow darkens once.
 pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusStencil8;
 
+/// Linear, between pictures: the ink of lines.
+const GAP: wgpu::Color = wgpu::Color {
+    r: 0.035,
+    g: 0.05,
+    b: 0.09,
+    a: 1.0,
+};
+
 /// What a picture is drawn into before it reaches its destination.
 pub struct Targets {
     multisampled: Option<wgpu::TextureView>,
@@ -64,7 +72,7 @@ impl Targets {
                 depth_slice: None,
                 resolve_target,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    load: wgpu::LoadOp::Clear(GAP),
                     store,
                 },
             })],

@@ -125,3 +125,39 @@ fn lines_are_as_wide_as_asked_for() {
         );
     }
 }
+
+/// Several pictures in one target are each what they are alone, and stay in their places.
+#[test]
+fn pictures_side_by_side() {
+    let Some(gpu) = gpu() else { return };
+    let sheet = Sheet::new();
+    let alone = [Style::Shaded, Style::Wireframe].map(|style| draw(&gpu, &sheet, style));
+    let tiles = [(0, 0), (SIZE.0 + 5, 37)].map(|(x, y)| a3_render::Tile {
+        x,
+        y,
+        ..a3_render::Tile::whole(SIZE)
+    });
+    let pictures = [
+        (sheet.picture(Style::Shaded), tiles[0]),
+        (sheet.picture(Style::Wireframe), tiles[1]),
+    ];
+    let samples = gpu.samples(OFFSCREEN_FORMAT);
+    let mut renderer = Renderer::new(&gpu, OFFSCREEN_FORMAT, samples, &sheet.topology);
+    let size = (2 * SIZE.0 + 10, SIZE.1 + 40);
+    let offscreen = Offscreen::new(&gpu, size).unwrap();
+    let pixels = offscreen
+        .render_tiles(&gpu, &mut renderer, &pictures, |_, _, _| vec![])
+        .unwrap();
+    let both = RgbaImage::from_raw(size.0, size.1, pixels).unwrap();
+    for (alone, tile) in alone.iter().zip(tiles) {
+        let part = image::imageops::crop_imm(&both, tile.x, tile.y, tile.width, tile.height);
+        let (off, mean) = difference(alone, &part.to_image());
+        // The background is dithered by the place in the target.
+        assert!(off < 1e-4 && mean < 0.5, "{off} {mean}");
+    }
+    let gap = both.get_pixel(SIZE.0 + 2, 100);
+    assert!(
+        (0..size.1).all(|y| both.get_pixel(SIZE.0 + 2, y) == gap),
+        "nothing is drawn beside the parts"
+    );
+}

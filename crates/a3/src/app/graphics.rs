@@ -3,14 +3,16 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use a3_render::{Gpu, GpuError, OFFSCREEN_FORMAT, Offscreen, Renderer, Targets};
+use a3_render::{Gpu, GpuError, Offscreen, Renderer, Targets, Tile};
 use wgpu::CurrentSurfaceTexture;
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
-use super::hud;
+use super::hud::{self, Readings};
+use super::layout;
 use super::session::Session;
-use crate::{Failure, output, show};
+use super::text::Text;
+use crate::{Failure, output, render, show};
 
 /// What became of a frame.
 pub enum Outcome {
@@ -27,9 +29,8 @@ pub struct Graphics {
     format: wgpu::TextureFormat,
     renderer: Renderer,
     targets: Targets,
-    egui: egui::Context,
+    text: Text,
     egui_winit: egui_winit::State,
-    egui_wgpu: egui_wgpu::Renderer,
     /// The surface no longer has the size of the window.
     stale: bool,
     gpu: Gpu,
@@ -51,9 +52,9 @@ impl Graphics {
         config.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &config);
         let samples = window_samples(&gpu, format);
-        let egui = egui::Context::default();
+        let text = Text::new(&gpu, config.format);
         let egui_winit = egui_winit::State::new(
-            egui.clone(),
+            text.context.clone(),
             egui::ViewportId::ROOT,
             &window,
             Some(window.scale_factor() as f32),
@@ -61,14 +62,9 @@ impl Graphics {
             Some(gpu.largest_side() as usize),
         );
         Ok(Self {
-            renderer: Renderer::new(&gpu, format, samples, &show::topology(&session.simulation)),
+            renderer: Renderer::new(&gpu, format, samples, &show::topology(session.first())),
             targets: Targets::new(&gpu, size, format, samples),
-            egui_wgpu: egui_wgpu::Renderer::new(
-                &gpu.device,
-                config.format,
-                egui_wgpu::RendererOptions::default(),
-            ),
-            egui,
+            text,
             egui_winit,
             surface,
             config,
@@ -84,9 +80,14 @@ impl Graphics {
         (self.config.width, self.config.height)
     }
 
-    /// Width over height.
-    pub fn aspect(&self) -> f32 {
-        self.config.width as f32 / self.config.height as f32
+    /// Where this many panes are.
+    pub fn tiles(&self, panes: usize) -> Vec<Tile> {
+        layout::tiles(panes, self.size(), self.scale())
+    }
+
+    /// Pixels per point.
+    pub fn scale(&self) -> f32 {
+        self.window.scale_factor() as f32
     }
 
     /// The adapter in use.
@@ -109,7 +110,7 @@ impl Graphics {
     /// The scene is another one.
     pub fn set_scene(&mut self, session: &Session) {
         self.renderer
-            .set_topology(&self.gpu, &show::topology(&session.simulation));
+            .set_topology(&self.gpu, &show::topology(session.first()));
     }
 
     /// Breaks the device, to see what happens.
@@ -162,11 +163,16 @@ impl Graphics {
                 return Err(GpuError::Lost);
             }
         };
-        session.show.compose(&session.simulation);
-        let picture = session
-            .show
-            .picture(session.camera, self.window.scale_factor() as f32);
-        self.renderer.prepare(&self.gpu, &picture, self.size());
+        for pane in &mut session.panes {
+            pane.show.compose(&pane.simulation);
+        }
+        let pictures: Vec<_> = session
+            .panes
+            .iter()
+            .map(|pane| pane.show.picture(session.camera, self.scale()))
+            .zip(self.tiles(session.panes.len()))
+            .collect();
+        self.renderer.prepare(&self.gpu, &pictures);
         let mut encoder = self
             .gpu
             .device
@@ -200,67 +206,40 @@ impl Graphics {
         session: &Session,
     ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>) {
         let input = self.egui_winit.take_egui_input(&self.window);
-        let mut output = self.egui.run_ui(input, |ui| {
-            hud::show(ui.ctx(), &session.simulation, &session.readings);
+        let mut output = self.text.lay_out(&self.gpu, input, |ctx| {
+            hud::show(ctx, &session.panes, &session.readings);
         });
         self.egui_winit
-            .handle_platform_output(&self.window, output.platform_output);
+            .handle_platform_output(&self.window, std::mem::take(&mut output.platform_output));
         let again = output
             .viewport_output
             .get(&egui::ViewportId::ROOT)
             .map(|viewport| viewport.repaint_delay);
         let again = again.filter(|delay| *delay < Duration::from_mins(1));
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        // Dropping what is not drained panics.
-        for (id, deltas) in output.textures_delta.set.drain() {
-            for delta in deltas {
-                self.egui_wgpu.update_texture(device, queue, id, &delta);
-            }
-        }
-        let shapes = self.egui.tessellate(output.shapes, output.pixels_per_point);
-        let screen = egui_wgpu::ScreenDescriptor {
-            size_in_pixels: [self.config.width, self.config.height],
-            pixels_per_point: output.pixels_per_point,
-        };
-        let before = self
-            .egui_wgpu
-            .update_buffers(device, queue, encoder, &shapes, &screen);
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("text"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Load,
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        });
-        self.egui_wgpu
-            .render(&mut pass.forget_lifetime(), &shapes, &screen);
-        for id in output.textures_delta.free.drain() {
-            self.egui_wgpu.free_texture(&id);
-        }
+        let size = (self.config.width, self.config.height);
+        let before = self.text.paint(&self.gpu, encoder, view, size, output);
         (before, again)
     }
 
-    /// Saves what is seen, without the text, under the first free name. Which one that was.
+    /// Saves what is seen under the first free name: one pane without the text, several with what tells them apart.
+    /// Which name that was.
     pub fn save_picture(&self, session: &mut Session) -> Result<String, Failure> {
         let size = self.size();
         let offscreen = Offscreen::new(&self.gpu, size).map_err(Failure::run)?;
-        let samples = self.gpu.samples(OFFSCREEN_FORMAT);
-        let topology = show::topology(&session.simulation);
-        let mut renderer = Renderer::new(&self.gpu, OFFSCREEN_FORMAT, samples, &topology);
-        session.show.compose(&session.simulation);
-        let picture = session
-            .show
-            .picture(session.camera, self.window.scale_factor() as f32);
-        let pixels = offscreen
-            .render(&self.gpu, &mut renderer, &picture)
-            .map_err(Failure::run)?;
-        let name = output::free_picture_name(session.simulation.scene().name)?;
+        let readings = Readings {
+            no_error: session.readings.no_error,
+            ..Readings::default()
+        };
+        let panes = &mut session.panes;
+        let pixels = render::draw(
+            &self.gpu,
+            &offscreen,
+            panes,
+            session.camera,
+            self.scale(),
+            &readings,
+        )?;
+        let name = output::free_picture_name(session.first().scene().name)?;
         output::write(name.as_ref(), &output::png(&pixels, size)?)?;
         Ok(name)
     }

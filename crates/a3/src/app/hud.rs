@@ -1,19 +1,20 @@
 //! What is written over the picture: egui, without winit and wgpu, so that a test can read it.
 
+mod panes;
+
+pub use panes::digits;
+
 use a3_core::{BlowUp, Simulation, integrators};
 use egui::{Align2, Area, Color32, Context, Frame, Id, Margin, RichText, Ui};
 
 use super::keys::{KEYS, MOUSE};
+use super::pane::Pane;
 
-/// What the text says beside the run itself.
+/// What the text says beside the runs themselves.
 #[derive(Clone, Debug, Default)]
 pub struct Readings {
     pub paused: bool,
     pub help: bool,
-    /// Total energy (J), if the scene has any.
-    pub energy: Option<f64>,
-    /// The largest length over rest length, if the scene has springs.
-    pub stretch: Option<f64>,
     /// Simulated over real time.
     pub factor: f32,
     /// Frames per second.
@@ -23,6 +24,10 @@ pub struct Readings {
     pub drawing: f32,
     /// What just happened, for a few seconds.
     pub message: Option<String>,
+    /// There are keys to press.
+    pub in_window: bool,
+    /// Why the panes' errors are not known, if they are not.
+    pub no_error: Option<&'static str>,
 }
 
 const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
@@ -74,16 +79,27 @@ fn faint(words: impl Into<String>) -> RichText {
 }
 
 /// Writes everything. Sheets stand below one another, and the help alone: nothing overlaps, however small the window.
-pub fn show(ctx: &Context, simulation: &Simulation, readings: &Readings) {
+pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
+    match panes {
+        [pane] if !readings.help => show_one(ctx, pane, readings),
+        [_] => {}
+        panes => panes::show(ctx, panes, readings),
+    }
     if readings.help {
-        return column(ctx, "help", Align2::CENTER_CENTER, [0.0, 0.0], |ui| {
-            sheet(ui, help);
+        column(ctx, "help", Align2::CENTER_CENTER, [0.0, 0.0], |ui| {
+            sheet(ui, |ui| help(ui, panes.len() > 1));
         });
     }
+}
+
+fn show_one(ctx: &Context, pane: &Pane, readings: &Readings) {
     column(ctx, "run", Align2::LEFT_TOP, [MARGIN, MARGIN], |ui| {
-        sheet(ui, |ui| run(ui, simulation, readings));
-        if let Some(lost) = simulation.blow_up() {
-            sheet(ui, |ui| blow_up(ui, &lost));
+        sheet(ui, |ui| run(ui, pane, readings));
+        if let Some(lost) = pane.simulation.blow_up() {
+            sheet(ui, |ui| {
+                blow_up(ui, &lost);
+                ui.label(text(way_out()));
+            });
         }
         if let Some(message) = &readings.message {
             sheet(ui, |ui| {
@@ -100,17 +116,10 @@ pub fn show(ctx: &Context, simulation: &Simulation, readings: &Readings) {
     }
 }
 
-fn run(ui: &mut Ui, simulation: &Simulation, readings: &Readings) {
-    let scene = simulation.scene();
-    let grid = scene.grid.map_or(String::new(), |grid| {
-        format!("  {} × {}", grid.rows(), grid.cols())
-    });
-    ui.label(title(format!("{}{grid}", scene.name)));
-    let step = simulation.setting();
-    ui.label(text(format!(
-        "{},  step {step} s",
-        simulation.method().title
-    )));
+fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
+    let simulation = &pane.simulation;
+    ui.label(title(scene(simulation)));
+    ui.label(text(method(simulation)));
     egui::Grid::new("readings")
         .num_columns(2)
         .spacing([14.0, 3.0])
@@ -120,29 +129,87 @@ fn run(ui: &mut Ui, simulation: &Simulation, readings: &Readings) {
                 ui.label(text(value));
                 ui.end_row();
             };
-            // As many digits as tell one step from the next.
-            let digits = (-step.log10()).ceil().clamp(2.0, 7.0) as usize;
-            row("time", format!("{:.digits$} s", simulation.time()));
+            row("time", time(simulation));
             row("speed", speed(readings));
-            match readings.energy {
-                Some(energy) => row("energy", format!("{energy:.3} J")),
-                None => row("radius", format!("{:.6} m", simulation.position(0).norm())),
+            if let Some(steps) = steps(simulation) {
+                row("steps", steps);
             }
-            if let Some(stretch) = readings.stretch {
+            let (name, value) = energy(pane);
+            row(name, value);
+            if let Some(stretch) = pane.stretch {
                 row("stretch", format!("{stretch:.3} at most"));
             }
-            let Readings {
-                rate,
-                simulating,
-                drawing,
-                ..
-            } = readings;
-            row("frames", format!("{rate:.0} per second"));
-            row(
-                "each",
-                format!("{simulating:.1} ms steps + {drawing:.1} ms drawing"),
-            );
+            row("frames", frames(readings));
+            row("each", each(readings));
         });
+    ui.label(states(simulation, readings));
+}
+
+/// Its name, and its grid if it has one.
+fn scene(simulation: &Simulation) -> String {
+    let scene = simulation.scene();
+    let grid = scene.grid.map_or(String::new(), |grid| {
+        format!("  {} × {}", grid.rows(), grid.cols())
+    });
+    format!("{}{grid}", scene.name)
+}
+
+fn method(simulation: &Simulation) -> String {
+    format!("{},  {}", simulation.method().title, setting(simulation))
+}
+
+/// The step, or the tolerance.
+fn setting(simulation: &Simulation) -> String {
+    if simulation.method().is_adaptive() {
+        format!("tolerance {:e}", simulation.setting())
+    } else {
+        format!("step {} s", simulation.setting())
+    }
+}
+
+/// What an adaptive method does with its tolerance.
+fn steps(simulation: &Simulation) -> Option<String> {
+    let step = simulation.step_size()?;
+    let rejections = simulation.work().rejections;
+    simulation
+        .method()
+        .is_adaptive()
+        .then(|| format!("{} ms, {rejections} rejected", panes::digits(1e3 * step)))
+}
+
+/// With as many digits as tell one step from the next.
+fn time(simulation: &Simulation) -> String {
+    let step = if simulation.method().is_adaptive() {
+        1e-3
+    } else {
+        simulation.setting()
+    };
+    let digits = (-step.log10()).ceil().clamp(2.0, 7.0) as usize;
+    format!("{:.digits$} s", simulation.time())
+}
+
+/// What tells best whether the run holds: its energy, or the radius of the circle.
+fn energy(pane: &Pane) -> (&'static str, String) {
+    match pane.energy {
+        Some(energy) => ("energy", format!("{energy:.3} J")),
+        None => (
+            "radius",
+            format!("{:.6} m", pane.simulation.position(0).norm()),
+        ),
+    }
+}
+
+fn frames(readings: &Readings) -> String {
+    format!("{:.0} per second", readings.rate)
+}
+
+fn each(readings: &Readings) -> String {
+    let (simulating, drawing) = (readings.simulating, readings.drawing);
+    format!("{simulating:.1} ms steps + {drawing:.1} ms drawing")
+}
+
+/// What is on.
+fn states(simulation: &Simulation, readings: &Readings) -> RichText {
     let states = [
         (readings.paused, "paused"),
         (simulation.windy(), "wind"),
@@ -154,11 +221,11 @@ fn run(ui: &mut Ui, simulation: &Simulation, readings: &Readings) {
         .filter(|(on, _)| *on)
         .map(|(_, name)| *name)
         .collect();
-    ui.label(if on.is_empty() {
+    if on.is_empty() {
         faint("no wind, no swing")
     } else {
         text(on.join("   ")).strong()
-    });
+    }
 }
 
 /// Simulated time in real time.
@@ -182,13 +249,15 @@ fn blow_up(ui: &mut Ui, lost: &BlowUp) {
         "A step of {} s was too long for {}.",
         lost.setting, lost.method
     )));
-    let solvers = integrators::METHODS.len();
-    ui.label(text(format!(
-        "Press - for a shorter step or 1-{solvers} for another solver, then r."
-    )));
 }
 
-fn help(ui: &mut Ui) {
+/// Out of a blow-up.
+fn way_out() -> String {
+    let solvers = integrators::METHODS.len();
+    format!("Press - for a shorter step or 1-{solvers} for another solver, then r.")
+}
+
+fn help(ui: &mut Ui, several: bool) {
     let rows = |ui: &mut Ui, heading: &str, rows: &[(String, &str)]| {
         ui.vertical(|ui| {
             ui.label(title(heading));
@@ -221,7 +290,12 @@ fn help(ui: &mut Ui) {
         ui.spacing_mut().item_spacing.x = 28.0;
         rows(ui, "Keys", &keys);
         ui.vertical(|ui| {
-            rows(ui, "Solvers", &solvers);
+            let heading = if several {
+                "Solvers, under the pointer"
+            } else {
+                "Solvers"
+            };
+            rows(ui, heading, &solvers);
             ui.add_space(10.0);
             rows(ui, "Mouse", &mouse);
         });
@@ -229,16 +303,13 @@ fn help(ui: &mut Ui) {
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
+    use crate::show::Show;
     use a3_core::scenes;
 
     /// All that is written, in a window of that size, and the rectangles of the sheets.
-    fn read(
-        simulation: &Simulation,
-        readings: &Readings,
-        size: [f32; 2],
-    ) -> (String, Vec<egui::Rect>) {
+    pub fn read(panes: &[Pane], readings: &Readings, size: [f32; 2]) -> (String, Vec<egui::Rect>) {
         fn collect(shape: &egui::Shape, words: &mut String, sheets: &mut Vec<egui::Rect>) {
             match shape {
                 egui::Shape::Text(text) => words.extend([text.galley.text(), "\n"]),
@@ -261,10 +332,19 @@ mod tests {
             };
             output.textures_delta.set.clear();
             output.textures_delta.free.clear();
-            output = ctx.run_ui(input, |ui| show(ui.ctx(), simulation, readings));
+            output = ctx.run_ui(input, |ui| show(ui.ctx(), panes, readings));
         }
         let (mut words, mut sheets) = (String::new(), vec![]);
         for clipped in &output.shapes {
+            let cut = clipped.clip_rect.intersect(screen).expand(1.0);
+            if let egui::Shape::Text(text) = &clipped.shape {
+                let rect = text.visual_bounding_rect();
+                assert!(
+                    cut.contains_rect(rect),
+                    "{:?} is cut off in {size:?}",
+                    text.galley.text()
+                );
+            }
             collect(&clipped.shape, &mut words, &mut sheets);
         }
         output.textures_delta.set.clear();
@@ -272,21 +352,23 @@ mod tests {
         (words, sheets)
     }
 
-    fn simulation(scene: &str, method: &str, step: f64) -> Simulation {
+    pub fn pane(scene: &str, method: &str, step: f64) -> Pane {
         let scene = scenes::find(scene).unwrap().build(None).unwrap();
-        Simulation::new(scene, integrators::find(method).unwrap(), step).unwrap()
+        let method = integrators::find(method).unwrap();
+        let simulation = Simulation::new(scene, method, step).unwrap();
+        Pane::new(simulation, Show::new(false, None))
     }
 
     #[test]
     fn everything_is_said() {
-        let mut run = simulation("cloth", "t", 0.01);
+        let mut pane = pane("cloth", "t", 0.01);
+        (pane.energy, pane.stretch) = (Some(12.3456), Some(1.25));
+        let run = &mut pane.simulation;
         run.set_wind(true);
         run.set_swinging(true);
         run.grab(210).unwrap();
         run.take_steps(7).unwrap();
         let readings = Readings {
-            energy: Some(12.3456),
-            stretch: Some(1.25),
             factor: 0.98,
             rate: 59.6,
             simulating: 0.2,
@@ -294,7 +376,8 @@ mod tests {
             message: Some("saved".into()),
             ..Readings::default()
         };
-        let (words, _) = read(&run, &readings, [1280.0, 720.0]);
+        let panes = [pane];
+        let (words, _) = read(&panes, &readings, [1280.0, 720.0]);
         for said in [
             "cloth  20 × 20",
             "explicit trapezoid (Heun),  step 0.01 s",
@@ -315,11 +398,11 @@ mod tests {
             ..readings
         };
         assert!(
-            read(&run, &readings, [1280.0, 720.0])
+            read(&panes, &readings, [1280.0, 720.0])
                 .0
                 .contains("paused   wind")
         );
-        let circle = simulation("simple", "e", 1e-7);
+        let circle = [super::tests::pane("simple", "e", 1e-7)];
         let slow = Readings {
             factor: 0.0005,
             ..Readings::default()
@@ -341,7 +424,7 @@ mod tests {
             help: true,
             ..Readings::default()
         };
-        let (words, sheets) = read(&simulation("chain", "r", 0.01), &readings, [1280.0, 720.0]);
+        let (words, sheets) = read(&[pane("chain", "r", 0.01)], &readings, [1280.0, 720.0]);
         for binding in KEYS {
             assert!(
                 words.contains(binding.help) && words.contains(&binding.keys.join("  ")),
@@ -359,10 +442,12 @@ mod tests {
 
     #[test]
     fn a_blow_up_names_what_failed_and_nothing_overlaps() {
-        let mut run = simulation("mit", "e", 0.05);
+        let mut pane = pane("mit", "e", 0.05);
+        let run = &mut pane.simulation;
         while run.take_steps(1).is_ok() {}
         run.set_method(integrators::find("r").unwrap(), 0.01)
             .unwrap();
+        let panes = [pane];
         let readings = Readings {
             message: Some("There is no wind here.".into()),
             ..Readings::default()
@@ -373,7 +458,7 @@ mod tests {
             [500.0, 400.0],
             [260.0, 860.0],
         ] {
-            let (words, sheets) = read(&run, &readings, size);
+            let (words, sheets) = read(&panes, &readings, size);
             let words = words.replace('\n', " ");
             assert!(
                 words.contains("blew up at step") && words.contains("no wind here"),

@@ -67,8 +67,9 @@ pub fn action(key: &Key) -> Option<Action> {
         Key::Character(text) => text.to_lowercase(),
         _ => return None,
     };
-    if let Ok(digit @ 1..=9) = name.parse::<usize>() {
-        return Some(Action::Solver(digit - 1));
+    // 1 to 9 and 0, as they lie on the keyboard.
+    if let Ok(digit @ 0..=9) = name.parse::<usize>() {
+        return Some(Action::Solver((digit + 9) % 10));
     }
     KEYS.iter()
         .find(|binding| binding.keys.contains(&name.as_str()))
@@ -96,7 +97,8 @@ mod tests {
         }
         assert_eq!(action(&Key::Character("T".into())), Some(Action::NextScene));
         assert_eq!(action(&Key::Character("3".into())), Some(Action::Solver(2)));
-        assert_eq!(action(&Key::Character("0".into())), None);
+        assert_eq!(action(&Key::Character("0".into())), Some(Action::Solver(9)));
+        assert_eq!(action(&Key::Character("10".into())), None);
         assert_eq!(action(&Key::Named(NamedKey::F1)), None);
     }
 }

@@ -1,17 +1,22 @@
 //! The window: events in, frames out.
 
 mod graphics;
-mod hud;
+pub mod hud;
 mod keys;
+pub mod layout;
+mod pane;
 mod pick;
+mod reference;
 mod session;
+mod status;
+mod text;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use a3_core::Vector3;
-use a3_render::GpuError;
+use a3_render::{GpuError, Tile};
 use winit::application::ApplicationHandler;
 use winit::dpi::{LogicalSize, PhysicalPosition};
 use winit::event::{ElementState, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
@@ -23,7 +28,12 @@ use crate::{Failure, cli, headless, show};
 use graphics::{Graphics, Outcome};
 use keys::Action;
 use pick::Grip;
-use session::Session;
+use status::Status;
+
+pub use hud::{Readings, digits};
+pub use pane::Pane;
+pub use session::Session;
+pub use text::Text;
 
 /// A frame that could not be drawn is tried again after this.
 const RETRY: Duration = Duration::from_millis(50);
@@ -32,16 +42,22 @@ const REACH: f32 = 18.0;
 /// Radians per height of the picture.
 const TURN: f32 = 4.0;
 
-/// Opens the window, or does its job without one.
+/// Opens the window on one run, or does its job without one.
 pub fn run(options: &cli::Window) -> Result<(), Failure> {
-    let session = Session::new(options)?;
+    let session = options.session()?;
     if let Some(i) = options.springs_of {
-        print!("{}", show::list_springs_of(&session.simulation, i));
+        print!("{}", show::list_springs_of(session.first(), i));
     }
+    open(session, options.look.status)
+}
+
+/// Opens the window, or does its job without one. With `status`, what is on the screen is told on stderr.
+pub fn open(mut session: Session, status: bool) -> Result<(), Failure> {
     let event_loop = match event_loop() {
         Ok(event_loop) => event_loop,
-        Err(why) => return headless::run(&why, session.simulation, session.show),
+        Err(why) => return headless::run(&why, session),
     };
+    session.readings.in_window = true;
     let mut app = App {
         display: event_loop.owned_display_handle(),
         graphics: None,
@@ -52,7 +68,8 @@ pub fn run(options: &cli::Window) -> Result<(), Failure> {
         button: None,
         devices: 0,
         visible: true,
-        status: options.status.then(Status::default),
+        held: 0,
+        status: status.then(Status::default),
         failure: None,
         session,
     };
@@ -60,7 +77,8 @@ pub fn run(options: &cli::Window) -> Result<(), Failure> {
     match app.failure {
         None => Ok(()),
         Some(Failure::Run(why)) if app.devices == 0 => {
-            headless::run(&why, app.session.simulation, app.session.show)
+            app.session.readings.in_window = false;
+            headless::run(&why, app.session)
         }
         Some(failure) => Err(failure),
     }
@@ -100,9 +118,11 @@ struct App {
     window: Option<Arc<Window>>,
     /// When the simulation was last brought up to date.
     last: Instant,
-    /// 0..1 from the left and from the top.
+    /// In px from the left and from the top.
     pointer: [f32; 2],
     hand: Hand,
+    /// The pane in which it began.
+    held: usize,
     /// The button that holds it.
     button: Option<MouseButton>,
     visible: bool,
@@ -110,14 +130,6 @@ struct App {
     devices: u32,
     status: Option<Status>,
     failure: Option<Failure>,
-}
-
-/// For tests: what is on the screen, as text.
-#[derive(Default)]
-struct Status {
-    frames: u64,
-    state: String,
-    said: Option<Instant>,
 }
 
 impl App {
@@ -132,8 +144,20 @@ impl App {
         }
     }
 
-    fn aspect(&self) -> f32 {
-        self.graphics.as_ref().map_or(1.0, Graphics::aspect)
+    /// Where pane k is.
+    fn tile(&self, k: usize) -> Tile {
+        let tiles = self
+            .graphics
+            .as_ref()
+            .map(|graphics| graphics.tiles(self.session.panes.len()));
+        tiles.map_or(Tile::whole((1, 1)), |tiles| tiles[k])
+    }
+
+    /// The pane under the pointer, else the first.
+    fn pointed(&self) -> usize {
+        (0..self.session.panes.len())
+            .find(|k| self.tile(*k).contains(self.pointer))
+            .unwrap_or(0)
     }
 
     /// Everything that depends on the adapter, for the window that is there.
@@ -171,7 +195,7 @@ impl App {
                 if !self.session.animated() {
                     self.last = Instant::now();
                 }
-                if self.session.act(action) {
+                if self.session.act(action, self.pointed()) {
                     self.hand = Hand::Empty;
                     self.button = None;
                     if let Some(graphics) = &mut self.graphics {
@@ -186,7 +210,7 @@ impl App {
 
     fn title(&self) {
         if let Some(window) = &self.window {
-            window.set_title(&format!("a3: {}", self.session.simulation.scene().name));
+            window.set_title(&format!("a3: {}", self.session.first().scene().name));
         }
     }
 
@@ -195,53 +219,43 @@ impl App {
         if self.button.is_some() {
             return;
         }
-        let height = self.graphics.as_ref().map_or(1.0, |g| g.size().1 as f32);
-        let scale = self
-            .window
-            .as_ref()
-            .map_or(1.0, |w| w.scale_factor() as f32);
-        let reach = REACH * scale / height;
+        let (held, scale) = (
+            self.pointed(),
+            self.graphics.as_ref().map_or(1.0, Graphics::scale),
+        );
+        let tile = self.tile(held);
+        let (place, reach) = (tile.place(self.pointer), REACH * scale / tile.height as f32);
         let session = &mut self.session;
         self.hand = match button {
             MouseButton::Left => {
-                let aspect = self.graphics.as_ref().map_or(1.0, Graphics::aspect);
+                let pane = &session.panes[held];
                 // A lost run does not move, whoever pulls.
-                let alive = session.simulation.blow_up().is_none();
-                let hit = pick::pick(
-                    &session.simulation,
-                    &session.camera,
-                    self.pointer,
-                    aspect,
-                    reach,
-                );
-                match hit.filter(|_| alive) {
-                    Some((i, grip)) if session.simulation.grab(i).is_ok() => Hand::Pull(grip),
+                let hit = Some(&pane.simulation)
+                    .filter(|_| pane.alive())
+                    .and_then(|run| pick::pick(run, &session.camera, place, tile.aspect(), reach));
+                match hit {
+                    Some((i, grip)) if session.grab(i) => Hand::Pull(grip),
                     _ => Hand::Orbit,
                 }
             }
             MouseButton::Right | MouseButton::Middle => Hand::Pan,
             _ => return,
         };
+        self.held = held;
         self.button = Some(button);
     }
 
     fn let_go(&mut self) {
-        self.session.simulation.release();
+        self.session.release();
         self.hand = Hand::Empty;
         self.button = None;
     }
 
     fn move_to(&mut self, position: PhysicalPosition<f64>) {
-        let Some(graphics) = &self.graphics else {
-            return;
-        };
-        let (width, height) = graphics.size();
-        let pointer = [
-            position.x as f32 / width as f32,
-            position.y as f32 / height as f32,
-        ];
-        let (dx, dy) = (pointer[0] - self.pointer[0], pointer[1] - self.pointer[1]);
-        let aspect = graphics.aspect();
+        let pointer = [position.x as f32, position.y as f32];
+        let tile = self.tile(self.held);
+        let ([x, y], [was_x, was_y]) = (tile.place(pointer), tile.place(self.pointer));
+        let (dx, dy, aspect) = (x - was_x, y - was_y, tile.aspect());
         self.pointer = pointer;
         match self.hand {
             Hand::Orbit => self.session.camera.orbit(-TURN * dx * aspect, TURN * dy),
@@ -257,10 +271,12 @@ impl App {
         let real = now.duration_since(self.last).as_secs_f64();
         self.last = now;
         if let Hand::Pull(grip) = self.hand {
+            let tile = self.tile(self.held);
+            let place = tile.place(self.pointer);
             let [x, y, z] = grip
-                .target(&self.session.camera, self.pointer, self.aspect())
+                .target(&self.session.camera, place, tile.aspect())
                 .map(f64::from);
-            self.session.simulation.pull(Vector3::new(x, y, z));
+            self.session.pull(Vector3::new(x, y, z));
         }
         self.session.tick(real);
         self.session.read_state();
@@ -315,61 +331,9 @@ impl App {
     }
 
     fn say_status(&mut self) {
-        let (Some(status), Some(graphics)) = (&mut self.status, &self.graphics) else {
-            return;
-        };
-        let run = &self.session.simulation;
-        let readings = &self.session.readings;
-        let grabbed = run.grabbed().map_or("-".into(), |i| i.to_string());
-        let place = |i| {
-            let p = run.position(i);
-            let [x, y, z] = [p.x as f32, p.y as f32, p.z as f32];
-            let ([x, y], _) = self.session.camera.project([x, y, z], graphics.aspect())?;
-            Some(format!(
-                "{:.0},{:.0}",
-                x * graphics.size().0 as f32,
-                y * graphics.size().1 as f32
-            ))
-        };
-        let hand = run.grabbed().and_then(place).unwrap_or("-".into());
-        let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} blown={} grabbed={grabbed} \
-             size={}x{} visible={} devices={}",
-            run.scene().name,
-            run.method().name,
-            run.setting(),
-            self.session.show.style,
-            run.windy(),
-            run.swinging(),
-            readings.paused,
-            readings.help,
-            run.blow_up().is_some(),
-            graphics.size().0,
-            graphics.size().1,
-            self.visible,
-            self.devices,
-        );
-        let now = Instant::now();
-        let quiet = status
-            .said
-            .is_some_and(|said| now.duration_since(said) < Duration::from_millis(200));
-        if quiet && state == status.state {
-            return;
+        if let (Some(status), Some(graphics)) = (&mut self.status, &self.graphics) {
+            status.say(&self.session, graphics, self.visible, self.devices);
         }
-        eprintln!(
-            "status {state} time={:.4} steps={} frames={} hand={hand} rate={:.1} factor={:.2} \
-             simulating={:.2} drawing={:.2} adapter={}",
-            run.time(),
-            run.steps(),
-            status.frames,
-            readings.rate,
-            readings.factor,
-            readings.simulating,
-            readings.drawing,
-            graphics.adapter(),
-        );
-        status.state = state;
-        status.said = Some(now);
     }
 }
 

@@ -118,4 +118,27 @@ mod tests {
         }
         assert_eq!(pick(&simulation, &camera, [0.02, 0.02], 1.6, 0.03), None);
     }
+
+    /// The same particle at the same place of every pane.
+    #[test]
+    fn panes_are_picked_in_alike() {
+        let simulation = cloth();
+        let camera = Camera::look_at([0.0, 3.0, 9.0], [0.0, 2.5, 0.0]);
+        let p = simulation.position(210);
+        for panes in 1..=4 {
+            for tile in crate::app::layout::tiles(panes, (1280, 720), 1.0) {
+                let aspect = tile.aspect();
+                let (at, _) = camera
+                    .project([p.x as f32, p.y as f32, p.z as f32], aspect)
+                    .unwrap();
+                let pointer = [
+                    tile.x as f32 + at[0] * tile.width as f32,
+                    tile.y as f32 + at[1] * tile.height as f32,
+                ];
+                assert!(tile.contains(pointer));
+                let hit = pick(&simulation, &camera, tile.place(pointer), aspect, 0.03);
+                assert_eq!(hit.map(|(i, _)| i), Some(210), "{tile:?}");
+            }
+        }
+    }
 }

@@ -1,42 +1,45 @@
-//! A run that keeps up with real time, and what the keys do to it. Knows no window.
+//! Runs that keep up with real time. Knows no window.
+
+mod acts;
 
 use std::time::{Duration, Instant};
 
-use a3_core::{Method, SceneEntry, Simulation, integrators, scenes};
-use a3_render::{Camera, Style};
+use a3_core::{Method, SceneEntry, Simulation, Vector3};
+use a3_render::Camera;
 
 use super::hud::Readings;
-use super::keys::Action;
+use super::pane::Pane;
+use super::reference::Reference;
 use crate::Failure;
 use crate::cli;
 use crate::show::{self, Show};
 
-/// Real time a frame may spend on steps. What does not fit is not caught up: the run is slower than real time then.
+/// Real time a frame may spend on steps. What does not fit is not caught up: all runs are slower than real time then.
 const BUDGET: Duration = Duration::from_millis(12);
+/// Real time a frame may spend on the reference, at least, and as a share of the time it stands for.
+const REFERENCE_BUDGET: (Duration, f64) = (Duration::from_millis(4), 0.1);
+/// Real time that a key may take, other than a frame.
+const KEY_BUDGET: Duration = Duration::from_millis(200);
 /// No frame owes more than this (s), however long it took: neither a slow one nor a laptop's sleep.
 const MOST_OWED: f64 = 0.1;
-/// An adaptive method is asked for no more at once (s).
-const PORTION: f64 = 1.0 / 240.0;
 /// How long a message stays.
 const MESSAGE_TIME: Duration = Duration::from_secs(4);
-/// Steps of the keys + and -, in each decade.
-const LADDER: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
 
-/// A run on the screen.
+/// One run on the screen, or several of one scene side by side.
 pub struct Session {
-    pub simulation: Simulation,
-    pub show: Show,
+    /// At least one.
+    pub panes: Vec<Pane>,
     pub camera: Camera,
     pub readings: Readings,
     /// The scene and grid asked for, to come back to.
     asked: cli::What,
     entry: &'static SceneEntry,
-    /// The solver asked for, also while a scene is shown that it cannot serve.
-    wanted: &'static Method,
-    /// Real time not yet simulated (s).
-    owed: f64,
+    /// Where there are several panes.
+    reference: Option<Reference>,
+    /// Simulated time that the panes have been brought to (s): each is less than a step behind.
+    clock: f64,
     message_ends: Option<Instant>,
-    /// At how many steps, and when, the state was last read.
+    /// At how many steps, and when, the states were last read.
     read: Option<(u64, Instant)>,
     meter: Meter,
 }
@@ -63,102 +66,170 @@ impl Meter {
 }
 
 impl Session {
-    /// The session that the command line asks for.
-    pub fn new(options: &cli::Window) -> Result<Self, Failure> {
-        let simulation = options.what.simulation(options.solver, options.step)?;
-        cli::check_particle(&simulation, options.springs_of)?;
+    /// These methods, each with its step (s) or in the solver's own, on one scene.
+    pub fn new(
+        what: &cli::What,
+        methods: &[(&'static Method, Option<f64>)],
+        look: &cli::Look,
+        springs_of: Option<usize>,
+    ) -> Result<Self, Failure> {
+        let pane = |(method, step): &(&'static Method, Option<f64>)| {
+            let simulation = what.simulation(method, *step)?;
+            cli::check_particle(&simulation, springs_of)?;
+            let show = Show::new(look.wireframe, springs_of);
+            Ok(Pane::new(simulation, show))
+        };
+        let panes: Vec<_> = methods.iter().map(pane).collect::<Result<_, Failure>>()?;
         Ok(Self {
-            camera: show::camera(&simulation),
-            show: Show::new(options.wireframe, options.springs_of),
+            camera: show::camera(&panes[0].simulation),
             readings: Readings {
-                paused: options.paused,
+                paused: look.paused,
                 ..Readings::default()
             },
-            asked: options.what.clone(),
-            entry: options.what.scene,
-            wanted: options.solver,
-            owed: 0.0,
+            asked: what.clone(),
+            entry: what.scene,
+            reference: Reference::new(&panes)?,
+            clock: 0.0,
             message_ends: None,
             read: None,
             meter: Meter::new(),
-            simulation,
+            panes,
         })
+    }
+
+    /// The first run: what is the same in all of them is asked of it.
+    pub fn first(&self) -> &Simulation {
+        &self.panes[0].simulation
     }
 
     /// Whether the next frame will look different by itself.
     pub fn animated(&self) -> bool {
-        !self.readings.paused && self.simulation.blow_up().is_none()
+        !self.readings.paused && self.panes.iter().any(Pane::alive)
     }
 
-    /// Goes on by `real` seconds of real time, in steps of exactly the size asked for.
+    /// Goes on by `real` seconds of real time, in steps of exactly the sizes asked for.
     pub fn tick(&mut self, real: f64) {
-        if !self.animated() {
-            self.owed = 0.0;
+        if self.animated() {
+            let real = real.min(MOST_OWED);
+            let (least, share) = REFERENCE_BUDGET;
+            let reference_budget = least.max(Duration::from_secs_f64(share * real));
+            self.advance(self.clock + real, BUDGET, reference_budget);
+        } else {
+            self.settle();
+        }
+    }
+
+    /// Brings all panes to a simulated time (s), together: in slices, so that none runs ahead when the budget of real
+    /// time is over before.
+    fn advance(&mut self, until: f64, budget: Duration, reference_budget: Duration) {
+        let (begun, start) = (Instant::now(), self.clock);
+        let steps = self.panes.iter().map(Pane::pace);
+        let mut slice = steps.fold(f64::INFINITY, f64::min);
+        while self.clock < until && begun.elapsed() < budget && self.panes.iter().any(Pane::alive) {
+            self.clock = (self.clock + slice).min(until);
+            for pane in &mut self.panes {
+                pane.take_due_steps(self.clock);
+            }
+            if begun.elapsed() < budget / 16 {
+                slice *= 2.0;
+            }
+        }
+        if let Some(reference) = &mut self.reference {
+            reference.follow(&mut self.panes, reference_budget);
+            self.readings.no_error = reference.stopped();
+        }
+        self.meter.simulated += self.clock - start;
+        self.meter.simulating += begun.elapsed();
+        for pane in &mut self.panes {
+            pane.follow();
+        }
+    }
+
+    /// Owes nothing: the time is that of the pane that is farthest.
+    fn settle(&mut self) {
+        let alive = self.panes.iter().filter(|pane| pane.alive());
+        let times = alive.map(|pane| pane.simulation.time());
+        self.clock = times.reduce(f64::max).unwrap_or(self.clock);
+    }
+
+    /// Goes on to `time` (s) exactly, however long that takes: without a window.
+    pub fn run_to(&mut self, time: f64) {
+        for pane in &mut self.panes {
+            pane.run_to(time);
+        }
+        if let Some(reference) = &mut self.reference {
+            reference.run_to(time, &mut self.panes);
+            self.readings.no_error = reference.stopped();
+        }
+        self.settle();
+    }
+
+    /// Every run that goes on, the reference's too.
+    fn runs(&mut self) -> impl Iterator<Item = &mut Simulation> {
+        let alive = self.panes.iter_mut().filter(|pane| pane.alive());
+        let reference = self.reference.as_mut().and_then(Reference::run);
+        alive.map(|pane| &mut pane.simulation).chain(reference)
+    }
+
+    /// In every run, one that is lost too: what is on stays on when it starts again.
+    fn do_to_all(&mut self, mut hand: impl FnMut(&mut Simulation)) {
+        for pane in &mut self.panes {
+            hand(&mut pane.simulation);
+        }
+        if let Some(reference) = &mut self.reference {
+            hand(reference.any_run());
+        }
+    }
+
+    /// Brings several panes to the same time exactly, by a shorter step where need be: what a hand does from then on, it
+    /// does to all of them at once.
+    fn align(&mut self) {
+        if self.panes.len() < 2 {
             return;
         }
-        if self.simulation.method().is_adaptive() {
-            return self.tick_adaptive(real);
+        self.settle();
+        let clock = self.clock;
+        if let Some(reference) = &mut self.reference
+            && reference.run().is_some()
+            && !reference.reach(clock, KEY_BUDGET)
+        {
+            reference.stop("the reference is too slow");
         }
-        let step = self.simulation.setting();
-        self.owed = (self.owed + real.min(MOST_OWED)).min(MOST_OWED.max(step));
-        let mut left = (self.owed / step + 1e-9).floor() as u64;
-        let begun = Instant::now();
-        let mut portion = 1;
-        while left > 0 && begun.elapsed() < BUDGET {
-            let count = portion.min(left);
+        for run in self.runs() {
             // A blow-up is on the screen from now on.
-            if self.simulation.take_steps(count).is_err() {
-                break;
-            }
-            left -= count;
-            self.owed -= count as f64 * step;
-            self.meter.simulated += count as f64 * step;
-            if begun.elapsed() < BUDGET / 16 {
-                portion *= 2;
-            }
-        }
-        if left > 0 {
-            self.owed = 0.0;
-        }
-        self.meter.simulating += begun.elapsed();
-        self.follow();
-    }
-
-    /// Goes on by `real` seconds: an adaptive method is read off where the frame wants it.
-    fn tick_adaptive(&mut self, real: f64) {
-        let begun = Instant::now();
-        let start = self.simulation.time();
-        let end = start + real.min(MOST_OWED);
-        // In portions, of which the budget may cut off the last ones.
-        while self.simulation.time() < end && begun.elapsed() < BUDGET {
-            let next = (self.simulation.time() + PORTION).min(end);
-            // A blow-up is on the screen from now on.
-            if self.simulation.advance_to(next).is_err() {
-                break;
-            }
-        }
-        self.meter.simulated += (self.simulation.time() - start).max(0.0);
-        self.meter.simulating += begun.elapsed();
-        self.follow();
-    }
-
-    /// The trail goes on, unless the run is lost: it would lead to where the particle no longer is.
-    fn follow(&mut self) {
-        if self.simulation.blow_up().is_none() {
-            self.show.follow(&self.simulation);
+            let _ = run.advance_to(clock);
         }
     }
 
-    /// Energy and stretch of the state as it is now: ten times a second while it moves, and when it stands still.
+    /// Takes hold of particle i in every run. Whether there is something to hold.
+    pub fn grab(&mut self, i: usize) -> bool {
+        self.align();
+        self.runs()
+            .fold(false, |held, run| held | run.grab(i).is_ok())
+    }
+
+    /// Pulls it to the same place (m) in every run.
+    pub fn pull(&mut self, target: Vector3<f64>) {
+        self.runs().for_each(|run| run.pull(target));
+    }
+
+    /// Lets go of it.
+    pub fn release(&mut self) {
+        if self.runs().any(|run| run.grabbed().is_some()) {
+            self.align();
+        }
+        self.do_to_all(Simulation::release);
+    }
+
+    /// The states as they are now: ten times a second while they move, and when they stand still.
     pub fn read_state(&mut self) {
-        let due = self.read.is_none_or(|(steps, when)| {
-            steps != self.simulation.steps()
-                && (!self.animated() || when.elapsed() > Duration::from_millis(100))
+        let steps = self.panes.iter().map(|pane| pane.simulation.steps()).sum();
+        let due = self.read.is_none_or(|(before, when)| {
+            before != steps && (!self.animated() || when.elapsed() > Duration::from_millis(100))
         });
         if due {
-            self.read = Some((self.simulation.steps(), Instant::now()));
-            self.readings.energy = self.simulation.energy().map(|energy| energy.total());
-            self.readings.stretch = self.simulation.largest_stretch();
+            self.read = Some((steps, Instant::now()));
+            self.panes.iter_mut().for_each(Pane::read_state);
         }
     }
 
@@ -181,11 +252,12 @@ impl Session {
         self.readings.factor = meter.simulated as f32 / elapsed;
         self.readings.simulating = meter.simulating.as_secs_f32() * 1e3 / frames;
         self.readings.drawing = meter.drawing.as_secs_f32() * 1e3 / frames;
+        self.panes.iter_mut().for_each(Pane::read_cost);
     }
 
     /// Owes nothing, and begins to measure anew: after a time in which nothing was simulated.
     pub fn stand(&mut self) {
-        self.owed = 0.0;
+        self.settle();
         self.read = None;
         self.meter = Meter::new();
     }
@@ -204,143 +276,22 @@ impl Session {
         }
         self.message_ends
     }
-
-    /// Does what a key asks for, except what needs the window. Whether the scene is another one now.
-    pub fn act(&mut self, action: Action) -> bool {
-        let simulation = &mut self.simulation;
-        match action {
-            Action::NextScene => {
-                self.next_scene();
-                return true;
-            }
-            Action::Reset => {
-                simulation.reset();
-                self.show.clear_trail();
-                self.stand();
-            }
-            Action::Swing if simulation.scene().swing.is_none() => {
-                self.say("There is nothing to swing here.");
-            }
-            Action::Swing => simulation.set_swinging(!simulation.swinging()),
-            Action::Wind if simulation.scene().wind.is_none() => self.say("There is no wind here."),
-            Action::Wind => simulation.set_wind(!simulation.windy()),
-            Action::Wireframe => {
-                self.show.style = match self.show.style {
-                    Style::Shaded => Style::Wireframe,
-                    Style::Wireframe => Style::Shaded,
-                };
-            }
-            Action::Pause => {
-                self.readings.paused = !self.readings.paused;
-                self.stand();
-            }
-            Action::Step => {
-                self.readings.paused = true;
-                // A blow-up is on the screen from now on.
-                let _ = self.simulation.take_steps(1);
-                self.follow();
-            }
-            Action::Solver(i) => match integrators::METHODS.get(i) {
-                Some(method) => self.set_method(method),
-                None => self.say(format!("There are {} solvers.", integrators::METHODS.len())),
-            },
-            Action::LongerStep => self.set_step(true),
-            Action::ShorterStep => self.set_step(false),
-            Action::Camera => self.camera = show::camera(&self.simulation),
-            Action::Help => self.readings.help = !self.readings.help,
-            Action::Picture | Action::Quit => {}
-        }
-        false
-    }
-
-    fn set_method(&mut self, method: &'static Method) {
-        let run = &self.simulation;
-        let setting = if method.is_adaptive() == run.method().is_adaptive() {
-            run.setting()
-        } else {
-            run.scene().default_setting(method)
-        };
-        match self.simulation.set_method(method, setting) {
-            Ok(()) => self.wanted = method,
-            Err(why) => self.say(why.to_string()),
-        }
-    }
-
-    fn set_step(&mut self, longer: bool) {
-        let range = cli::settings(self.simulation.method());
-        let next = next_step(self.simulation.setting(), longer);
-        let step = next.clamp(*range.start(), *range.end());
-        if let Err(why) = self.simulation.set_setting(step) {
-            self.say(why.to_string());
-        }
-    }
-
-    /// The next scene of the table, with the same solver if it can be, and the same step.
-    fn next_scene(&mut self) {
-        let here = scenes::SCENES
-            .iter()
-            .position(|entry| std::ptr::eq(entry, self.entry))
-            .unwrap_or(0);
-        let entry = &scenes::SCENES[(here + 1) % scenes::SCENES.len()];
-        let step = self.simulation.setting();
-        let grid = self
-            .asked
-            .grid
-            .filter(|_| std::ptr::eq(entry, self.asked.scene));
-        let start = |method| Simulation::new(entry.build(grid)?, method, step);
-        // Heun serves every scene.
-        let simulation = start(self.wanted).or_else(|why| {
-            self.say(format!("{why}: the explicit trapezoid steps in"));
-            start(integrators::find("trapezoid").unwrap_or(self.wanted))
-        });
-        match simulation {
-            Ok(simulation) => {
-                self.camera = show::camera(&simulation);
-                self.simulation = simulation;
-                self.entry = entry;
-                self.show.clear_trail();
-                self.show.springs_of = None;
-                self.stand();
-            }
-            Err(why) => self.say(why.to_string()),
-        }
-    }
-}
-
-/// The next longer or shorter step of the ladder (s).
-fn next_step(step: f64, longer: bool) -> f64 {
-    let decade = step.log10().floor() as i32;
-    let rungs = (decade - 1..=decade + 1).flat_map(|d| {
-        // Dividing by a power of ten is exact to the last digit where multiplying by its inverse is not.
-        LADDER.iter().map(move |rung| {
-            if d < 0 {
-                rung / 10f64.powi(-d)
-            } else {
-                rung * 10f64.powi(d)
-            }
-        })
-    });
-    let next = if longer {
-        rungs
-            .filter(|rung| *rung > step * (1.0 + 1e-9))
-            .reduce(f64::min)
-    } else {
-        rungs
-            .filter(|rung| *rung < step * (1.0 - 1e-9))
-            .reduce(f64::max)
-    };
-    next.unwrap_or(step)
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
+    use super::super::keys::Action;
     use super::*;
-    use crate::cli::{LARGEST_STEP, SMALLEST_STEP};
     use clap::Parser;
 
-    fn session(words: &[&str]) -> Session {
+    pub fn session(words: &[&str]) -> Session {
         let words = ["a3"].iter().chain(words);
-        match Session::new(&cli::Cli::try_parse_from(words).unwrap().window) {
+        let options = cli::Cli::try_parse_from(words).unwrap();
+        let session = match options.command {
+            Some(cli::Command::Compare(options)) => options.session(),
+            _ => options.window.session(),
+        };
+        match session {
             Ok(session) => session,
             Err(Failure::Usage(why) | Failure::Run(why) | Failure::Interrupted(why)) => {
                 panic!("{why}")
@@ -356,9 +307,9 @@ mod tests {
                 session.tick(1.0 / rate);
             }
             assert!(
-                (session.simulation.time() - 3.0).abs() < 0.011,
+                (session.panes[0].simulation.time() - 3.0).abs() < 0.011,
                 "{rate}: {}",
-                session.simulation.time()
+                session.panes[0].simulation.time()
             );
         }
     }
@@ -367,8 +318,8 @@ mod tests {
     fn a_frame_of_minutes_is_no_huge_step() {
         let mut session = session(&["t", "0.01", "--scene", "chain"]);
         session.tick(300.0);
-        assert!(session.simulation.time() <= MOST_OWED + 1e-9);
-        assert!(session.simulation.steps() <= 10);
+        assert!(session.panes[0].simulation.time() <= MOST_OWED + 1e-9);
+        assert!(session.panes[0].simulation.steps() <= 10);
     }
 
     #[test]
@@ -377,93 +328,157 @@ mod tests {
         for _ in 0..65 {
             session.tick(1.0 / 60.0);
         }
-        assert_eq!(session.simulation.steps(), 2);
+        assert_eq!(session.panes[0].simulation.steps(), 2);
     }
 
     #[test]
     fn paused_it_stands_still() {
         let mut session = session(&["t", "0.01", "--paused"]);
         session.tick(0.05);
-        assert_eq!(session.simulation.steps(), 0);
-        session.act(Action::Step);
-        assert_eq!(session.simulation.steps(), 1);
-        session.act(Action::Pause);
+        assert_eq!(session.panes[0].simulation.steps(), 0);
+        session.act(Action::Step, 0);
+        assert_eq!(session.panes[0].simulation.steps(), 1);
+        session.act(Action::Pause, 0);
         session.tick(0.05);
-        assert_eq!(session.simulation.steps(), 6);
-    }
-
-    #[test]
-    fn scenes_come_round_and_the_solver_comes_back() {
-        let mut session = session(&["v", "0.005"]);
-        let mut seen = vec![];
-        for _ in 0..scenes::SCENES.len() {
-            seen.push((
-                session.simulation.scene().name,
-                session.simulation.method().name,
-            ));
-            assert!(session.act(Action::NextScene));
-        }
-        let expected = ["cloth", "simple", "pendulum", "chain", "mit", "mit-sphere"];
-        assert_eq!(
-            seen.iter().map(|(scene, _)| *scene).collect::<Vec<_>>(),
-            expected
-        );
-        // Verlet cannot serve the circle, and serves the others again.
-        let solvers: Vec<_> = seen.iter().map(|(_, solver)| *solver).collect();
-        assert_eq!(
-            solvers,
-            [
-                "verlet",
-                "trapezoid",
-                "verlet",
-                "verlet",
-                "verlet",
-                "verlet"
-            ]
-        );
-        assert_eq!(session.simulation.scene().name, "cloth");
-    }
-
-    #[test]
-    fn the_grid_asked_for_comes_back() {
-        let mut session = session(&["t", "0.005", "--grid", "30x25"]);
-        for _ in 0..scenes::SCENES.len() {
-            session.act(Action::NextScene);
-        }
-        assert_eq!(session.simulation.particles(), 750);
+        assert_eq!(session.panes[0].simulation.steps(), 6);
     }
 
     #[test]
     fn a_lost_run_leaves_no_line_across_the_picture() {
         let mut session = session(&["e", "2", "--scene", "simple"]);
-        while session.simulation.blow_up().is_none() {
-            session.act(Action::Step);
+        while session.panes[0].simulation.blow_up().is_none() {
+            session.act(Action::Step, 0);
         }
         let radius = |p: &[f32; 3]| p[0].hypot(p[1]);
-        assert!(session.show.trail().all(|p| radius(p) <= 100.0));
-        let last = session.show.trail().last().copied();
-        session.act(Action::Step);
-        assert_eq!(session.show.trail().last().copied(), last);
+        assert!(session.panes[0].show.trail().all(|p| radius(p) <= 100.0));
+        let last = session.panes[0].show.trail().last().copied();
+        session.act(Action::Step, 0);
+        assert_eq!(session.panes[0].show.trail().last().copied(), last);
+    }
+
+    /// Several panes, brought to a time in frames of 60 Hz.
+    pub fn compared(words: &[&str], time: f64) -> Session {
+        let mut session = session(&[&["compare"], words].concat());
+        frames(&mut session, time);
+        session
+    }
+
+    fn frames(session: &mut Session, time: f64) {
+        for _ in 0..(60.0 * time).round() as u32 {
+            session.tick(1.0 / 60.0);
+        }
+    }
+
+    fn times(session: &Session) -> Vec<f64> {
+        let times = session.panes.iter().map(|pane| pane.simulation.time());
+        times.collect()
     }
 
     #[test]
-    fn steps_climb_the_ladder() {
-        assert_eq!(next_step(0.01, true), 0.012);
-        assert_eq!(next_step(0.01, false), 0.008);
-        assert_eq!(next_step(0.008, true), 0.01);
-        assert_eq!(next_step(0.0123, false), 0.012);
-        assert_eq!(next_step(8.0, true), 10.0);
-        let ends = |solver, end: f64, longer| {
-            let action = if longer {
-                Action::LongerStep
-            } else {
-                Action::ShorterStep
-            };
-            let mut session = session(&[solver, &end.to_string(), "--scene", "chain"]);
-            session.act(action);
-            session.simulation.setting() == end
+    fn panes_keep_the_same_time() {
+        let session = compared(&["t:0.03", "r:0.07", "v", "--scene", "chain"], 2.0);
+        for pane in &session.panes {
+            let (run, step) = (&pane.simulation, pane.pace());
+            assert!(
+                run.time() < session.clock + 1e-9 && run.time() > session.clock - step - 1e-9,
+                "{}",
+                run.time()
+            );
+            assert!(session.clock > 1.5 && (run.time() - step * run.steps() as f64).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn when_one_is_slow_all_are() {
+        let mut session = session(&["compare", "e:0.0000001", "r:0.0001"]);
+        for _ in 0..4 {
+            session.tick(0.1);
+        }
+        let times = times(&session);
+        assert!(times[0] > 0.0 && times[0] < 0.2, "{times:?}");
+        assert!(
+            times[1] <= times[0] + 1e-9 && times[0] - times[1] < 1.1e-4,
+            "{times:?}"
+        );
+    }
+
+    #[test]
+    fn the_error_is_the_distance_from_the_truth() {
+        let session = compared(&["e:0.05", "r:0.07", "--scene", "simple"], 5.0);
+        for (pane, bound) in session.panes.iter().zip([0.2, 1e-5]) {
+            let (run, error) = (&pane.simulation, pane.error.unwrap());
+            let (sin, cos) = run.time().sin_cos();
+            let truth = (run.position(0) - Vector3::new(cos, sin, 0.0)).norm();
+            assert!(
+                error < bound && (error - truth).abs() < 0.02 * truth,
+                "{error} {truth}"
+            );
+        }
+    }
+
+    /// All that a hand does to the panes, it does to the reference, at the same time.
+    #[test]
+    fn the_reference_gets_the_same_hands() {
+        let mut session = compared(&["r:0.013", "r:0.005", "--scene", "cloth"], 0.5);
+        let small = |session: &Session, what: &str| {
+            let errors: Vec<_> = session.panes.iter().map(|pane| pane.error).collect();
+            assert!(
+                errors.iter().all(|e| e.is_some_and(|e| e < 2e-3)),
+                "{what}: {errors:?}"
+            );
         };
-        assert!(ends("r", LARGEST_STEP, true) && ends("r", SMALLEST_STEP, false));
-        assert!(ends("a", 1.0, true) && ends("a", 1e-13, false));
+        small(&session, "still");
+        session.act(Action::Swing, 0);
+        let aligned = times(&session);
+        assert_eq!(aligned[0], aligned[1]);
+        frames(&mut session, 0.5);
+        small(&session, "swinging");
+        session.act(Action::Wind, 0);
+        frames(&mut session, 0.5);
+        small(&session, "in the wind");
+        assert!(session.grab(399));
+        for _ in 0..20 {
+            session.pull(Vector3::new(1.0, 1.0, 1.5));
+            frames(&mut session, 1.0 / 60.0);
+        }
+        let places = session
+            .panes
+            .iter()
+            .map(|pane| pane.simulation.position(399));
+        assert!(
+            places
+                .clone()
+                .all(|p| (p - Vector3::new(1.0, 1.0, 1.5)).norm() < 0.1)
+        );
+        session.release();
+        frames(&mut session, 0.2);
+        // Each was pulled from its own place in its own time.
+        assert!(session.panes.iter().all(|pane| pane.error.unwrap() < 0.1));
+        session.act(Action::Reset, 0);
+        assert_eq!(times(&session), [0.0, 0.0]);
+        frames(&mut session, 0.5);
+        small(&session, "again");
+    }
+
+    #[test]
+    fn one_that_is_lost_leaves_the_others_alone() {
+        let mut session = compared(&["e:0.05", "r:0.01", "--scene", "mit"], 2.0);
+        assert!(!session.panes[0].alive() && session.panes[0].error.is_none());
+        assert!(session.animated() && session.panes[1].error.unwrap() < 1e-3);
+        assert!((times(&session)[1] - session.clock).abs() < 0.011);
+        session.act(Action::Reset, 0);
+        assert!(session.panes[0].alive());
+    }
+
+    #[test]
+    fn without_a_window_all_end_at_the_same_time() {
+        let mut session = session(&["compare", "e:0.03", "r:0.07", "--scene", "simple"]);
+        session.run_to(1.0);
+        assert_eq!(times(&session), [1.0, 1.0]);
+        let errors: Vec<_> = session.panes.iter().map(|p| p.error.unwrap()).collect();
+        assert!(errors[0] > 0.01 && errors[1] < 1e-5, "{errors:?}");
+        let cost = session.panes[0].cost.unwrap();
+        assert_eq!(cost.evaluations, 34.0);
+        assert!(cost.computing > 0.0);
     }
 }

@@ -1,0 +1,128 @@
+//! Where the panes are.
+
+use a3_render::Tile;
+
+/// Between panes (points).
+const GAP: f32 = 3.0;
+
+/// Height of the bar over several panes, for a window of this width (points): in a narrow one it has two lines.
+pub fn bar(width: f32) -> f32 {
+    if width < 640.0 { 48.0 } else { 30.0 }
+}
+
+/// The parts of a target of `size` (px), `scale` pixels per point, for this many panes: one is all of it; several
+/// stand below the bar, in a row, in a column or in two rows of two, whichever makes them most like squares.
+pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
+    if panes < 2 {
+        return vec![Tile::whole(size)];
+    }
+    let gap = (GAP * scale).round().max(1.0) as u32;
+    let bar = (bar(size.0 as f32 / scale) * scale).round() as u32;
+    // In the smallest of windows the picture counts.
+    let bar = (bar + gap).min(size.1 / 3);
+    let room = (size.0, size.1 - bar);
+    let part = |side: u32, count: u32| (side.saturating_sub(gap * (count - 1)) / count).max(1);
+    let count = panes as u32;
+    let grids = [(count, 1), (1, count), (2, 2)];
+    let lengthiness = |(columns, rows): &(u32, u32)| {
+        (part(room.0, *columns) as f32 / part(room.1, *rows) as f32)
+            .ln()
+            .abs()
+    };
+    let (columns, rows) = grids
+        .into_iter()
+        .filter(|(columns, rows)| columns * rows == count)
+        .min_by(|a, b| lengthiness(a).total_cmp(&lengthiness(b)))
+        .unwrap_or((count, 1));
+    let span = |k: u32, side: u32, count: u32| {
+        let (from, to) = (k * (side + gap) / count, (k + 1) * (side + gap) / count);
+        // Inside the target even if that is smaller than the gaps.
+        let from = from.min(side - 1);
+        (from, to.saturating_sub(from + gap).clamp(1, side - from))
+    };
+    (0..count)
+        .map(|k| {
+            let (x, width) = span(k % columns, room.0, columns);
+            let (y, height) = span(k / columns, room.1, rows);
+            Tile {
+                x,
+                y: bar + y,
+                width,
+                height,
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corners(panes: usize, size: (u32, u32)) -> Vec<(bool, bool)> {
+        let tiles = tiles(panes, size, 1.0);
+        let first = tiles[0];
+        tiles
+            .iter()
+            .map(|t| (t.x > first.x, t.y > first.y))
+            .collect()
+    }
+
+    #[test]
+    fn rows_columns_and_squares() {
+        let (right, below) = ((true, false), (false, true));
+        assert_eq!(tiles(1, (640, 480), 1.0), [Tile::whole((640, 480))]);
+        assert_eq!(corners(2, (1280, 720)), [(false, false), right]);
+        assert_eq!(corners(2, (260, 860)), [(false, false), below]);
+        assert_eq!(corners(3, (1280, 720)), [(false, false), right, right]);
+        assert_eq!(corners(3, (260, 860)), [(false, false), below, below]);
+        assert_eq!(
+            corners(4, (1280, 720)),
+            [(false, false), right, below, (true, true)]
+        );
+        assert_eq!(
+            corners(4, (260, 860)),
+            [(false, false), below, below, below]
+        );
+    }
+
+    #[test]
+    fn tiles_lie_inside_fill_it_and_do_not_overlap() {
+        for panes in 2..=4 {
+            for size in [
+                (1, 1),
+                (2, 9),
+                (64, 48),
+                (333, 777),
+                (1280, 720),
+                (16384, 3),
+            ] {
+                for scale in [0.5, 1.0, 2.75] {
+                    let tiles = tiles(panes, size, scale);
+                    assert_eq!(tiles.len(), panes);
+                    for t in &tiles {
+                        assert!(t.width > 0 && t.height > 0, "{t:?}");
+                        assert!(
+                            t.x + t.width <= size.0 && t.y + t.height <= size.1,
+                            "{t:?} in {size:?}"
+                        );
+                    }
+                    let end = |t: &Tile| (t.x + t.width, t.y + t.height);
+                    assert_eq!(tiles.iter().map(end).max(), Some(size));
+                    if size.0.min(size.1) > 40 {
+                        for (k, a) in tiles.iter().enumerate() {
+                            for b in &tiles[..k] {
+                                assert!(
+                                    end(a).0 < b.x
+                                        || end(b).0 < a.x
+                                        || end(a).1 < b.y
+                                        || end(b).1 < a.y,
+                                    "a gap between {a:?} and {b:?}"
+                                );
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

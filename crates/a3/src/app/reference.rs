@@ -1,0 +1,190 @@
+//! A hidden run that the errors are taken from.
+
+use std::time::{Duration, Instant};
+
+use a3_core::{Method, Simulation, integrators};
+
+use super::pane::{PORTION, Pane};
+use crate::{Failure, progress};
+
+/// Frames in a row that it may be late before it is stopped.
+const PATIENCE: u32 = 30;
+
+/// A run of the panes' scene that is much more exact than they are, and gets the same hands.
+pub struct Reference {
+    simulation: Simulation,
+    /// Frames in a row that it did not keep up.
+    late: u32,
+    /// Why it was stopped, if it was.
+    stopped: Option<&'static str>,
+}
+
+/// The reference's method and its tolerance: tight, and tighter still beside adaptive panes.
+fn choose(panes: &[Pane]) -> (&'static Method, f64) {
+    let method = integrators::find("dop853").unwrap_or(&integrators::METHODS[0]);
+    let adaptive = panes
+        .iter()
+        .map(|pane| &pane.simulation)
+        .filter(|run| run.method().is_adaptive());
+    let tightest = adaptive.map(Simulation::setting).fold(1e-6, f64::min);
+    (method, (1e-4 * tightest).max(1e-13))
+}
+
+impl Reference {
+    /// For panes at the beginning of their scene.
+    pub fn new(panes: &[Pane]) -> Result<Option<Self>, Failure> {
+        let [first, _, ..] = panes else {
+            return Ok(None);
+        };
+        let (method, tolerance) = choose(panes);
+        let run = &first.simulation;
+        let mut simulation =
+            Simulation::new(run.scene().clone(), method, tolerance).map_err(Failure::run)?;
+        simulation.set_wind(run.windy());
+        simulation.set_swinging(run.swinging());
+        Ok(Some(Self {
+            simulation,
+            late: 0,
+            stopped: None,
+        }))
+    }
+
+    /// The panes have other methods or steps.
+    pub fn adapt(&mut self, panes: &[Pane]) {
+        let (method, tolerance) = choose(panes);
+        // It serves every scene, so it is not refused.
+        if self.simulation.setting() != tolerance {
+            let _ = self.simulation.set_method(method, tolerance);
+        }
+    }
+
+    /// The run, for what a hand does, unless it was stopped.
+    pub fn run(&mut self) -> Option<&mut Simulation> {
+        Some(&mut self.simulation).filter(|_| self.stopped.is_none())
+    }
+
+    /// The run, stopped or not.
+    pub fn any_run(&mut self) -> &mut Simulation {
+        &mut self.simulation
+    }
+
+    /// Why there are no errors, if there are none.
+    pub fn stopped(&self) -> Option<&'static str> {
+        self.stopped
+    }
+
+    /// Back to the beginning.
+    pub fn reset(&mut self) {
+        self.simulation.reset();
+        (self.late, self.stopped) = (0, None);
+    }
+
+    /// Goes on to `time` (s) exactly, within `budget` of real time. Whether it got there.
+    pub fn reach(&mut self, time: f64, budget: Duration) -> bool {
+        let begun = Instant::now();
+        let run = &mut self.simulation;
+        let mut result = Ok(());
+        while result.is_ok() && run.time() < time {
+            if begun.elapsed() >= budget {
+                return false;
+            }
+            result = run.advance_to((run.time() + PORTION).min(time));
+        }
+        if result.is_err() {
+            self.stop("the reference blew up");
+        }
+        self.stopped.is_none()
+    }
+
+    /// No errors from here on.
+    pub fn stop(&mut self, why: &'static str) {
+        self.stopped = Some(why);
+    }
+
+    /// Catches up with the panes one after the other, and takes their errors. Within `budget` of real time: what does
+    /// not fit is left for the next frame, and what never fits is stopped.
+    pub fn follow(&mut self, panes: &mut [Pane], budget: Duration) {
+        if self.stopped.is_none() {
+            let begun = Instant::now();
+            let mut runs: Vec<_> = panes.iter_mut().filter(|pane| pane.alive()).collect();
+            runs.sort_by(|a, b| a.simulation.time().total_cmp(&b.simulation.time()));
+            let mut kept_up = true;
+            for pane in runs {
+                let time = pane.simulation.time();
+                // One with long steps may stand where the reference has been before: its error is known.
+                if time < self.simulation.time() - 1e-9 {
+                    continue;
+                }
+                kept_up = self.reach(time, budget.saturating_sub(begun.elapsed()));
+                if !kept_up {
+                    break;
+                }
+                pane.error = Some(distance(&pane.simulation, &self.simulation));
+            }
+            self.late = if kept_up { 0 } else { self.late + 1 };
+            if self.late > PATIENCE {
+                self.stop("the reference is too slow");
+            }
+        }
+        for pane in panes {
+            if self.stopped.is_some() || !pane.alive() {
+                pane.error = None;
+            }
+        }
+    }
+
+    /// Goes on to `time` (s) exactly, however long that takes, and takes the errors of the panes that are there.
+    pub fn run_to(&mut self, time: f64, panes: &mut [Pane]) {
+        // A blow-up is found by `reach`.
+        let _ = progress::advance(&mut self.simulation, time, |_| {});
+        self.follow(panes, Duration::MAX);
+    }
+}
+
+/// Root mean square of the distances between the particles of two runs (m).
+fn distance(a: &Simulation, b: &Simulation) -> f64 {
+    (a.positions() - b.positions()).norm() / (a.particles() as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::show::Show;
+    use a3_core::scenes;
+
+    #[test]
+    fn one_that_never_keeps_up_is_stopped_until_the_next_reset() {
+        let scene = scenes::find("chain").unwrap().build(None).unwrap();
+        let pane = |method: &str| {
+            let method = integrators::find(method).unwrap();
+            let simulation = Simulation::new(scene.clone(), method, 0.01).unwrap();
+            Pane::new(simulation, Show::new(false, None))
+        };
+        assert!(Reference::new(&[pane("t")]).ok().unwrap().is_none());
+        let go = |panes: &mut [Pane], time| {
+            for pane in panes {
+                pane.take_due_steps(time);
+            }
+        };
+        let mut panes = [pane("t"), pane("r")];
+        let mut reference = Reference::new(&panes).ok().flatten().unwrap();
+        // A frame that is late is made up for.
+        go(&mut panes, 0.5);
+        reference.follow(&mut panes, Duration::ZERO);
+        assert_eq!(panes[0].error, None);
+        reference.follow(&mut panes, Duration::MAX);
+        assert!(panes[0].error.unwrap() > panes[1].error.unwrap());
+        for late in 1..=PATIENCE + 1 {
+            go(&mut panes, 0.5 + 0.01 * f64::from(late));
+            assert_eq!(reference.stopped(), None);
+            reference.follow(&mut panes, Duration::ZERO);
+        }
+        assert!(reference.stopped().unwrap().contains("too slow"));
+        assert_eq!(panes[0].error, None);
+        panes.iter_mut().for_each(Pane::reset);
+        reference.reset();
+        go(&mut panes, 0.5);
+        reference.follow(&mut panes, Duration::MAX);
+        assert!(panes[0].error.is_some() && reference.stopped().is_none());
+    }
+}

@@ -1,0 +1,274 @@
+//! What the keys do to a session.
+
+use a3_core::{Error, Method, Simulation, integrators, scenes};
+use a3_render::Style;
+
+use super::super::keys::Action;
+use super::super::pane::{PORTION, Pane};
+use super::super::reference::Reference;
+use super::{KEY_BUDGET, Session};
+use crate::{cli, show};
+
+/// Steps of the keys + and -, in each decade.
+const LADDER: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
+
+impl Session {
+    /// Does what a key asks for, except what needs the window. A solver is for the pane `at`, all else for every pane.
+    /// Whether the scene is another one now.
+    pub fn act(&mut self, action: Action, at: usize) -> bool {
+        match action {
+            Action::NextScene => {
+                self.next_scene();
+                return true;
+            }
+            Action::Reset => {
+                self.panes.iter_mut().for_each(Pane::reset);
+                if let Some(reference) = &mut self.reference {
+                    reference.reset();
+                    self.readings.no_error = None;
+                }
+                self.stand();
+            }
+            Action::Swing if self.first().scene().swing.is_none() => {
+                self.say("There is nothing to swing here.");
+            }
+            Action::Swing => {
+                let on = !self.first().swinging();
+                self.align();
+                self.do_to_all(|run| run.set_swinging(on));
+            }
+            Action::Wind if self.first().scene().wind.is_none() => {
+                self.say("There is no wind here.");
+            }
+            Action::Wind => {
+                let on = !self.first().windy();
+                self.align();
+                self.do_to_all(|run| run.set_wind(on));
+            }
+            Action::Wireframe => {
+                for pane in &mut self.panes {
+                    pane.show.style = match pane.show.style {
+                        Style::Shaded => Style::Wireframe,
+                        Style::Wireframe => Style::Shaded,
+                    };
+                }
+            }
+            Action::Pause => {
+                self.readings.paused = !self.readings.paused;
+                self.stand();
+            }
+            Action::Step => {
+                self.readings.paused = true;
+                self.settle();
+                // The longest, and as many of the shorter ones as fit.
+                let alive = self.panes.iter().filter(|pane| pane.alive());
+                let step = alive.map(|pane| pane.simulation.step_size().unwrap_or(PORTION));
+                let step = step.fold(0.0, f64::max);
+                self.advance(self.clock + step, KEY_BUDGET, KEY_BUDGET);
+            }
+            Action::Solver(i) => match integrators::METHODS.get(i) {
+                Some(method) => self.set_method(method, at),
+                None => self.say(format!("There are {} solvers.", integrators::METHODS.len())),
+            },
+            Action::LongerStep => self.set_steps(true),
+            Action::ShorterStep => self.set_steps(false),
+            Action::Camera => self.camera = show::camera(self.first()),
+            Action::Help => self.readings.help = !self.readings.help,
+            Action::Picture | Action::Quit => {}
+        }
+        false
+    }
+
+    fn set_method(&mut self, method: &'static Method, at: usize) {
+        let at = at.min(self.panes.len() - 1);
+        let pane = &mut self.panes[at];
+        let run = &pane.simulation;
+        let setting = if method.is_adaptive() == run.method().is_adaptive() {
+            run.setting()
+        } else {
+            run.scene().default_setting(method)
+        };
+        match pane.simulation.set_method(method, setting) {
+            Ok(()) => {
+                pane.wanted = method;
+                pane.count();
+            }
+            Err(why) => self.say(why.to_string()),
+        }
+        self.adapt();
+    }
+
+    fn set_steps(&mut self, longer: bool) {
+        for k in 0..self.panes.len() {
+            let pane = &mut self.panes[k];
+            let range = cli::settings(pane.simulation.method());
+            let next = next_step(pane.simulation.setting(), longer);
+            let setting = next.clamp(*range.start(), *range.end());
+            if let Err(why) = pane.simulation.set_setting(setting) {
+                self.say(why.to_string());
+            } else {
+                pane.count();
+            }
+        }
+        self.adapt();
+    }
+
+    fn adapt(&mut self) {
+        if let Some(reference) = &mut self.reference {
+            reference.adapt(&self.panes);
+        }
+    }
+
+    /// The next scene of the table, with the same solvers if it can be, and the same steps.
+    fn next_scene(&mut self) {
+        let here = scenes::SCENES
+            .iter()
+            .position(|entry| std::ptr::eq(entry, self.entry))
+            .unwrap_or(0);
+        let entry = &scenes::SCENES[(here + 1) % scenes::SCENES.len()];
+        let grid = self
+            .asked
+            .grid
+            .filter(|_| std::ptr::eq(entry, self.asked.scene));
+        let mut said = None;
+        let mut start = |pane: &Pane| {
+            let start =
+                |method| Simulation::new(entry.build(grid)?, method, pane.simulation.setting());
+            // Heun serves every scene.
+            start(pane.wanted).or_else(|why| {
+                said = Some(format!("{why}: the explicit trapezoid steps in"));
+                start(integrators::find("trapezoid").unwrap_or(pane.wanted))
+            })
+        };
+        let simulations: Result<Vec<_>, Error> = self.panes.iter().map(&mut start).collect();
+        match simulations {
+            Ok(simulations) => {
+                self.camera = show::camera(&simulations[0]);
+                for (pane, simulation) in self.panes.iter_mut().zip(simulations) {
+                    pane.set_simulation(simulation);
+                }
+                // What builds a pane builds the reference.
+                self.reference = Reference::new(&self.panes).ok().flatten();
+                self.readings.no_error = None;
+                self.entry = entry;
+                self.stand();
+            }
+            Err(why) => said = Some(why.to_string()),
+        }
+        if let Some(said) = said {
+            self.say(said);
+        }
+    }
+}
+
+/// The next longer or shorter step of the ladder (s).
+fn next_step(step: f64, longer: bool) -> f64 {
+    let decade = step.log10().floor() as i32;
+    let rungs = (decade - 1..=decade + 1).flat_map(|d| {
+        // Dividing by a power of ten is exact to the last digit where multiplying by its inverse is not.
+        LADDER.iter().map(move |rung| {
+            if d < 0 {
+                rung / 10f64.powi(-d)
+            } else {
+                rung * 10f64.powi(d)
+            }
+        })
+    });
+    let next = if longer {
+        rungs
+            .filter(|rung| *rung > step * (1.0 + 1e-9))
+            .reduce(f64::min)
+    } else {
+        rungs
+            .filter(|rung| *rung < step * (1.0 - 1e-9))
+            .reduce(f64::max)
+    };
+    next.unwrap_or(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{compared, session};
+    use super::*;
+    use crate::cli::{LARGEST_STEP, SMALLEST_STEP};
+
+    #[test]
+    fn scenes_come_round_and_the_solver_comes_back() {
+        let mut session = session(&["v", "0.005"]);
+        let mut seen = vec![];
+        for _ in 0..scenes::SCENES.len() {
+            seen.push((
+                session.panes[0].simulation.scene().name,
+                session.panes[0].simulation.method().name,
+            ));
+            assert!(session.act(Action::NextScene, 0));
+        }
+        let expected = ["cloth", "simple", "pendulum", "chain", "mit", "mit-sphere"];
+        assert_eq!(
+            seen.iter().map(|(scene, _)| *scene).collect::<Vec<_>>(),
+            expected
+        );
+        // Verlet cannot serve the circle, and serves the others again.
+        let solvers: Vec<_> = seen.iter().map(|(_, solver)| *solver).collect();
+        assert_eq!(
+            solvers,
+            [
+                "verlet",
+                "trapezoid",
+                "verlet",
+                "verlet",
+                "verlet",
+                "verlet"
+            ]
+        );
+        assert_eq!(session.panes[0].simulation.scene().name, "cloth");
+    }
+
+    #[test]
+    fn the_grid_asked_for_comes_back() {
+        let mut session = session(&["t", "0.005", "--grid", "30x25"]);
+        for _ in 0..scenes::SCENES.len() {
+            session.act(Action::NextScene, 0);
+        }
+        assert_eq!(session.panes[0].simulation.particles(), 750);
+    }
+
+    #[test]
+    fn steps_climb_the_ladder() {
+        assert_eq!(next_step(0.01, true), 0.012);
+        assert_eq!(next_step(0.01, false), 0.008);
+        assert_eq!(next_step(0.008, true), 0.01);
+        assert_eq!(next_step(0.0123, false), 0.012);
+        assert_eq!(next_step(8.0, true), 10.0);
+        let ends = |solver, end: f64, longer| {
+            let mut session = session(&[solver, &end.to_string(), "--scene", "chain"]);
+            let action = if longer {
+                Action::LongerStep
+            } else {
+                Action::ShorterStep
+            };
+            session.act(action, 0);
+            session.first().setting() == end
+        };
+        assert!(ends("r", LARGEST_STEP, true) && ends("r", SMALLEST_STEP, false));
+        assert!(ends("a", 1.0, true) && ends("a", 1e-13, false));
+    }
+
+    #[test]
+    fn a_digit_is_for_one_pane_and_plus_for_all() {
+        let mut session = compared(&["e:0.05", "r:0.01", "--scene", "chain"], 0.1);
+        session.act(Action::Solver(1), 1);
+        session.act(Action::LongerStep, 1);
+        let methods: Vec<_> = session
+            .panes
+            .iter()
+            .map(|pane| (pane.simulation.method().name, pane.simulation.setting()))
+            .collect();
+        assert_eq!(methods, [("euler", 0.06), ("trapezoid", 0.012)]);
+        // One step of the longest.
+        session.act(Action::Reset, 0);
+        session.act(Action::Step, 0);
+        let steps: Vec<_> = session.panes.iter().map(|p| p.simulation.steps()).collect();
+        assert_eq!(steps, [1, 5]);
+    }
+}

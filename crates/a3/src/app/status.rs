@@ -1,0 +1,93 @@
+//! For tests: what is on the screen, as lines of text on stderr.
+
+use std::time::{Duration, Instant};
+
+use a3_render::Tile;
+
+use super::graphics::Graphics;
+use super::pane::Pane;
+use super::session::Session;
+
+/// What was said, and when.
+#[derive(Default)]
+pub struct Status {
+    pub frames: u64,
+    state: String,
+    said: Option<Instant>,
+}
+
+impl Status {
+    /// Says it, unless it was said just now.
+    pub fn say(&mut self, session: &Session, graphics: &Graphics, visible: bool, devices: u32) {
+        let run = session.first();
+        let readings = &session.readings;
+        let panes = &session.panes;
+        let grabbed = run.grabbed().map_or("-".into(), |i| i.to_string());
+        // Where the grabbed particle is, in the pane and in the window.
+        let place = |pane: &Pane, tile: Tile| {
+            let p = pane.simulation.position(pane.simulation.grabbed()?);
+            let point = [p.x as f32, p.y as f32, p.z as f32];
+            let ([x, y], _) = session.camera.project(point, tile.aspect())?;
+            let (x, y) = (x * tile.width as f32, y * tile.height as f32);
+            Some(format!("{:.0},{:.0}", tile.x as f32 + x, tile.y as f32 + y))
+        };
+        let hands: Vec<_> = panes
+            .iter()
+            .zip(graphics.tiles(panes.len()))
+            .map(|(pane, tile)| place(pane, tile).unwrap_or("-".into()))
+            .collect();
+        let each = |value: &dyn Fn(&Pane) -> String| {
+            let values: Vec<_> = panes.iter().map(value).collect();
+            values.join(",")
+        };
+        let state = format!(
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} blown={} grabbed={grabbed} \
+             size={}x{} visible={} devices={}",
+            run.scene().name,
+            run.method().name,
+            run.setting(),
+            panes[0].show.style,
+            run.windy(),
+            run.swinging(),
+            readings.paused,
+            readings.help,
+            run.blow_up().is_some(),
+            graphics.size().0,
+            graphics.size().1,
+            visible,
+            devices,
+        );
+        let now = Instant::now();
+        let quiet = self
+            .said
+            .is_some_and(|said| now.duration_since(said) < Duration::from_millis(200));
+        if quiet && state == self.state {
+            return;
+        }
+        eprintln!(
+            "status {state} time={:.4} steps={} frames={} hand={} rate={:.1} factor={:.2} \
+             simulating={:.2} drawing={:.2} adapter={} panes={} hands={} solvers={} step_sizes={} times={} lost={} \
+             errors={}",
+            run.time(),
+            run.steps(),
+            self.frames,
+            hands[0],
+            readings.rate,
+            readings.factor,
+            readings.simulating,
+            readings.drawing,
+            graphics.adapter(),
+            panes.len(),
+            hands.join(";"),
+            each(&|pane| pane.simulation.method().name.into()),
+            each(&|pane| pane.simulation.setting().to_string()),
+            each(&|pane| format!("{:.4}", pane.simulation.time())),
+            each(&|pane| (!pane.alive()).to_string()),
+            each(&|pane| pane
+                .error
+                .map_or("-".into(), |error| format!("{error:.3e}"))),
+        );
+        self.state = state;
+        self.said = Some(now);
+    }
+}

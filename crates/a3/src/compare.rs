@@ -1,0 +1,76 @@
+//! `a3 compare`: several methods side by side, in a window or in a picture.
+
+use std::path::Path;
+
+use a3_render::{Gpu, Offscreen};
+
+use crate::app::{self, Pane, Session, digits};
+use crate::cli::Compare;
+use crate::{Failure, output, render};
+
+/// Of a picture whose size is not asked for (px).
+pub const SIZE: (u32, u32) = (1280, 720);
+
+pub fn run(options: &Compare) -> Result<(), Failure> {
+    let mut session = options.session()?;
+    let (Some(path), Some(until)) = (&options.output, options.until) else {
+        return app::open(session, options.look.status);
+    };
+    if options.look.paused {
+        return Err(Failure::usage(
+            "a picture cannot begin paused: leave out --paused, or --output",
+        ));
+    }
+    output::check(path, &["png"])?;
+    let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
+    // Before the work, not after: the device may not have pictures of this size.
+    let offscreen = Offscreen::new(&gpu, options.size.unwrap_or(SIZE)).map_err(Failure::usage)?;
+    session.run_to(until);
+    output::say(&table(&session))?;
+    save(&gpu, &offscreen, &mut session, path)
+}
+
+/// A line a method: what the picture says.
+pub fn table(session: &Session) -> String {
+    let head =
+        "  solver        setting   time [s]    error [m]   evaluations/s   computing [ms/s]\n";
+    let lines = session.panes.iter().map(line);
+    let why = session.readings.no_error;
+    let why = why.map(|why| format!("no errors: {why}\n"));
+    [head.to_owned()]
+        .into_iter()
+        .chain(lines)
+        .chain(why)
+        .collect()
+}
+
+fn line(pane: &Pane) -> String {
+    let run = &pane.simulation;
+    let start = format!("  {:<10}   {:>8}", run.method().name, run.setting());
+    if let Some(lost) = run.blow_up() {
+        return format!("{start}   {lost}\n");
+    }
+    let number = |number: Option<f64>| number.map_or("-".into(), digits);
+    format!(
+        "{start}   {:>8.2}   {:>10}   {:>13}   {:>16}\n",
+        run.time(),
+        number(pane.error),
+        number(pane.cost.map(|cost| cost.evaluations)),
+        number(pane.cost.map(|cost| cost.computing)),
+    )
+}
+
+/// The session as it is now, as a picture in a file.
+pub fn save(
+    gpu: &Gpu,
+    offscreen: &Offscreen,
+    session: &mut Session,
+    path: &Path,
+) -> Result<(), Failure> {
+    let size = offscreen.size();
+    // Text that shrinks with the picture could not be read.
+    let scale = render::scale(size).max(1.0);
+    let (panes, readings) = (&mut session.panes, &session.readings);
+    let pixels = render::draw(gpu, offscreen, panes, session.camera, scale, readings)?;
+    output::write(path, &output::png(&pixels, size)?)
+}

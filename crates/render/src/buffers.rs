@@ -1,0 +1,83 @@
+//! Buffers on the GPU.
+
+use bytemuck::Pod;
+use wgpu::BufferUsages;
+
+use crate::gpu::Gpu;
+use crate::shapes::sphere;
+
+/// Triangles that are drawn many times.
+pub(crate) struct Shape {
+    pub(crate) corners: wgpu::Buffer,
+    pub(crate) triangles: wgpu::Buffer,
+    pub(crate) indices: u32,
+}
+
+/// A vertex buffer that grows.
+pub(crate) struct Instances {
+    label: &'static str,
+    pub(crate) buffer: wgpu::Buffer,
+}
+
+impl Shape {
+    pub(crate) fn sphere(gpu: &Gpu, rings: u16) -> Self {
+        let (corners, triangles) = sphere(rings);
+        Self {
+            corners: filled(
+                gpu,
+                "sphere",
+                BufferUsages::VERTEX,
+                bytemuck::cast_slice(&corners),
+            ),
+            triangles: filled(
+                gpu,
+                "sphere",
+                BufferUsages::INDEX,
+                bytemuck::cast_slice(&triangles),
+            ),
+            indices: triangles.len() as u32,
+        }
+    }
+}
+
+impl Instances {
+    pub(crate) fn new(device: &wgpu::Device, label: &'static str) -> Self {
+        Self {
+            label,
+            buffer: buffer(device, label, BufferUsages::VERTEX, 4096),
+        }
+    }
+
+    pub(crate) fn write<T: Pod>(&mut self, gpu: &Gpu, instances: &[T]) {
+        let bytes: &[u8] = bytemuck::cast_slice(instances);
+        if bytes.len() as u64 > self.buffer.size() {
+            let size = bytes.len().next_power_of_two();
+            self.buffer = buffer(&gpu.device, self.label, BufferUsages::VERTEX, size);
+        }
+        gpu.queue.write_buffer(&self.buffer, 0, bytes);
+    }
+}
+
+/// An empty buffer of at least 16 bytes: a binding may not be empty.
+pub(crate) fn buffer(
+    device: &wgpu::Device,
+    label: &str,
+    usage: BufferUsages,
+    bytes: usize,
+) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes.max(16) as u64,
+        usage: usage | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+pub(crate) fn filled(gpu: &Gpu, label: &str, usage: BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
+    // Writes come in multiples of four bytes.
+    let mut bytes = bytes.to_vec();
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    let buffer = buffer(&gpu.device, label, usage, bytes.len());
+    gpu.queue.write_buffer(&buffer, 0, &bytes);
+    buffer
+}

@@ -1,0 +1,131 @@
+//! One of the pictures in a target: where it is, and the buffers of what is in it.
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::BufferUsages;
+
+use crate::buffers::{Instances, buffer};
+use crate::gpu::Gpu;
+use crate::picture::{Picture, Style, Tile};
+use crate::renderer::Mesh;
+
+/// Towards the light: over the left shoulder, high.
+const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
+/// How far the floor is seen (m), at least, and in distances of the eye from what it looks at.
+const FLOOR_REACH: (f32, f32) = (14.0, 1.4);
+/// Balls from this radius on (m) are drawn with more triangles.
+const LARGE: f32 = 0.25;
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Globals {
+    view_projection: [[f32; 4]; 4],
+    eye: [f32; 4],
+    light: [f32; 4],
+    tile: [f32; 4],
+    floor: [f32; 4],
+    depth: [f32; 4],
+}
+
+/// The buffers of a picture.
+pub(crate) struct View {
+    globals: wgpu::Buffer,
+    points: wgpu::Buffer,
+    pub(crate) bind: wgpu::BindGroup,
+    pub(crate) balls: Instances,
+    pub(crate) lines: Instances,
+    pub(crate) frame: Frame,
+}
+
+/// What of the last prepared picture the draw calls depend on.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Frame {
+    pub(crate) tile: Tile,
+    pub(crate) floor: bool,
+    pub(crate) mesh: bool,
+    pub(crate) small_balls: u32,
+    pub(crate) balls: u32,
+    pub(crate) lines: u32,
+}
+
+impl View {
+    pub(crate) fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, mesh: &Mesh) -> Self {
+        let device = &gpu.device;
+        let globals = buffer(
+            device,
+            "globals",
+            BufferUsages::UNIFORM,
+            size_of::<Globals>(),
+        );
+        let points = buffer(device, "points", BufferUsages::STORAGE, 16 * mesh.points);
+        let buffers = [&globals, &points, &mesh.first, &mesh.around];
+        let entries: Vec<_> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        Self {
+            bind: device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("particles"),
+                layout,
+                entries: &entries,
+            }),
+            balls: Instances::new(device, "balls"),
+            lines: Instances::new(device, "lines"),
+            frame: Frame::default(),
+            globals,
+            points,
+        }
+    }
+
+    /// Sends a picture to the GPU: positions once, and what changes from frame to frame beside them.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, picture: &Picture, tile: Tile, mesh: &Mesh) {
+        let queue = &gpu.queue;
+        queue.write_buffer(&self.points, 0, bytemuck::cast_slice(picture.points));
+        let mut balls = picture.balls.to_vec();
+        balls.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+        self.balls.write(gpu, &balls);
+        self.lines.write(gpu, picture.lines);
+        let globals = globals(picture, tile);
+        queue.write_buffer(&self.globals, 0, bytemuck::bytes_of(&globals));
+        self.frame = Frame {
+            tile,
+            // From below it would hide everything.
+            floor: picture
+                .floor
+                .is_some_and(|height| picture.camera.eye().y > height),
+            mesh: picture.style == Style::Shaded && mesh.indices > 0,
+            small_balls: balls.iter().filter(|ball| ball.radius < LARGE).count() as u32,
+            balls: balls.len() as u32,
+            lines: picture.lines.len() as u32,
+        };
+    }
+}
+
+fn globals(picture: &Picture, tile: Tile) -> Globals {
+    let eye = picture.camera.eye();
+    let target = picture.camera.target();
+    let length = LIGHT.iter().map(|l| l * l).sum::<f32>().sqrt();
+    let (near, far) = picture
+        .points
+        .iter()
+        .fold((f32::INFINITY, 0.0f32), |(near, far), p| {
+            let d =
+                ((p[0] - eye.x).powi(2) + (p[1] - eye.y).powi(2) + (p[2] - eye.z).powi(2)).sqrt();
+            (near.min(d), far.max(d))
+        });
+    Globals {
+        view_projection: picture.camera.view_projection(tile.aspect()).into(),
+        eye: [eye.x, eye.y, eye.z, 1.0],
+        light: [LIGHT[0] / length, LIGHT[1] / length, LIGHT[2] / length, 0.0],
+        tile: [tile.x, tile.y, tile.width, tile.height].map(|side| side as f32),
+        floor: [
+            picture.floor.unwrap_or(0.0),
+            FLOOR_REACH.0.max(FLOOR_REACH.1 * (eye - target).norm()),
+            target.x,
+            target.z,
+        ],
+        depth: [near, far, picture.scale, 0.0],
+    }
+}
