@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use a3_core::stability::{
-    Growth, Limit, Mode, Observation, largest_step, observe_at_rest, observe_from_start, rest,
-    spectrum,
+    Growth, Limit, Mode, Observation, largest_step, modes_in_motion, observe_at_rest,
+    observe_from_start, rest, spectrum,
 };
 use a3_core::{Method, Scene};
 
@@ -17,8 +17,10 @@ use crate::{Failure, interrupt, list, output};
 /// What is known of a method.
 struct Row {
     method: &'static Method,
-    /// As the scene starts, and as it hangs at rest.
-    start: Pair,
+    /// As the scene starts.
+    start: Option<Limit>,
+    /// As it moves from there, and as it hangs at rest.
+    motion: Pair,
     rest: Option<Pair>,
 }
 
@@ -38,6 +40,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     };
     output::check(&path, &["svg", "png"])?;
     let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
+    let in_motion = modes_in_motion(&scene).map_err(Failure::run)?;
     let hanging = rest(&scene).map_err(Failure::run)?;
     let at_rest = hanging
         .as_ref()
@@ -49,7 +52,8 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
             break;
         }
         bar.say(format!("{:<10} ", method.name));
-        let start = pair(method, &at_start, |guess| {
+        let start = largest_step(method, &at_start).map_err(Failure::run)?;
+        let motion = pair(method, &in_motion, |guess| {
             observe_from_start(&scene, method, guess)
         })?;
         bar.advance(1.0);
@@ -63,6 +67,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
         rows.push(Row {
             method,
             start,
+            motion,
             rest,
         });
     }
@@ -120,8 +125,8 @@ fn step(seconds: f64) -> String {
 }
 
 /// A prediction in ms, with a mark where shorter steps grow too.
-fn prediction(pair: &Pair) -> String {
-    pair.predicted.map_or("-".into(), |limit| {
+fn prediction(limit: Option<Limit>) -> String {
+    limit.map_or("-".into(), |limit| {
         step(limit.step) + if limit.strict { "" } else { "~" }
     })
 }
@@ -139,6 +144,7 @@ fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> S
     let heading = [
         "solver",
         " start: predicted",
+        " moving: predicted",
         " observed",
         " ratio",
         " at rest: predicted",
@@ -149,15 +155,20 @@ fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> S
     for row in rows {
         let mut line = vec![
             row.method.name.to_owned(),
-            prediction(&row.start),
-            step(row.start.observed.step),
-            ratio(&row.start),
+            prediction(row.start),
+            prediction(row.motion.predicted),
+            step(row.motion.observed.step),
+            ratio(&row.motion),
         ];
         line.extend(
             row.rest
                 .as_ref()
                 .map_or(["-", "-", "-"].map(String::from), |pair| {
-                    [prediction(pair), step(pair.observed.step), ratio(pair)]
+                    [
+                        prediction(pair.predicted),
+                        step(pair.observed.step),
+                        ratio(pair),
+                    ]
                 }),
         );
         cells.push(line);
@@ -181,11 +192,9 @@ fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> S
         list::table(&cells)
     );
     if rows.iter().any(|row| {
-        let pairs = [Some(&row.start), row.rest.as_ref()];
-        pairs
-            .into_iter()
-            .flatten()
-            .any(|pair| pair.predicted.is_some_and(|limit| !limit.strict))
+        let rest = row.rest.as_ref().and_then(|pair| pair.predicted);
+        let limits = [row.start, row.motion.predicted, rest];
+        limits.into_iter().flatten().any(|limit| !limit.strict)
     }) {
         text += "~ shorter steps grow too, but less than tenfold in 10 s or 1000 steps\n";
     }
@@ -205,15 +214,15 @@ fn chart(title: String, rows: &[Row], modes: &[Mode], h: f64) -> Chart {
 
 fn panel(row: &Row, modes: &[Mode], h: f64) -> Panel {
     let limit = row
-        .start
+        .motion
         .predicted
         .map_or(f64::INFINITY, |limit| limit.step);
     let method = row.method;
     let subtitle = if limit.is_finite() {
         format!(
             "largest stable step {}\u{a0}ms, observed {}\u{a0}ms",
-            prediction(&row.start),
-            step(row.start.observed.step)
+            prediction(row.motion.predicted),
+            step(row.motion.observed.step)
         )
     } else {
         "stable at any step".to_owned()

@@ -4,10 +4,11 @@ mod panes;
 
 pub use panes::digits;
 
-use a3_core::{BlowUp, Simulation, integrators};
+use a3_core::{BlowUp, Cause, Simulation, integrators};
 use egui::{Align2, Area, Color32, Context, Frame, Id, Margin, RichText, Ui};
 
 use super::keys::{KEYS, MOUSE};
+use super::limit::would_hold;
 use super::pane::Pane;
 
 /// What the text says beside the runs themselves.
@@ -33,6 +34,8 @@ pub struct Readings {
 const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
 const FAINT: Color32 = Color32::from_rgb(92, 98, 114);
 const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
+const SAFE: Color32 = Color32::from_rgb(12, 106, 52);
+const WARNING: Color32 = Color32::from_rgb(158, 84, 0);
 const ALARM: Color32 = Color32::from_rgb(170, 22, 30);
 /// From the edge of the window (points).
 const MARGIN: f32 = 12.0;
@@ -97,7 +100,7 @@ fn show_one(ctx: &Context, pane: &Pane, readings: &Readings) {
         sheet(ui, |ui| run(ui, pane, readings));
         if let Some(lost) = pane.simulation.blow_up() {
             sheet(ui, |ui| {
-                blow_up(ui, &lost);
+                blow_up(ui, pane, &lost);
                 ui.label(text(way_out()));
             });
         }
@@ -124,23 +127,26 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
         .num_columns(2)
         .spacing([14.0, 3.0])
         .show(ui, |ui| {
-            let mut row = |name: &str, value: String| {
+            let mut row = |name: &str, value: RichText| {
                 ui.label(faint(name));
-                ui.label(text(value));
+                ui.label(value);
                 ui.end_row();
             };
-            row("time", time(simulation));
-            row("speed", speed(readings));
+            row("time", text(time(simulation)));
+            row("speed", text(speed(readings)));
             if let Some(steps) = steps(simulation) {
-                row("steps", steps);
+                row("steps", text(steps));
+            }
+            if let Some((words, colour)) = limit(pane) {
+                row("limit", text(words).color(colour));
             }
             let (name, value) = energy(pane);
-            row(name, value);
+            row(name, text(value));
             if let Some(stretch) = pane.stretch {
-                row("stretch", format!("{stretch:.3} at most"));
+                row("stretch", text(format!("{stretch:.3} at most")));
             }
-            row("frames", frames(readings));
-            row("each", each(readings));
+            row("frames", text(frames(readings)));
+            row("each", text(each(readings)));
         });
     ui.label(states(simulation, readings));
 }
@@ -175,6 +181,25 @@ fn steps(simulation: &Simulation) -> Option<String> {
         .method()
         .is_adaptive()
         .then(|| format!("{} ms, {rejections} rejected", panes::digits(1e3 * step)))
+}
+
+/// The step as a share of the largest stable one: green while there is room, amber near it, red past it.
+fn limit(pane: &Pane) -> Option<(String, Color32)> {
+    let limit = pane.watch.limit()?;
+    if limit.step.is_infinite() {
+        return Some(("none: every step is stable".into(), SAFE));
+    }
+    let share = pane.simulation.step_size()? / limit.step;
+    let colour = match share {
+        past if past > 1.0 => ALARM,
+        near if near > 0.8 => WARNING,
+        _ => SAFE,
+    };
+    let largest = panes::digits(1e3 * limit.step);
+    Some((
+        format!("{largest} ms: the step is {:.0} % of it", 100.0 * share),
+        colour,
+    ))
 }
 
 /// With as many digits as tell one step from the next.
@@ -238,23 +263,32 @@ fn speed(readings: &Readings) -> String {
     }
 }
 
-fn blow_up(ui: &mut Ui, lost: &BlowUp) {
+/// What was lost, which limit was passed, and which step would have held.
+fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     ui.label(
         RichText::new(format!("It {lost}."))
             .color(ALARM)
             .size(14.5)
             .strong(),
     );
-    ui.label(text(format!(
-        "A step of {} s was too long for {}.",
-        lost.setting, lost.method
-    )));
+    let (setting, method) = (lost.setting, lost.method);
+    let adaptive = matches!(lost.cause, Cause::StepTooSmall { .. });
+    ui.label(text(match pane.watch.limit().map(|limit| limit.step) {
+        _ if adaptive => {
+            format!("{method} found no step to a tolerance of {setting:e}: a larger one may do.")
+        }
+        Some(limit) if setting > limit && method == pane.simulation.method().title => format!(
+            "A step of {setting} s was too long for {method}: past its limit here of {} ms. {} s would have held.",
+            panes::digits(1e3 * limit),
+            would_hold(limit),
+        ),
+        _ => format!("A step of {setting} s was too long for {method}."),
+    }));
 }
 
 /// Out of a blow-up.
 fn way_out() -> String {
-    let solvers = integrators::METHODS.len();
-    format!("Press - for a shorter step or 1-{solvers} for another solver, then r.")
+    "Press - for a shorter step, or a digit for another solver, then r.".into()
 }
 
 fn help(ui: &mut Ui, several: bool) {
@@ -279,8 +313,8 @@ fn help(ui: &mut Ui, several: bool) {
         .collect();
     let solvers = integrators::METHODS.iter().enumerate();
     let solvers: Vec<_> = solvers
-        .map(|(i, method)| ((i + 1).to_string(), method.title))
-        .take(9)
+        .map(|(i, method)| (((i + 1) % 10).to_string(), method.title))
+        .take(10)
         .collect();
     let mouse: Vec<_> = MOUSE
         .iter()
@@ -431,13 +465,58 @@ pub mod tests {
                 "{words}"
             );
         }
-        for method in integrators::METHODS {
+        for method in &integrators::METHODS[..10] {
             assert!(words.contains(method.title));
         }
         assert!(
             sheets[0].height() < 460.0 && sheets[0].width() < 640.0,
             "{sheets:?}"
         );
+    }
+
+    #[test]
+    fn the_limit_is_said_in_its_colour() {
+        let said = |scene: &str, method: &str, setting: f64| {
+            let mut pane = pane(scene, method, setting);
+            pane.simulation.take_steps(1).unwrap();
+            pane.read_state();
+            let colour = limit(&pane).unwrap().1;
+            let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+            (words.replace('\n', " "), colour)
+        };
+        for (step, colour) in [(0.01, SAFE), (0.032, WARNING), (0.04, ALARM)] {
+            let (words, found) = said("mit", "r", step);
+            // Within 1 % of 34.9 ms.
+            let share = format!("35.2 ms: the step is {:.0} % of it", step / 0.0352 * 100.0);
+            assert!(words.contains(&share), "{share} in {words}");
+            assert_eq!(found, colour);
+        }
+        assert!(
+            said("mit", "i", 0.1)
+                .0
+                .contains("none: every step is stable")
+        );
+        let (words, _) = said("cloth", "a", 1e-4);
+        assert!(words.contains("tolerance 1e-4"), "{words}");
+        assert!(
+            words.contains("rejected") && words.contains("limit"),
+            "{words}"
+        );
+    }
+
+    #[test]
+    fn a_blow_up_says_which_limit_was_passed() {
+        let mut pane = pane("mit", "r", 0.05);
+        while pane.simulation.take_steps(1).is_ok() {}
+        pane.read_state();
+        let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+        let words = words.replace('\n', " ");
+        for said in [
+            "A step of 0.05 s was too long for classical Runge-Kutta: past its limit here of 3",
+            "0.03 s would have held",
+        ] {
+            assert!(words.contains(said), "{said} in {words}");
+        }
     }
 
     #[test]
@@ -465,7 +544,7 @@ pub mod tests {
                 "{words}"
             );
             assert!(
-                words.contains("A step of 0.05 s was too long for explicit Euler"),
+                words.contains("A step of 0.05 s was too long for explicit Euler."),
                 "{words}"
             );
             assert!(sheets.len() >= 3);

@@ -4,6 +4,7 @@ mod graphics;
 pub mod hud;
 mod keys;
 pub mod layout;
+mod limit;
 mod pane;
 mod pick;
 mod reference;

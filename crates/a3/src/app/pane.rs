@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use a3_core::{Method, Simulation};
 
+use super::limit::LimitWatch;
 use crate::progress;
 use crate::show::Show;
 
@@ -20,6 +21,8 @@ pub struct Pane {
     pub energy: Option<f64>,
     /// The largest length over rest length, if the scene has springs.
     pub stretch: Option<f64>,
+    /// How far its step is from the largest stable one.
+    pub watch: LimitWatch,
     /// Root mean square distance of the particles from the reference (m), if there is one.
     pub error: Option<f64>,
     /// What it costs, once it is known.
@@ -45,6 +48,7 @@ impl Pane {
             wanted: simulation.method(),
             show,
             energy: None,
+            watch: LimitWatch::default(),
             stretch: None,
             error: None,
             cost: None,
@@ -109,6 +113,7 @@ impl Pane {
     pub fn read_state(&mut self) {
         self.energy = self.simulation.energy().map(|energy| energy.total());
         self.stretch = self.simulation.largest_stretch();
+        self.watch.look(&self.simulation, !self.alive());
     }
 
     /// The cost since it was last taken, if any time was simulated.
@@ -128,6 +133,7 @@ impl Pane {
 
     /// The cost is taken from here on: of another method, or of another step.
     pub fn count(&mut self) {
+        self.watch.ask(self.simulation.method());
         let evaluations = self.simulation.work().total();
         self.counted = (self.simulation.time(), evaluations, self.computing);
     }
@@ -146,6 +152,7 @@ impl Pane {
         self.show.clear_trail();
         self.show.springs_of = None;
         (self.error, self.cost) = (None, None);
+        self.watch = LimitWatch::default();
         self.count();
     }
 }

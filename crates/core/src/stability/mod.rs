@@ -15,7 +15,7 @@ use crate::integrators::{Integrator, Method};
 use crate::path::Place;
 use crate::system::{Coupling, Mechanics};
 
-pub use observed::{Observation, observe_at_rest, observe_from_start, rest};
+pub use observed::{Observation, modes_in_motion, observe_at_rest, observe_from_start, rest};
 pub use spectrum::{LargestMode, spectrum};
 
 /// A run is stable if no mode grows more than [`GROWTH`] times in this time (s), or in [`STEPS`] if they take longer.
@@ -210,7 +210,8 @@ pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Er
         let mut below = 0.0;
         while h < longest && !fails(&mut growth, h) {
             below = h;
-            h *= 1.05;
+            // Finely for the first mode; for the others the search is as a rule in vain.
+            h *= if limit.is_none() { 1.05 } else { 1.25 };
         }
         if h >= longest && !fails(&mut growth, longest) {
             let unlimited = Limit {

@@ -1,8 +1,9 @@
 //! Where a method fails in fact: the nonlinear scene itself, stepped with longer and shorter steps.
 
-use super::{GROWTH, HORIZON, LargestMode, steps};
+use super::{GROWTH, HORIZON, LargestMode, Mode, STEPS, spectrum};
 use crate::error::Error;
 use crate::integrators::{Method, find};
+use crate::random::SplitMix;
 use crate::scenes::Scene;
 use crate::simulation::Simulation;
 
@@ -16,6 +17,39 @@ const BEYOND: f64 = 4.0;
 const LOOKS: u64 = 200;
 /// The speed of the disturbance of a scene at rest (m/s, root of the sum of squares weighted with the masses in kg).
 const NUDGE: f64 = 1e-6;
+
+/// How a scene is brought to rest: steps (s), at most so many, and whether first everything is pushed a little.
+const SETTLING: [(f64, u32, bool); 5] = [
+    (0.05, 400, false),
+    (0.2, 400, false),
+    (0.25, 400, true),
+    (1.0, 400, false),
+    (5.0, 400, false),
+];
+
+/// When the modes of a scene in motion are looked at, as shares of [`HORIZON`].
+const MOMENTS: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
+
+/// The modes of the scene at several moments of the motion from its start, all together: stretched and folded springs
+/// have others than those that it starts with.
+///
+/// # Errors
+/// The scene cannot be run.
+pub fn modes_in_motion(scene: &Scene) -> Result<Vec<Mode>, Error> {
+    let accurate = find("dop853")
+        .ok_or_else(|| Error::Invalid("no accurate method is in the table".into()))?;
+    let mut run = Simulation::new(scene.clone(), accurate, 1e-6)?;
+    let mut modes = vec![];
+    for share in MOMENTS {
+        if run.advance_to(share * HORIZON).is_err() {
+            break;
+        }
+        modes.extend(spectrum(run.model().system(), run.time(), run.state()));
+    }
+    // The fastest first: they set most limits.
+    modes.sort_by(|a, b| b.stiffness.total_cmp(&a.stiffness));
+    Ok(modes)
+}
 
 /// What bisection found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,13 +67,26 @@ pub struct Observation {
 /// # Errors
 /// The scene cannot be run.
 pub fn rest(scene: &Scene) -> Result<Option<Vec<f64>>, Error> {
-    let Some(implicit) = find("implicit").filter(|_| scene.model.network().is_some()) else {
+    let Some((implicit, network)) = find("implicit").zip(scene.model.network()) else {
         return Ok(None);
     };
     let mut run = Simulation::new(scene.clone(), implicit, 0.05)?;
-    for step in [0.05, 0.2, 1.0, 5.0] {
+    let mut random = SplitMix(4);
+    for (step, steps, leaves) in SETTLING {
+        if leaves {
+            // A fold may balance on its edge: from there it falls to one of its sides, given time.
+            let mut pushed = scene.clone();
+            pushed.state = run.state().to_vec();
+            let (n, size) = (run.particles(), 1e-4 * run.extent().1);
+            for (k, x) in pushed.state[..3 * n].iter_mut().enumerate() {
+                if !network.is_pinned(k % n) {
+                    *x += size * random.between(-1.0, 1.0);
+                }
+            }
+            run = Simulation::new(pushed, implicit, step)?;
+        }
         run.set_setting(step)?;
-        for _ in 0..400 {
+        for _ in 0..steps {
             let before = run.state().to_vec();
             if run.take_steps(1).is_err() {
                 return Ok(None);
@@ -49,7 +96,7 @@ pub fn rest(scene: &Scene) -> Result<Option<Vec<f64>>, Error> {
                 let squares = part.iter().zip(was).map(|(a, b)| (a - b).powi(2));
                 (squares.sum::<f64>() / half as f64).sqrt()
             };
-            if moved(&run.state()[..half], &before[..half]) < 1e-9 * step {
+            if !leaves && moved(&run.state()[..half], &before[..half]) < 1e-9 * step {
                 break;
             }
         }
@@ -91,21 +138,15 @@ pub fn observe_at_rest(
     for (k, z) in fastest.shape().iter().enumerate() {
         nudged.state[half + k] = NUDGE * z / weigh(k);
     }
-    // On an obstacle particles are pushed out at every step: what grows is told from a run beside it.
-    let obstacles = !network.spheres().is_empty() || network.floor().is_some();
+    // What grows is told from a run without the nudge beside it: a method may rest a little elsewhere than the scene
+    // does, and particles on an obstacle are pushed out at every step.
+    let least = least(guess);
     let holds = |h: f64| {
         let mut run = Simulation::with_fixed_steps(nudged.clone(), method, h)?;
-        let mut beside = if obstacles {
-            Some(Simulation::with_fixed_steps(still.clone(), method, h)?)
-        } else {
-            None
-        };
-        Ok(step_and_look(h, |count| {
-            let held = run.take_steps(count).is_ok()
-                && beside
-                    .as_mut()
-                    .is_none_or(|run| run.take_steps(count).is_ok());
-            let before = beside.as_ref().map_or(rest, Simulation::state);
+        let mut beside = Simulation::with_fixed_steps(still.clone(), method, h)?;
+        Ok(step_and_look(h, least, |count| {
+            let held = run.take_steps(count).is_ok() && beside.take_steps(count).is_ok();
+            let before = beside.state();
             let size: f64 = (0..half)
                 .map(|k| {
                     let dx = frequency * (run.state()[k] - before[k]);
@@ -117,6 +158,15 @@ pub fn observe_at_rest(
         }))
     };
     bisect(guess, holds)
+}
+
+/// The steps of a run, at least: a method that should hold any step is not asked for as many.
+fn least(guess: f64) -> f64 {
+    if guess.is_finite() {
+        STEPS
+    } else {
+        0.05 * STEPS
+    }
 }
 
 /// The largest step with which the scene runs from its start for [`HORIZON`] without gaining energy: never more
@@ -133,9 +183,10 @@ pub fn observe_from_start(
         None => None,
         Some(_) => Some(energies(scene, find("dop853").unwrap_or(method))?),
     };
+    let least = least(guess);
     let holds = |h: f64| {
         let mut run = Simulation::with_fixed_steps(scene.clone(), method, h)?;
-        Ok(step_and_look(h, |count| {
+        Ok(step_and_look(h, least, |count| {
             run.take_steps(count).is_ok()
                 && match (&truth, run.energy()) {
                     (Some(truth), Some(energy)) => energy.total() < truth.at(run.time()),
@@ -188,8 +239,8 @@ fn norm(y: &[f64]) -> f64 {
 }
 
 /// Takes the steps in which nothing may grow, and looks after every few of them, at the end after each one.
-fn step_and_look(h: f64, mut look: impl FnMut(u64) -> bool) -> bool {
-    let steps = steps(h) as u64;
+fn step_and_look(h: f64, least: f64, mut look: impl FnMut(u64) -> bool) -> bool {
+    let steps = (HORIZON / h).ceil().max(least) as u64;
     let mut left = steps;
     while left > 0 {
         let count = (steps / LOOKS).clamp(1, left);
@@ -208,11 +259,8 @@ fn bisect(guess: f64, holds: impl Fn(f64) -> Result<bool, Error>) -> Result<Obse
         runs += 1;
         holds(h)
     };
-    let longest = if guess.is_finite() {
-        BEYOND * guess
-    } else {
-        LONGEST
-    };
+    let limited = guess.is_finite();
+    let longest = if limited { BEYOND * guess } else { LONGEST };
     let guess = guess.clamp(1e-6, longest);
     let (mut low, mut high);
     if holds(guess)? {
@@ -231,7 +279,8 @@ fn bisect(guess: f64, holds: impl Fn(f64) -> Result<bool, Error>) -> Result<Obse
             (low, high) = (low / 1.4, low);
         }
     }
-    while high / low > 1.0 + PRECISION {
+    let precision = if limited { PRECISION } else { 10.0 * PRECISION };
+    while high / low > 1.0 + precision {
         let middle = (low * high).sqrt();
         if holds(middle)? {
             low = middle;

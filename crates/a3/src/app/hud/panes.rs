@@ -101,7 +101,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let run = &pane.simulation;
     ui.label(title(run.method().title).size(14.0));
     if let Some(lost) = run.blow_up() {
-        return blow_up(ui, &lost);
+        return blow_up(ui, pane, &lost);
     }
     let cost = pane.cost.map_or("-".into(), |cost| {
         format!(
@@ -111,28 +111,32 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
         )
     });
     let step = match super::steps(run) {
-        Some(steps) => ("steps", format!("{},  {steps}", super::setting(run))),
-        None => ("step", format!("{} s", run.setting())),
+        Some(steps) => ("steps", text(format!("{},  {steps}", super::setting(run)))),
+        None => ("step", text(format!("{} s", run.setting()))),
     };
-    let time = ("time", time(run));
-    let error = ("error", error(pane, readings));
-    let cost = ("cost", cost);
+    let limit = super::limit(pane).map(|(words, colour)| ("limit", text(words).color(colour)));
+    let time = ("time", text(time(run)));
+    let error = ("error", text(error(pane, readings)));
+    let (name, value) = energy(pane);
+    let energy = (name, text(value));
+    let cost = ("cost", text(cost));
     let lines = if low {
         vec![vec![step, time], vec![error], vec![cost]]
     } else {
         vec![
             vec![step],
+            limit.into_iter().collect(),
             vec![time],
             vec![error],
-            vec![energy(pane)],
+            vec![energy],
             vec![cost],
         ]
     };
-    for line in &lines {
+    for line in lines.iter().filter(|line| !line.is_empty()) {
         let mut job = egui::text::LayoutJob::default();
         for (k, (name, value)) in line.iter().enumerate() {
             let gap = if k > 0 { "    " } else { "" };
-            for words in [faint(format!("{gap}{name}  ")), text(value)] {
+            for words in [faint(format!("{gap}{name}  ")), value.clone()] {
                 words.append_to(
                     &mut job,
                     ui.style(),
