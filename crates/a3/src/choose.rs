@@ -1,5 +1,7 @@
 //! `a3 choose`: the cheapest solver for an error, or the most accurate one for a budget.
 
+use std::fmt::Write;
+
 use a3_core::accuracy::{Candidate, Frames, Metric, Reference, choose, ladder, measure};
 use a3_core::{Method, Scene};
 
@@ -192,10 +194,10 @@ fn typed(setting: f64) -> String {
 fn command(what: &What, method: &Method, setting: f64) -> String {
     let mut words = format!("a3 {} {}", method.letter, typed(setting));
     if what.scene.name != "cloth" {
-        words += &format!(" --scene {}", what.scene.name);
+        let _ = write!(words, " --scene {}", what.scene.name);
     }
     if let Some(grid) = what.grid {
-        words += &format!(" --grid {}x{}", grid.rows(), grid.cols());
+        let _ = write!(words, " --grid {}x{}", grid.rows(), grid.cols());
     }
     for (on, option) in [(what.wind, " --wind"), (what.swing, " --swing")] {
         if on {

@@ -55,7 +55,7 @@ pub fn advance(
 
 /// The bar of work that is measured in some unit, shown at once.
 pub struct Bar {
-    bar: ProgressBar,
+    drawn: ProgressBar,
     expected: f64,
     done: Cell<f64>,
 }
@@ -65,7 +65,7 @@ impl Bar {
         let bar = new_bar();
         bar.enable_steady_tick(Duration::from_millis(250));
         Self {
-            bar,
+            drawn: bar,
             expected,
             done: Cell::new(0.0),
         }
@@ -74,17 +74,17 @@ impl Bar {
     /// So much more is done.
     pub fn advance(&self, work: f64) {
         self.done.set(self.done.get() + work);
-        self.bar
+        self.drawn
             .set_position((1000.0 * self.done.get() / self.expected) as u64);
     }
 
     /// What is being done.
     pub fn say(&self, what: String) {
-        self.bar.set_message(what);
+        self.drawn.set_message(what);
     }
 
     pub fn clear(&self) {
-        self.bar.finish_and_clear();
+        self.drawn.finish_and_clear();
     }
 }
 

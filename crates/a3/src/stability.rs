@@ -1,5 +1,6 @@
 //! `a3 stability`: the largest step that each solver holds, predicted and observed, and the plane in which one sees why.
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use a3_core::stability::{
@@ -185,9 +186,10 @@ fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> S
         frequency(start)
     );
     if let Some(rest) = rest {
-        text += &format!(", {} at rest", frequency(rest));
+        let _ = write!(text, ", {} at rest", frequency(rest));
     }
-    text += &format!(
+    let _ = write!(
+        text,
         "\n\nlargest stable step (ms), that of the fixed step for adaptive solvers\n{}",
         list::table(&cells)
     );

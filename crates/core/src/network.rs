@@ -396,7 +396,7 @@ impl Mechanics for Network {
         }
     }
 
-    fn damping(&self) -> f64 {
+    fn drag_coefficient(&self) -> f64 {
         self.drag.unwrap_or(0.0)
     }
 

@@ -64,7 +64,7 @@ pub trait Mechanics {
     fn couplings(&self, _x: &[f64], _visit: &mut dyn FnMut(Coupling)) {}
 
     /// -dF/dv of each particle by itself: viscous drag (kg/s).
-    fn damping(&self) -> f64 {
+    fn drag_coefficient(&self) -> f64 {
         0.0
     }
 

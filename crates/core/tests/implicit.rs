@@ -71,7 +71,7 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
             let mut sum = vec![0.0; 3 * n];
             if damping {
                 for (sum, d) in sum.iter_mut().zip(&d) {
-                    *sum = -network.damping() * d;
+                    *sum = -network.drag_coefficient() * d;
                 }
             }
             network.couplings(x, &mut |c| {

@@ -52,7 +52,7 @@ impl LimitWatch {
 
     /// The limit of another method, for the motion that was seen last.
     pub fn ask(&mut self, method: &Method) {
-        let modes = self.mode.as_ref().map_or(&[][..], std::slice::from_ref);
+        let modes = self.mode.as_slice();
         // No method of the table refuses a mode.
         self.limit = largest_step(method, modes).ok().flatten();
     }

@@ -1,5 +1,7 @@
 //! A chart in the terminal: what each method needs for each error, and who wins.
 
+use std::fmt::Write;
+
 use a3_core::Method;
 use a3_core::accuracy::Metric;
 
@@ -71,23 +73,21 @@ pub fn text(
     } else {
         "work (force evaluations)"
     };
-    studies
-        .iter()
-        .map(|study| {
-            let head = if study.stiffness() == 1.0 {
-                String::new()
-            } else {
-                format!(", stiffness x {}", study.stiffness())
-            };
-            let until = study.frames.until;
-            format!(
-                "\n{what} for {until} s of {}{head}, to keep the error within\n{}{}",
-                study.scene.name,
-                list::table(&rows(study, data, methods, metric, timed, unit)),
-                winners(study, data, methods, metric, timed, unit),
-            )
-        })
-        .collect()
+    let parts = studies.iter().map(|study| {
+        let head = if study.stiffness() == 1.0 {
+            String::new()
+        } else {
+            format!(", stiffness x {}", study.stiffness())
+        };
+        let until = study.frames.until;
+        format!(
+            "\n{what} for {until} s of {}{head}, to keep the error within\n{}{}",
+            study.scene.name,
+            list::table(&rows(study, data, methods, metric, timed, unit)),
+            winners(study, data, methods, metric, timed, unit),
+        )
+    });
+    parts.collect::<Vec<_>>().concat()
 }
 
 fn rows(
@@ -158,7 +158,7 @@ fn winners(
                     }),
             }
         };
-        text += &format!("  1e-{digits} {unit}  {line}\n");
+        let _ = writeln!(text, "  1e-{digits} {unit}  {line}");
     }
     text
 }

@@ -1,4 +1,4 @@
-//! Explicit Runge-Kutta pairs by their tables: y1 = y + h sum b k with k_i = f(t + c_i h, y + h sum a_ij k_j), an
+//! Explicit Runge-Kutta pairs by their tables: `y1 = y + h sum b k` with `k_i = f(t + c_i h, y + h sum a_ij k_j)`, an
 //! estimate of its error from other weights, and a polynomial through the step (Hairer, Norsett, Wanner, *Solving
 //! Ordinary Differential Equations I*, 1993, II.4 to II.6).
 

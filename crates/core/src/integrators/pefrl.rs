@@ -33,7 +33,7 @@ pub(super) const METHOD: Method = Method {
 
 const XI: f64 = 0.178_617_895_844_809_1;
 const LAMBDA: f64 = -0.212_341_831_062_605_4;
-const CHI: f64 = -0.066_264_582_669_818_49;
+const CHI: f64 = -0.066_264_582_669_818_5;
 
 /// Each kick, and the drift before it.
 const STAGES: [(f64, f64); 4] = [

@@ -161,9 +161,10 @@ impl Cholesky {
             let free = |k: usize| tangent.mass(k) != 0.0;
             for end in [i, j] {
                 if free(end) {
-                    for b in 0..3 {
-                        for r in b..3 {
-                            self.values[start(end, b) + r - b] += full[b][r];
+                    for (b, row) in full.iter().enumerate() {
+                        for (value, part) in self.values[start(end, b)..].iter_mut().zip(&row[b..])
+                        {
+                            *value += part;
                         }
                     }
                 }

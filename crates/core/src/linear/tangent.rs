@@ -49,7 +49,7 @@ impl Tangent {
             let across = if clamped { c.across.max(0.0) } else { c.across };
             [a * a * across, a * a * (c.along - across) + a * c.damping]
         }));
-        let drag = a * mechanics.damping();
+        let drag = a * mechanics.drag_coefficient();
         for (m, w) in self.masses.iter_mut().zip(mechanics.inverse_masses()) {
             *m = if *w == 0.0 { 0.0 } else { 1.0 / w + drag };
         }

@@ -166,8 +166,7 @@ fn solves_measured() {
         let b = right_hand_side(&network);
         let mut f = vec![0.0; b.len()];
         let zero = vec![0.0; b.len()];
-        use crate::Mechanics;
-        let force = time(|| network.forces(0.0, black_box(&x), &zero, &mut f));
+        let force = time(|| crate::Mechanics::forces(&network, 0.0, black_box(&x), &zero, &mut f));
         for a_w in [1.0, 3.0, 10.0, 30.0, 100.0, 300.0] {
             let mut solver = Solver::new(&network);
             let _ = solver.gather(&network, &x, 1.0, true);

@@ -114,7 +114,7 @@ impl Mechanics for Tied {
         }
     }
 
-    fn damping(&self) -> f64 {
+    fn drag_coefficient(&self) -> f64 {
         self.0.drag
     }
 

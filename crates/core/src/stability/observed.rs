@@ -169,8 +169,10 @@ fn least(guess: f64) -> f64 {
     }
 }
 
-/// The largest step with which the scene runs from its start for [`HORIZON`] without gaining energy: never more
-/// beyond what it has in truth than half of what its motion has at most; a first-order scene without growing [`GROWTH`] times. Bisection begins at `guess` (s).
+/// The largest step with which the scene runs from its start for [`HORIZON`] without gaining energy: never more beyond
+/// what it has in truth than half of what its motion has at most. A first-order scene holds if it does not grow
+/// [`GROWTH`] times; a method for which no limit is predicted, as long as the run is not lost: with such steps it makes
+/// errors of any size that do not grow. Bisection begins at `guess` (s).
 ///
 /// # Errors
 /// The method does not serve the scene.
@@ -180,9 +182,10 @@ pub fn observe_from_start(
     guess: f64,
 ) -> Result<Observation, Error> {
     let truth = match scene.model.network() {
-        None => None,
-        Some(_) => Some(energies(scene, find("dop853").unwrap_or(method))?),
+        Some(_) if guess.is_finite() => Some(energies(scene, find("dop853").unwrap_or(method))?),
+        _ => None,
     };
+    let unlimited = guess.is_infinite() && scene.model.network().is_some();
     let least = least(guess);
     let holds = |h: f64| {
         let mut run = Simulation::with_fixed_steps(scene.clone(), method, h)?;
@@ -190,6 +193,7 @@ pub fn observe_from_start(
             run.take_steps(count).is_ok()
                 && match (&truth, run.energy()) {
                     (Some(truth), Some(energy)) => energy.total() < truth.at(run.time()),
+                    _ if unlimited => true,
                     _ => norm(run.state()) < GROWTH * norm(&scene.state),
                 }
         }))

@@ -82,7 +82,7 @@ impl<'a> Normalised<'a> {
             .chunks_exact(w.len())
             .flat_map(|z| z.iter().zip(w).map(|(z, w)| z * z * w))
             .sum::<f64>();
-        self.mechanics.damping() * share
+        self.mechanics.drag_coefficient() * share
     }
 
     /// The mode of that shape and stiffness.
