@@ -42,7 +42,7 @@ pub enum Command {
     Compare(Compare),
     /// List the scenes: particles, springs, length of the state, forces
     Scenes,
-    /// List the solvers: order, evaluations per step, default step
+    /// List the solvers: order, evaluations per step, default step or tolerance
     Solvers,
 }
 

@@ -69,7 +69,7 @@ pub fn solvers() -> Result<(), Failure> {
         "solver",
         " order",
         " evaluations/step",
-        " default step",
+        " default",
         "serves",
         "method",
     ];
@@ -79,7 +79,9 @@ pub fn solvers() -> Result<(), Failure> {
             m.letter.into(),
             m.name.into(),
             m.order.to_string(),
-            if m.damped_evaluations == m.evaluations {
+            if m.implicit {
+                format!("{} and linear solves", m.evaluations)
+            } else if m.damped_evaluations == m.evaluations {
                 m.evaluations.to_string()
             } else {
                 format!(
@@ -87,7 +89,11 @@ pub fn solvers() -> Result<(), Failure> {
                     m.evaluations, m.damped_evaluations
                 )
             },
-            format!("{} s", m.default_setting),
+            if m.is_adaptive() {
+                format!("tolerance {:.0e}", m.default_setting)
+            } else {
+                format!("{} s", m.default_setting)
+            },
             if m.needs_mechanics {
                 "masses"
             } else {

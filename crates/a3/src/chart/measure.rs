@@ -9,8 +9,10 @@ use super::data::{Data, Record, VERSION};
 use crate::progress::Bar;
 use crate::{Failure, interrupt};
 
-/// No run takes more evaluations.
+/// No run takes more work than so many evaluations, on one to speak of.
 const MOST_EVALUATIONS: u64 = 60_000;
+/// What a step of an implicit method takes, in evaluations, within a factor of three.
+const IMPLICIT: f64 = 25.0;
 /// The minimum of so many runs is their time ...
 const RUNS: u32 = 5;
 /// ... unless they take longer than this together: then of fewer, but of two ...
@@ -113,7 +115,12 @@ impl<'a> Study<'a> {
         } else {
             self.frames.until / setting
         };
-        steps * f64::from(method.damped_evaluations.max(method.evaluations)) + 100.0
+        let each = if method.implicit {
+            IMPLICIT
+        } else {
+            f64::from(method.damped_evaluations.max(method.evaluations))
+        };
+        (steps * each).min(MOST_EVALUATIONS as f64) + 100.0
     }
 
     /// Measures what the data do not have yet. Whether it came to its end.
@@ -138,9 +145,11 @@ impl<'a> Study<'a> {
                     },
                 };
                 bar.advance(self.expected_of(method, setting));
-                // Below what the reference knows there is nothing to see.
+                // Below what the reference knows there is nothing to see. Linear algebra is known only afterwards.
                 let enough = 10.0 * record.floor(self.metric).max(1e-13);
-                if record.lost_at.is_none() && record.error(self.metric) < enough {
+                let next = rungs.get(i + 1).map_or(1.0, |next| setting / next);
+                let dear = !method.is_adaptive() && record.work * next > MOST_EVALUATIONS as f64;
+                if record.lost_at.is_none() && (record.error(self.metric) < enough || dear) {
                     let rest = rungs[i + 1..].iter();
                     bar.advance(rest.map(|s| self.expected_of(method, *s)).sum());
                     break;

@@ -13,6 +13,7 @@ pub(super) const METHOD: Method = Method {
     default_setting: 1e-6,
     evaluations: 12,
     damped_evaluations: 12,
+    implicit: false,
     pair: Some(&TABLEAU),
     needs_mechanics: false,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),

@@ -14,6 +14,7 @@ pub(super) const METHOD: Method = Method {
     default_setting: 1e-3,
     evaluations: 6,
     damped_evaluations: 6,
+    implicit: false,
     pair: Some(&TABLEAU),
     needs_mechanics: false,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),

@@ -13,6 +13,7 @@ pub(super) const METHOD: Method = Method {
     default_setting: 0.005,
     evaluations: 2,
     damped_evaluations: 2,
+    implicit: false,
     pair: None,
     needs_mechanics: false,
     create: |system| {

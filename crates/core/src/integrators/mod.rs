@@ -99,10 +99,12 @@ pub struct Method {
     pub order: u32,
     /// The step (s), or the relative tolerance of an adaptive method, that holds on every built-in scene.
     pub default_setting: f64,
-    /// Evaluations a step takes.
+    /// Evaluations a step takes; of an implicit method, typically.
     pub evaluations: u32,
     /// Evaluations a step takes where springs are damped.
     pub damped_evaluations: u32,
+    /// Whether it solves equations for its step, with linear algebra on top of the evaluations.
+    pub implicit: bool,
     /// The table of an adaptive method, which chooses its steps by itself, to a tolerance.
     pub pair: Option<&'static Tableau>,
     /// Whether it needs forces and masses, rather than any f(t, y).

@@ -19,6 +19,7 @@ pub(super) const METHOD: Method = Method {
     default_setting: 0.005,
     evaluations: 4,
     damped_evaluations: 16,
+    implicit: false,
     pair: None,
     needs_mechanics: true,
     create: |system| {

@@ -15,6 +15,7 @@ pub(super) const METHOD: Method = Method {
     default_setting: 0.01,
     evaluations: 4,
     damped_evaluations: 4,
+    implicit: false,
     pair: None,
     needs_mechanics: false,
     create: |system| {

@@ -21,6 +21,7 @@ pub(super) const METHOD: Method = Method {
     default_setting: 0.005,
     evaluations: 1,
     damped_evaluations: 2,
+    implicit: false,
     pair: None,
     needs_mechanics: true,
     create: |system| {

@@ -70,7 +70,8 @@ impl Panel {
             .map_or(0.0, |floor| 10.0 * floor)
     }
 
-    /// Curve and run of those that no run beats in both error and work, from the smallest error up.
+    /// Curve and run of those that no run beats in both error and work, from the smallest error up: of the errors that the
+    /// reference can tell, though it can tell that those below them are smaller.
     pub fn front(&self) -> Vec<[usize; 2]> {
         let mut runs: Vec<_> = (self.curves.iter().enumerate())
             .flat_map(|(c, curve)| {
@@ -80,14 +81,14 @@ impl Panel {
                     .enumerate()
                     .map(move |(r, run)| ([c, r], run))
             })
-            .filter(|(_, run)| run.is_drawn() && !run.is_lost() && run.error > self.trusted())
+            .filter(|(_, run)| run.is_drawn() && !run.is_lost())
             .collect();
         runs.sort_by(|(_, a), (_, b)| a.error.total_cmp(&b.error).then(a.work.total_cmp(&b.work)));
         let mut least = f64::INFINITY;
         runs.retain(|(_, run)| {
             let better = run.work < least;
             least = least.min(run.work);
-            better
+            better && run.error > self.trusted()
         });
         runs.into_iter().map(|(place, _)| place).collect()
     }

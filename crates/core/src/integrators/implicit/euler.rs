@@ -15,6 +15,7 @@ pub(in super::super) const METHOD: Method = Method {
     default_setting: 0.02,
     evaluations: 1,
     damped_evaluations: 1,
+    implicit: true,
     pair: None,
     needs_mechanics: false,
     create: |system| {

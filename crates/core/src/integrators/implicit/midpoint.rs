@@ -15,6 +15,7 @@ pub(in super::super) const METHOD: Method = Method {
     default_setting: 0.01,
     evaluations: 3,
     damped_evaluations: 3,
+    implicit: true,
     pair: None,
     needs_mechanics: false,
     create: |system| {

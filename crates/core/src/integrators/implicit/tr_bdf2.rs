@@ -19,6 +19,7 @@ pub(in super::super) const METHOD: Method = Method {
     default_setting: 0.01,
     evaluations: 7,
     damped_evaluations: 7,
+    implicit: true,
     pair: None,
     needs_mechanics: false,
     create: |system| {
