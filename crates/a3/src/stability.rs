@@ -43,9 +43,6 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
     let in_motion = modes_in_motion(&scene).map_err(Failure::run)?;
     let hanging = rest(&scene).map_err(Failure::run)?;
-    let at_rest = hanging
-        .as_ref()
-        .map(|y| spectrum(scene.model.system(), 0.0, y));
     let bar = Bar::new(2.0 * methods.len() as f64);
     let mut rows = vec![];
     for method in methods {
@@ -54,15 +51,16 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
         }
         bar.say(format!("{:<10} ", method.name));
         let start = largest_step(method, &at_start).map_err(Failure::run)?;
-        let motion = pair(method, &in_motion, |guess| {
+        let motion = pair(method, &in_motion, |limit| {
+            let guess = limit.map_or(1.0, |limit| limit.step);
             observe_from_start(&scene, method, guess)
         })?;
         bar.advance(1.0);
-        let rest = match (&hanging, &at_rest) {
-            (Some(y), Some(modes)) => Some(pair(method, modes, |guess| {
-                observe_at_rest(&scene, y, method, guess)
+        let rest = match &hanging {
+            Some(rest) => Some(pair(method, &rest.modes, |limit| {
+                observe_at_rest(&scene, rest, method, limit)
             })?),
-            _ => None,
+            None => None,
         };
         bar.advance(1.0);
         rows.push(Row {
@@ -78,7 +76,12 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
             "interrupted before anything was measured".into(),
         ));
     }
-    output::say(&text(&scene, &rows, &at_start, at_rest.as_deref()))?;
+    output::say(&text(
+        &scene,
+        &rows,
+        &at_start,
+        hanging.as_ref().map(|rest| &rest.modes[..]),
+    ))?;
     let title = format!("Where solvers fail: {}", describe(&options.what, &scene));
     // By default the fastest motion turns by one radian a step.
     let fastest = at_start.first().map_or(1.0, Mode::frequency);
@@ -102,11 +105,10 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
 fn pair(
     method: &'static Method,
     modes: &[Mode],
-    observe: impl FnOnce(f64) -> Result<Observation, a3_core::Error>,
+    observe: impl FnOnce(Option<&Limit>) -> Result<Observation, a3_core::Error>,
 ) -> Result<Pair, Failure> {
     let predicted = largest_step(method, modes).map_err(Failure::run)?;
-    let guess = predicted.map_or(1.0, |limit| limit.step);
-    let observed = observe(guess).map_err(Failure::run)?;
+    let observed = observe(predicted.as_ref()).map_err(Failure::run)?;
     Ok(Pair {
         predicted,
         observed,

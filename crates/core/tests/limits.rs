@@ -2,7 +2,10 @@
 
 mod common;
 
-use a3_core::stability::{Growth, LargestMode, Mode, largest_step, spectrum};
+use a3_core::stability::{
+    Growth, LargestMode, Mode, largest_step, modes_in_motion, observe_at_rest, observe_from_start,
+    rest, spectrum,
+};
 use a3_core::{
     Grid, Mechanics, Network, Path, Spring, SpringKind, SpringLaw, Vector3, integrators,
 };
@@ -235,4 +238,37 @@ fn a_scene_of_any_shape_has_a_spectrum() {
     }
     let tall = scene_with_grid("cloth", 60, 4);
     assert!(spectrum(tall.model.system(), 0.0, &tall.state)[0].frequency() > 0.0);
+}
+
+/// From both sides, on the nonlinear scene itself: the step at which a nudge of the resting cloth begins to grow, and the
+/// one at which the falling cloth gains energy.
+#[test]
+fn limits_are_seen_on_the_cloth() {
+    let cloth = scene_with_grid("cloth", 8, 8);
+    let rest = rest(&cloth).unwrap().unwrap();
+    let moving = modes_in_motion(&cloth).unwrap();
+    for m in integrators::METHODS {
+        let predicted = largest_step(m, &rest.modes).unwrap().unwrap();
+        let seen = observe_at_rest(&cloth, &rest, m, Some(&predicted)).unwrap();
+        let in_motion = largest_step(m, &moving).unwrap().unwrap().step;
+        let seen_in_motion = observe_from_start(&cloth, m, in_motion).unwrap();
+        if m.implicit {
+            assert!(predicted.step.is_infinite() && seen.step.is_infinite());
+            continue;
+        }
+        let ratio = seen.step / predicted.step;
+        assert!(
+            (0.985..1.01).contains(&ratio),
+            "{} at rest: {ratio}",
+            m.name
+        );
+        // Past their limits these grow so slowly that the cloth has changed its shape before one sees it.
+        let slow = match m.name {
+            "euler" => 3.0,
+            "trapezoid" | "midpoint" => 1.2,
+            _ => 1.1,
+        };
+        let ratio = seen_in_motion.step / in_motion;
+        assert!((0.95..slow).contains(&ratio), "{} falling: {ratio}", m.name);
+    }
 }

@@ -1,11 +1,14 @@
 //! Where a method fails in fact: the nonlinear scene itself, stepped with longer and shorter steps.
 
-use super::{GROWTH, HORIZON, LargestMode, Mode, STEPS, spectrum};
+use super::spectrum::shapes;
+use super::{GROWTH, HORIZON, Limit, Mode, STEPS, spectrum};
 use crate::error::Error;
 use crate::integrators::{Method, find};
+use crate::network::Network;
 use crate::random::SplitMix;
 use crate::scenes::Scene;
 use crate::simulation::Simulation;
+use crate::system::Mechanics;
 
 /// The largest step that was seen to hold is known to this fraction.
 const PRECISION: f64 = 0.005;
@@ -17,6 +20,8 @@ const BEYOND: f64 = 4.0;
 const LOOKS: u64 = 200;
 /// The speed of the disturbance of a scene at rest (m/s, root of the sum of squares weighted with the masses in kg).
 const NUDGE: f64 = 1e-6;
+/// The share in it of what is no mode in particular.
+const OTHERS: f64 = 0.1;
 
 /// How a scene is brought to rest: steps (s), at most so many, and whether first everything is pushed a little.
 const SETTLING: [(f64, u32, bool); 5] = [
@@ -61,12 +66,22 @@ pub struct Observation {
     pub runs: u32,
 }
 
+/// A scene at rest.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    /// The state.
+    pub state: Vec<f64>,
+    /// The modes around it, fastest first: every one, of a system of less than about 1200 numbers in x.
+    pub modes: Vec<Mode>,
+    shapes: Vec<Vec<f64>>,
+}
+
 /// The state in which the scene comes to rest, wind and swing off: found by implicit Euler in growing steps. `None` for
 /// a first-order scene, and for one that does not settle.
 ///
 /// # Errors
 /// The scene cannot be run.
-pub fn rest(scene: &Scene) -> Result<Option<Vec<f64>>, Error> {
+pub fn rest(scene: &Scene) -> Result<Option<Rest>, Error> {
     let Some((implicit, network)) = find("implicit").zip(scene.model.network()) else {
         return Ok(None);
     };
@@ -105,39 +120,52 @@ pub fn rest(scene: &Scene) -> Result<Option<Vec<f64>>, Error> {
     let half = y.len() / 2;
     let speed = y[half..].iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     y[half..].fill(0.0);
-    Ok((speed < 1e-4).then_some(y))
+    if speed > 1e-4 {
+        return Ok(None);
+    }
+    let (modes, shapes) = shapes(network, 0.0, &y[..half]).into_iter().unzip();
+    Ok(Some(Rest {
+        state: y,
+        modes,
+        shapes,
+    }))
 }
 
-/// The largest step with which the scene, started from `rest` with its fastest mode nudged, keeps the nudge from growing
-/// [`GROWTH`] times in [`HORIZON`]. Bisection begins at `guess` (s).
+/// The largest step with which the scene, started from `rest` with the mode nudged that limits the method and every other
+/// a little, keeps the nudge from growing [`GROWTH`] times in [`HORIZON`]. Bisection begins at the limit.
 ///
 /// # Errors
 /// The method does not serve the scene.
 pub fn observe_at_rest(
     scene: &Scene,
-    rest: &[f64],
+    rest: &Rest,
     method: &'static Method,
-    guess: f64,
+    limit: Option<&Limit>,
 ) -> Result<Observation, Error> {
     let mut still = scene.clone();
-    still.state = rest.to_vec();
+    still.state.clone_from(&rest.state);
     let mut nudged = still.clone();
-    let half = rest.len() / 2;
-    let Some(network) = scene.model.network() else {
+    let half = rest.state.len() / 2;
+    let (Some(network), Some(limit)) = (scene.model.network(), limit) else {
         return Ok(Observation { step: 0.0, runs: 0 });
     };
-    let mut fastest = LargestMode::default();
-    let mut frequency = 0.0;
-    // To the last digit, so that nothing but the mode is nudged.
-    for _ in 0..60 {
-        let mode = fastest.estimate(network, 0.0, &rest[..half]);
-        frequency = mode.map_or(0.0, |mode| mode.frequency());
+    let guess = limit.step;
+    let mut random = SplitMix(5);
+    let others: Vec<_> = (0..half).map(|_| random.between(-1.0, 1.0)).collect();
+    let length = norm(&others);
+    for (k, (z, other)) in rest.shapes[limit.mode].iter().zip(&others).enumerate() {
+        let particle = k % network.particles();
+        if !network.is_pinned(particle) {
+            let z = z + OTHERS * other / length;
+            nudged.state[half + k] = NUDGE * z / network.masses()[particle].sqrt();
+        }
     }
-    let roots: Vec<f64> = network.masses().iter().map(|m| m.sqrt()).collect();
-    let weigh = |k: usize| roots[k % roots.len()];
-    for (k, z) in fastest.shape().iter().enumerate() {
-        nudged.state[half + k] = NUDGE * z / weigh(k);
-    }
+    let size = Size {
+        network,
+        rest: &rest.state[..half],
+    };
+    let zero = vec![0.0; half];
+    let nudge = size.of(&zero, &nudged.state[half..]);
     // What grows is told from a run without the nudge beside it: a method may rest a little elsewhere than the scene
     // does, and particles on an obstacle are pushed out at every step.
     let least = least(guess);
@@ -146,18 +174,32 @@ pub fn observe_at_rest(
         let mut beside = Simulation::with_fixed_steps(still.clone(), method, h)?;
         Ok(step_and_look(h, least, |count| {
             let held = run.take_steps(count).is_ok() && beside.take_steps(count).is_ok();
-            let before = beside.state();
-            let size: f64 = (0..half)
-                .map(|k| {
-                    let dx = frequency * (run.state()[k] - before[k]);
-                    let dv = run.state()[half + k] - before[half + k];
-                    (weigh(k) * dx).powi(2) + (weigh(k) * dv).powi(2)
-                })
-                .sum();
-            held && size.sqrt() < GROWTH * NUDGE
+            let both = run.state().iter().zip(beside.state());
+            let apart: Vec<_> = both.map(|(a, b)| a - b).collect();
+            let (dx, dv) = apart.split_at(half);
+            held && size.of(dx, dv) < GROWTH * nudge
         }))
     };
     bisect(guess, holds)
+}
+
+/// The size of a disturbance: the root of twice its energy.
+struct Size<'a> {
+    network: &'a Network,
+    rest: &'a [f64],
+}
+
+impl Size<'_> {
+    fn of(&self, dx: &[f64], dv: &[f64]) -> f64 {
+        let zero = vec![0.0; dx.len()];
+        let mut df = zero.clone();
+        let network = self.network;
+        network.force_differential(0.0, self.rest, &zero, dx, &zero, &mut df);
+        let parts = (dx.iter().zip(dv).zip(&df).enumerate()).map(|(k, ((dx, dv), df))| {
+            network.masses()[k % network.particles()] * dv * dv - dx * df
+        });
+        parts.sum::<f64>().abs().sqrt()
+    }
 }
 
 /// The steps of a run, at least: a method that should hold any step is not asked for as many.

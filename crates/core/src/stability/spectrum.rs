@@ -1,14 +1,16 @@
 //! The modes of a scene around a state, from products with the force differential alone.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::Mode;
 use crate::random::SplitMix;
 use crate::system::{Mechanics, ParticleSystem};
 
-/// Products with the stiffness that a whole spectrum takes at most: enough for its ends to be exact to three digits on
-/// any cloth, and for its middle to be seen.
+/// Products with the stiffness that a spectrum takes at most: enough for its ends to be exact to three digits on any
+/// cloth, and for its middle to be seen.
 const PRODUCTS: usize = 64;
+/// Every mode is found of systems in which that takes no more multiplications (a few seconds).
+const MULTIPLICATIONS: f64 = 2e9;
 /// A first-order system of up to so many numbers has its Jacobian computed.
 const DENSE: usize = 300;
 
@@ -18,11 +20,29 @@ const DENSE: usize = 300;
 #[must_use]
 pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let mut modes = match system.mechanics() {
-        Some(mechanics) => of_mechanics(mechanics, t, &y[..y.len() / 2]),
+        Some(mechanics) => {
+            let (x, _) = y.split_at(y.len() / 2);
+            let mut modes = vec![];
+            of_mechanics(mechanics, t, x, PRODUCTS, &mut |mode, _| modes.push(mode));
+            modes
+        }
         None if y.len() <= DENSE => of_jacobian(system, t, y),
         None => vec![],
     };
     modes.sort_by(|a, b| b.stiffness.total_cmp(&a.stiffness));
+    modes
+}
+
+/// Every mode around the positions x, or as many as a few seconds allow, fastest first, each with its shape: the root of
+/// the masses times the displacement, of length 1.
+pub(super) fn shapes(mechanics: &dyn Mechanics, t: f64, x: &[f64]) -> Vec<(Mode, Vec<f64>)> {
+    let products = (MULTIPLICATIONS / x.len() as f64).sqrt() as usize;
+    let mut modes = vec![];
+    let products = products.max(PRODUCTS);
+    of_mechanics(mechanics, t, x, products, &mut |mode, shape| {
+        modes.push((mode, shape.to_vec()));
+    });
+    modes.sort_by(|(a, _), (b, _)| b.stiffness.total_cmp(&a.stiffness));
     modes
 }
 
@@ -128,11 +148,18 @@ fn normalise(z: &mut [f64]) -> f64 {
     length
 }
 
-fn of_mechanics(mechanics: &dyn Mechanics, t: f64, x: &[f64]) -> Vec<Mode> {
+/// Visits the modes with their shapes.
+fn of_mechanics(
+    mechanics: &dyn Mechanics,
+    t: f64,
+    x: &[f64],
+    products: usize,
+    visit: &mut dyn FnMut(Mode, &[f64]),
+) {
     let mut stiffness = Normalised::new(mechanics, t, x);
     let mut basis = vec![stiffness.any_shape()];
     if dot(&basis[0], &basis[0]) == 0.0 {
-        return vec![];
+        return;
     }
     let (mut alpha, mut beta) = (vec![], vec![]);
     let mut next = vec![0.0; x.len()];
@@ -140,7 +167,7 @@ fn of_mechanics(mechanics: &dyn Mechanics, t: f64, x: &[f64]) -> Vec<Mode> {
         let last = &basis[basis.len() - 1];
         stiffness.product(last, false, &mut next);
         alpha.push(dot(last, &next));
-        if basis.len() == PRODUCTS {
+        if basis.len() == products {
             break;
         }
         // Against all that came before, twice, which is enough for orthogonality to the last digit.
@@ -168,18 +195,18 @@ fn of_mechanics(mechanics: &dyn Mechanics, t: f64, x: &[f64]) -> Vec<Mode> {
     });
     let eigen = tridiagonal.symmetric_eigen();
     let mut shape = vec![0.0; x.len()];
-    (0..m)
-        .map(|k| {
-            let weights: DVector<f64> = eigen.eigenvectors.column(k).into();
-            shape.fill(0.0);
-            for (weight, z) in weights.iter().zip(&basis) {
-                for (shape, z) in shape.iter_mut().zip(z) {
-                    *shape += weight * z;
-                }
+    for (k, weights) in eigen.eigenvectors.column_iter().enumerate() {
+        shape.fill(0.0);
+        for (weight, z) in weights.iter().zip(&basis) {
+            for (shape, z) in shape.iter_mut().zip(z) {
+                *shape += weight * z;
             }
-            stiffness.mode(eigen.eigenvalues[k], &shape, &mut next)
-        })
-        .collect()
+        }
+        visit(
+            stiffness.mode(eigen.eigenvalues[k], &shape, &mut next),
+            &shape,
+        );
+    }
 }
 
 /// One mode for each pair of eigenvalues of the Jacobian, by central differences.
