@@ -224,7 +224,7 @@ fn panel(row: &Row, modes: &[Mode], h: f64) -> Panel {
     let method = row.method;
     let subtitle = if limit.is_finite() {
         format!(
-            "largest stable step {}\u{a0}ms, observed {}\u{a0}ms",
+            "stable up to {}\u{a0}ms, observed {}\u{a0}ms",
             prediction(row.motion.predicted),
             step(row.motion.observed.step)
         )

@@ -260,16 +260,28 @@ fn limits_are_predicted_and_observed() {
     let text = said(folder.path(), &words);
     let mut rows = 0;
     for line in text.lines() {
-        let cells: Vec<_> = line.split_whitespace().collect();
-        if let [solver, predicted, observed, ratio, ..] = cells[..]
-            && let (Ok(predicted), Ok(observed), Ok(ratio)) = (
-                predicted.parse::<f64>(),
-                observed.parse::<f64>(),
-                ratio.parse::<f64>(),
-            )
+        let mut cells = line.split_whitespace();
+        let solver = cells.next().unwrap_or_default();
+        let cells: Vec<f64> = cells.map_while(|cell| cell.parse().ok()).collect();
+        if let [
+            _,
+            moving,
+            seen_moving,
+            ratio_moving,
+            resting,
+            seen_resting,
+            ratio_resting,
+        ] = cells[..]
         {
-            assert!((observed / predicted - ratio).abs() < 0.01, "{line}");
-            assert!((0.9..1.1).contains(&ratio), "{solver}: {line}");
+            assert!((seen_moving / moving - ratio_moving).abs() < 0.01, "{line}");
+            assert!(
+                (seen_resting / resting - ratio_resting).abs() < 0.01,
+                "{line}"
+            );
+            // Past its limit Heun's method grows slowly, while the cloth goes on to another shape.
+            let most = if solver == "trapezoid" { 1.2 } else { 1.1 };
+            assert!((0.9..most).contains(&ratio_moving), "{line}");
+            assert!((0.97..1.03).contains(&ratio_resting), "{line}");
             rows += 1;
         }
     }

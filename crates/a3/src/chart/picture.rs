@@ -20,7 +20,13 @@ pub fn chart(
     let until = studies[0].frames.until;
     let panels = studies
         .iter()
-        .map(|study| panel(study, data, methods, metric, timed))
+        .map(|study| {
+            let mut panel = panel(study, data, methods, metric, timed);
+            if studies.len() > 1 || study.stiffness() != 1.0 {
+                panel.title = format!("stiffness × {}", study.stiffness());
+            }
+            panel
+        })
         .collect();
     Chart {
         title: format!("Speed against accuracy: {}", describe(what, &studies[0].scene)),
@@ -87,11 +93,7 @@ fn panel(
         .map(|r| r.floor(metric))
         .reduce(f64::max);
     Panel {
-        title: if study.stiffness() == 1.0 {
-            String::new()
-        } else {
-            format!("stiffness × {}", study.stiffness())
-        },
+        title: String::new(),
         curves: curves.collect(),
         floor,
     }

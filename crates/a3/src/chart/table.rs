@@ -49,9 +49,9 @@ pub fn setting(method: &Method, setting: f64) -> String {
     if method.is_adaptive() {
         format!("tolerance {setting:.0e}")
     } else if setting < 1e-3 {
-        format!("step {:.3} µs", 1e6 * setting)
+        format!("step {} µs", (1e9 * setting).round() / 1e3)
     } else {
-        format!("step {:.3} ms", 1e3 * setting)
+        format!("step {} ms", (1e6 * setting).round() / 1e3)
     }
 }
 
@@ -74,7 +74,7 @@ pub fn text(
         "work (force evaluations)"
     };
     let parts = studies.iter().map(|study| {
-        let head = if study.stiffness() == 1.0 {
+        let head = if studies.len() == 1 && study.stiffness() == 1.0 {
             String::new()
         } else {
             format!(", stiffness x {}", study.stiffness())
