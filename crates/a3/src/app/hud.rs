@@ -197,7 +197,7 @@ fn limit(pane: &Pane) -> Option<(String, Color32)> {
     };
     let largest = panes::digits(1e3 * limit.step);
     Some((
-        format!("{largest} ms: the step is {:.0} % of it", 100.0 * share),
+        format!("{largest} ms (step at {:.0} %)", 100.0 * share),
         colour,
     ))
 }
@@ -487,7 +487,7 @@ pub mod tests {
         for (step, colour) in [(0.01, SAFE), (0.032, WARNING), (0.04, ALARM)] {
             let (words, found) = said("mit", "r", step);
             // Within 1 % of 34.9 ms.
-            let share = format!("35.2 ms: the step is {:.0} % of it", step / 0.0352 * 100.0);
+            let share = format!("35.2 ms (step at {:.0} %)", step / 0.0352 * 100.0);
             assert!(words.contains(&share), "{share} in {words}");
             assert_eq!(found, colour);
         }
