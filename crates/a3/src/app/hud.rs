@@ -8,7 +8,6 @@ use a3_core::{BlowUp, Cause, Simulation, integrators};
 use egui::{Align2, Area, Color32, Context, Frame, Id, Margin, RichText, Ui};
 
 use super::keys::{KEYS, MOUSE};
-use super::limit::would_hold;
 use super::pane::Pane;
 
 /// What the text says beside the runs themselves.
@@ -273,15 +272,19 @@ fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     );
     let (setting, method) = (lost.setting, lost.method);
     let adaptive = matches!(lost.cause, Cause::StepTooSmall { .. });
-    ui.label(text(match pane.watch.limit().map(|limit| limit.step) {
+    let same = method == pane.simulation.method().title;
+    let limit = pane.watch.limit().map(|limit| limit.step);
+    ui.label(text(match limit.zip(pane.watch.would_hold()) {
         _ if adaptive => {
             format!("{method} found no step to a tolerance of {setting:e}: a larger one may do.")
         }
-        Some(limit) if setting > limit && method == pane.simulation.method().title => format!(
-            "A step of {setting} s was too long for {method}: past its limit here of {} ms. {} s would have held.",
+        Some((limit, would_hold)) if setting > limit && same => format!(
+            "A step of {setting} s was too long for {method}: past its limit here of {} ms. {would_hold} s would have held.",
             panes::digits(1e3 * limit),
-            would_hold(limit),
         ),
+        Some((_, would_hold)) if same => {
+            format!("A step of {setting} s was too long for {method}: {would_hold} s would have held.")
+        }
         _ => format!("A step of {setting} s was too long for {method}."),
     }));
 }

@@ -9,6 +9,10 @@ use a3_core::{Method, Simulation};
 const INTERVAL: Duration = Duration::from_millis(250);
 /// ... nor than so many times what that took: two percent of the time at most.
 const IDLE: u32 = 50;
+/// A step that is said to hold was seen to hold for so long (s) ...
+const HOLDING: f64 = 10.0;
+/// ... or as far as it came in this time.
+const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Looks at the fastest motion of a run every now and then.
 #[derive(Default)]
@@ -17,6 +21,7 @@ pub struct LimitWatch {
     mode: Option<Mode>,
     limit: Option<Limit>,
     next: Option<Instant>,
+    would_hold: Option<f64>,
 }
 
 impl LimitWatch {
@@ -25,14 +30,25 @@ impl LimitWatch {
         self.limit
     }
 
-    /// Looks again, if it is time, or if it must be now.
-    pub fn look(&mut self, run: &Simulation, now: bool) {
+    /// Of a lost run: a step (s) with which it would not have been.
+    pub fn would_hold(&self) -> Option<f64> {
+        self.would_hold
+    }
+
+    /// Looks again, if it is time, or if the run was just lost.
+    pub fn look(&mut self, run: &Simulation) {
         let begun = Instant::now();
-        if !now && self.next.is_some_and(|next| begun < next) {
+        let lost = run.blow_up().is_some();
+        let wait = if lost {
+            self.would_hold.is_some()
+        } else {
+            self.next.is_some_and(|next| begun < next)
+        };
+        if wait {
             return;
         }
         // What is left of a lost run is crumpled: the limit that counts is that of the scene.
-        let y = if run.blow_up().is_some() {
+        let y = if lost {
             &run.scene().state
         } else {
             run.state()
@@ -46,6 +62,9 @@ impl LimitWatch {
             None => spectrum(system, run.time(), y).first().copied(),
         };
         self.ask(run.method());
+        if let (true, Some(limit)) = (lost, self.limit) {
+            self.would_hold = Some(would_hold(run, limit.step.min(run.setting())));
+        }
         let after = Instant::now();
         self.next = Some(after + INTERVAL.max(IDLE * after.duration_since(begun)));
     }
@@ -55,12 +74,35 @@ impl LimitWatch {
         let modes = self.mode.as_slice();
         // No method of the table refuses a mode.
         self.limit = largest_step(method, modes).ok().flatten();
+        self.would_hold = None;
     }
 }
 
-/// The longest step of one digit that is within nine tenths of the limit.
-pub fn would_hold(limit: f64) -> f64 {
-    let most = 0.9 * limit;
+/// The longest step (s) below a limit that was seen to hold: the fastest motion is not what limits every method.
+fn would_hold(run: &Simulation, limit: f64) -> f64 {
+    let deadline = Instant::now() + PATIENCE;
+    let mut step = rounded(0.9 * limit);
+    while Instant::now() < deadline && !holds(run, step, deadline) {
+        step = rounded(0.6 * step);
+    }
+    step
+}
+
+/// Whether the run from its start is not lost with steps of h (s).
+fn holds(run: &Simulation, h: f64, deadline: Instant) -> bool {
+    let Ok(mut again) = Simulation::with_fixed_steps(run.scene().clone(), run.method(), h) else {
+        return true;
+    };
+    while again.time() < HOLDING && Instant::now() < deadline {
+        if again.take_steps(16).is_err() {
+            return false;
+        }
+    }
+    true
+}
+
+/// Of one digit, rounded down.
+fn rounded(most: f64) -> f64 {
     let unit = 10f64.powi(most.log10().floor() as i32);
     // As one would type it.
     let digits = (most / unit + 1e-9).floor() * unit;
@@ -74,14 +116,25 @@ mod tests {
 
     #[test]
     fn a_step_that_would_hold_is_short_and_within() {
-        for (limit, expected) in [
-            (0.0144, 0.01),
-            (0.0349, 0.03),
-            (0.000_392, 0.000_3),
-            (0.1, 0.09),
+        for (most, expected) in [
+            (0.013, 0.01),
+            (0.031, 0.03),
+            (0.000_35, 0.000_3),
+            (0.09, 0.09),
         ] {
-            assert_eq!(would_hold(limit), expected);
+            assert_eq!(rounded(most), expected);
         }
+        // Euler's method is limited by slow motion without damping, of which the fastest motion knows nothing.
+        let scene = scenes::find("cloth").unwrap().build(None).unwrap();
+        let euler = integrators::find("euler").unwrap();
+        let mut run = Simulation::new(scene.clone(), euler, 0.02).unwrap();
+        assert!(run.advance_to(10.0).is_err());
+        let mut watch = LimitWatch::default();
+        watch.look(&run);
+        let step = watch.would_hold().unwrap();
+        assert!(step > 0.001 && step < watch.limit().unwrap().step, "{step}");
+        let mut run = Simulation::new(scene, euler, step).unwrap();
+        run.advance_to(10.0).unwrap();
     }
 
     #[test]
@@ -91,15 +144,16 @@ mod tests {
         let mut run = Simulation::new(scene, method("rk4"), 0.01).unwrap();
         let mut watch = LimitWatch::default();
         assert_eq!(watch.limit(), None);
-        watch.look(&run, false);
+        watch.look(&run);
         let flat = watch.limit().unwrap().step;
         assert!((flat - 0.0349).abs() < 0.001, "{flat}");
         run.advance_to(1.5).unwrap();
         // Not yet time to look.
-        watch.look(&run, false);
+        watch.look(&run);
         assert_eq!(watch.limit().unwrap().step, flat);
         for _ in 0..8 {
-            watch.look(&run, true);
+            watch.next = None;
+            watch.look(&run);
         }
         let stretched = watch.limit().unwrap().step;
         assert!(

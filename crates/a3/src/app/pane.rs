@@ -113,7 +113,7 @@ impl Pane {
     pub fn read_state(&mut self) {
         self.energy = self.simulation.energy().map(|energy| energy.total());
         self.stretch = self.simulation.largest_stretch();
-        self.watch.look(&self.simulation, !self.alive());
+        self.watch.look(&self.simulation);
     }
 
     /// The cost since it was last taken, if any time was simulated.
