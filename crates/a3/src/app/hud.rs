@@ -273,17 +273,19 @@ fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     let (setting, method) = (lost.setting, lost.method);
     let adaptive = matches!(lost.cause, Cause::StepTooSmall { .. });
     let same = method == pane.simulation.method().title;
+    let same = method == pane.simulation.method().title;
     let limit = pane.watch.limit().map(|limit| limit.step);
     ui.label(text(match limit.zip(pane.watch.would_hold()) {
         _ if adaptive => {
             format!("{method} found no step to a tolerance of {setting:e}: a larger one may do.")
         }
-        Some((limit, would_hold)) if setting > limit && same => format!(
-            "A step of {setting} s was too long for {method}: past its limit here of {} ms. {would_hold} s would have held.",
-            panes::digits(1e3 * limit),
-        ),
-        Some((_, would_hold)) if same => {
-            format!("A step of {setting} s was too long for {method}: {would_hold} s would have held.")
+        Some((limit, would_hold)) if same => {
+            let past = if setting > limit {
+                format!(": past its limit here of {} ms", panes::digits(1e3 * limit))
+            } else {
+                String::new()
+            };
+            format!("A step of {setting} s was too long for {method}{past}. {would_hold} s would have held.")
         }
         _ => format!("A step of {setting} s was too long for {method}."),
     }));

@@ -1,5 +1,7 @@
 //! One panel: its shade, its curves, its front, and their names where there is room.
 
+use std::cmp::Reverse;
+
 use super::{FRONT, Panel, ROUND, Run, SHADE};
 use crate::plot::axis::{self, Axis};
 use crate::plot::figure::{Figure, stroke};
@@ -169,10 +171,17 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Names each method where it is on the front, on the side where no curve can be.
+    /// Names each method once where it leads the longest, on the side where no curve can be.
     fn name_front(&self, figure: &mut Figure, front: &[(usize, &Run)]) {
         let size = self.size;
-        for part in front.chunk_by(|a, b| a.0 == b.0) {
+        let mut parts: Vec<_> = front.chunk_by(|a, b| a.0 == b.0).collect();
+        parts.sort_by_key(|part| Reverse(part.len()));
+        let mut named = vec![];
+        for part in parts {
+            if named.contains(&part[0].0) {
+                continue;
+            }
+            named.push(part[0].0);
             let curve = &self.panel.curves[part[0].0];
             let mut runs: Vec<_> = (0..part.len()).collect();
             runs.sort_by_key(|k| k.abs_diff(part.len() / 2));
