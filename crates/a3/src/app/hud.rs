@@ -273,7 +273,6 @@ fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     let (setting, method) = (lost.setting, lost.method);
     let adaptive = matches!(lost.cause, Cause::StepTooSmall { .. });
     let same = method == pane.simulation.method().title;
-    let same = method == pane.simulation.method().title;
     let limit = pane.watch.limit().map(|limit| limit.step);
     ui.label(text(match limit.zip(pane.watch.would_hold()) {
         _ if adaptive => {
