@@ -78,6 +78,11 @@ impl Bar {
             .set_position((1000.0 * self.done.get() / self.expected) as u64);
     }
 
+    /// What is left is estimated from here on.
+    pub fn start(&self) {
+        self.drawn.reset_eta();
+    }
+
     /// What is being done.
     pub fn say(&self, what: String) {
         self.drawn.set_message(what);

@@ -12,8 +12,12 @@ use crate::{Failure, output, progress};
 struct State<'a> {
     scene: &'a str,
     solver: &'a str,
-    /// In s.
-    step: f64,
+    /// In s, of a method with fixed steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    step: Option<f64>,
+    /// Relative, of an adaptive method.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance: Option<f64>,
     /// In s.
     time: f64,
     steps: u64,
@@ -44,11 +48,13 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
 
 fn state(simulation: &Simulation) -> State<'_> {
     let n = simulation.particles();
+    let adaptive = simulation.method().is_adaptive();
     let rows = |a: &[f64]| (0..n).map(|i| [a[i], a[n + i], a[2 * n + i]]).collect();
     State {
         scene: simulation.scene().name,
         solver: simulation.method().name,
-        step: simulation.setting(),
+        step: (!adaptive).then_some(simulation.setting()),
+        tolerance: adaptive.then_some(simulation.setting()),
         time: simulation.time(),
         steps: simulation.steps(),
         evaluations: simulation.work().evaluations,

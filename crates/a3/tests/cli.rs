@@ -339,6 +339,11 @@ fn the_state_is_written_at_full_precision() {
         &["t", "0.01", "--grid", "5x7", "--until", "0"],
     );
     assert_eq!((&start["steps"], &start["time"]), (&0.into(), &0.0.into()));
+
+    // A tolerance is no step.
+    let state = simulate(folder.path(), &["dopri5", "1e-4", "--until", "0.1"]);
+    assert!(state["step"].is_null());
+    assert_eq!(state["tolerance"], 1e-4);
 }
 
 /// As many steps as it takes, and none of a rounding error's size.

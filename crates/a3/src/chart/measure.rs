@@ -136,7 +136,7 @@ impl<'a> Study<'a> {
                 bar.say(format!("{:<10} ", method.name));
                 let record = match data.find(&like, self.timed) {
                     Some(record) => record.clone(),
-                    None => match self.measure(method, like)? {
+                    None => match self.measure(method, like, bar)? {
                         Some(record) => {
                             data.add(record.clone());
                             record
@@ -165,10 +165,14 @@ impl<'a> Study<'a> {
         &mut self,
         method: &'static Method,
         like: Record,
+        bar: &Bar,
     ) -> Result<Option<Record>, Failure> {
         if self.reference.is_none() {
+            bar.say("reference  ".into());
             self.reference = Reference::new(&self.scene, self.frames, &interrupt::go_on)
                 .map_err(|e| Failure::run(format!("no reference: {e}")))?;
+            bar.start();
+            bar.say(format!("{:<10} ", method.name));
         }
         let Some(reference) = &self.reference else {
             return Ok(None);
