@@ -91,8 +91,8 @@ impl<'a> Study<'a> {
 
     /// The settings of a method.
     fn rungs(&self, method: &'static Method) -> Result<Vec<f64>, Failure> {
-        let each = u64::from(method.damped_evaluations.max(method.evaluations));
-        ladder(&self.scene, method, &self.frames, MOST_EVALUATIONS / each).map_err(Failure::run)
+        let most = MOST_EVALUATIONS as f64 / each(method);
+        ladder(&self.scene, method, &self.frames, most as u64).map_err(Failure::run)
     }
 
     /// About how long everything takes, in evaluations.
@@ -111,16 +111,11 @@ impl<'a> Study<'a> {
     fn expected_of(&self, method: &Method, setting: f64) -> f64 {
         let steps = if method.is_adaptive() {
             // As on most scenes, within a factor of three.
-            60.0 * self.frames.until * setting.powf(-0.9 / f64::from(method.order))
+            20.0 * self.frames.until * setting.powf(-0.9 / f64::from(method.order))
         } else {
             self.frames.until / setting
         };
-        let each = if method.implicit {
-            IMPLICIT
-        } else {
-            f64::from(method.damped_evaluations.max(method.evaluations))
-        };
-        (steps * each).min(MOST_EVALUATIONS as f64) + 100.0
+        steps * each(method) + 100.0
     }
 
     /// Measures what the data do not have yet. Whether it came to its end.
@@ -214,6 +209,15 @@ impl<'a> Study<'a> {
             rejections: work.rejections,
             ..like
         }))
+    }
+}
+
+/// About what a step takes, in evaluations.
+fn each(method: &Method) -> f64 {
+    if method.implicit {
+        IMPLICIT
+    } else {
+        f64::from(method.damped_evaluations.max(method.evaluations))
     }
 }
 
