@@ -1,7 +1,6 @@
-//! A rectangular grid of particles: its numbering, its springs, its triangles.
+//! A rectangular grid of particles: its numbering, its triangles.
 
-use crate::error::{Error, positive};
-use crate::spring::{SpringFamily, SpringKind, SpringLaw};
+use crate::error::Error;
 
 /// The most particles a scene may have: 2048 x 2048.
 pub const MAX_PARTICLES: usize = 2048 * 2048;
@@ -51,74 +50,6 @@ impl Grid {
     pub fn index_of(&self, i: usize, j: usize) -> usize {
         debug_assert!(i < self.rows && j < self.cols);
         i * self.cols + j
-    }
-
-    /// The six families of cloth springs, at rest in a flat grid of that `spacing` (m):
-    /// structural to the next particle, shear across each cell, bend to the next but one.
-    ///
-    /// `stiffness` (N/m) is for the three kinds in this order; each spring is damped by `damping_time` (s) times its
-    /// stiffness.
-    ///
-    /// # Errors
-    /// The spacing is not above 0, or a number is negative or not finite.
-    pub fn springs(
-        &self,
-        spacing: f64,
-        stiffness: [f64; 3],
-        damping_time: f64,
-    ) -> Result<Vec<SpringFamily>, Error> {
-        positive("the spacing", spacing)?;
-        let [structural, shear, bend] = stiffness;
-        [
-            (SpringKind::Structural, structural, (0, 1), false),
-            (SpringKind::Structural, structural, (1, 0), false),
-            (SpringKind::Shear, shear, (1, 1), false),
-            (SpringKind::Shear, shear, (1, 1), true),
-            (SpringKind::Bend, bend, (0, 2), false),
-            (SpringKind::Bend, bend, (2, 0), false),
-        ]
-        .into_iter()
-        .map(|(kind, k, (di, dj), leftwards)| {
-            let cells = ((di * di + dj * dj) as f64).sqrt();
-            let law = SpringLaw::new(k, spacing * cells, k * damping_time)?;
-            Ok(self.family(kind, law, di, dj, leftwards))
-        })
-        .collect()
-    }
-
-    /// The springs from (i, j) to (i + di, j + dj), or to (i + di, j - dj) if `leftwards`.
-    fn family(
-        &self,
-        kind: SpringKind,
-        law: SpringLaw,
-        di: usize,
-        dj: usize,
-        leftwards: bool,
-    ) -> SpringFamily {
-        let rows = self.rows.saturating_sub(di);
-        let length = self.cols.saturating_sub(dj);
-        let offset = if leftwards {
-            di * self.cols - dj
-        } else {
-            di * self.cols + dj
-        };
-        let runs = if length == 0 || rows == 0 {
-            vec![]
-        } else if dj == 0 {
-            std::iter::once(0..rows * self.cols).collect()
-        } else {
-            let first = if leftwards { dj } else { 0 };
-            (0..rows)
-                .map(|i| i * self.cols + first)
-                .map(|start| start..start + length)
-                .collect()
-        };
-        SpringFamily {
-            kind,
-            law,
-            offset,
-            runs,
-        }
     }
 
     /// Two triangles a cell, wound alike, all cut along the same diagonal: smooth shading shows where it alternates.

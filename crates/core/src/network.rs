@@ -4,9 +4,10 @@ use nalgebra::Vector3;
 
 use crate::colliders::{Floor, Sphere};
 use crate::error::{Error, at_least, positive};
-use crate::forces::{drag, gravity, springs, wind::Wind};
+use crate::forces::{drag, gravity, sheet, springs, wind::Wind};
 use crate::path::{Path, Place};
-use crate::spring::{Spring, SpringFamily, SpringKind, SpringLaw};
+use crate::sheet::Sheet;
+use crate::spring::{Spring, SpringKind, SpringLaw};
 use crate::system::{Coupling, Mechanics, place_pins};
 
 /// A particle led along a path.
@@ -41,7 +42,7 @@ pub struct Network {
     masses: Vec<f64>,
     /// 0 where pinned.
     inverse_masses: Vec<f64>,
-    families: Vec<SpringFamily>,
+    sheet: Option<Sheet>,
     list: Vec<Spring>,
     pins: Vec<Pin>,
     gravity: Option<Vector3<f64>>,
@@ -68,7 +69,7 @@ impl Network {
         Ok(Self {
             inverse_masses: masses.iter().map(|m| 1.0 / m).collect(),
             masses,
-            families: vec![],
+            sheet: None,
             list: vec![],
             pins: vec![],
             gravity: None,
@@ -122,26 +123,13 @@ impl Network {
         Ok(())
     }
 
-    /// Adds springs of one law and offset.
+    /// Holds the first particles together as a sheet.
     ///
     /// # Errors
-    /// An end does not exist, or both ends are the same.
-    pub fn add_family(&mut self, family: SpringFamily) -> Result<(), Error> {
-        if family.offset == 0 {
-            return Err(Error::Invalid(
-                "the offset of a family of springs is at least 1".into(),
-            ));
-        }
-        if let Some(end) = family
-            .runs
-            .iter()
-            .filter(|run| !run.is_empty())
-            .map(|run| run.end)
-            .max()
-        {
-            self.check_particle((end - 1).saturating_add(family.offset))?;
-        }
-        self.families.push(family);
+    /// The sheet has more particles than there are.
+    pub fn set_sheet(&mut self, sheet: Sheet) -> Result<(), Error> {
+        self.check_particle(sheet.grid().particles() - 1)?;
+        self.sheet = Some(sheet);
         Ok(())
     }
 
@@ -250,17 +238,17 @@ impl Network {
         self.floor
     }
 
-    /// The families of springs.
+    /// The sheet, if there is one.
     #[must_use]
-    pub fn families(&self) -> &[SpringFamily] {
-        &self.families
+    pub fn sheet(&self) -> Option<&Sheet> {
+        self.sheet.as_ref()
     }
 
-    /// Every spring by itself, families first.
+    /// Every spring by itself, those of the sheet first.
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
-        self.families
+        self.sheet
             .iter()
-            .flat_map(SpringFamily::springs)
+            .flat_map(Sheet::springs)
             .chain(self.list.iter().copied())
     }
 
@@ -275,9 +263,9 @@ impl Network {
     /// The factor is not a finite number above 0.
     pub fn scale_stiffness(&mut self, factor: f64) -> Result<(), Error> {
         positive("the factor of the stiffness", factor)?;
-        let families = self.families.iter_mut().map(|family| &mut family.law);
+        let sheet = self.sheet.iter_mut().flat_map(Sheet::laws_mut);
         let list = self.list.iter_mut().map(|spring| &mut spring.law);
-        for law in families.chain(list) {
+        for law in sheet.chain(list) {
             law.stiffness *= factor;
             law.damping *= factor.sqrt();
         }
@@ -285,9 +273,9 @@ impl Network {
     }
 
     fn laws(&self) -> impl Iterator<Item = SpringLaw> {
-        self.families
+        self.sheet
             .iter()
-            .map(|f| f.law)
+            .flat_map(|sheet| *sheet.laws())
             .chain(self.list.iter().map(|s| s.law))
     }
 
@@ -308,10 +296,17 @@ impl Network {
         .collect()
     }
 
-    /// The springs' part of the force (N), added to `f`.
-    pub fn add_spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
-        for family in &self.families {
-            springs::add_family(family, x, v, f);
+    /// The springs' part of the force (N).
+    pub fn spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
+        match &self.sheet {
+            Some(sheet) => {
+                let (n, held) = (self.particles(), sheet.grid().particles());
+                for column in f.chunks_exact_mut(n) {
+                    column[held..].fill(0.0);
+                }
+                sheet::set(sheet, x, v, f);
+            }
+            None => f.fill(0.0),
         }
         springs::add_list(&self.list, x, v, f);
     }
@@ -408,8 +403,7 @@ impl Mechanics for Network {
 
     /// Springs and wind. Gravity and drag are in the drift.
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        f.fill(0.0);
-        self.add_spring_forces(x, v, f);
+        self.spring_forces(x, v, f);
         if let Some(wind) = &self.wind {
             wind.add(t, x, f);
         }

@@ -1,6 +1,4 @@
-//! Springs: what they are for, how they answer, and where they are, one by one or in families.
-
-use std::ops::Range;
+//! Springs: what they are for, how they answer, and where they are.
 
 use crate::error::{Error, at_least};
 
@@ -53,44 +51,4 @@ pub struct Spring {
     pub j: usize,
     /// How it answers.
     pub law: SpringLaw,
-}
-
-/// Springs of one law from each particle p of the `runs` to p + `offset`: on a grid, contiguous loads.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SpringFamily {
-    /// What they are for.
-    pub kind: SpringKind,
-    /// How they answer.
-    pub law: SpringLaw,
-    /// From one end of a spring to the other.
-    pub offset: usize,
-    /// First ends.
-    pub runs: Vec<Range<usize>>,
-}
-
-impl SpringFamily {
-    /// Number of springs.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.runs.iter().map(ExactSizeIterator::len).sum()
-    }
-
-    /// Whether there is none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Each spring by itself.
-    pub fn springs(&self) -> impl Iterator<Item = Spring> {
-        let Self {
-            kind, law, offset, ..
-        } = *self;
-        self.runs.iter().cloned().flatten().map(move |i| Spring {
-            kind,
-            i,
-            j: i + offset,
-            law,
-        })
-    }
 }

@@ -4,8 +4,8 @@ mod common;
 
 use a3_core::forces::Wind;
 use a3_core::{
-    Mechanics, Model, Network, ParticleSystem, Simulation, Spring, SpringKind, SpringLaw, Vector3,
-    scenes,
+    Grid, Mechanics, Model, Network, ParticleSystem, Sheet, Simulation, Spring, SpringKind,
+    SpringLaw, Vector3, scenes,
 };
 use approx::assert_relative_eq;
 use common::{distance, integrate, method, scene, scene_with_grid, size};
@@ -79,10 +79,23 @@ fn differentials_match_central_differences() {
     }
 }
 
-/// The kernel over families against the plain formula, spring by spring.
+/// The kernel over the sheet's rows against the plain formula, spring by spring.
 #[test]
-fn families_agree_with_the_plain_formula() {
-    for (rows, cols) in [(2, 2), (2, 9), (9, 2), (3, 70), (7, 5), (20, 20), (15, 131)] {
+fn sheets_agree_with_the_plain_formula() {
+    for (rows, cols) in [
+        (2, 2),
+        (2, 9),
+        (9, 2),
+        (3, 70),
+        (7, 5),
+        (20, 20),
+        (31, 29),
+        (30, 30),
+        (15, 131),
+        (4, 129),
+        (3, 128),
+        (5, 700),
+    ] {
         for name in ["cloth", "mit"] {
             let scene = scene_with_grid(name, rows, cols);
             let network = scene.model.network().unwrap();
@@ -102,7 +115,7 @@ fn families_agree_with_the_plain_formula() {
                 }
             }
             let mut f = vec![0.0; 3 * n];
-            network.add_spring_forces(x, v, &mut f);
+            network.spring_forces(x, v, &mut f);
             let error = distance(&f, &expected) / size(&expected);
             assert!(error < 1e-13, "{name} {rows}x{cols}: {error:e}");
         }
@@ -128,6 +141,17 @@ fn a_spring_of_length_zero_has_no_force() {
         assert_eq!(f, [0.0; 6]);
         network.force_differential(0.0, &x, &v, &[0.1; 6], &[0.2; 6], &mut f);
         assert!(f.iter().all(|f| f.is_finite()));
+
+        let grid = Grid::new(5, 7).unwrap();
+        let mut network = Network::new(vec![1.0; grid.particles()]).unwrap();
+        network
+            .set_sheet(Sheet::new(grid, 0.1, [100.0, 80.0, 30.0], damping).unwrap())
+            .unwrap();
+        let n = 3 * grid.particles();
+        let (x, v) = (vec![0.3; n], (0..n).map(|k| k as f64).collect::<Vec<_>>());
+        let mut f = vec![f64::NAN; n];
+        network.forces(0.0, &x, &v, &mut f);
+        assert_eq!(f, vec![0.0; n]);
     }
 }
 
@@ -153,9 +177,7 @@ fn momentum_is_conserved() {
     let network = scene.model.network().unwrap();
     let n = network.particles();
     let mut free = Network::new(network.masses().to_vec()).unwrap();
-    for family in network.families() {
-        free.add_family(family.clone()).unwrap();
-    }
+    free.set_sheet(*network.sheet().unwrap()).unwrap();
     let start = shaken(&scene.state, 0.02);
     let momenta = |y: &[f64]| {
         let get = |k: usize, i: usize| Vector3::new(y[k + i], y[k + n + i], y[k + 2 * n + i]);

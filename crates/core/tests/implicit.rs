@@ -4,7 +4,7 @@ mod common;
 
 use std::time::Instant;
 
-use a3_core::{Grid, Mechanics, Network, Path, Simulation, Vector3, View};
+use a3_core::{Grid, Mechanics, Network, Path, Sheet, Simulation, Vector3, View};
 use a3_core::{Model, Scene};
 use approx::assert_relative_eq;
 use common::{integrate, method, oscillator, scene, simulation};
@@ -163,9 +163,9 @@ fn falling(side: usize, omega: f64) -> Scene {
     // The largest frequency of such a square is about sqrt(7.8 k/m).
     let k = mass * omega * omega / 7.8;
     let mut network = Network::new(vec![mass; n]).unwrap();
-    for family in grid.springs(spacing, [k, k, 0.25 * k], 0.0).unwrap() {
-        network.add_family(family).unwrap();
-    }
+    network
+        .set_sheet(Sheet::new(grid, spacing, [k, k, 0.25 * k], 0.0).unwrap())
+        .unwrap();
     let mut state = vec![0.0; 6 * n];
     for i in 0..n {
         state[i] = (i % side) as f64 * spacing;

@@ -7,7 +7,7 @@ use a3_core::stability::{
     rest, spectrum,
 };
 use a3_core::{
-    Grid, Mechanics, Network, Path, Spring, SpringKind, SpringLaw, Vector3, integrators,
+    Grid, Mechanics, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3, integrators,
 };
 use approx::assert_relative_eq;
 use common::{method, scene, scene_with_grid};
@@ -161,9 +161,9 @@ fn a_cloth_has_its_frequency() {
     ] {
         let grid = Grid::new(side, side).unwrap();
         let mut network = Network::new(vec![1.0; grid.particles()]).unwrap();
-        for family in grid.springs(1.0, [1.0; 3], 0.0).unwrap() {
-            network.add_family(family).unwrap();
-        }
+        network
+            .set_sheet(Sheet::new(grid, 1.0, [1.0; 3], 0.0).unwrap())
+            .unwrap();
         let n = grid.particles();
         let mut y = vec![0.0; 6 * n];
         for k in 0..n {

@@ -50,7 +50,7 @@ fn rest_shape_and_load() {
     let network = run.model().network().unwrap();
     let (x, v) = run.state().split_at(run.state().len() / 2);
     let mut forces = vec![0.0; x.len()];
-    network.add_spring_forces(x, v, &mut forces);
+    network.spring_forces(x, v, &mut forces);
     let n = run.particles();
     let load: f64 = network.pins().map(|(i, _)| -forces[n + i]).sum();
     assert_abs_diff_eq!(load, 87.416, epsilon = 1e-2);

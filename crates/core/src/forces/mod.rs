@@ -1,7 +1,8 @@
-//! One file a force. Each adds to the forces f (N); positions x, velocities v and f are n x 3, column-major.
+//! One file a force. Each adds to the forces f (N), the sheet, which is the first, sets them; positions x, velocities v and f are n x 3, column-major.
 
 pub(crate) mod drag;
 pub(crate) mod gravity;
+pub(crate) mod sheet;
 pub(crate) mod springs;
 pub(crate) mod wind;
 

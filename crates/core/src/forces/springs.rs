@@ -1,11 +1,8 @@
 //! Springs: with d = xi - xj, L = |d|, u = d/L and w = vi - vj, the force on i is
 //! -(k (L - r) + c (w . u)) u, and its opposite on j. A spring of length zero has no direction, and no force.
 
-use crate::spring::{Spring, SpringFamily, SpringLaw};
+use crate::spring::{Spring, SpringLaw};
 use crate::system::Coupling;
-
-/// Springs whose forces are found together before they are added up: enough to fill vectors, few enough for L1.
-const BLOCK: usize = 64;
 
 /// The factor s of the force -s d, from d . d and w . d.
 #[inline]
@@ -16,67 +13,6 @@ fn pull<const DAMPED: bool>(law: &SpringLaw, dd: f64, wd: f64) -> f64 {
         elastic + law.damping * wd * (inverse * inverse)
     } else {
         elastic
-    }
-}
-
-/// Three columns of an n x 3 matrix.
-fn columns(a: &[f64]) -> [&[f64]; 3] {
-    let n = a.len() / 3;
-    [&a[..n], &a[n..2 * n], &a[2 * n..]]
-}
-
-/// Adds the forces of a family: block by block, first the forces, then the sums at the one end, then at the other.
-pub(crate) fn add_family(family: &SpringFamily, x: &[f64], v: &[f64], f: &mut [f64]) {
-    let damped = family.law.damping > 0.0;
-    for run in &family.runs {
-        for start in run.clone().step_by(BLOCK) {
-            let block = start..run.end.min(start + BLOCK);
-            if damped {
-                add_block::<true>(&family.law, block, family.offset, x, v, f);
-            } else {
-                add_block::<false>(&family.law, block, family.offset, x, v, f);
-            }
-        }
-    }
-}
-
-fn add_block<const DAMPED: bool>(
-    law: &SpringLaw,
-    block: std::ops::Range<usize>,
-    offset: usize,
-    x: &[f64],
-    v: &[f64],
-    f: &mut [f64],
-) {
-    let n = x.len() / 3;
-    let m = block.len();
-    let other = block.start + offset..block.end + offset;
-    let [xi, yi, zi] = columns(x).map(|c| &c[block.clone()][..m]);
-    let [xj, yj, zj] = columns(x).map(|c| &c[other.clone()][..m]);
-    let [ui, vi, wi] = columns(v).map(|c| &c[block.clone()][..m]);
-    let [uj, vj, wj] = columns(v).map(|c| &c[other.clone()][..m]);
-    let mut forces = [[0.0; BLOCK]; 3];
-    let [fx, fy, fz] = forces.each_mut().map(|c| &mut c[..m]);
-    for k in 0..m {
-        let (dx, dy, dz) = (xi[k] - xj[k], yi[k] - yj[k], zi[k] - zj[k]);
-        let dd = dx * dx + dy * dy + dz * dz;
-        let wd = if DAMPED {
-            (ui[k] - uj[k]) * dx + (vi[k] - vj[k]) * dy + (wi[k] - wj[k]) * dz
-        } else {
-            0.0
-        };
-        let s = pull::<DAMPED>(law, dd, wd);
-        fx[k] = s * dx;
-        fy[k] = s * dy;
-        fz[k] = s * dz;
-    }
-    for (axis, force) in forces.iter().enumerate() {
-        for (f, force) in f[axis * n..][block.clone()].iter_mut().zip(force) {
-            *f -= force;
-        }
-        for (f, force) in f[axis * n..][other.clone()].iter_mut().zip(force) {
-            *f += force;
-        }
     }
 }
 

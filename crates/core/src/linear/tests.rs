@@ -4,19 +4,18 @@ use std::time::{Duration, Instant};
 use super::*;
 use crate::random::SplitMix;
 use crate::spring::{Spring, SpringKind, SpringLaw};
-use crate::{Grid, Network, Path, Vector3};
+use crate::{Grid, Network, Path, Sheet, Vector3};
 
 /// A flat square of springs of one stiffness, a corner pinned and everything a little out of place.
 fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let grid = Grid::new(side, side).unwrap();
     let spacing = 1.0 / (side - 1) as f64;
     let mut network = Network::new(vec![1.0 / grid.particles() as f64; grid.particles()]).unwrap();
-    for family in grid
-        .springs(spacing, [stiffness, stiffness, 0.25 * stiffness], 0.0)
-        .unwrap()
-    {
-        network.add_family(family).unwrap();
-    }
+    network
+        .set_sheet(
+            Sheet::new(grid, spacing, [stiffness, stiffness, 0.25 * stiffness], 0.0).unwrap(),
+        )
+        .unwrap();
     let n = grid.particles();
     let mut random = SplitMix(7);
     let mut x = vec![0.0; 3 * n];

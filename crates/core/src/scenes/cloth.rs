@@ -17,6 +17,7 @@ use crate::forces::Wind;
 use crate::grid::Grid;
 use crate::network::Network;
 use crate::path::Path;
+use crate::sheet::Sheet;
 
 pub(super) const ENTRY: SceneEntry = SceneEntry {
     name: "cloth",
@@ -71,9 +72,12 @@ fn make(grid: Grid) -> Result<Scene, Error> {
         })
         .collect();
     let mut network = Network::new(vec![mass; grid.particles()])?;
-    for family in grid.springs(spacing, STIFFNESS, DAMPING_TIME * fineness)? {
-        network.add_family(family)?;
-    }
+    network.set_sheet(Sheet::new(
+        grid,
+        spacing,
+        STIFFNESS,
+        DAMPING_TIME * fineness,
+    )?)?;
     for (j, position) in positions.iter().enumerate().take(grid.cols()) {
         network.pin(j, Path::Still(*position))?;
     }

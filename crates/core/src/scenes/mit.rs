@@ -10,6 +10,7 @@ use crate::forces::Wind;
 use crate::grid::Grid;
 use crate::network::Network;
 use crate::path::Path;
+use crate::sheet::Sheet;
 
 pub(super) const ENTRY: SceneEntry = SceneEntry {
     name: "mit",
@@ -43,9 +44,7 @@ fn make(name: &'static str, grid: Grid, sphere: Option<Sphere>) -> Result<Scene,
         })
         .collect();
     let mut network = Network::new(vec![MASS; grid.particles()])?;
-    for family in grid.springs(SPACING, [30.0, 30.0, 22.5], 0.0)? {
-        network.add_family(family)?;
-    }
+    network.set_sheet(Sheet::new(grid, SPACING, [30.0, 30.0, 22.5], 0.0)?)?;
     for corner in [grid.index_of(0, 0), grid.index_of(0, grid.cols() - 1)] {
         network.pin(corner, Path::Still(positions[corner]))?;
     }
