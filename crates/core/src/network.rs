@@ -374,9 +374,8 @@ impl Mechanics for Network {
         df: &mut [f64],
     ) {
         df.fill(0.0);
-        for spring in self.springs() {
-            springs::add_differential(&spring, x, v, dx, dv, df);
-        }
+        self.springs()
+            .for_each(|spring| springs::add_differential(&spring, x, v, dx, dv, df));
         if let Some(c) = self.drag {
             drag::add(c, dv, df);
         }
@@ -386,8 +385,17 @@ impl Mechanics for Network {
     }
 
     fn couplings(&self, x: &[f64], visit: &mut dyn FnMut(Coupling)) {
-        for spring in self.springs() {
-            visit(springs::coupling(&spring, x));
+        self.springs()
+            .for_each(|spring| visit(springs::coupling(&spring, x)));
+    }
+
+    fn speed(&self) -> f64 {
+        let sheet = self.sheet.iter().flat_map(Sheet::springs).count() as f64;
+        let all = sheet + self.list.len() as f64;
+        if all > 0.0 {
+            all / (sheet / sheet::SPEED + self.list.len() as f64)
+        } else {
+            1.0
         }
     }
 

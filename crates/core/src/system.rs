@@ -63,6 +63,11 @@ pub trait Mechanics {
     /// symmetric parts, for methods that solve with them. Without any, nothing.
     fn couplings(&self, _x: &[f64], _visit: &mut dyn FnMut(Coupling)) {}
 
+    /// How many times as fast the forces are as they would be coupling by coupling: what linear algebra is priced by.
+    fn speed(&self) -> f64 {
+        1.0
+    }
+
     /// -dF/dv of each particle by itself: viscous drag (kg/s).
     fn drag_coefficient(&self) -> f64 {
         0.0

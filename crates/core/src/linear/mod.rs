@@ -11,8 +11,8 @@ pub(crate) use tangent::Tangent;
 use crate::integrators::Work;
 use crate::system::Mechanics;
 
-/// Prices in evaluations of the forces, measured on cloth of 20 x 20 to 128 x 128 and on chains (see the tests): of an
-/// iteration, ...
+/// Prices in evaluations of forces that are found spring by spring, measured on cloth of 20 x 20 to 128 x 128 and on chains
+/// (see the tests): of an iteration, ...
 const ITERATION: f64 = 2.2;
 /// ... of gathering the matrix, ...
 const GATHERING: f64 = 5.0;
@@ -22,6 +22,9 @@ const FACTORISATION: f64 = 0.48;
 const ENTRY: f64 = 0.2;
 /// Conjugate gradients take about this times sqrt(1 + a2 w2) ln(2/tolerance) iterations.
 const SPREAD: f64 = 0.3;
+/// A factorisation of what is knit in two dimensions takes at least so many operations for each coupling, times the root
+/// of the number of particles: no need to look closer where that is too dear.
+const KNIT: f64 = 150.0;
 /// Beyond this many iterations something else is wrong.
 const MOST: u64 = 10_000;
 
@@ -31,7 +34,11 @@ pub(crate) struct Solver {
     /// Whether to factorise, whatever it costs: for tests.
     direct_always: Option<bool>,
     iterative: ConjugateGradients,
+    /// Made when it is first worth a look; `None` also if it would be too large.
     direct: Option<Cholesky>,
+    looked: bool,
+    /// Evaluations of these forces for one that is found spring by spring.
+    speed: f64,
     scratch: Vec<f64>,
     /// Of what was gathered last: a bound of a2 w2.
     stiffness: f64,
@@ -43,14 +50,36 @@ impl Solver {
     pub fn new(mechanics: &dyn Mechanics) -> Self {
         let tangent = Tangent::new(mechanics);
         let n = tangent.particles();
-        Self {
+        let mut solver = Self {
             iterative: ConjugateGradients::new(n),
-            direct: Cholesky::new(&tangent),
+            direct: None,
+            looked: false,
+            speed: mechanics.speed(),
             scratch: vec![0.0; n],
             tangent,
             direct_always: None,
             stiffness: 0.0,
             factorised: false,
+        };
+        if solver.least_operations() == 0.0 {
+            solver.look();
+        }
+        solver
+    }
+
+    /// Analyses the pattern for a factorisation.
+    fn look(&mut self) {
+        self.direct = Cholesky::new(&self.tangent);
+        self.looked = true;
+    }
+
+    /// Of a factorisation, for each coupling, as far as one can tell beforehand.
+    fn least_operations(&self) -> f64 {
+        let particles = self.tangent.particles() as f64;
+        if self.tangent.couplings().len() as f64 > 1.5 * particles {
+            KNIT * particles.sqrt()
+        } else {
+            0.0
         }
     }
 
@@ -60,10 +89,10 @@ impl Solver {
         self.stiffness = self.tangent.stiffness(&mut self.scratch);
         self.factorised = false;
         if self.direct.as_ref().is_some_and(|d| !d.fits(&self.tangent)) {
-            self.direct = Cholesky::new(&self.tangent);
+            (self.direct, self.looked) = (None, false);
         }
         Work {
-            algebra: GATHERING,
+            algebra: GATHERING * self.speed,
             ..Work::default()
         }
     }
@@ -77,20 +106,28 @@ impl Solver {
     pub fn solve(&mut self, b: &[f64], x: &mut [f64], tolerance: f64) -> (Work, Option<f64>) {
         let couplings = self.tangent.couplings().len().max(1) as f64;
         let iterations = SPREAD * (1.0 + self.stiffness).sqrt() * libm::log(2.0 / tolerance);
-        let prices = self.direct.as_ref().map(|direct| {
-            let factor = FACTORISATION * libm::cbrt(direct.operations / couplings).powi(2);
+        let factoring = |operations: f64| FACTORISATION * libm::cbrt(operations).powi(2);
+        let worth_a_look =
+            self.factorised || factoring(self.least_operations()) < ITERATION * iterations;
+        if self.direct_always.unwrap_or(worth_a_look) && !self.looked {
+            self.look();
+        }
+        let direct_price = self.direct.as_ref().map_or(f64::INFINITY, |direct| {
             let solve = ENTRY * direct.size / couplings;
-            (if self.factorised { 0.0 } else { factor }, solve)
+            if self.factorised {
+                solve
+            } else {
+                factoring(direct.operations / couplings) + solve
+            }
         });
-        let direct_price = prices.map_or(f64::INFINITY, |(factor, solve)| factor + solve);
         let goes_direct = self
             .direct_always
-            .unwrap_or(direct_price < ITERATION * iterations);
+            .unwrap_or(worth_a_look && direct_price < ITERATION * iterations);
         match &mut self.direct {
             Some(direct) if goes_direct => {
                 let mut work = Work {
                     solves: 1,
-                    algebra: direct_price,
+                    algebra: direct_price * self.speed,
                     ..Work::default()
                 };
                 if !self.factorised {
@@ -108,7 +145,7 @@ impl Solver {
                 let work = Work {
                     solves: 1,
                     iterations: solution.iterations,
-                    algebra: ITERATION * solution.iterations as f64,
+                    algebra: ITERATION * solution.iterations as f64 * self.speed,
                     residual: if solution.indefinite {
                         0.0
                     } else {

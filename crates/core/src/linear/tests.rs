@@ -180,6 +180,7 @@ fn solves_measured() {
             let mut iterations = 0;
             let pcg =
                 time(|| iterations = solver.solve(black_box(&b), &mut dv, tolerance).0.iterations);
+            solver.look();
             let direct = solver.direct.as_mut().unwrap();
             let (operations, size) = (direct.operations, direct.size);
             let factor = time(|| {
