@@ -86,6 +86,43 @@ fn forces(c: &mut Criterion) {
     }
 }
 
+/// Spring forces of the same springs one by one: as they come, and in no order.
+fn forces_of_a_list(c: &mut Criterion) {
+    let mut group = c.benchmark_group("forces/list");
+    for (side, shuffled) in SIDES
+        .into_iter()
+        .flat_map(|side| [(side, false), (side, true)])
+    {
+        let scene = cloth("mit", side);
+        let mut springs: Vec<Spring> = network(&scene).springs().collect();
+        let mut random = 1u64;
+        for k in (1..springs.len()).rev().filter(|_| shuffled) {
+            random = random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            springs.swap(k, (random >> 33) as usize % (k + 1));
+        }
+        let mut list = Network::new(vec![1.0; side * side]).unwrap();
+        for spring in &springs {
+            list.add_spring(*spring).unwrap();
+        }
+        let (x, v) = scene.state.split_at(scene.state.len() / 2);
+        let mut f = vec![0.0; x.len()];
+        let order = if shuffled { ", shuffled" } else { "" };
+        group.throughput(Throughput::Elements(springs.len() as u64));
+        group.bench_function(BenchmarkId::new(format!("network{order}"), side), |b| {
+            b.iter(|| list.spring_forces(black_box(x), black_box(v), &mut f));
+        });
+        group.bench_function(BenchmarkId::new(format!("plain list{order}"), side), |b| {
+            b.iter(|| {
+                f.fill(0.0);
+                plain_spring_list::<false>(black_box(&springs), black_box(x), black_box(v), &mut f);
+            });
+        });
+    }
+    group.finish();
+}
+
 /// One evaluation of all forces of every scene.
 fn evaluation(c: &mut Criterion) {
     let mut group = c.benchmark_group("evaluation");
@@ -154,6 +191,6 @@ criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20).warm_up_time(std::time::Duration::from_millis(300))
         .measurement_time(std::time::Duration::from_secs(1));
-    targets = forces, evaluation, steps, steps_by_size
+    targets = forces, forces_of_a_list, evaluation, steps, steps_by_size
 }
 criterion_main!(benches);

@@ -2,6 +2,7 @@
 
 pub(crate) mod drag;
 pub(crate) mod gravity;
+mod inverse_root;
 pub(crate) mod sheet;
 pub(crate) mod springs;
 pub(crate) mod wind;

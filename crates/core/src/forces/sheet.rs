@@ -14,6 +14,7 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
+use super::inverse_root::inverse_root;
 use crate::sheet::{Sheet, WAYS};
 
 /// How many times as fast this is as the same springs one by one, on the grids that people look at.
@@ -348,25 +349,6 @@ fn spring<S: Simd, const DAMPED: bool>(
     ]
 }
 
-/// 1 / sqrt(a) to the last digit or two: from the guess that half the exponent is, four steps of Newton's method. Finite
-/// at 0. Takes half the time of the processor's own square root and division, which do not overlap.
-#[inline(always)]
-fn inverse_root<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
-    let mut y = [a];
-    for bits in pulp::bytemuck::cast_slice_mut::<S::f64s, u64>(&mut y) {
-        *bits = 0x5fe6_eb50_c7b5_37a9_u64.wrapping_sub(*bits >> 1);
-    }
-    let [mut y] = y;
-    let half = simd.mul_f64s(a, simd.splat_f64s(0.5));
-    let once_and_half = simd.splat_f64s(1.5);
-    for _ in 0..4 {
-        // In this order nothing overflows at 0.
-        let part = simd.mul_f64s(half, y);
-        y = simd.mul_f64s(y, simd.negate_mul_add_f64s(part, y, once_and_half));
-    }
-    y
-}
-
 #[inline(always)]
 fn add<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>) -> Vectors<S> {
     [
@@ -431,16 +413,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn inverse_roots_are_right_to_the_last_digits() {
-        let mut random = SplitMix(7);
-        for _ in 0..10_000 {
-            let a = 10f64.powf(random.between(-300.0, 300.0));
-            let error = inverse_root(pulp::Scalar::new(), a) * a.sqrt() - 1.0;
-            assert!(error.abs() < 5e-16, "{a}: {error:e}");
-        }
-        assert!(inverse_root(pulp::Scalar::new(), 0.0).is_finite());
     }
 }

@@ -4,33 +4,31 @@
 use crate::spring::{Spring, SpringLaw};
 use crate::system::Coupling;
 
-/// The factor s of the force -s d, from d . d and w . d.
-#[inline]
-fn pull<const DAMPED: bool>(law: &SpringLaw, dd: f64, wd: f64) -> f64 {
-    let inverse = if dd > 0.0 { 1.0 / dd.sqrt() } else { 0.0 };
-    let elastic = law.stiffness - law.stiffness * law.rest_length * inverse;
-    if DAMPED {
-        elastic + law.damping * wd * (inverse * inverse)
-    } else {
-        elastic
-    }
-}
-
 /// Adds the forces of single springs.
 pub(crate) fn add_list(list: &[Spring], x: &[f64], v: &[f64], f: &mut [f64]) {
     let n = x.len() / 3;
-    for spring in list {
-        let (i, j) = (spring.i, spring.j);
-        let d = difference(x, i, j);
-        let s = if spring.law.damping > 0.0 {
-            pull::<true>(&spring.law, dot(d, d), dot(difference(v, i, j), d))
-        } else {
-            pull::<false>(&spring.law, dot(d, d), 0.0)
-        };
-        for axis in 0..3 {
-            f[axis * n + i] -= s * d[axis];
-            f[axis * n + j] += s * d[axis];
+    let (x, y, z) = (&x[..n], &x[n..2 * n], &x[2 * n..]);
+    let (u, v, w) = (&v[..n], &v[n..2 * n], &v[2 * n..]);
+    let (fx, f) = f.split_at_mut(n);
+    let (fy, fz) = f.split_at_mut(n);
+    for &Spring { i, j, law, .. } in list {
+        let (dx, dy, dz) = (x[i] - x[j], y[i] - y[j], z[i] - z[j]);
+        let length = (dx * dx + dy * dy + dz * dz).sqrt();
+        if length == 0.0 {
+            continue;
         }
+        let mut pull = law.stiffness * (length - law.rest_length);
+        if law.damping > 0.0 {
+            let rate = (u[i] - u[j]) * dx + (v[i] - v[j]) * dy + (w[i] - w[j]) * dz;
+            pull += law.damping * rate / length;
+        }
+        let s = pull / length;
+        fx[i] -= s * dx;
+        fy[i] -= s * dy;
+        fz[i] -= s * dz;
+        fx[j] += s * dx;
+        fy[j] += s * dy;
+        fz[j] += s * dz;
     }
 }
 

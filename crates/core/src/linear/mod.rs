@@ -13,13 +13,13 @@ use crate::system::Mechanics;
 
 /// Prices in evaluations of forces that are found spring by spring, measured on cloth of 20 x 20 to 128 x 128 and on chains
 /// (see the tests): of an iteration, ...
-const ITERATION: f64 = 2.2;
+const ITERATION: f64 = 2.5;
 /// ... of gathering the matrix, ...
-const GATHERING: f64 = 5.0;
-/// ... of a factorisation, times its operations over the number of couplings to the power 2/3, ...
-const FACTORISATION: f64 = 0.48;
-/// ... and of a number of the factor in a solve, over the number of couplings.
-const ENTRY: f64 = 0.2;
+const GATHERING: f64 = 4.0;
+/// ... of a factorisation: the least, and that of its operations over the number of couplings to the power 2/3; ...
+const FACTORISATION: [f64; 2] = [45.0, 0.42];
+/// ... and of a solve with its factor: the least, and that of its numbers over the number of couplings.
+const SOLVE: [f64; 2] = [6.0, 0.2];
 /// Conjugate gradients take about this times sqrt(1 + a2 w2) ln(2/tolerance) iterations.
 const SPREAD: f64 = 0.3;
 /// A factorisation of what is knit in two dimensions takes at least so many operations for each coupling, times the root
@@ -106,14 +106,15 @@ impl Solver {
     pub fn solve(&mut self, b: &[f64], x: &mut [f64], tolerance: f64) -> (Work, Option<f64>) {
         let couplings = self.tangent.couplings().len().max(1) as f64;
         let iterations = SPREAD * (1.0 + self.stiffness).sqrt() * libm::log(2.0 / tolerance);
-        let factoring = |operations: f64| FACTORISATION * libm::cbrt(operations).powi(2);
+        let factoring =
+            |operations: f64| FACTORISATION[0] + FACTORISATION[1] * libm::cbrt(operations).powi(2);
         let worth_a_look =
             self.factorised || factoring(self.least_operations()) < ITERATION * iterations;
         if self.direct_always.unwrap_or(worth_a_look) && !self.looked {
             self.look();
         }
         let direct_price = self.direct.as_ref().map_or(f64::INFINITY, |direct| {
-            let solve = ENTRY * direct.size / couplings;
+            let solve = SOLVE[0] + SOLVE[1] * direct.size / couplings;
             if self.factorised {
                 solve
             } else {
