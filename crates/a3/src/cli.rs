@@ -367,7 +367,10 @@ fn step(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(step) if (*TOLERANCES.start()..=LARGEST_STEP).contains(&step) => Ok(step),
         _ => Err(format!(
-            "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01"
+            "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01, and the tolerance of an \
+             adaptive solver one from {:e} to {}",
+            TOLERANCES.start(),
+            TOLERANCES.end()
         )),
     }
 }
