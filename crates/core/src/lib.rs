@@ -30,6 +30,7 @@ mod linear;
 mod network;
 mod path;
 mod random;
+mod rows;
 pub mod scenes;
 mod sheet;
 mod simulation;

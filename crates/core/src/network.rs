@@ -1,11 +1,16 @@
 //! Particles, springs, pins, and only the forces that a scene asked for.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
 use crate::colliders::{Floor, Sphere};
 use crate::error::{Error, at_least, positive};
-use crate::forces::{drag, gravity, sheet, springs, wind::Wind};
+use crate::forces::{
+    columns, columns_mut, drag, ending::Ending, gravity, sheet, springs, wind::Wind,
+};
 use crate::path::{Path, Place};
+use crate::rows::{Part, Registers, Rows, Stage, Sweep};
 use crate::sheet::Sheet;
 use crate::spring::{Spring, SpringKind, SpringLaw};
 use crate::system::{Coupling, Mechanics, place_pins};
@@ -44,6 +49,7 @@ pub struct Network {
     inverse_masses: Vec<f64>,
     sheet: Option<Sheet>,
     list: Vec<Spring>,
+    /// In the order of their particles.
     pins: Vec<Pin>,
     gravity: Option<Vector3<f64>>,
     drag: Option<f64>,
@@ -139,14 +145,9 @@ impl Network {
     /// There is no such particle.
     pub fn pin(&mut self, i: usize, path: Path) -> Result<(), Error> {
         self.check_particle(i)?;
-        // Only a pinned particle can be among the pins: no search for each of a whole row.
-        let known = self
-            .is_pinned(i)
-            .then(|| self.pins.iter_mut().find(|pin| pin.particle == i))
-            .flatten();
-        match known {
-            Some(pin) => pin.path = path,
-            None => self.pins.push(Pin { particle: i, path }),
+        match self.pins.binary_search_by_key(&i, |pin| pin.particle) {
+            Ok(k) => self.pins[k].path = path,
+            Err(k) => self.pins.insert(k, Pin { particle: i, path }),
         }
         self.inverse_masses[i] = 0.0;
         Ok(())
@@ -154,8 +155,8 @@ impl Network {
 
     /// Lets particle i go. Does nothing if it is free.
     pub fn unpin(&mut self, i: usize) {
-        if let Some(k) = self.pins.iter().position(|pin| pin.particle == i) {
-            self.pins.swap_remove(k);
+        if let Ok(k) = self.pins.binary_search_by_key(&i, |pin| pin.particle) {
+            self.pins.remove(k);
             self.inverse_masses[i] = 1.0 / self.masses[i];
         }
     }
@@ -170,6 +171,12 @@ impl Network {
     /// The pinned particles and their paths.
     pub fn pins(&self) -> impl Iterator<Item = (usize, Path)> {
         self.pins.iter().map(|pin| (pin.particle, pin.path))
+    }
+
+    /// The pins among some particles.
+    fn pins_of(&self, particles: Range<usize>) -> &[Pin] {
+        let before = |i: usize| self.pins.partition_point(|pin| pin.particle < i);
+        &self.pins[before(particles.start)..before(particles.end)]
     }
 
     /// Whether particle i is pinned.
@@ -298,17 +305,45 @@ impl Network {
 
     /// The springs' part of the force (N).
     pub fn spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.evaluate(x, v, f, &Ending::default());
+    }
+
+    /// What the ending makes of the springs' forces.
+    fn evaluate(&self, x: &[f64], v: &[f64], f: &mut [f64], ending: &Ending) {
+        if let Some(sheet) = self.only_sheet() {
+            sheet::set(sheet, x, v, f, ending);
+            return;
+        }
+        let n = self.particles();
         match &self.sheet {
             Some(sheet) => {
-                let (n, held) = (self.particles(), sheet.grid().particles());
                 for column in f.chunks_exact_mut(n) {
-                    column[held..].fill(0.0);
+                    column[sheet.grid().particles()..].fill(0.0);
                 }
-                sheet::set(sheet, x, v, f);
+                sheet::set(sheet, x, v, f, &Ending::default());
             }
             None => f.fill(0.0),
         }
         springs::add_list(&self.list, x, v, f);
+        ending.apply(0, columns(x, &(0..n)), columns(v, &(0..n)), columns_mut(f));
+    }
+
+    /// The sheet, if it is all that holds the particles together.
+    fn only_sheet(&self) -> Option<&Sheet> {
+        self.sheet
+            .as_ref()
+            .filter(|sheet| self.list.is_empty() && sheet.grid().particles() == self.particles())
+    }
+
+    /// What is added to the springs' forces at time t: of all forces, or of those that kick.
+    fn others(&self, part: Part, t: f64) -> Ending<'_> {
+        let all = part == Part::All;
+        Ending {
+            wind: self.wind.as_ref().map(|wind| (wind, t)),
+            gravity: self.gravity.filter(|_| all).map(|g| (g, &*self.masses)),
+            drag: self.drag.filter(|_| all),
+            inverse_masses: None,
+        }
     }
 
     /// The energy in the state (x, v). Drag, damping and wind have none.
@@ -355,13 +390,19 @@ impl Mechanics for Network {
     }
 
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.kick_forces(t, x, v, f);
-        if let Some(g) = self.gravity {
-            gravity::add(g, &self.masses, f);
-        }
-        if let Some(c) = self.drag {
-            drag::add(c, v, f);
-        }
+        self.evaluate(x, v, f, &self.others(Part::All, t));
+    }
+
+    fn accelerations(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
+        let ending = Ending {
+            inverse_masses: Some(&self.inverse_masses),
+            ..self.others(Part::All, t)
+        };
+        self.evaluate(x, v, a, &ending);
+    }
+
+    fn rows(&self) -> Option<&dyn Rows> {
+        self.only_sheet().map(|_| self as &dyn Rows)
     }
 
     fn force_differential(
@@ -411,10 +452,7 @@ impl Mechanics for Network {
 
     /// Springs and wind. Gravity and drag are in the drift.
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.spring_forces(x, v, f);
-        if let Some(wind) = &self.wind {
-            wind.add(t, x, f);
-        }
+        self.evaluate(x, v, f, &self.others(Part::Kick, t));
     }
 
     fn kick_reads_velocity(&self) -> bool {
@@ -444,5 +482,57 @@ impl Mechanics for Network {
             floor.push_out(x, v);
         }
         place_pins(self, t, x, v);
+    }
+}
+
+impl Rows for Network {
+    fn rows(&self) -> usize {
+        self.sheet.map_or(0, |sheet| sheet.grid().rows())
+    }
+
+    fn cols(&self) -> usize {
+        self.sheet.map_or(0, |sheet| sheet.grid().cols())
+    }
+
+    fn begin(&self, sweep: &mut Sweep) {
+        if let Some(sheet) = &self.sheet {
+            sheet::begin(sheet, sweep.laws.column_mut(0, 0));
+        }
+        sweep.found.clear();
+    }
+
+    fn advance(
+        &self,
+        stage: &Stage,
+        rows: Range<usize>,
+        registers: &mut Registers,
+        sweep: &mut Sweep,
+    ) {
+        let Some(sheet) = &self.sheet else { return };
+        let ending = Ending {
+            inverse_masses: Some(&self.inverse_masses),
+            ..self.others(stage.part, stage.t)
+        };
+        let cols = sheet.grid().cols();
+        for row in rows {
+            sheet::Advance {
+                sheet,
+                ending: &ending,
+                stage,
+                row,
+                registers,
+                sweep,
+            }
+            .run();
+            // Pins are where they are, whatever moves them in between.
+            for pin in self.pins_of(row * cols..(row + 1) * cols) {
+                let place = pin.path.at(stage.until);
+                for axis in 0..3 {
+                    let i = pin.particle - row * cols;
+                    registers.stage.column_mut(row, axis)[i] = place.position[axis];
+                    registers.stage.column_mut(row, 3 + axis)[i] = place.velocity[axis];
+                }
+            }
+        }
     }
 }

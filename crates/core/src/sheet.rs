@@ -60,6 +60,11 @@ impl Sheet {
         &self.laws
     }
 
+    /// Whether any spring is.
+    pub(crate) fn is_damped(&self) -> bool {
+        self.laws.iter().any(|law| law.damping > 0.0)
+    }
+
     pub(crate) fn laws_mut(&mut self) -> &mut [SpringLaw; 6] {
         &mut self.laws
     }

@@ -1,6 +1,7 @@
 //! What an integrator sees: flat arrays of which only the length changes.
 
 use crate::path::Place;
+use crate::rows::Rows;
 
 /// A first-order system y' = f(t, y).
 pub trait ParticleSystem {
@@ -12,6 +13,11 @@ pub trait ParticleSystem {
     /// Both slices have length [`dim`](Self::dim).
     #[doc(alias = "evalF")]
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]);
+
+    /// Its rows, if its particles stand in rows that only hold on to those next to them.
+    fn rows(&self) -> Option<&dyn Rows> {
+        None
+    }
 
     /// The second-order structure, if the system has one.
     fn mechanics(&self) -> Option<&dyn Mechanics> {
@@ -47,6 +53,22 @@ pub trait Mechanics {
 
     /// Writes F(t, x, v) (N) to `f`, on pinned particles too.
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
+
+    /// Writes F(t, x, v) / m (m/s2) to `a`: nothing for pinned particles.
+    fn accelerations(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
+        self.forces(t, x, v, a);
+        let inverse_masses = self.inverse_masses();
+        for column in a.chunks_exact_mut(inverse_masses.len()) {
+            for (a, w) in column.iter_mut().zip(inverse_masses) {
+                *a *= w;
+            }
+        }
+    }
+
+    /// As [`ParticleSystem::rows`].
+    fn rows(&self) -> Option<&dyn Rows> {
+        None
+    }
 
     /// Writes dF = dF/dx dx + dF/dv dv to `df`, without forming a matrix.
     fn force_differential(
@@ -119,16 +141,10 @@ impl<M: Mechanics> ParticleSystem for M {
     }
 
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
-        let inverse_masses = self.inverse_masses();
-        let n = inverse_masses.len();
+        let n = self.inverse_masses().len();
         let (x, v) = y.split_at(3 * n);
         let (dx, dv) = dydt.split_at_mut(3 * n);
-        self.forces(t, x, v, dv);
-        for column in dv.chunks_exact_mut(n) {
-            for (a, w) in column.iter_mut().zip(inverse_masses) {
-                *a *= w;
-            }
-        }
+        self.accelerations(t, x, v, dv);
         dx.copy_from_slice(v);
         self.pins(t, &mut |i, place| {
             for axis in 0..3 {
@@ -136,6 +152,10 @@ impl<M: Mechanics> ParticleSystem for M {
                 dv[axis * n + i] = place.acceleration[axis];
             }
         });
+    }
+
+    fn rows(&self) -> Option<&dyn Rows> {
+        Mechanics::rows(self)
     }
 
     fn mechanics(&self) -> Option<&dyn Mechanics> {

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-pub(crate) fn add(g: Vector3<f64>, masses: &[f64], f: &mut [f64]) {
-    for (f, g) in f.chunks_exact_mut(masses.len()).zip(&g) {
-        if *g != 0.0 {
-            for (f, m) in f.iter_mut().zip(masses) {
-                *f += m * g;
-            }
+/// Along one axis.
+#[inline(always)]
+pub(crate) fn add(g: f64, masses: &[f64], f: &mut [f64]) {
+    if g != 0.0 {
+        for (f, m) in f.iter_mut().zip(masses) {
+            *f += m * g;
         }
     }
 }

@@ -2,7 +2,8 @@
 //! processor: multiplications and additions are fused everywhere alike, and the sums have one order.
 //!
 //! A row's springs are found way by way, vector by vector, and kept: each pulls at its own row, and at this or one of the
-//! next two. Rows of wide grids are cut into strips, so that what is kept stays in the nearest cache, on the stack.
+//! next two. One evaluation cuts rows of wide grids into strips, so that what is kept stays in the nearest cache, on the
+//! stack. A sweep keeps whole rows, for each stage of a step, and sums up the stages while accelerations are at hand.
 
 #![expect(
     clippy::inline_always,
@@ -14,7 +15,10 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
+use super::ending::Ending;
 use super::inverse_root::inverse_root;
+use super::{columns, columns_mut};
+use crate::rows::{PAD, Part, Registers, Stage, Sweep, stride};
 use crate::sheet::{Sheet, WAYS};
 
 /// How many times as fast this is as the same springs one by one, on the grids that people look at.
@@ -22,15 +26,28 @@ pub(crate) const SPEED: f64 = 2.2;
 
 /// Columns of a strip at most: what a strip keeps fits a cache, and is cleared only once.
 const WIDTHS: [usize; 3] = [32, 128, 512];
-/// Numbers beside a strip on either side: the longest vector, and zeros for springs that are not there.
-const PAD: usize = 8;
 /// Columns beside a strip whose springs pull at it.
 const LEFT: usize = 2;
 const RIGHT: usize = 1;
 
-/// Sets f (N) to the forces of the sheet's springs on its particles, which are the first ones.
-pub(crate) fn set(sheet: &Sheet, x: &[f64], v: &[f64], f: &mut [f64]) {
-    Arch::new().dispatch(Forces { sheet, x, v, f });
+/// Places in a row where laws differ: its first vector, those of its middle, the last but one, and the last.
+const KINDS: usize = 4;
+/// Numbers of laws: k, k r and c of the springs that go each way, zeros where none begins; and zeros for rows whose
+/// springs would end below the last.
+pub(crate) const LAWS: usize = 3 * (WAYS.len() + 1) * KINDS * PAD;
+/// Columns of forces that are kept from row to row: right, two right, down, down and right (of this row and of the one
+/// above), down and left (the same), two down (the same).
+pub(crate) const FOUND: usize = 3 * 9;
+
+/// Sets f to what the ending makes of the forces of the sheet's springs on its particles, which are the first ones.
+pub(crate) fn set(sheet: &Sheet, x: &[f64], v: &[f64], f: &mut [f64], ending: &Ending) {
+    Arch::new().dispatch(Forces {
+        sheet,
+        x,
+        v,
+        f,
+        ending,
+    });
 }
 
 struct Forces<'a> {
@@ -38,6 +55,7 @@ struct Forces<'a> {
     x: &'a [f64],
     v: &'a [f64],
     f: &'a mut [f64],
+    ending: &'a Ending<'a>,
 }
 
 impl WithSimd for Forces<'_> {
@@ -45,8 +63,7 @@ impl WithSimd for Forces<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let damped = self.sheet.laws().iter().any(|law| law.damping > 0.0);
-        if damped {
+        if self.sheet.is_damped() {
             strips::<S, true>(simd, self);
         } else {
             strips::<S, false>(simd, self);
@@ -56,44 +73,233 @@ impl WithSimd for Forces<'_> {
 
 #[inline(always)]
 fn strips<S: Simd, const DAMPED: bool>(simd: S, forces: Forces) {
-    const PADDED: [usize; 3] = [
-        WIDTHS[0] + 2 * PAD,
-        WIDTHS[1] + 2 * PAD,
-        WIDTHS[2] + 2 * PAD,
-    ];
+    const STRIDES: [usize; 3] = [stride(WIDTHS[0]), stride(WIDTHS[1]), stride(WIDTHS[2])];
     match forces.sheet.grid().cols() {
-        cols if cols <= WIDTHS[0] => strips_of::<S, DAMPED, { PADDED[0] }>(simd, forces),
-        cols if cols <= WIDTHS[1] => strips_of::<S, DAMPED, { PADDED[1] }>(simd, forces),
-        _ => strips_of::<S, DAMPED, { PADDED[2] }>(simd, forces),
+        cols if cols <= WIDTHS[0] => strips_of::<S, DAMPED, { STRIDES[0] }>(simd, forces),
+        cols if cols <= WIDTHS[1] => strips_of::<S, DAMPED, { STRIDES[1] }>(simd, forces),
+        _ => strips_of::<S, DAMPED, { STRIDES[2] }>(simd, forces),
     }
+}
+
+/// What is kept of a strip.
+#[repr(C, align(64))]
+struct Kept<const P: usize> {
+    /// Of three rows.
+    places: [[[f64; P]; 6]; 3],
+    found: [[f64; P]; FOUND],
+    wind: [[f64; P]; 3],
+    f: [[f64; P]; 3],
+    laws: [f64; LAWS],
 }
 
 /// Cuts the columns into strips of about the same width.
 #[inline(always)]
-fn strips_of<S: Simd, const DAMPED: bool, const P: usize>(simd: S, forces: Forces) {
-    let Forces { sheet, x, v, f } = forces;
-    let cols = sheet.grid().cols();
+fn strips_of<S: Simd, const DAMPED: bool, const P: usize>(simd: S, mut forces: Forces) {
+    let cols = forces.sheet.grid().cols();
     let most = P - 2 * PAD;
     let count = if cols <= most {
         1
     } else {
         cols.div_ceil(most - LEFT - RIGHT)
     };
-    let mut kept = Kept::<P>::default();
+    let mut kept = Kept {
+        places: [[[0.0; P]; 6]; 3],
+        found: [[0.0; P]; FOUND],
+        wind: [[0.0; P]; 3],
+        f: [[0.0; P]; 3],
+        laws: [0.0; LAWS],
+    };
     for k in 0..count {
         let strip = k * cols / count..(k + 1) * cols / count;
-        run::<S, DAMPED, P>(simd, sheet, x, v, f, &strip, &mut kept);
+        run::<S, DAMPED, P>(simd, &mut forces, &strip, &mut kept);
     }
 }
 
-/// Three columns of numbers, for a row of a strip.
-#[derive(Clone, Copy)]
-#[repr(C, align(64))]
-struct Row<const P: usize>([[f64; P]; 3]);
+#[inline(always)]
+fn run<S: Simd, const DAMPED: bool, const P: usize>(
+    simd: S,
+    forces: &mut Forces,
+    strip: &Range<usize>,
+    kept: &mut Kept<P>,
+) {
+    let Forces {
+        sheet,
+        x,
+        v,
+        f,
+        ending,
+    } = forces;
+    let (rows, cols) = (sheet.grid().rows(), sheet.grid().cols());
+    // The columns whose springs are found, and those whose particles they hold.
+    let first = strip.start.saturating_sub(LEFT);
+    let width = cols.min(strip.end + RIGHT) - first;
+    let inside = PAD + strip.start - first..PAD + strip.end - first;
+    fill::<S>(&mut kept.laws, sheet, first, width);
+    kept.found = [[0.0; P]; FOUND];
+    let n = f.len() / 3;
+    let take = |row: usize, to: &mut [[f64; P]; 6]| {
+        if row < rows {
+            let seen = row * cols + first..row * cols + cols.min(strip.end + RIGHT + 2);
+            for axis in 0..3 {
+                let from = axis * n + seen.start..axis * n + seen.end;
+                to[axis][PAD..PAD + seen.len()].copy_from_slice(&x[from.clone()]);
+                if DAMPED || ending.drag.is_some() {
+                    to[3 + axis][PAD..PAD + seen.len()].copy_from_slice(&v[from]);
+                }
+            }
+        }
+    };
+    let [mut here, mut next, mut next2] = kept.places.each_mut();
+    take(0, here);
+    take(1, next);
+    let size = Size::of::<S>(P, width);
+    for row in 0..rows {
+        take(row + 2, next2);
+        let particles = row * cols + first..row * cols + first + width;
+        if let Some((wind, t)) = ending.wind {
+            let gusts = kept.wind.each_mut().map(|a| &mut a[PAD..PAD + width]);
+            wind.blow(t, columns(x, &particles), gusts);
+        }
+        let mut springs = Springs {
+            laws: &kept.laws,
+            above: row,
+            below: rows - 1 - row,
+            found: kept.found.as_flattened_mut(),
+        };
+        let (places, f_row) = (here.as_flattened(), kept.f.as_flattened_mut());
+        springs.find_along::<S, DAMPED>(simd, size, places);
+        let put = Put::<S> {
+            here: size.places::<S>(places, 0),
+            f: size.at_mut::<S>(f_row),
+        };
+        let others = Others::<S>::new(simd, size, ending, &particles, kept.wind.as_flattened());
+        let below = [next.as_flattened(), next2.as_flattened()];
+        springs.find_below::<S, DAMPED>(simd, size, below, &others, put);
+        let particles = row * cols + strip.start..row * cols + strip.end;
+        for (axis, from) in kept.f.iter().enumerate() {
+            f[axis * n..][particles.clone()].copy_from_slice(&from[inside.clone()]);
+        }
+        swap(&mut here, &mut next);
+        swap(&mut next, &mut next2);
+    }
+}
 
-impl<const P: usize> Default for Row<P> {
-    fn default() -> Self {
-        Self([[0.0; P]; 3])
+/// Writes the laws of a sheet as they are now, for a sweep.
+pub(crate) fn begin(sheet: &Sheet, laws: &mut [f64]) {
+    Arch::new().dispatch(Begin { sheet, laws });
+}
+
+struct Begin<'a> {
+    sheet: &'a Sheet,
+    laws: &'a mut [f64],
+}
+
+impl WithSimd for Begin<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        fill::<S>(self.laws, self.sheet, 0, self.sheet.grid().cols());
+    }
+}
+
+/// A row in a stage of a sweep.
+pub(crate) struct Advance<'a> {
+    pub sheet: &'a Sheet,
+    pub ending: &'a Ending<'a>,
+    pub stage: &'a Stage,
+    pub row: usize,
+    pub registers: &'a mut Registers,
+    pub sweep: &'a mut Sweep,
+}
+
+impl Advance<'_> {
+    /// Takes it through the stage.
+    pub fn run(self) {
+        Arch::new().dispatch(self);
+    }
+}
+
+impl WithSimd for Advance<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        if self.sheet.is_damped() {
+            advance::<S, true>(simd, self);
+        } else {
+            advance::<S, false>(simd, self);
+        }
+    }
+}
+
+#[inline(always)]
+fn advance<S: Simd, const DAMPED: bool>(simd: S, job: Advance) {
+    let Advance {
+        sheet,
+        ending,
+        stage,
+        row,
+        registers,
+        sweep,
+    } = job;
+    let Registers {
+        y,
+        sum,
+        stage: moving,
+    } = registers;
+    let (count, cols) = (sheet.grid().rows(), sheet.grid().cols());
+    let size = Size::of::<S>(stride(cols), cols);
+    let particles = row * cols..(row + 1) * cols;
+    let [here, next, next2] = moving.three_mut(row);
+    if let Some((wind, t)) = ending.wind {
+        let seen = PAD..PAD + cols;
+        let gusts = columns_mut(sweep.wind.row_mut(0)).map(|a| &mut a[seen.clone()]);
+        wind.blow(t, columns(here.split_at(3 * size.stride).0, &seen), gusts);
+    }
+    let mut springs = Springs {
+        laws: sweep.laws.column(0, 0),
+        above: row,
+        below: count - 1 - row,
+        found: sweep.found.row_mut(stage.number),
+    };
+    springs.find_along::<S, DAMPED>(simd, size, here);
+    let combine = Combine::<S> {
+        y: size.places::<S>(y.row(row), 0),
+        sum: size.places_mut::<S>(sum.row_mut(row)),
+        stage: size.places_mut::<S>(here),
+        first: stage.first,
+        moves: stage.part == Part::All,
+        b: simd.splat_f64s(stage.b),
+        c: stage.c.map(|c| simd.splat_f64s(c)),
+    };
+    let others = Others::<S>::new(simd, size, ending, &particles, sweep.wind.row(0));
+    springs.find_below::<S, DAMPED>(simd, size, [next, next2], &others, combine);
+}
+
+/// Fills in the laws of so many columns from the `first` on.
+#[inline(always)]
+fn fill<S: Simd>(laws: &mut [f64], sheet: &Sheet, first: usize, width: usize) {
+    let (cols, lanes) = (sheet.grid().cols(), S::F64_LANES);
+    let m = width.div_ceil(lanes);
+    let vectors = [0, 1, m.saturating_sub(2), m - 1];
+    let ways = laws
+        .chunks_exact_mut(3 * KINDS * PAD)
+        .zip(sheet.laws())
+        .zip(WAYS);
+    for ((ways, law), (_, _, right)) in ways {
+        // Where springs begin that end on the sheet.
+        let from = right.min(0).unsigned_abs().saturating_sub(first);
+        let to = width.min((cols - first).saturating_sub(right.max(0) as usize));
+        let numbers = [law.stiffness, law.stiffness * law.rest_length, law.damping];
+        for (column, number) in ways.chunks_exact_mut(KINDS * PAD).zip(numbers) {
+            for (vector, i) in column.chunks_exact_mut(lanes).zip(vectors) {
+                for (lane, law) in vector.iter_mut().enumerate() {
+                    let begins = (from..to).contains(&(i * lanes + lane));
+                    *law = if begins { number } else { 0.0 };
+                }
+            }
+        }
     }
 }
 
@@ -101,215 +307,352 @@ impl<const P: usize> Default for Row<P> {
 type Vectors<S> = [<S as Simd>::f64s; 3];
 type Columns<'a, S> = [&'a [<S as Simd>::f64s]; 3];
 type ColumnsMut<'a, S> = [&'a mut [<S as Simd>::f64s]; 3];
+/// Positions and velocities.
+type Places<'a, S> = (Columns<'a, S>, Columns<'a, S>);
+type PlacesMut<'a, S> = (ColumnsMut<'a, S>, ColumnsMut<'a, S>);
 
-impl<const P: usize> Row<P> {
-    /// A column as `m` vectors, beginning so many particles further right.
+/// Numbers from one column of a row to the next, and vectors in one.
+#[derive(Clone, Copy)]
+struct Size {
+    stride: usize,
+    m: usize,
+}
+
+impl Size {
     #[inline(always)]
-    fn column<S: Simd>(&self, axis: usize, shift: isize, m: usize) -> &[S::f64s] {
-        let start = PAD.wrapping_add_signed(shift);
-        &S::as_simd_f64s(&self.0[axis][start..start + m * S::F64_LANES]).0[..m]
+    fn of<S: Simd>(stride: usize, particles: usize) -> Self {
+        Self {
+            stride,
+            m: particles.div_ceil(S::F64_LANES),
+        }
     }
 
+    /// A column's vectors, beginning so many particles further right.
     #[inline(always)]
-    fn at<S: Simd>(&self, shift: isize, m: usize) -> Columns<'_, S> {
+    fn column<S: Simd>(self, a: &[f64], column: usize, shift: isize) -> &[S::f64s] {
+        let start = (column * self.stride + PAD).wrapping_add_signed(shift);
+        &S::as_simd_f64s(&a[start..start + self.m * S::F64_LANES]).0[..self.m]
+    }
+
+    /// Those of three columns from the `first` on.
+    #[inline(always)]
+    fn at<S: Simd>(self, a: &[f64], first: usize, shift: isize) -> Columns<'_, S> {
         [
-            self.column::<S>(0, shift, m),
-            self.column::<S>(1, shift, m),
-            self.column::<S>(2, shift, m),
+            self.column::<S>(a, first, shift),
+            self.column::<S>(a, first + 1, shift),
+            self.column::<S>(a, first + 2, shift),
         ]
     }
 
     #[inline(always)]
-    fn at_mut<S: Simd>(&mut self, m: usize) -> ColumnsMut<'_, S> {
-        let there = PAD..PAD + m * S::F64_LANES;
-        let [x, y, z] = &mut self.0;
+    fn places<S: Simd>(self, a: &[f64], shift: isize) -> Places<'_, S> {
+        (self.at::<S>(a, 0, shift), self.at::<S>(a, 3, shift))
+    }
+
+    /// Those of three columns, all there are.
+    #[inline(always)]
+    fn at_mut<S: Simd>(self, a: &mut [f64]) -> ColumnsMut<'_, S> {
+        let there = PAD..PAD + self.m * S::F64_LANES;
+        let [x, y, z] = columns_mut(a);
         [
-            &mut S::as_mut_simd_f64s(&mut x[there.clone()]).0[..m],
-            &mut S::as_mut_simd_f64s(&mut y[there.clone()]).0[..m],
-            &mut S::as_mut_simd_f64s(&mut z[there]).0[..m],
+            &mut S::as_mut_simd_f64s(&mut x[there.clone()]).0[..self.m],
+            &mut S::as_mut_simd_f64s(&mut y[there.clone()]).0[..self.m],
+            &mut S::as_mut_simd_f64s(&mut z[there]).0[..self.m],
         ]
     }
 
-    /// Takes the numbers of a range of particles from a column-major n x 3 matrix.
     #[inline(always)]
-    fn take(&mut self, a: &[f64], from: &Range<usize>) {
-        let n = a.len() / 3;
-        for (axis, to) in self.0.iter_mut().enumerate() {
-            to[PAD..PAD + from.len()]
-                .copy_from_slice(&a[axis * n + from.start..axis * n + from.end]);
+    fn places_mut<S: Simd>(self, a: &mut [f64]) -> PlacesMut<'_, S> {
+        let (x, v) = a.split_at_mut(3 * self.stride);
+        (self.at_mut::<S>(x), self.at_mut::<S>(v))
+    }
+
+    /// Which of the laws is a vector's.
+    #[inline(always)]
+    fn kind(self, i: usize) -> usize {
+        let after = self.m - 1 - i;
+        let kind = if after < 2 { 3 - after } else { i.min(1) };
+        kind % KINDS
+    }
+}
+
+/// A number of each particle of a row.
+#[derive(Clone, Copy)]
+struct Numbers<'a, S: Simd> {
+    whole: &'a [S::f64s],
+    rest: &'a [f64],
+}
+
+impl<'a, S: Simd> Numbers<'a, S> {
+    #[inline(always)]
+    fn new(a: &'a [f64], particles: &Range<usize>) -> Self {
+        let (whole, rest) = S::as_simd_f64s(&a[particles.clone()]);
+        Self { whole, rest }
+    }
+
+    /// Those of a vector, zeros where there is no particle.
+    #[inline(always)]
+    fn at(self, simd: S, i: usize) -> S::f64s {
+        match self.whole.get(i) {
+            Some(vector) => *vector,
+            None => simd.partial_load_f64s(self.rest),
         }
     }
 }
 
-/// What is kept of a strip.
-#[derive(Default)]
-struct Kept<const P: usize> {
-    /// Of three rows.
-    places: [Places<P>; 3],
-    found: Found<P>,
-    sum: Row<P>,
-    /// k, k r and c of the springs that begin in a column: zeros where none does.
-    laws: [Row<P>; 6],
-    no_law: Row<P>,
+/// What an ending adds to the forces on a row, and what it divides them by.
+struct Others<'a, S: Simd> {
+    wind: Option<Columns<'a, S>>,
+    gravity: Option<(Vectors<S>, Numbers<'a, S>)>,
+    drag: Option<S::f64s>,
+    inverse_masses: Option<Numbers<'a, S>>,
 }
 
-#[derive(Default)]
-struct Places<const P: usize> {
-    x: Row<P>,
-    v: Row<P>,
-}
-
-impl<const P: usize> Places<P> {
+impl<'a, S: Simd> Others<'a, S> {
     #[inline(always)]
-    fn at<S: Simd>(&self, shift: isize, m: usize) -> (Columns<'_, S>, Columns<'_, S>) {
-        (self.x.at::<S>(shift, m), self.v.at::<S>(shift, m))
+    fn new(
+        simd: S,
+        size: Size,
+        ending: &Ending<'a>,
+        particles: &Range<usize>,
+        gusts: &'a [f64],
+    ) -> Self {
+        Self {
+            wind: ending.wind.map(|_| size.at::<S>(gusts, 0, 0)),
+            gravity: ending.gravity.map(|(g, masses)| {
+                let g = [
+                    simd.splat_f64s(g.x),
+                    simd.splat_f64s(g.y),
+                    simd.splat_f64s(g.z),
+                ];
+                (g, Numbers::new(masses, particles))
+            }),
+            drag: ending.drag.map(|c| simd.splat_f64s(c)),
+            inverse_masses: ending
+                .inverse_masses
+                .map(|inverse_masses| Numbers::new(inverse_masses, particles)),
+        }
+    }
+
+    #[inline(always)]
+    fn apply(&self, simd: S, i: usize, u: Vectors<S>, f: Vectors<S>) -> Vectors<S> {
+        let mut f = f;
+        if let Some(wind) = self.wind {
+            f = add::<S>(simd, f, pick::<S>(wind, i));
+        }
+        if let Some((g, masses)) = self.gravity {
+            f = plus::<S>(simd, f, masses.at(simd, i), g);
+        }
+        if let Some(c) = self.drag {
+            f = [
+                simd.negate_mul_add_f64s(c, u[0], f[0]),
+                simd.negate_mul_add_f64s(c, u[1], f[1]),
+                simd.negate_mul_add_f64s(c, u[2], f[2]),
+            ];
+        }
+        if let Some(inverse_masses) = self.inverse_masses {
+            let w = inverse_masses.at(simd, i);
+            f = [
+                simd.mul_f64s(f[0], w),
+                simd.mul_f64s(f[1], w),
+                simd.mul_f64s(f[2], w),
+            ];
+        }
+        f
     }
 }
 
-/// Forces of the springs that begin in a row, by their ways: of this row, and of those above that its springs end in.
-#[derive(Default)]
-struct Found<const P: usize> {
-    right: Row<P>,
-    right2: Row<P>,
-    down: [Row<P>; 2],
-    backslash: [Row<P>; 2],
-    slash: [Row<P>; 2],
-    down2: [Row<P>; 3],
+/// Where a row's particles are, and what is done with what was found for them.
+trait Use<S: Simd> {
+    fn here(&self, i: usize) -> (Vectors<S>, Vectors<S>);
+
+    fn put(&mut self, simd: S, i: usize, here: (Vectors<S>, Vectors<S>), f: Vectors<S>);
+}
+
+/// Forces are written down.
+struct Put<'a, S: Simd> {
+    here: Places<'a, S>,
+    f: ColumnsMut<'a, S>,
+}
+
+impl<S: Simd> Use<S> for Put<'_, S> {
+    #[inline(always)]
+    fn here(&self, i: usize) -> (Vectors<S>, Vectors<S>) {
+        let (x, v) = self.here;
+        (pick::<S>(x, i), pick::<S>(v, i))
+    }
+
+    #[inline(always)]
+    fn put(&mut self, _: S, i: usize, _: (Vectors<S>, Vectors<S>), f: Vectors<S>) {
+        put::<S>(&mut self.f, i, f);
+    }
+}
+
+/// Accelerations take particles to the next stage: sum + b k, and y + c k, k = \[v | a\].
+struct Combine<'a, S: Simd> {
+    y: Places<'a, S>,
+    sum: PlacesMut<'a, S>,
+    stage: PlacesMut<'a, S>,
+    first: bool,
+    /// Whether v moves x.
+    moves: bool,
+    b: S::f64s,
+    /// None in the last stage, from which the sum goes on.
+    c: Option<S::f64s>,
+}
+
+impl<S: Simd> Use<S> for Combine<'_, S> {
+    #[inline(always)]
+    fn here(&self, i: usize) -> (Vectors<S>, Vectors<S>) {
+        let (x, v) = &self.stage;
+        ([x[0][i], x[1][i], x[2][i]], [v[0][i], v[1][i], v[2][i]])
+    }
+
+    #[inline(always)]
+    fn put(&mut self, simd: S, i: usize, (_, u): (Vectors<S>, Vectors<S>), a: Vectors<S>) {
+        if self.moves {
+            let (y, sum, stage) = (self.y.0, &mut self.sum.0, &mut self.stage.0);
+            combine::<S>(simd, i, (self.first, self.b, self.c), y, sum, stage, u);
+        }
+        let (y, sum, stage) = (self.y.1, &mut self.sum.1, &mut self.stage.1);
+        combine::<S>(simd, i, (self.first, self.b, self.c), y, sum, stage, a);
+    }
 }
 
 #[inline(always)]
-fn run<S: Simd, const DAMPED: bool, const P: usize>(
+fn combine<S: Simd>(
     simd: S,
-    sheet: &Sheet,
-    x: &[f64],
-    v: &[f64],
-    f: &mut [f64],
-    strip: &Range<usize>,
-    kept: &mut Kept<P>,
+    i: usize,
+    (first, b, c): (bool, S::f64s, Option<S::f64s>),
+    y: Columns<S>,
+    sum: &mut ColumnsMut<S>,
+    stage: &mut ColumnsMut<S>,
+    k: Vectors<S>,
 ) {
-    let (rows, cols) = (sheet.grid().rows(), sheet.grid().cols());
-    // The columns whose springs are found, and those whose particles they hold.
-    let first = strip.start.saturating_sub(LEFT);
-    let width = cols.min(strip.end + RIGHT) - first;
-    let m = width.div_ceil(S::F64_LANES);
-    let seen = |row: usize| row * cols + first..row * cols + cols.min(strip.end + RIGHT + 2);
-    let inside = PAD + strip.start - first..PAD + strip.end - first;
-    fill(&mut kept.laws, sheet, first, width, m * S::F64_LANES);
-    kept.found = Found::default();
-    let (sum, found) = (&mut kept.sum, &mut kept.found);
-    let (right, right2) = (&mut found.right, &mut found.right2);
-    let [mut down, mut from_above] = found.down.each_mut();
-    let [mut backslash, mut from_left] = found.backslash.each_mut();
-    let [mut slash, mut from_right] = found.slash.each_mut();
-    let [mut down2, mut from_above_next, mut from_above2] = found.down2.each_mut();
-    let take = |row: usize, to: &mut Places<P>| {
-        if row < rows {
-            to.x.take(x, &seen(row));
-            if DAMPED {
-                to.v.take(v, &seen(row));
-            }
-        }
+    let y = pick::<S>(y, i);
+    let before = if first {
+        y
+    } else {
+        [sum[0][i], sum[1][i], sum[2][i]]
     };
-    let [mut here, mut next, mut next2] = kept.places.each_mut();
-    take(0, here);
-    take(1, next);
-    let n = f.len() / 3;
-    for row in 0..rows {
-        take(row + 2, next2);
-        let law = |way: usize| {
-            let (_, rows_down, _) = WAYS[way];
-            if row + rows_down < rows {
-                kept.laws[way].at::<S>(0, m)
-            } else {
-                kept.no_law.at::<S>(0, m)
-            }
-        };
-        let pair = [&mut *right, &mut *right2];
-        along::<S, DAMPED, P>(simd, here, [law(0), law(4)], pair, m);
-        let (px, pv) = here.at::<S>(0, m);
-        let (ax, bx) = (next.at::<S>(0, m), next.at::<S>(1, m));
-        let (cx, dx) = (next.at::<S>(-1, m), next2.at::<S>(0, m));
-        let (a, b, c, d) = (law(1), law(2), law(3), law(5));
-        let (mut to_a, mut to_b) = (down.at_mut::<S>(m), backslash.at_mut::<S>(m));
-        let (mut to_c, mut to_d) = (slash.at_mut::<S>(m), down2.at_mut::<S>(m));
-        let mut total = sum.at_mut::<S>(m);
-        let (left, left2) = (right.at::<S>(-1, m), right2.at::<S>(-2, m));
-        let (begun, begun2) = (right.at::<S>(0, m), right2.at::<S>(0, m));
-        let (above, above2) = (from_above.at::<S>(0, m), from_above2.at::<S>(0, m));
-        let (above_left, above_right) = (from_left.at::<S>(-1, m), from_right.at::<S>(1, m));
-        for i in 0..m {
-            let p = (pick::<S>(px, i), pick::<S>(pv, i));
+    let after = plus::<S>(simd, before, b, k);
+    match c {
+        None => put::<S>(stage, i, after),
+        Some(c) => {
+            put::<S>(sum, i, after);
+            put::<S>(stage, i, plus::<S>(simd, y, c, k));
+        }
+    }
+}
+
+/// The laws of the springs that go one way, in a row with so many `below` it.
+#[inline(always)]
+fn law<S: Simd>(laws: &[f64], way: usize, below: usize) -> Columns<'_, S> {
+    let (_, rows_down, _) = WAYS[way];
+    let way = if rows_down <= below { way } else { WAYS.len() };
+    let three = &laws[3 * way * KINDS * PAD..][..3 * KINDS * PAD];
+    [
+        &S::as_simd_f64s(three).0[..KINDS],
+        &S::as_simd_f64s(&three[KINDS * PAD..]).0[..KINDS],
+        &S::as_simd_f64s(&three[2 * KINDS * PAD..]).0[..KINDS],
+    ]
+}
+
+/// A row of springs.
+struct Springs<'a> {
+    laws: &'a [f64],
+    /// How many rows there are above it and below.
+    above: usize,
+    below: usize,
+    found: &'a mut [f64],
+}
+
+impl Springs<'_> {
+    /// Finds those along the row.
+    #[inline(always)]
+    fn find_along<S: Simd, const DAMPED: bool>(&mut self, simd: S, size: Size, here: &[f64]) {
+        let three = 3 * size.stride;
+        let (right, right2) = self.found[..2 * three].split_at_mut(three);
+        let (mut right, mut right2) = (size.at_mut::<S>(right), size.at_mut::<S>(right2));
+        let laws = |way| law::<S>(self.laws, way, self.below);
+        let (a, b) = (laws(0), laws(4));
+        let (px, pv) = size.places::<S>(here, 0);
+        let (one, two) = (size.places::<S>(here, 1), size.places::<S>(here, 2));
+        for i in 0..size.m {
+            let (p, kind) = ((pick::<S>(px, i), pick::<S>(pv, i)), size.kind(i));
+            let force = spring::<S, DAMPED>(simd, pick::<S>(a, kind), p, one, i);
+            put::<S>(&mut right, i, force);
+            let force = spring::<S, DAMPED>(simd, pick::<S>(b, kind), p, two, i);
+            put::<S>(&mut right2, i, force);
+        }
+    }
+
+    /// Finds those to the rows below, and sums up.
+    #[inline(always)]
+    fn find_below<S: Simd, const DAMPED: bool>(
+        &mut self,
+        simd: S,
+        size: Size,
+        [next, next2]: [&[f64]; 2],
+        others: &Others<S>,
+        mut then: impl Use<S>,
+    ) {
+        let three = 3 * size.stride;
+        let (right, rest) = self.found.split_at_mut(three);
+        let (right2, rest) = rest.split_at_mut(three);
+        let (down, rest) = rest.split_at_mut(three);
+        let (mut backslash, rest) = rest.split_at_mut(three);
+        let (mut from_left, rest) = rest.split_at_mut(three);
+        let (mut slash, rest) = rest.split_at_mut(three);
+        let (mut from_right, rest) = rest.split_at_mut(three);
+        let (even, odd) = rest.split_at_mut(three);
+        let is_odd = self.above % 2 == 1;
+        if is_odd {
+            swap(&mut backslash, &mut from_left);
+            swap(&mut slash, &mut from_right);
+        }
+        // Where the row before last left its own, which this row's replace.
+        let down2 = if is_odd { odd } else { even };
+        let laws = |way| law::<S>(self.laws, way, self.below);
+        let (a, b, c, d) = (laws(1), laws(2), laws(3), laws(5));
+        let (ax, bx) = (size.places::<S>(next, 0), size.places::<S>(next, 1));
+        let (cx, dx) = (size.places::<S>(next, -1), size.places::<S>(next2, 0));
+        let (mut to_a, mut to_b) = (size.at_mut::<S>(down), size.at_mut::<S>(backslash));
+        let (mut to_c, mut to_d) = (size.at_mut::<S>(slash), size.at_mut::<S>(down2));
+        let (left, left2) = (size.at::<S>(right, 0, -1), size.at::<S>(right2, 0, -2));
+        let (begun, begun2) = (size.at::<S>(right, 0, 0), size.at::<S>(right2, 0, 0));
+        let above_left = size.at::<S>(from_left, 0, -1);
+        let above_right = size.at::<S>(from_right, 0, 1);
+        for i in 0..size.m {
+            let (p, kind) = (then.here(i), size.kind(i));
             let mut all = sub::<S>(simd, pick::<S>(left, i), pick::<S>(begun, i));
             let pull = sub::<S>(simd, pick::<S>(left2, i), pick::<S>(begun2, i));
             all = add::<S>(simd, all, pull);
-            let force = spring::<S, DAMPED>(simd, a, i, p, ax);
-            put::<S>(&mut to_a, i, force);
-            all = add::<S>(simd, all, sub::<S>(simd, pick::<S>(above, i), force));
-            let force = spring::<S, DAMPED>(simd, b, i, p, bx);
+            let force = spring::<S, DAMPED>(simd, pick::<S>(a, kind), p, ax, i);
+            let above = replace::<S>(&mut to_a, i, force);
+            all = add::<S>(simd, all, sub::<S>(simd, above, force));
+            let force = spring::<S, DAMPED>(simd, pick::<S>(b, kind), p, bx, i);
             put::<S>(&mut to_b, i, force);
             all = add::<S>(simd, all, sub::<S>(simd, pick::<S>(above_left, i), force));
-            let force = spring::<S, DAMPED>(simd, c, i, p, cx);
+            let force = spring::<S, DAMPED>(simd, pick::<S>(c, kind), p, cx, i);
             put::<S>(&mut to_c, i, force);
             all = add::<S>(simd, all, sub::<S>(simd, pick::<S>(above_right, i), force));
-            let force = spring::<S, DAMPED>(simd, d, i, p, dx);
-            put::<S>(&mut to_d, i, force);
-            all = add::<S>(simd, all, sub::<S>(simd, pick::<S>(above2, i), force));
-            put::<S>(&mut total, i, all);
+            let force = spring::<S, DAMPED>(simd, pick::<S>(d, kind), p, dx, i);
+            let above2 = replace::<S>(&mut to_d, i, force);
+            all = add::<S>(simd, all, sub::<S>(simd, above2, force));
+            then.put(simd, i, p, others.apply(simd, i, p.1, all));
         }
-        for (axis, sum) in sum.0.iter().enumerate() {
-            f[axis * n + row * cols..][strip.clone()].copy_from_slice(&sum[inside.clone()]);
-        }
-        swap(&mut down, &mut from_above);
-        swap(&mut backslash, &mut from_left);
-        swap(&mut slash, &mut from_right);
-        // This row's are those of the next but one.
-        swap(&mut from_above2, &mut from_above_next);
-        swap(&mut from_above_next, &mut down2);
-        swap(&mut here, &mut next);
-        swap(&mut next, &mut next2);
     }
 }
 
-/// Finds the springs along a row.
+/// a + b k
 #[inline(always)]
-fn along<S: Simd, const DAMPED: bool, const P: usize>(
-    simd: S,
-    places: &Places<P>,
-    [a, b]: [Columns<S>; 2],
-    [right, right2]: [&mut Row<P>; 2],
-    m: usize,
-) {
-    let (px, pv) = places.at::<S>(0, m);
-    let (one, two) = (places.at::<S>(1, m), places.at::<S>(2, m));
-    let (mut right, mut right2) = (right.at_mut::<S>(m), right2.at_mut::<S>(m));
-    for i in 0..m {
-        let p = (pick::<S>(px, i), pick::<S>(pv, i));
-        let force = spring::<S, DAMPED>(simd, a, i, p, one);
-        put::<S>(&mut right, i, force);
-        let force = spring::<S, DAMPED>(simd, b, i, p, two);
-        put::<S>(&mut right2, i, force);
-    }
-}
-
-/// Fills in the laws of so many columns from the `first` on, of which the last ones may be none.
-fn fill<const P: usize>(
-    laws: &mut [Row<P>; 6],
-    sheet: &Sheet,
-    first: usize,
-    width: usize,
-    found: usize,
-) {
-    let cols = sheet.grid().cols();
-    for ((law, row), (_, _, to)) in sheet.laws().iter().zip(laws).zip(WAYS) {
-        let begins =
-            |col: usize| col < width && (0..cols).contains(&(first + col).wrapping_add_signed(to));
-        let numbers = [law.stiffness, law.stiffness * law.rest_length, law.damping];
-        for (column, number) in row.0.iter_mut().zip(numbers) {
-            for (col, column) in column[PAD..PAD + found].iter_mut().enumerate() {
-                *column = if begins(col) { number } else { 0.0 };
-            }
-        }
-    }
+fn plus<S: Simd>(simd: S, a: Vectors<S>, b: S::f64s, k: Vectors<S>) -> Vectors<S> {
+    [
+        simd.mul_add_f64s(b, k[0], a[0]),
+        simd.mul_add_f64s(b, k[1], a[1]),
+        simd.mul_add_f64s(b, k[2], a[2]),
+    ]
 }
 
 #[inline(always)]
@@ -324,23 +667,31 @@ fn put<S: Simd>(a: &mut ColumnsMut<S>, i: usize, [x, y, z]: Vectors<S>) {
     a[2][i] = z;
 }
 
+/// Puts it there, and gives what was there.
+#[inline(always)]
+fn replace<S: Simd>(a: &mut ColumnsMut<S>, i: usize, by: Vectors<S>) -> Vectors<S> {
+    let before = [a[0][i], a[1][i], a[2][i]];
+    put::<S>(a, i, by);
+    before
+}
+
 /// The forces of springs from particles at p with velocity u to others, as they pull at the latter: s d with
 /// s = k - k r / L + c (w . d) / L2.
 #[inline(always)]
 fn spring<S: Simd, const DAMPED: bool>(
     simd: S,
-    law: Columns<S>,
-    i: usize,
+    law: Vectors<S>,
     (p, u): (Vectors<S>, Vectors<S>),
     (x, v): (Columns<S>, Columns<S>),
+    i: usize,
 ) -> Vectors<S> {
     let d = sub::<S>(simd, p, pick::<S>(x, i));
     let inverse = inverse_root(simd, dot(simd, d, d));
-    let mut s = simd.negate_mul_add_f64s(law[1][i], inverse, law[0][i]);
+    let mut s = simd.negate_mul_add_f64s(law[1], inverse, law[0]);
     if DAMPED {
         let rate = dot(simd, sub::<S>(simd, u, pick::<S>(v, i)), d);
         let rate = simd.mul_f64s(simd.mul_f64s(rate, inverse), inverse);
-        s = simd.mul_add_f64s(law[2][i], rate, s);
+        s = simd.mul_add_f64s(law[2], rate, s);
     }
     [
         simd.mul_f64s(s, d[0]),
@@ -401,6 +752,7 @@ mod tests {
                         x: &x,
                         v: &v,
                         f: &mut f,
+                        ending: &Ending::default(),
                     });
                     f
                 };

@@ -1,8 +1,7 @@
 //! Explicit midpoint: y1 = y + h f(t + h/2, y + h/2 f(t, y)). Order 2.
 
-use super::{Integrator, Method, Work, add_scaled, check_dim, scaled_sum};
-use crate::error::Error;
-use crate::system::ParticleSystem;
+use super::Method;
+use super::runge_kutta::{RungeKutta, Table};
 
 pub(super) const METHOD: Method = Method {
     name: "midpoint",
@@ -16,34 +15,7 @@ pub(super) const METHOD: Method = Method {
     implicit: false,
     pair: None,
     needs_mechanics: false,
-    create: |system| {
-        let dim = system.dim();
-        Box::new(Midpoint {
-            f: vec![0.0; dim],
-            middle: vec![0.0; dim],
-        })
-    },
+    create: |system| Box::new(RungeKutta::new(TABLE, system)),
 };
 
-struct Midpoint {
-    f: Vec<f64>,
-    middle: Vec<f64>,
-}
-
-impl Integrator for Midpoint {
-    fn step(
-        &mut self,
-        system: &dyn ParticleSystem,
-        t: f64,
-        h: f64,
-        y: &mut [f64],
-    ) -> Result<Work, Error> {
-        check_dim(self.f.len(), y)?;
-        let Self { f, middle } = self;
-        system.eval_f(t, y, f);
-        scaled_sum(middle, y, 0.5 * h, f);
-        system.eval_f(t + 0.5 * h, middle, f);
-        add_scaled(y, h, f);
-        Ok(Work::of(2))
-    }
-}
+const TABLE: Table = &[(0.0, 0.0), (0.5, 1.0)];

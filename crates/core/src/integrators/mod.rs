@@ -11,6 +11,8 @@ mod midpoint;
 mod pefrl;
 mod rk4;
 mod rkf45;
+mod runge_kutta;
+mod sweep;
 mod symplectic_euler;
 mod verlet;
 

@@ -1,0 +1,211 @@
+//! Explicit Runge-Kutta methods each of whose stages reads only the one before it:
+//! k1 = f(t, y), k2 = f(t + c2 h, y + c2 h k1), k3 = f(t + c3 h, y + c3 h k2), ..., y1 = y + h (b1 k1 + b2 k2 + ...).
+
+use pulp::{Arch, Simd, WithSimd};
+
+use super::sweep::Sweeper;
+use super::{Integrator, Work, check_dim};
+use crate::error::Error;
+use crate::rows::{Part, Stage};
+use crate::system::ParticleSystem;
+
+/// c and b of each stage.
+pub(super) type Table = &'static [(f64, f64)];
+
+/// The stages of a step from t to t + h.
+pub(super) fn stages(table: Table, part: Part, t: f64, h: f64) -> impl Iterator<Item = Stage> {
+    table.iter().enumerate().map(move |(i, (c, b))| Stage {
+        number: i,
+        part,
+        t: t + c * h,
+        until: table.get(i + 1).map_or(t + h, |(c, _)| t + c * h),
+        first: i == 0,
+        b: h * b,
+        c: table.get(i + 1).map(|(c, _)| h * c),
+    })
+}
+
+/// A method of such a table.
+pub(super) struct RungeKutta {
+    table: Table,
+    dim: usize,
+    /// For systems of rows.
+    sweeper: Option<Sweeper>,
+    stages: Vec<Stage>,
+    /// For others: y of the stage under way, y + b1 h k1 + b2 h k2 + ..., and the last k.
+    stage: Vec<f64>,
+    sum: Vec<f64>,
+    k: Vec<f64>,
+}
+
+impl RungeKutta {
+    pub fn new(table: Table, system: &dyn ParticleSystem) -> Self {
+        let sweeper = system.rows().map(|rows| Sweeper::new(rows, table.len()));
+        Self::with(table, system.dim(), sweeper)
+    }
+
+    fn with(table: Table, dim: usize, sweeper: Option<Sweeper>) -> Self {
+        let length = if sweeper.is_some() { 0 } else { dim };
+        Self {
+            table,
+            dim,
+            sweeper,
+            stages: Vec::with_capacity(table.len()),
+            stage: vec![0.0; length],
+            sum: vec![0.0; length],
+            k: vec![0.0; length],
+        }
+    }
+}
+
+impl Integrator for RungeKutta {
+    fn step(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
+        check_dim(self.dim, y)?;
+        self.stages.clear();
+        self.stages.extend(stages(self.table, Part::All, t, h));
+        match (&mut self.sweeper, system.rows()) {
+            (Some(sweeper), Some(system)) if sweeper.fits(system) => {
+                sweeper.step(system, &self.stages, y);
+            }
+            _ => {
+                // Made for another system, it has none.
+                for scratch in [&mut self.stage, &mut self.sum, &mut self.k] {
+                    scratch.resize(self.dim, 0.0);
+                }
+                self.stage.copy_from_slice(y);
+                for stage in &self.stages {
+                    system.eval_f(stage.t, &self.stage, &mut self.k);
+                    Arch::new().dispatch(Combine {
+                        stage,
+                        y,
+                        sum: &mut self.sum,
+                        next: &mut self.stage,
+                        k: &self.k,
+                    });
+                }
+                y.copy_from_slice(&self.stage);
+            }
+        }
+        Ok(Work::of(self.table.len() as u64))
+    }
+}
+
+/// From one stage to the next.
+struct Combine<'a> {
+    stage: &'a Stage,
+    y: &'a [f64],
+    sum: &'a mut [f64],
+    next: &'a mut [f64],
+    k: &'a [f64],
+}
+
+impl WithSimd for Combine<'_> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let (y, y_rest) = S::as_simd_f64s(self.y);
+        let (sum, sum_rest) = S::as_mut_simd_f64s(self.sum);
+        let (next, next_rest) = S::as_mut_simd_f64s(self.next);
+        let (k, k_rest) = S::as_simd_f64s(self.k);
+        combine(simd, self.stage, [y, k], sum, next);
+        combine(
+            pulp::Scalar::new(),
+            self.stage,
+            [y_rest, k_rest],
+            sum_rest,
+            next_rest,
+        );
+    }
+}
+
+#[expect(
+    clippy::inline_always,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found"
+)]
+#[inline(always)]
+fn combine<S: Simd>(
+    simd: S,
+    stage: &Stage,
+    [y, k]: [&[S::f64s]; 2],
+    sum: &mut [S::f64s],
+    next: &mut [S::f64s],
+) {
+    let b = simd.splat_f64s(stage.b);
+    let c = stage.c.map(|c| simd.splat_f64s(c));
+    for (((y, k), sum), next) in y.iter().zip(k).zip(sum).zip(next) {
+        let before = if stage.first { *y } else { *sum };
+        let after = simd.mul_add_f64s(b, *k, before);
+        match c {
+            None => *next = after,
+            Some(c) => {
+                *sum = after;
+                *next = simd.mul_add_f64s(c, *k, *y);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Grid, Scene, scenes};
+
+    const RK4: Table = &[
+        (0.0, 1.0 / 6.0),
+        (0.5, 1.0 / 3.0),
+        (0.5, 1.0 / 3.0),
+        (1.0, 1.0 / 6.0),
+    ];
+
+    fn scene(name: &str, rows: usize, cols: usize) -> Scene {
+        let grid = Grid::new(rows, cols).unwrap();
+        scenes::find(name).unwrap().build(Some(grid)).unwrap()
+    }
+
+    /// The state after some steps, in such bands, or with whole states.
+    fn after(scene: &Scene, table: Table, bands: Option<usize>) -> Vec<f64> {
+        let system = scene.model.system();
+        let sweeper =
+            bands.map(|bands| Sweeper::with_bands(system.rows().unwrap(), table.len(), bands));
+        let mut method = RungeKutta::with(table, system.dim(), sweeper);
+        let mut y = scene.state.clone();
+        for k in 0..5 {
+            method
+                .step(system, 1e-3 * f64::from(k), 1e-3, &mut y)
+                .unwrap();
+        }
+        assert!(y.iter().all(|y| y.is_finite()) && y != scene.state);
+        y
+    }
+
+    #[test]
+    fn sweeps_in_any_bands_give_the_bits_of_whole_states() {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(3)
+            .build()
+            .unwrap();
+        for (rows, cols) in [(2, 2), (3, 7), (20, 20), (9, 300), (70, 5)] {
+            for name in ["cloth", "mit"] {
+                let scene = scene(name, rows, cols);
+                for table in [RK4, &[(0.0, 1.0)]] {
+                    let expected = after(&scene, table, None);
+                    for bands in [1, 2, 3, 4, 8] {
+                        let found = pool.install(|| after(&scene, table, Some(bands)));
+                        assert!(found == expected, "{name} {rows}x{cols}, {bands} bands");
+                    }
+                }
+            }
+        }
+    }
+}
