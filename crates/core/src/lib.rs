@@ -37,6 +37,7 @@ mod simulation;
 mod spring;
 pub mod stability;
 mod system;
+mod threads;
 
 pub use error::{BlowUp, Cause, Error};
 pub use grid::{Grid, MAX_PARTICLES};

@@ -6,9 +6,7 @@ use nalgebra::Vector3;
 
 use crate::colliders::{Floor, Sphere};
 use crate::error::{Error, at_least, positive};
-use crate::forces::{
-    columns, columns_mut, drag, ending::Ending, gravity, sheet, springs, wind::Wind,
-};
+use crate::forces::{drag, ending::Ending, gravity, sheet, springs, wind::Wind};
 use crate::path::{Path, Place};
 use crate::rows::{Part, Registers, Rows, Stage, Sweep};
 use crate::sheet::Sheet;
@@ -325,7 +323,7 @@ impl Network {
             None => f.fill(0.0),
         }
         springs::add_list(&self.list, x, v, f);
-        ending.apply(0, columns(x, &(0..n)), columns(v, &(0..n)), columns_mut(f));
+        ending.apply(x, v, f);
     }
 
     /// The sheet, if it is all that holds the particles together.

@@ -1,6 +1,5 @@
 //! Viscous drag, F = -c v.
 
-#[inline(always)]
 pub(crate) fn add(c: f64, v: &[f64], f: &mut [f64]) {
     for (f, v) in f.iter_mut().zip(v) {
         *f -= c * v;

@@ -1,13 +1,8 @@
-//! What becomes of the springs' forces on some particles while these are in the nearest cache.
-
-#![expect(
-    clippy::inline_always,
-    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
-)]
+//! What becomes of the springs' forces.
 
 use nalgebra::Vector3;
 
-use super::{Wind, drag, gravity};
+use super::{Wind, columns, columns_mut, drag, gravity};
 
 /// The forces to be added, and the masses to divide by.
 #[derive(Default)]
@@ -20,23 +15,21 @@ pub(crate) struct Ending<'a> {
 }
 
 impl Ending<'_> {
-    /// Completes the forces on particles from the `first` on.
-    #[inline(always)]
-    pub fn apply(&self, first: usize, x: [&[f64]; 3], v: [&[f64]; 3], f: [&mut [f64]; 3]) {
-        let [fx, fy, fz] = f;
-        let particles = first..first + fx.len();
+    /// Completes the forces on all particles.
+    pub fn apply(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
+        let n = x.len() / 3;
         if let Some((wind, t)) = self.wind {
-            wind.add(t, x, [&mut *fx, &mut *fy, &mut *fz]);
+            wind.add(t, columns(x, &(0..n)), &mut columns_mut(f));
         }
-        for (axis, f) in [fx, fy, fz].into_iter().enumerate() {
+        for (axis, f) in f.chunks_exact_mut(n).enumerate() {
             if let Some((g, masses)) = self.gravity {
-                gravity::add(g[axis], &masses[particles.clone()], f);
+                gravity::add(g[axis], masses, f);
             }
             if let Some(c) = self.drag {
-                drag::add(c, v[axis], f);
+                drag::add(c, &v[axis * n..(axis + 1) * n], f);
             }
             if let Some(inverse_masses) = self.inverse_masses {
-                for (f, w) in f.iter_mut().zip(&inverse_masses[particles.clone()]) {
+                for (f, w) in f.iter_mut().zip(inverse_masses) {
                     *f *= w;
                 }
             }

@@ -3,7 +3,6 @@
 use nalgebra::Vector3;
 
 /// Along one axis.
-#[inline(always)]
 pub(crate) fn add(g: f64, masses: &[f64], f: &mut [f64]) {
     if g != 0.0 {
         for (f, m) in f.iter_mut().zip(masses) {

@@ -18,8 +18,9 @@ use pulp::{Arch, Simd, WithSimd};
 use super::ending::Ending;
 use super::inverse_root::inverse_root;
 use super::{columns, columns_mut};
-use crate::rows::{PAD, Part, Registers, Stage, Sweep, stride};
+use crate::rows::{PAD, Part, REACH, Registers, Stage, Sweep, stride};
 use crate::sheet::{Sheet, WAYS};
+use crate::threads::{fork, threads};
 
 /// How many times as fast this is as the same springs one by one, on the grids that people look at.
 pub(crate) const SPEED: f64 = 2.2;
@@ -41,12 +42,18 @@ pub(crate) const FOUND: usize = 3 * 9;
 
 /// Sets f to what the ending makes of the forces of the sheet's springs on its particles, which are the first ones.
 pub(crate) fn set(sheet: &Sheet, x: &[f64], v: &[f64], f: &mut [f64], ending: &Ending) {
-    Arch::new().dispatch(Forces {
-        sheet,
-        x,
-        v,
-        f,
-        ending,
+    let grid = sheet.grid();
+    let held = columns_mut(f).map(|f| &mut f[..grid.particles()]);
+    let bands = threads(grid.particles());
+    fork(bands, 0..grid.rows(), grid.cols(), held, &|rows, f| {
+        Arch::new().dispatch(Forces {
+            sheet,
+            x,
+            v,
+            rows,
+            f,
+            ending,
+        });
     });
 }
 
@@ -54,7 +61,9 @@ struct Forces<'a> {
     sheet: &'a Sheet,
     x: &'a [f64],
     v: &'a [f64],
-    f: &'a mut [f64],
+    /// Where forces are wanted, and the forces there.
+    rows: Range<usize>,
+    f: [&'a mut [f64]; 3],
     ending: &'a Ending<'a>,
 }
 
@@ -126,6 +135,7 @@ fn run<S: Simd, const DAMPED: bool, const P: usize>(
         sheet,
         x,
         v,
+        rows: wanted,
         f,
         ending,
     } = forces;
@@ -136,7 +146,7 @@ fn run<S: Simd, const DAMPED: bool, const P: usize>(
     let inside = PAD + strip.start - first..PAD + strip.end - first;
     fill::<S>(&mut kept.laws, sheet, first, width);
     kept.found = [[0.0; P]; FOUND];
-    let n = f.len() / 3;
+    let n = x.len() / 3;
     let take = |row: usize, to: &mut [[f64; P]; 6]| {
         if row < rows {
             let seen = row * cols + first..row * cols + cols.min(strip.end + RIGHT + 2);
@@ -150,15 +160,17 @@ fn run<S: Simd, const DAMPED: bool, const P: usize>(
         }
     };
     let [mut here, mut next, mut next2] = kept.places.each_mut();
-    take(0, here);
-    take(1, next);
+    // Two rows above hand on what the first one needs.
+    let begin = wanted.start.saturating_sub(REACH);
+    take(begin, here);
+    take(begin + 1, next);
     let size = Size::of::<S>(P, width);
-    for row in 0..rows {
+    for row in begin..wanted.end {
         take(row + 2, next2);
         let particles = row * cols + first..row * cols + first + width;
         if let Some((wind, t)) = ending.wind {
-            let gusts = kept.wind.each_mut().map(|a| &mut a[PAD..PAD + width]);
-            wind.blow(t, columns(x, &particles), gusts);
+            let mut gusts = kept.wind.each_mut().map(|a| &mut a[PAD..PAD + width]);
+            wind.blow(t, columns(x, &particles), &mut gusts);
         }
         let mut springs = Springs {
             laws: &kept.laws,
@@ -175,9 +187,11 @@ fn run<S: Simd, const DAMPED: bool, const P: usize>(
         let others = Others::<S>::new(simd, size, ending, &particles, kept.wind.as_flattened());
         let below = [next.as_flattened(), next2.as_flattened()];
         springs.find_below::<S, DAMPED>(simd, size, below, &others, put);
-        let particles = row * cols + strip.start..row * cols + strip.end;
-        for (axis, from) in kept.f.iter().enumerate() {
-            f[axis * n..][particles.clone()].copy_from_slice(&from[inside.clone()]);
+        if let Some(row) = row.checked_sub(wanted.start) {
+            let to = row * cols + strip.start..row * cols + strip.end;
+            for (f, from) in f.iter_mut().zip(&kept.f) {
+                f[to.clone()].copy_from_slice(&from[inside.clone()]);
+            }
         }
         swap(&mut here, &mut next);
         swap(&mut next, &mut next2);
@@ -254,8 +268,12 @@ fn advance<S: Simd, const DAMPED: bool>(simd: S, job: Advance) {
     let [here, next, next2] = moving.three_mut(row);
     if let Some((wind, t)) = ending.wind {
         let seen = PAD..PAD + cols;
-        let gusts = columns_mut(sweep.wind.row_mut(0)).map(|a| &mut a[seen.clone()]);
-        wind.blow(t, columns(here.split_at(3 * size.stride).0, &seen), gusts);
+        let mut gusts = columns_mut(sweep.wind.row_mut(0)).map(|a| &mut a[seen.clone()]);
+        wind.blow(
+            t,
+            columns(here.split_at(3 * size.stride).0, &seen),
+            &mut gusts,
+        );
     }
     let mut springs = Springs {
         laws: sweep.laws.column(0, 0),
@@ -751,7 +769,8 @@ mod tests {
                         sheet: &sheet,
                         x: &x,
                         v: &v,
-                        f: &mut f,
+                        rows: 0..rows,
+                        f: columns_mut(&mut f),
                         ending: &Ending::default(),
                     });
                     f
@@ -759,6 +778,15 @@ mod tests {
                 let expected = by(&|forces| forces.with_simd(pulp::Scalar::new()));
                 assert!(expected.iter().all(|f| f.is_finite()));
                 assert_eq!(by(&|forces| Arch::new().dispatch(forces)), expected);
+                for bands in [2, 3, 8] {
+                    let found = by(&|forces| {
+                        let Forces { rows, f, .. } = forces;
+                        fork(bands, rows, cols, f, &|rows, f| {
+                            Arch::new().dispatch(Forces { rows, f, ..forces });
+                        });
+                    });
+                    assert!(found == expected, "{bands} bands");
+                }
                 #[cfg(target_arch = "x86_64")]
                 if let Some(avx2) = pulp::x86::V3::try_new() {
                     assert_eq!(by(&|forces| Simd::vectorize(avx2, forces)), expected);

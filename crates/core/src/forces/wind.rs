@@ -64,15 +64,14 @@ impl Wind {
     }
 
     /// Sets f to the forces on particles at x.
-    pub(crate) fn blow(&self, t: f64, x: [&[f64]; 3], f: [&mut [f64]; 3]) {
-        let [fx, fy, fz] = f;
-        fx.fill(0.0);
-        fy.fill(0.0);
-        fz.fill(0.0);
-        self.add(t, x, [fx, fy, fz]);
+    pub(crate) fn blow(&self, t: f64, x: [&[f64]; 3], f: &mut [&mut [f64]; 3]) {
+        for f in &mut *f {
+            f.fill(0.0);
+        }
+        self.add(t, x, f);
     }
 
-    pub(crate) fn add(&self, t: f64, x: [&[f64]; 3], f: [&mut [f64]; 3]) {
+    pub(crate) fn add(&self, t: f64, x: [&[f64]; 3], f: &mut [&mut [f64]; 3]) {
         for i in 0..x[0].len() {
             let force = self.force(t, x.map(|x| x[i]));
             for axis in 0..3 {

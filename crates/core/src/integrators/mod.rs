@@ -71,7 +71,7 @@ impl std::ops::AddAssign for Work {
 }
 
 /// Advances a state.
-pub trait Integrator {
+pub trait Integrator: Send {
     /// Takes y from t to t + h: a pure function of the arguments. Allocates nothing.
     ///
     /// # Errors

@@ -6,12 +6,10 @@ use std::array;
 use std::ops::Range;
 
 use crate::rows::{REACH, Registers, Rows, Stage, Sweep, Window};
+use crate::threads::{Columns, split_off, threads};
 
 /// Particles that a stage goes through at a time.
 const BLOCK: usize = 256;
-
-/// A thread has at least so many: with fewer, waking it costs more than it saves.
-const GRAIN: usize = 4096;
 
 /// Scratch for steps of a system of so many rows.
 pub(super) struct Sweeper {
@@ -23,12 +21,7 @@ pub(super) struct Sweeper {
 impl Sweeper {
     pub fn new(system: &dyn Rows, stages: usize) -> Self {
         let particles = system.rows() * system.cols();
-        // So that threads are not even started for a small system.
-        let bands = match particles / GRAIN {
-            0 | 1 => 1,
-            most => most.min(rayon::current_num_threads()),
-        };
-        Self::with_bands(system, stages, bands)
+        Self::with_bands(system, stages, threads(particles))
     }
 
     pub fn with_bands(system: &dyn Rows, stages: usize, bands: usize) -> Self {
@@ -61,23 +54,17 @@ impl Sweeper {
     }
 }
 
-/// The columns of a state's rows.
-type Columns<'a> = [&'a mut [f64]; 6];
-
-fn fork(bands: &mut [Band], system: &dyn Rows, stages: &[Stage], y: Columns) {
+fn fork(bands: &mut [Band], system: &dyn Rows, stages: &[Stage], mut y: Columns<6>) {
     if let [band] = bands {
         band.step(system, stages, y);
         return;
     }
     let (above, below) = bands.split_at_mut(bands.len() / 2);
     let at = (below[0].rows.start - above[0].rows.start) * above[0].cols;
-    let mut rest = y;
-    let firsts = rest
-        .each_mut()
-        .map(|column| column.split_off_mut(..at).unwrap_or_default());
+    let firsts = split_off(&mut y, at);
     rayon::join(
         || fork(above, system, stages, firsts),
-        || fork(below, system, stages, rest),
+        || fork(below, system, stages, y),
     );
 }
 
@@ -134,7 +121,7 @@ impl Band {
     }
 
     /// Takes its rows of y through the stages.
-    fn step(&mut self, system: &dyn Rows, stages: &[Stage], mut y: Columns) {
+    fn step(&mut self, system: &dyn Rows, stages: &[Stage], mut y: Columns<6>) {
         system.begin(&mut self.sweep);
         let (mut loaded, mut front) = (self.seen.start, self.seen.start);
         loop {
@@ -166,7 +153,7 @@ impl Band {
     }
 
     /// Takes in a row.
-    fn load(&mut self, row: usize, y: &Columns) {
+    fn load(&mut self, row: usize, y: &Columns<6>) {
         for (c, y) in y.iter().enumerate() {
             let from = if row < self.rows.start {
                 self.above.column(row, c)
@@ -184,7 +171,7 @@ impl Band {
     }
 
     /// Gives out rows that are done.
-    fn store(&self, rows: Range<usize>, y: &mut Columns) {
+    fn store(&self, rows: Range<usize>, y: &mut Columns<6>) {
         for row in rows {
             let at = (row - self.rows.start) * self.cols;
             for (c, y) in y.iter_mut().enumerate() {
