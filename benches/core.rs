@@ -149,11 +149,14 @@ fn steps(c: &mut Criterion) {
     }
 }
 
-/// A step of every method on cloth of every size.
+/// A step of every method on both cloths, of every size.
 fn steps_by_size(c: &mut Criterion) {
-    for side in SIDES {
-        let mut group = c.benchmark_group(format!("step/cloth {side}x{side}"));
-        let scene = cloth("cloth", side);
+    for (name, side) in ["cloth", "mit"]
+        .into_iter()
+        .flat_map(|name| SIDES.map(|side| (name, side)))
+    {
+        let mut group = c.benchmark_group(format!("step/{name} {side}x{side}"));
+        let scene = cloth(name, side);
         group.throughput(Throughput::Elements((side * side) as u64));
         let mut f = vec![0.0; scene.state.len() / 2];
         let (x, v) = scene.state.split_at(f.len());

@@ -6,7 +6,8 @@ use nalgebra::Vector3;
 
 use crate::colliders::{Floor, Sphere};
 use crate::error::{Error, at_least, positive};
-use crate::forces::{drag, ending::Ending, gravity, sheet, springs, wind::Wind};
+use crate::forces::flow::{self, Flow};
+use crate::forces::{columns_mut, drag, ending::Ending, gravity, sheet, springs, wind::Wind};
 use crate::path::{Path, Place};
 use crate::rows::{Part, Registers, Rows, Stage, Sweep};
 use crate::sheet::Sheet;
@@ -43,6 +44,8 @@ impl Energy {
 #[derive(Clone, Debug)]
 pub struct Network {
     masses: Vec<f64>,
+    /// One over that of each particle, if they are all the same.
+    same: Option<f64>,
     /// 0 where pinned.
     inverse_masses: Vec<f64>,
     sheet: Option<Sheet>,
@@ -72,6 +75,10 @@ impl Network {
         }
         Ok(Self {
             inverse_masses: masses.iter().map(|m| 1.0 / m).collect(),
+            same: masses
+                .iter()
+                .all(|&m| m == masses[0])
+                .then(|| 1.0 / masses[0]),
             masses,
             sheet: None,
             list: vec![],
@@ -333,9 +340,49 @@ impl Network {
             .filter(|sheet| self.list.is_empty() && sheet.grid().particles() == self.particles())
     }
 
+    /// The drag and the gravity that a drift carries.
+    fn drifting(&self, part: Part) -> (f64, Vector3<f64>) {
+        match part {
+            Part::Kick => (
+                self.drag.unwrap_or_default(),
+                self.gravity.unwrap_or_default(),
+            ),
+            Part::All | Part::Push => (0.0, Vector3::zeros()),
+        }
+    }
+
+    /// Moves particles by what a drift carries. Where pins go is set right afterwards.
+    fn flow(
+        &self,
+        part: Part,
+        h: f64,
+        particles: Range<usize>,
+        x: [&mut [f64]; 3],
+        v: [&mut [f64]; 3],
+    ) {
+        let (c, g) = self.drifting(part);
+        match self.same {
+            Some(w) => Flow::new(c, g, w, h).apply(x, v),
+            None => flow::apply(c, g, &self.inverse_masses[particles], h, x, v),
+        }
+    }
+
+    /// Pins of a row are where they are, whatever moved them in between.
+    fn place_row(&self, t: f64, row: usize, registers: &mut Registers) {
+        let cols = Rows::cols(self);
+        for pin in self.pins_of(row * cols..(row + 1) * cols) {
+            let place = pin.path.at(t);
+            for axis in 0..3 {
+                let i = pin.particle - row * cols;
+                registers.stage.column_mut(row, axis)[i] = place.position[axis];
+                registers.stage.column_mut(row, 3 + axis)[i] = place.velocity[axis];
+            }
+        }
+    }
+
     /// What is added to the springs' forces at time t: of all forces, or of those that kick.
     fn others(&self, part: Part, t: f64) -> Ending<'_> {
-        let all = part == Part::All;
+        let all = part != Part::Kick;
         Ending {
             wind: self.wind.as_ref().map(|wind| (wind, t)),
             gravity: self.gravity.filter(|_| all).map(|g| (g, &*self.masses)),
@@ -459,16 +506,8 @@ impl Mechanics for Network {
 
     /// x' = v, v' = g - (c/m) v, exactly.
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
-        let n = self.particles();
-        let g = self.gravity.unwrap_or_default();
-        for axis in 0..3 {
-            let column = axis * n..(axis + 1) * n;
-            let (x, v) = (&mut x[column.clone()], &mut v[column]);
-            match self.drag {
-                None => gravity::drift(g[axis], h, x, v),
-                Some(c) => drag::drift(c, g[axis], h, &self.inverse_masses, x, v),
-            }
-        }
+        let all = 0..self.particles();
+        self.flow(Part::Kick, h, all, columns_mut(x), columns_mut(v));
         place_pins(self, t + h, x, v);
     }
 
@@ -499,8 +538,17 @@ impl Rows for Network {
         sweep.found.clear();
     }
 
+    fn drift(&self, part: Part, t: f64, h: f64, row: usize, registers: &mut Registers) {
+        let cols = Rows::cols(self);
+        let [x, y, z, u, v, w] = registers.stage.columns_mut(row);
+        let particles = row * cols..(row + 1) * cols;
+        self.flow(part, h, particles, [x, y, z], [u, v, w]);
+        self.place_row(t + h, row, registers);
+    }
+
     fn advance(
         &self,
+        number: usize,
         stage: &Stage,
         rows: Range<usize>,
         registers: &mut Registers,
@@ -511,25 +559,26 @@ impl Rows for Network {
             inverse_masses: Some(&self.inverse_masses),
             ..self.others(stage.part, stage.t)
         };
-        let cols = sheet.grid().cols();
+        let flow = self.same.filter(|_| stage.drift != 0.0).map(|w| {
+            let (c, g) = self.drifting(stage.part);
+            Flow::new(c, g, w, stage.drift)
+        });
         for row in rows {
             sheet::Advance {
                 sheet,
                 ending: &ending,
+                flow,
+                number,
                 stage,
                 row,
                 registers,
                 sweep,
             }
             .run();
-            // Pins are where they are, whatever moves them in between.
-            for pin in self.pins_of(row * cols..(row + 1) * cols) {
-                let place = pin.path.at(stage.until);
-                for axis in 0..3 {
-                    let i = pin.particle - row * cols;
-                    registers.stage.column_mut(row, axis)[i] = place.position[axis];
-                    registers.stage.column_mut(row, 3 + axis)[i] = place.velocity[axis];
-                }
+            if stage.drift == 0.0 || flow.is_some() {
+                self.place_row(stage.until, row, registers);
+            } else {
+                Rows::drift(self, stage.part, stage.t, stage.drift, row, registers);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Particles in rows of which only those next to one another act on each other: a whole step can then go over them once,
 //! all of its stages a few rows apart, and what it needs in between stays in the cache.
 
+use std::array;
 use std::ops::Range;
 
 use crate::forces::sheet;
@@ -15,25 +16,27 @@ pub(crate) const PAD: usize = 8;
 pub enum Part {
     /// y' = \[v | F / m\].
     All,
-    /// v' = F / m, x standing still, without the forces that the drift carries.
+    /// v' = F / m, x standing still, without the forces that a drift carries.
     Kick,
+    /// v' = F / m, x standing still, where drifts carry none.
+    Push,
 }
 
 /// A stage of a step, that of an explicit Runge-Kutta method over `h` whose stages read only the one before them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stage {
-    /// Which of the step's it is.
-    pub(crate) number: usize,
     pub(crate) part: Part,
     /// When it evaluates (s), and when the next one does: the end of the step after the last one.
     pub(crate) t: f64,
     pub(crate) until: f64,
-    /// Whether it is the method's first.
+    /// Whether it is the method's first: y is then where the stage is.
     pub(crate) first: bool,
     /// How far its k goes into the sum of all (s).
     pub(crate) b: f64,
     /// How far the next stage follows it (s); none after the last one.
     pub(crate) c: Option<f64>,
+    /// How long a drift follows (s).
+    pub(crate) drift: f64,
 }
 
 /// What a step keeps of some rows: y as it was, the sum of what the stages found, and y of the stage under way.
@@ -54,10 +57,14 @@ pub trait Rows: Sync {
     /// Prepares a sweep from some row on, with what is there now.
     fn begin(&self, sweep: &mut Sweep);
 
-    /// Takes rows through a stage, in their order, each after the one above it: the first two of a sweep come out wrong
+    /// Takes a row through a drift of h from time t.
+    fn drift(&self, part: Part, t: f64, h: f64, row: usize, registers: &mut Registers);
+
+    /// Takes rows through a stage, that of such a number in the sweep, in their order, each after the one above it: the first two of a sweep come out wrong
     /// unless they are the system's first. Reads up to two rows below them.
     fn advance(
         &self,
+        number: usize,
         stage: &Stage,
         rows: Range<usize>,
         registers: &mut Registers,
@@ -73,6 +80,13 @@ pub struct Sweep {
     pub(crate) found: Window,
     /// Of a row.
     pub(crate) wind: Window,
+}
+
+impl Registers {
+    /// Begins another method where the stage has arrived.
+    pub(crate) fn begin(&mut self, row: usize) {
+        self.y.row_mut(row).copy_from_slice(self.stage.row(row));
+    }
 }
 
 impl Sweep {
@@ -144,6 +158,13 @@ impl Window {
         self.data
             .get_disjoint_mut(places)
             .expect("rows of a window that is three deep are three")
+    }
+
+    /// The six columns of a row.
+    pub fn columns_mut(&mut self, row: usize) -> [&mut [f64]; 6] {
+        let (stride, cols) = (self.stride, self.cols);
+        let mut columns = self.row_mut(row).chunks_exact_mut(stride);
+        array::from_fn(|_| &mut columns.next().unwrap_or_default()[PAD..PAD + cols])
     }
 
     /// A column of a row.

@@ -57,10 +57,15 @@ pub trait Mechanics {
     /// Writes F(t, x, v) / m (m/s2) to `a`: nothing for pinned particles.
     fn accelerations(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
         self.forces(t, x, v, a);
+        self.divide_by_masses(a);
+    }
+
+    /// Makes accelerations of forces.
+    fn divide_by_masses(&self, f: &mut [f64]) {
         let inverse_masses = self.inverse_masses();
-        for column in a.chunks_exact_mut(inverse_masses.len()) {
-            for (a, w) in column.iter_mut().zip(inverse_masses) {
-                *a *= w;
+        for column in f.chunks_exact_mut(inverse_masses.len()) {
+            for (f, w) in column.iter_mut().zip(inverse_masses) {
+                *f *= w;
             }
         }
     }

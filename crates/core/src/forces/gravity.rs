@@ -18,11 +18,3 @@ pub(crate) fn energy(g: Vector3<f64>, masses: &[f64], x: &[f64]) -> f64 {
         .map(|(x, g)| -g * x.iter().zip(masses).map(|(x, m)| m * x).sum::<f64>())
         .sum()
 }
-
-/// One axis of the free fall: x += h v + h2 g / 2, v += h g.
-pub(crate) fn drift(g: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
-    for (x, v) in x.iter_mut().zip(v) {
-        *x += h * (*v + 0.5 * h * g);
-        *v += h * g;
-    }
-}

@@ -2,6 +2,7 @@
 
 pub(crate) mod drag;
 pub(crate) mod ending;
+pub(crate) mod flow;
 pub(crate) mod gravity;
 mod inverse_root;
 pub(crate) mod sheet;

@@ -16,6 +16,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::ending::Ending;
+use super::flow::Flow;
 use super::inverse_root::inverse_root;
 use super::{columns, columns_mut};
 use crate::rows::{PAD, Part, REACH, Registers, Stage, Sweep, stride};
@@ -221,6 +222,10 @@ impl WithSimd for Begin<'_> {
 pub(crate) struct Advance<'a> {
     pub sheet: &'a Sheet,
     pub ending: &'a Ending<'a>,
+    /// How particles drift afterwards.
+    pub flow: Option<Flow>,
+    /// Which stage it is, and what happens in it.
+    pub number: usize,
     pub stage: &'a Stage,
     pub row: usize,
     pub registers: &'a mut Registers,
@@ -252,6 +257,8 @@ fn advance<S: Simd, const DAMPED: bool>(simd: S, job: Advance) {
     let Advance {
         sheet,
         ending,
+        flow,
+        number,
         stage,
         row,
         registers,
@@ -279,7 +286,7 @@ fn advance<S: Simd, const DAMPED: bool>(simd: S, job: Advance) {
         laws: sweep.laws.column(0, 0),
         above: row,
         below: count - 1 - row,
-        found: sweep.found.row_mut(stage.number),
+        found: sweep.found.row_mut(number),
     };
     springs.find_along::<S, DAMPED>(simd, size, here);
     let combine = Combine::<S> {
@@ -290,6 +297,7 @@ fn advance<S: Simd, const DAMPED: bool>(simd: S, job: Advance) {
         moves: stage.part == Part::All,
         b: simd.splat_f64s(stage.b),
         c: stage.c.map(|c| simd.splat_f64s(c)),
+        flow,
     };
     let others = Others::<S>::new(simd, size, ending, &particles, sweep.wind.row(0));
     springs.find_below::<S, DAMPED>(simd, size, [next, next2], &others, combine);
@@ -517,6 +525,8 @@ struct Combine<'a, S: Simd> {
     b: S::f64s,
     /// None in the last stage, from which the sum goes on.
     c: Option<S::f64s>,
+    /// What follows then.
+    flow: Option<Flow>,
 }
 
 impl<S: Simd> Use<S> for Combine<'_, S> {
@@ -534,6 +544,12 @@ impl<S: Simd> Use<S> for Combine<'_, S> {
         }
         let (y, sum, stage) = (self.y.1, &mut self.sum.1, &mut self.stage.1);
         combine::<S>(simd, i, (self.first, self.b, self.c), y, sum, stage, a);
+        if let Some(flow) = self.flow {
+            let (x, v) = &mut self.stage;
+            for axis in 0..3 {
+                (x[axis][i], v[axis][i]) = flow.of(simd, axis, x[axis][i], v[axis][i]);
+            }
+        }
     }
 }
 
@@ -547,9 +563,8 @@ fn combine<S: Simd>(
     stage: &mut ColumnsMut<S>,
     k: Vectors<S>,
 ) {
-    let y = pick::<S>(y, i);
     let before = if first {
-        y
+        [stage[0][i], stage[1][i], stage[2][i]]
     } else {
         [sum[0][i], sum[1][i], sum[2][i]]
     };
@@ -558,7 +573,7 @@ fn combine<S: Simd>(
         None => put::<S>(stage, i, after),
         Some(c) => {
             put::<S>(sum, i, after);
-            put::<S>(stage, i, plus::<S>(simd, y, c, k));
+            put::<S>(stage, i, plus::<S>(simd, pick::<S>(y, i), c, k));
         }
     }
 }

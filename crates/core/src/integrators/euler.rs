@@ -1,7 +1,7 @@
 //! Explicit Euler: y1 = y + h f(t, y). Order 1.
 
 use super::Method;
-use super::runge_kutta::{RungeKutta, Table};
+use super::runge_kutta::{EULER, RungeKutta};
 
 pub(super) const METHOD: Method = Method {
     name: "euler",
@@ -15,7 +15,5 @@ pub(super) const METHOD: Method = Method {
     implicit: false,
     pair: None,
     needs_mechanics: false,
-    create: |system| Box::new(RungeKutta::new(TABLE, system)),
+    create: |system| Box::new(RungeKutta::new(EULER, system)),
 };
-
-const TABLE: Table = &[(0.0, 1.0)];

@@ -2,7 +2,7 @@
 //! f0 = f(t, y), f1 = f(t + h, y + h f0), y1 = y + h/2 (f0 + f1). Order 2.
 
 use super::Method;
-use super::runge_kutta::{RungeKutta, Table};
+use super::runge_kutta::{HEUN, RungeKutta};
 
 pub(super) const METHOD: Method = Method {
     name: "trapezoid",
@@ -16,7 +16,5 @@ pub(super) const METHOD: Method = Method {
     implicit: false,
     pair: None,
     needs_mechanics: false,
-    create: |system| Box::new(RungeKutta::new(TABLE, system)),
+    create: |system| Box::new(RungeKutta::new(HEUN, system)),
 };
-
-const TABLE: Table = &[(0.0, 0.5), (1.0, 0.5)];

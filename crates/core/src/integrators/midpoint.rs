@@ -1,7 +1,7 @@
 //! Explicit midpoint: y1 = y + h f(t + h/2, y + h/2 f(t, y)). Order 2.
 
 use super::Method;
-use super::runge_kutta::{RungeKutta, Table};
+use super::runge_kutta::{MIDPOINT, RungeKutta};
 
 pub(super) const METHOD: Method = Method {
     name: "midpoint",
@@ -15,7 +15,5 @@ pub(super) const METHOD: Method = Method {
     implicit: false,
     pair: None,
     needs_mechanics: false,
-    create: |system| Box::new(RungeKutta::new(TABLE, system)),
+    create: |system| Box::new(RungeKutta::new(MIDPOINT, system)),
 };
-
-const TABLE: Table = &[(0.0, 0.0), (0.5, 1.0)];

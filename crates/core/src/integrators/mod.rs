@@ -12,6 +12,7 @@ mod pefrl;
 mod rk4;
 mod rkf45;
 mod runge_kutta;
+mod splitting;
 mod sweep;
 mod symplectic_euler;
 mod verlet;
@@ -188,16 +189,6 @@ fn add_scaled(y: &mut [f64], h: f64, k: &[f64]) {
 fn scaled_sum(out: &mut [f64], y: &[f64], h: f64, k: &[f64]) {
     for ((out, y), k) in out.iter_mut().zip(y).zip(k) {
         *out = y + h * k;
-    }
-}
-
-/// v += h M^-1 F: what a force does in time h.
-fn kick(v: &mut [f64], h: f64, inverse_masses: &[f64], forces: &[f64]) {
-    let n = inverse_masses.len();
-    for (v, f) in v.chunks_exact_mut(n).zip(forces.chunks_exact(n)) {
-        for ((v, f), w) in v.iter_mut().zip(f).zip(inverse_masses) {
-            *v += h * (w * f);
-        }
     }
 }
 

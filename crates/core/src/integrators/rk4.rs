@@ -3,7 +3,7 @@
 //! y1 = y + h/6 (k1 + 2 k2 + 2 k3 + k4). Order 4.
 
 use super::Method;
-use super::runge_kutta::{RungeKutta, Table};
+use super::runge_kutta::{RK4, RungeKutta};
 
 pub(super) const METHOD: Method = Method {
     name: "rk4",
@@ -17,12 +17,5 @@ pub(super) const METHOD: Method = Method {
     implicit: false,
     pair: None,
     needs_mechanics: false,
-    create: |system| Box::new(RungeKutta::new(TABLE, system)),
+    create: |system| Box::new(RungeKutta::new(RK4, system)),
 };
-
-const TABLE: Table = &[
-    (0.0, 1.0 / 6.0),
-    (0.5, 1.0 / 3.0),
-    (0.5, 1.0 / 3.0),
-    (1.0, 1.0 / 6.0),
-];

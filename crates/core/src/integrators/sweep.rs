@@ -5,7 +5,7 @@
 use std::array;
 use std::ops::Range;
 
-use crate::rows::{REACH, Registers, Rows, Stage, Sweep, Window};
+use crate::rows::{Part, REACH, Registers, Rows, Stage, Sweep, Window};
 use crate::threads::{Columns, split_off, threads};
 
 /// Particles that a stage goes through at a time.
@@ -15,6 +15,7 @@ const BLOCK: usize = 256;
 pub(super) struct Sweeper {
     rows: usize,
     cols: usize,
+    stages: usize,
     bands: Vec<Band>,
 }
 
@@ -30,19 +31,20 @@ impl Sweeper {
         Self {
             rows,
             cols,
+            stages,
             bands: (0..bands)
                 .map(|k| Band::new(k * rows / bands..(k + 1) * rows / bands, rows, cols, stages))
                 .collect(),
         }
     }
 
-    /// Whether it is for such a system.
-    pub fn fits(&self, system: &dyn Rows) -> bool {
-        (self.rows, self.cols) == (system.rows(), system.cols())
+    /// Whether it is for such a system, and so many stages.
+    pub fn fits(&self, system: &dyn Rows, stages: usize) -> bool {
+        (self.rows, self.cols, self.stages) == (system.rows(), system.cols(), stages)
     }
 
-    /// Takes y through the stages.
-    pub fn step(&mut self, system: &dyn Rows, stages: &[Stage], y: &mut [f64]) {
+    /// Takes y through the stages, after a drift from some time on.
+    pub fn step(&mut self, system: &dyn Rows, lead: Option<Lead>, stages: &[Stage], y: &mut [f64]) {
         if self.bands.len() > 1 {
             for band in &mut self.bands {
                 band.look_around(y);
@@ -50,22 +52,33 @@ impl Sweeper {
         }
         let mut columns = y.chunks_exact_mut(self.rows * self.cols);
         let columns = array::from_fn(|_| columns.next().unwrap_or_default());
-        fork(&mut self.bands, system, stages, columns);
+        let job = Job {
+            system,
+            lead,
+            stages,
+        };
+        fork(&mut self.bands, &job, columns);
     }
 }
 
-fn fork(bands: &mut [Band], system: &dyn Rows, stages: &[Stage], mut y: Columns<6>) {
+/// What a step begins with: a drift of such a length from some time (s).
+pub(super) type Lead = (Part, (f64, f64));
+
+struct Job<'a> {
+    system: &'a dyn Rows,
+    lead: Option<Lead>,
+    stages: &'a [Stage],
+}
+
+fn fork(bands: &mut [Band], job: &Job, mut y: Columns<6>) {
     if let [band] = bands {
-        band.step(system, stages, y);
+        band.step(job, y);
         return;
     }
     let (above, below) = bands.split_at_mut(bands.len() / 2);
     let at = (below[0].rows.start - above[0].rows.start) * above[0].cols;
     let firsts = split_off(&mut y, at);
-    rayon::join(
-        || fork(above, system, stages, firsts),
-        || fork(below, system, stages, y),
-    );
+    rayon::join(|| fork(above, job, firsts), || fork(below, job, y));
 }
 
 /// Some of the rows, and what a thread needs to step them.
@@ -121,13 +134,24 @@ impl Band {
     }
 
     /// Takes its rows of y through the stages.
-    fn step(&mut self, system: &dyn Rows, stages: &[Stage], mut y: Columns<6>) {
+    fn step(&mut self, job: &Job, mut y: Columns<6>) {
+        let Job {
+            system,
+            lead,
+            stages,
+        } = job;
         system.begin(&mut self.sweep);
         let (mut loaded, mut front) = (self.seen.start, self.seen.start);
         loop {
             front += self.block;
             while loaded < (front + REACH).min(self.seen.end) {
                 self.load(loaded, &y);
+                if let Some((part, (t, h))) = *lead {
+                    system.drift(part, t, h, loaded, &mut self.registers);
+                }
+                if stages[0].c.is_some() {
+                    self.registers.begin(loaded);
+                }
                 loaded += 1;
             }
             for (number, stage) in stages.iter().enumerate() {
@@ -140,12 +164,20 @@ impl Band {
                     .max(first);
                 let to = front.saturating_sub(REACH * number).min(end);
                 if from < to {
-                    system.advance(stage, from..to, &mut self.registers, &mut self.sweep);
+                    system.advance(
+                        number,
+                        stage,
+                        from..to,
+                        &mut self.registers,
+                        &mut self.sweep,
+                    );
                     if number + 1 == stages.len() {
                         self.store(from.max(self.rows.start)..to, &mut y);
                         if to == end {
                             return;
                         }
+                    } else if stage.c.is_none() && stages[number + 1].c.is_some() {
+                        (from..to).for_each(|row| self.registers.begin(row));
                     }
                 }
             }
@@ -162,7 +194,6 @@ impl Band {
             } else {
                 self.below.column(row, c)
             };
-            self.registers.y.column_mut(row, c).copy_from_slice(from);
             self.registers
                 .stage
                 .column_mut(row, c)
@@ -176,6 +207,74 @@ impl Band {
             let at = (row - self.rows.start) * self.cols;
             for (c, y) in y.iter_mut().enumerate() {
                 y[at..at + self.cols].copy_from_slice(self.registers.stage.column(row, c));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrators::runge_kutta::{EULER, RK4, RungeKutta, Table};
+    use crate::integrators::splitting::Plan;
+    use crate::integrators::{Integrator, pefrl, symplectic_euler, verlet};
+    use crate::{Grid, Scene, scenes};
+
+    enum Of {
+        Table(Table),
+        Plan(&'static Plan),
+    }
+
+    /// The state after some steps, in such bands, or with whole arrays.
+    fn after(scene: &Scene, method: &Of, bands: Option<usize>) -> Vec<f64> {
+        let system = scene.model.system();
+        let sweeper =
+            |stages| bands.map(|bands| Sweeper::with_bands(system.rows().unwrap(), stages, bands));
+        let mut method: Box<dyn Integrator> = match method {
+            Of::Table(table) => {
+                Box::new(RungeKutta::with(table, system.dim(), sweeper(table.len())))
+            }
+            Of::Plan(plan) => plan.with(system, sweeper(plan.stages_of_sweep(system))),
+        };
+        let mut y = scene.state.clone();
+        for k in 0..5 {
+            method
+                .step(system, 1e-3 * f64::from(k), 1e-3, &mut y)
+                .unwrap();
+        }
+        assert!(y.iter().all(|y| y.is_finite()) && y != scene.state);
+        y
+    }
+
+    #[test]
+    fn sweeps_in_any_bands_give_the_bits_of_whole_arrays() {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(3)
+            .build()
+            .unwrap();
+        for (rows, cols) in [(2, 2), (3, 7), (20, 20), (9, 300), (70, 5)] {
+            for name in ["cloth", "mit"] {
+                let grid = Grid::new(rows, cols).unwrap();
+                let scene = scenes::find(name).unwrap().build(Some(grid)).unwrap();
+                for (k, method) in [
+                    Of::Table(EULER),
+                    Of::Table(RK4),
+                    Of::Plan(&symplectic_euler::PLAN),
+                    Of::Plan(&verlet::PLAN),
+                    Of::Plan(&pefrl::PLAN),
+                ]
+                .iter()
+                .enumerate()
+                {
+                    let expected = after(&scene, method, None);
+                    for bands in [1, 2, 3, 4, 8] {
+                        let found = pool.install(|| after(&scene, method, Some(bands)));
+                        assert!(
+                            found == expected,
+                            "{name} {rows}x{cols}, {k}, {bands} bands"
+                        );
+                    }
+                }
             }
         }
     }

@@ -8,9 +8,10 @@
 //! Forces that depend on the velocity (springs damped along their length) are kicked by the explicit midpoint rule in
 //! v, two evaluations, because one at the old velocity alone would drop the order to 1.
 
-use super::{Integrator, Method, Work, check_dim, kick};
-use crate::error::Error;
-use crate::system::ParticleSystem;
+use super::Method;
+use super::runge_kutta::MIDPOINT;
+use super::splitting::Plan;
+use crate::rows::Part;
 
 pub(super) const METHOD: Method = Method {
     name: "verlet",
@@ -24,47 +25,13 @@ pub(super) const METHOD: Method = Method {
     implicit: false,
     pair: None,
     needs_mechanics: true,
-    create: |system| {
-        let dim = system.dim();
-        Box::new(Verlet {
-            f: vec![0.0; dim / 2],
-            middle: vec![0.0; dim / 2],
-        })
-    },
+    create: |system| PLAN.integrator(system),
 };
 
-struct Verlet {
-    f: Vec<f64>,
-    middle: Vec<f64>,
-}
-
-impl Integrator for Verlet {
-    fn step(
-        &mut self,
-        system: &dyn ParticleSystem,
-        t: f64,
-        h: f64,
-        y: &mut [f64],
-    ) -> Result<Work, Error> {
-        check_dim(2 * self.f.len(), y)?;
-        let mechanics = system.mechanics().ok_or(Error::NeedsMechanics {
-            method: METHOD.name,
-        })?;
-        let inverse_masses = mechanics.inverse_masses();
-        let Self { f, middle } = self;
-        let (x, v) = y.split_at_mut(f.len());
-        let half = 0.5 * h;
-        let mut evaluations = 1;
-        mechanics.drift(t, half, x, v);
-        mechanics.kick_forces(t + half, x, v, f);
-        if mechanics.kick_reads_velocity() {
-            middle.copy_from_slice(v);
-            kick(middle, half, inverse_masses, f);
-            mechanics.kick_forces(t + half, x, middle, f);
-            evaluations = 2;
-        }
-        kick(v, h, inverse_masses, f);
-        mechanics.drift(t + half, half, x, v);
-        Ok(Work::of(evaluations))
-    }
-}
+pub(super) static PLAN: Plan = Plan {
+    name: METHOD.name,
+    steps: &[(0.5, 1.0)],
+    last: 0.5,
+    part: Part::Kick,
+    damped: MIDPOINT,
+};

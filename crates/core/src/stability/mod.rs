@@ -9,8 +9,11 @@ mod spectrum;
 
 use std::array;
 
+use nalgebra::Vector3;
+
 use crate::error::Error;
-use crate::forces::{drag, gravity};
+use crate::forces::flow::Flow;
+use crate::forces::{columns_mut, drag};
 use crate::integrators::{Integrator, Method};
 use crate::path::Place;
 use crate::system::{Coupling, Mechanics};
@@ -119,7 +122,7 @@ impl Mechanics for Tied {
     }
 
     fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
-        visit(2, Place::still(nalgebra::Vector3::zeros()));
+        visit(2, Place::still(Vector3::zeros()));
     }
 
     fn kick_forces(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
@@ -133,11 +136,8 @@ impl Mechanics for Tied {
     }
 
     fn drift(&self, _t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
-        if self.0.drag == 0.0 {
-            gravity::drift(0.0, h, &mut x[..2], &mut v[..2]);
-        } else {
-            drag::drift(self.0.drag, 0.0, h, &[1.0; 2], &mut x[..2], &mut v[..2]);
-        }
+        let (x, v) = (columns_mut(x), columns_mut(v));
+        Flow::new(self.0.drag, Vector3::zeros(), 1.0, h).apply(x, v);
     }
 }
 
