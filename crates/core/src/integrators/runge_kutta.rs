@@ -50,8 +50,7 @@ pub(super) struct RungeKutta {
 
 impl RungeKutta {
     pub fn new(table: Table, system: &dyn ParticleSystem) -> Self {
-        let sweeper = system.rows().map(|rows| Sweeper::new(rows, table.len()));
-        Self::with(table, system.dim(), sweeper)
+        Self::with(table, system.dim(), Sweeper::new(system, table.len()))
     }
 
     pub(super) fn with(table: Table, dim: usize, sweeper: Option<Sweeper>) -> Self {

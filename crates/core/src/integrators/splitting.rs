@@ -40,9 +40,7 @@ pub(super) struct Splitting {
 
 impl Plan {
     pub fn integrator(&'static self, system: &dyn ParticleSystem) -> Box<dyn Integrator> {
-        let sweeper = system
-            .rows()
-            .map(|rows| Sweeper::new(rows, self.stages_of_sweep(system)));
+        let sweeper = Sweeper::new(system, self.stages_of_sweep(system));
         self.with(system, sweeper)
     }
 

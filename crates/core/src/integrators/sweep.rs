@@ -6,10 +6,16 @@ use std::array;
 use std::ops::Range;
 
 use crate::rows::{Part, REACH, Registers, Rows, Stage, Sweep, Window};
+use crate::system::ParticleSystem;
 use crate::threads::{Columns, split_off, threads};
 
 /// Particles that a stage goes through at a time.
 const BLOCK: usize = 256;
+
+/// With fewer particles, what passes between one or two stages stays in the cache by itself (docs/performance.md).
+const MANY: usize = 4096;
+/// With wider rows, what is kept of a few takes more room than the whole state.
+const WIDE: usize = 4096;
 
 /// Scratch for steps of a system of so many rows.
 pub(super) struct Sweeper {
@@ -20,9 +26,12 @@ pub(super) struct Sweeper {
 }
 
 impl Sweeper {
-    pub fn new(system: &dyn Rows, stages: usize) -> Self {
-        let particles = system.rows() * system.cols();
-        Self::with_bands(system, stages, threads(particles))
+    /// One for a system of rows, where it pays.
+    pub fn new(system: &dyn ParticleSystem, stages: usize) -> Option<Self> {
+        let rows = system.rows()?;
+        let particles = rows.rows() * rows.cols();
+        let pays = (stages > 2 || particles >= MANY) && rows.cols() <= WIDE;
+        pays.then(|| Self::with_bands(rows, stages, threads(particles)))
     }
 
     pub fn with_bands(system: &dyn Rows, stages: usize, bands: usize) -> Self {
