@@ -6,6 +6,7 @@ use super::adaptive::Scale;
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
 use crate::system::ParticleSystem;
+use crate::threads::{fork, threads};
 
 /// The numbers of a pair. After the stages comes k = f(t + h, y1), the first of the next step, and after that the
 /// stages that only the polynomial wants.
@@ -218,18 +219,32 @@ impl Integrator for EmbeddedPair {
 
 /// out = y + h sum weights k
 fn combine(out: &mut [f64], y: &[f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
-    out.copy_from_slice(y);
-    add_combination(out, h, weights, k);
+    blocks(out, |start, out| {
+        out.copy_from_slice(&y[start..start + out.len()]);
+        add_to_block(start, out, h, weights, k);
+    });
 }
 
 /// out += h sum weights k
 fn add_combination(out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
-    for (block, out) in out.chunks_mut(BLOCK).enumerate() {
-        let start = block * BLOCK;
-        for (weight, k) in weights.iter().zip(k) {
-            if *weight != 0.0 {
-                super::add_scaled(out, h * weight, &k[start..start + out.len()]);
-            }
+    blocks(out, |start, out| add_to_block(start, out, h, weights, k));
+}
+
+fn add_to_block(start: usize, out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
+    for (weight, k) in weights.iter().zip(k) {
+        if *weight != 0.0 {
+            super::add_scaled(out, h * weight, &k[start..start + out.len()]);
         }
     }
+}
+
+/// Runs over blocks of numbers, each with where it starts: on several threads if there are many.
+fn blocks(out: &mut [f64], run: impl Fn(usize, &mut [f64]) + Sync) {
+    let bands = threads(out.len() / 6);
+    let rows = out.len().div_ceil(BLOCK);
+    fork(bands, 0..rows, BLOCK, [out], &|rows, [out]| {
+        for (block, out) in out.chunks_mut(BLOCK).enumerate() {
+            run((rows.start + block) * BLOCK, out);
+        }
+    });
 }
