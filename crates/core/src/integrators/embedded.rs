@@ -3,6 +3,8 @@
 //! Ordinary Differential Equations I*, 1993, II.4 to II.6).
 
 use super::adaptive::Scale;
+use pulp::{Arch, Simd, WithSimd};
+
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -231,9 +233,38 @@ fn add_combination(out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
 }
 
 fn add_to_block(start: usize, out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
-    for (weight, k) in weights.iter().zip(k) {
-        if *weight != 0.0 {
-            super::add_scaled(out, h * weight, &k[start..start + out.len()]);
+    let block = start..start + out.len();
+    let mut terms = weights
+        .iter()
+        .zip(k)
+        .filter(|(weight, _)| **weight != 0.0)
+        .map(|(weight, k)| (h * weight, &k[block.clone()]));
+    while let Some(first) = terms.next() {
+        let none = (0.0, first.1);
+        let mut or_none = || terms.next().unwrap_or(none);
+        let terms = [first, or_none(), or_none(), or_none()];
+        Arch::new().dispatch(Add { out, terms });
+    }
+}
+
+/// Adds four terms.
+struct Add<'a> {
+    out: &'a mut [f64],
+    terms: [(f64, &'a [f64]); 4],
+}
+
+impl WithSimd for Add<'_> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let [(a, p), (b, q), (c, r), (d, s)] = self.terms;
+        for ((((out, p), q), r), s) in self.out.iter_mut().zip(p).zip(q).zip(r).zip(s) {
+            *out += (a * p + b * q) + (c * r + d * s);
         }
     }
 }
