@@ -49,4 +49,4 @@ pub use scenes::{Model, Scene, SceneEntry, Swing, View};
 pub use sheet::Sheet;
 pub use simulation::Simulation;
 pub use spring::{Spring, SpringKind, SpringLaw};
-pub use system::{Coupling, Mechanics, ParticleSystem};
+pub use system::{Coupling, Matrix, Mechanics, ParticleSystem};

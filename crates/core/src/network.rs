@@ -7,12 +7,13 @@ use nalgebra::Vector3;
 use crate::colliders::{Floor, Sphere};
 use crate::error::{Error, at_least, positive};
 use crate::forces::flow::{self, Flow};
+use crate::forces::sheet::Of;
 use crate::forces::{columns_mut, drag, ending::Ending, gravity, sheet, springs, wind::Wind};
 use crate::path::{Path, Place};
 use crate::rows::{Part, Registers, Rows, Stage, Sweep};
 use crate::sheet::Sheet;
 use crate::spring::{Spring, SpringKind, SpringLaw};
-use crate::system::{Coupling, Mechanics, place_pins};
+use crate::system::{Coupling, Matrix, Mechanics, place_pins};
 
 /// A particle led along a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -316,7 +317,7 @@ impl Network {
     /// What the ending makes of the springs' forces.
     fn evaluate(&self, x: &[f64], v: &[f64], f: &mut [f64], ending: &Ending) {
         if let Some(sheet) = self.only_sheet() {
-            sheet::set(sheet, x, v, f, ending);
+            sheet::set(Of::Forces, sheet, x, v, f, ending);
             return;
         }
         let n = self.particles();
@@ -325,7 +326,7 @@ impl Network {
                 for column in f.chunks_exact_mut(n) {
                     column[sheet.grid().particles()..].fill(0.0);
                 }
-                sheet::set(sheet, x, v, f, &Ending::default());
+                sheet::set(Of::Forces, sheet, x, v, f, &Ending::default());
             }
             None => f.fill(0.0),
         }
@@ -387,6 +388,7 @@ impl Network {
             wind: self.wind.as_ref().map(|wind| (wind, t)),
             gravity: self.gravity.filter(|_| all).map(|g| (g, &*self.masses)),
             drag: self.drag.filter(|_| all),
+            inertia: None,
             inverse_masses: None,
         }
     }
@@ -473,6 +475,25 @@ impl Mechanics for Network {
     fn couplings(&self, x: &[f64], visit: &mut dyn FnMut(Coupling)) {
         self.springs()
             .for_each(|spring| visit(springs::coupling(&spring, x)));
+    }
+
+    fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> bool {
+        let Some(sheet) = self.only_sheet() else {
+            return false;
+        };
+        let (of, a) = (
+            Of::Tangent {
+                clamped: matrix.clamped,
+            },
+            matrix.a,
+        );
+        let ending = Ending {
+            inertia: Some(matrix.masses),
+            inverse_masses: Some(matrix.free),
+            ..Ending::default()
+        };
+        sheet::set(of, &sheet.for_step(a), matrix.x, p, out, &ending);
+        true
     }
 
     fn speed(&self) -> f64 {

@@ -65,6 +65,16 @@ impl Sheet {
         self.laws.iter().any(|law| law.damping > 0.0)
     }
 
+    /// With the stiffness times a2 and the damping times a.
+    pub(crate) fn for_step(&self, a: f64) -> Self {
+        let mut sheet = *self;
+        for law in &mut sheet.laws {
+            law.stiffness *= a * a;
+            law.damping *= a;
+        }
+        sheet
+    }
+
     pub(crate) fn laws_mut(&mut self) -> &mut [SpringLaw; 6] {
         &mut self.laws
     }

@@ -43,6 +43,21 @@ pub struct Coupling {
     pub damping: f64,
 }
 
+/// A = M + a (C + D) + a2 K at x, as the [couplings](Mechanics::couplings) make it.
+#[derive(Clone, Copy, Debug)]
+pub struct Matrix<'a> {
+    /// Where it is (m).
+    pub x: &'a [f64],
+    /// In s.
+    pub a: f64,
+    /// Whether stiffness across compressed springs counts as none.
+    pub clamped: bool,
+    /// The diagonal: masses, and a times the drag (kg).
+    pub masses: &'a [f64],
+    /// 1, or 0 where a particle is pinned: nothing is wanted there.
+    pub free: &'a [f64],
+}
+
 /// M x'' = F(t, x, v). Its state is y = [x | v], and it is a [`ParticleSystem`] through that.
 ///
 /// Each of x, v and F holds n x 3 numbers in column-major order: all x, then all y, then all z.
@@ -89,6 +104,11 @@ pub trait Mechanics {
     /// Visits the pairs of particles that hold one another, always in the same order: dF/dx and dF/dv by their
     /// symmetric parts, for methods that solve with them. Without any, nothing.
     fn couplings(&self, _x: &[f64], _visit: &mut dyn FnMut(Coupling)) {}
+
+    /// Writes A p to `out`, if that is faster than coupling by coupling; if not, does nothing and says so.
+    fn multiply(&self, _matrix: &Matrix, _p: &[f64], _out: &mut [f64]) -> bool {
+        false
+    }
 
     /// How many times as fast the forces are as they would be coupling by coupling: what linear algebra is priced by.
     fn speed(&self) -> f64 {

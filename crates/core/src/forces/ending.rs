@@ -11,6 +11,8 @@ pub(crate) struct Ending<'a> {
     /// With the masses.
     pub gravity: Option<(Vector3<f64>, &'a [f64])>,
     pub drag: Option<f64>,
+    /// Masses: of a tangent, M times the vector less its product.
+    pub inertia: Option<&'a [f64]>,
     pub inverse_masses: Option<&'a [f64]>,
 }
 

@@ -41,13 +41,31 @@ pub(crate) const LAWS: usize = 3 * (WAYS.len() + 1) * KINDS * PAD;
 /// above), down and left (the same), two down (the same).
 pub(crate) const FOUND: usize = 3 * 9;
 
+/// What is found of springs: forces, and whether they are damped; or what their tangents make of a vector, and whether
+/// those are clamped.
+const PLAIN: u8 = 0;
+const DAMPED: u8 = 1;
+const TANGENT: u8 = 2;
+const CLAMPED: u8 = 3;
+
+/// Of which springs are asked.
+#[derive(Clone, Copy)]
+pub(crate) enum Of {
+    /// Their forces on particles at x that move at v.
+    Forces,
+    /// What moving particles at x by v adds to the forces, and moving them at v, by the laws' dampings. With `clamped`,
+    /// stiffness across compressed springs counts as none.
+    Tangent { clamped: bool },
+}
+
 /// Sets f to what the ending makes of the forces of the sheet's springs on its particles, which are the first ones.
-pub(crate) fn set(sheet: &Sheet, x: &[f64], v: &[f64], f: &mut [f64], ending: &Ending) {
+pub(crate) fn set(of: Of, sheet: &Sheet, x: &[f64], v: &[f64], f: &mut [f64], ending: &Ending) {
     let grid = sheet.grid();
     let held = columns_mut(f).map(|f| &mut f[..grid.particles()]);
     let bands = threads(grid.particles());
     fork(bands, 0..grid.rows(), grid.cols(), held, &|rows, f| {
         Arch::new().dispatch(Forces {
+            of,
             sheet,
             x,
             v,
@@ -59,6 +77,7 @@ pub(crate) fn set(sheet: &Sheet, x: &[f64], v: &[f64], f: &mut [f64], ending: &E
 }
 
 struct Forces<'a> {
+    of: Of,
     sheet: &'a Sheet,
     x: &'a [f64],
     v: &'a [f64],
@@ -73,21 +92,22 @@ impl WithSimd for Forces<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        if self.sheet.is_damped() {
-            strips::<S, true>(simd, self);
-        } else {
-            strips::<S, false>(simd, self);
+        match self.of {
+            Of::Tangent { clamped: true } => strips::<S, CLAMPED>(simd, self),
+            Of::Tangent { clamped: false } => strips::<S, TANGENT>(simd, self),
+            Of::Forces if self.sheet.is_damped() => strips::<S, DAMPED>(simd, self),
+            Of::Forces => strips::<S, PLAIN>(simd, self),
         }
     }
 }
 
 #[inline(always)]
-fn strips<S: Simd, const DAMPED: bool>(simd: S, forces: Forces) {
+fn strips<S: Simd, const KIND: u8>(simd: S, forces: Forces) {
     const STRIDES: [usize; 3] = [stride(WIDTHS[0]), stride(WIDTHS[1]), stride(WIDTHS[2])];
     match forces.sheet.grid().cols() {
-        cols if cols <= WIDTHS[0] => strips_of::<S, DAMPED, { STRIDES[0] }>(simd, forces),
-        cols if cols <= WIDTHS[1] => strips_of::<S, DAMPED, { STRIDES[1] }>(simd, forces),
-        _ => strips_of::<S, DAMPED, { STRIDES[2] }>(simd, forces),
+        cols if cols <= WIDTHS[0] => strips_of::<S, KIND, { STRIDES[0] }>(simd, forces),
+        cols if cols <= WIDTHS[1] => strips_of::<S, KIND, { STRIDES[1] }>(simd, forces),
+        _ => strips_of::<S, KIND, { STRIDES[2] }>(simd, forces),
     }
 }
 
@@ -104,7 +124,7 @@ struct Kept<const P: usize> {
 
 /// Cuts the columns into strips of about the same width.
 #[inline(always)]
-fn strips_of<S: Simd, const DAMPED: bool, const P: usize>(simd: S, mut forces: Forces) {
+fn strips_of<S: Simd, const KIND: u8, const P: usize>(simd: S, mut forces: Forces) {
     let cols = forces.sheet.grid().cols();
     let most = P - 2 * PAD;
     let count = if cols <= most {
@@ -121,12 +141,12 @@ fn strips_of<S: Simd, const DAMPED: bool, const P: usize>(simd: S, mut forces: F
     };
     for k in 0..count {
         let strip = k * cols / count..(k + 1) * cols / count;
-        run::<S, DAMPED, P>(simd, &mut forces, &strip, &mut kept);
+        run::<S, KIND, P>(simd, &mut forces, &strip, &mut kept);
     }
 }
 
 #[inline(always)]
-fn run<S: Simd, const DAMPED: bool, const P: usize>(
+fn run<S: Simd, const KIND: u8, const P: usize>(
     simd: S,
     forces: &mut Forces,
     strip: &Range<usize>,
@@ -139,6 +159,7 @@ fn run<S: Simd, const DAMPED: bool, const P: usize>(
         rows: wanted,
         f,
         ending,
+        ..
     } = forces;
     let (rows, cols) = (sheet.grid().rows(), sheet.grid().cols());
     // The columns whose springs are found, and those whose particles they hold.
@@ -154,7 +175,7 @@ fn run<S: Simd, const DAMPED: bool, const P: usize>(
             for axis in 0..3 {
                 let from = axis * n + seen.start..axis * n + seen.end;
                 to[axis][PAD..PAD + seen.len()].copy_from_slice(&x[from.clone()]);
-                if DAMPED || ending.drag.is_some() {
+                if KIND != PLAIN || ending.drag.is_some() {
                     to[3 + axis][PAD..PAD + seen.len()].copy_from_slice(&v[from]);
                 }
             }
@@ -180,14 +201,14 @@ fn run<S: Simd, const DAMPED: bool, const P: usize>(
             found: kept.found.as_flattened_mut(),
         };
         let (places, f_row) = (here.as_flattened(), kept.f.as_flattened_mut());
-        springs.find_along::<S, DAMPED>(simd, size, places);
+        springs.find_along::<S, KIND>(simd, size, places);
         let put = Put::<S> {
             here: size.places::<S>(places, 0),
             f: size.at_mut::<S>(f_row),
         };
         let others = Others::<S>::new(simd, size, ending, &particles, kept.wind.as_flattened());
         let below = [next.as_flattened(), next2.as_flattened()];
-        springs.find_below::<S, DAMPED>(simd, size, below, &others, put);
+        springs.find_below::<S, KIND>(simd, size, below, &others, put);
         if let Some(row) = row.checked_sub(wanted.start) {
             let to = row * cols + strip.start..row * cols + strip.end;
             for (f, from) in f.iter_mut().zip(&kept.f) {
@@ -245,15 +266,15 @@ impl WithSimd for Advance<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         if self.sheet.is_damped() {
-            advance::<S, true>(simd, self);
+            advance::<S, DAMPED>(simd, self);
         } else {
-            advance::<S, false>(simd, self);
+            advance::<S, PLAIN>(simd, self);
         }
     }
 }
 
 #[inline(always)]
-fn advance<S: Simd, const DAMPED: bool>(simd: S, job: Advance) {
+fn advance<S: Simd, const KIND: u8>(simd: S, job: Advance) {
     let Advance {
         sheet,
         ending,
@@ -288,7 +309,7 @@ fn advance<S: Simd, const DAMPED: bool>(simd: S, job: Advance) {
         below: count - 1 - row,
         found: sweep.found.row_mut(number),
     };
-    springs.find_along::<S, DAMPED>(simd, size, here);
+    springs.find_along::<S, KIND>(simd, size, here);
     let combine = Combine::<S> {
         y: size.places::<S>(y.row(row), 0),
         sum: size.places_mut::<S>(sum.row_mut(row)),
@@ -300,7 +321,7 @@ fn advance<S: Simd, const DAMPED: bool>(simd: S, job: Advance) {
         flow,
     };
     let others = Others::<S>::new(simd, size, ending, &particles, sweep.wind.row(0));
-    springs.find_below::<S, DAMPED>(simd, size, [next, next2], &others, combine);
+    springs.find_below::<S, KIND>(simd, size, [next, next2], &others, combine);
 }
 
 /// Fills in the laws of so many columns from the `first` on.
@@ -431,6 +452,7 @@ struct Others<'a, S: Simd> {
     wind: Option<Columns<'a, S>>,
     gravity: Option<(Vectors<S>, Numbers<'a, S>)>,
     drag: Option<S::f64s>,
+    inertia: Option<Numbers<'a, S>>,
     inverse_masses: Option<Numbers<'a, S>>,
 }
 
@@ -454,6 +476,7 @@ impl<'a, S: Simd> Others<'a, S> {
                 (g, Numbers::new(masses, particles))
             }),
             drag: ending.drag.map(|c| simd.splat_f64s(c)),
+            inertia: ending.inertia.map(|masses| Numbers::new(masses, particles)),
             inverse_masses: ending
                 .inverse_masses
                 .map(|inverse_masses| Numbers::new(inverse_masses, particles)),
@@ -474,6 +497,14 @@ impl<'a, S: Simd> Others<'a, S> {
                 simd.negate_mul_add_f64s(c, u[0], f[0]),
                 simd.negate_mul_add_f64s(c, u[1], f[1]),
                 simd.negate_mul_add_f64s(c, u[2], f[2]),
+            ];
+        }
+        if let Some(masses) = self.inertia {
+            let m = masses.at(simd, i);
+            f = [
+                simd.mul_add_f64s(m, u[0], simd.neg_f64s(f[0])),
+                simd.mul_add_f64s(m, u[1], simd.neg_f64s(f[1])),
+                simd.mul_add_f64s(m, u[2], simd.neg_f64s(f[2])),
             ];
         }
         if let Some(inverse_masses) = self.inverse_masses {
@@ -603,7 +634,7 @@ struct Springs<'a> {
 impl Springs<'_> {
     /// Finds those along the row.
     #[inline(always)]
-    fn find_along<S: Simd, const DAMPED: bool>(&mut self, simd: S, size: Size, here: &[f64]) {
+    fn find_along<S: Simd, const KIND: u8>(&mut self, simd: S, size: Size, here: &[f64]) {
         let three = 3 * size.stride;
         let (right, right2) = self.found[..2 * three].split_at_mut(three);
         let (mut right, mut right2) = (size.at_mut::<S>(right), size.at_mut::<S>(right2));
@@ -613,16 +644,16 @@ impl Springs<'_> {
         let (one, two) = (size.places::<S>(here, 1), size.places::<S>(here, 2));
         for i in 0..size.m {
             let (p, kind) = ((pick::<S>(px, i), pick::<S>(pv, i)), size.kind(i));
-            let force = spring::<S, DAMPED>(simd, pick::<S>(a, kind), p, one, i);
+            let force = spring::<S, KIND>(simd, pick::<S>(a, kind), p, one, i);
             put::<S>(&mut right, i, force);
-            let force = spring::<S, DAMPED>(simd, pick::<S>(b, kind), p, two, i);
+            let force = spring::<S, KIND>(simd, pick::<S>(b, kind), p, two, i);
             put::<S>(&mut right2, i, force);
         }
     }
 
     /// Finds those to the rows below, and sums up.
     #[inline(always)]
-    fn find_below<S: Simd, const DAMPED: bool>(
+    fn find_below<S: Simd, const KIND: u8>(
         &mut self,
         simd: S,
         size: Size,
@@ -661,16 +692,16 @@ impl Springs<'_> {
             let mut all = sub::<S>(simd, pick::<S>(left, i), pick::<S>(begun, i));
             let pull = sub::<S>(simd, pick::<S>(left2, i), pick::<S>(begun2, i));
             all = add::<S>(simd, all, pull);
-            let force = spring::<S, DAMPED>(simd, pick::<S>(a, kind), p, ax, i);
+            let force = spring::<S, KIND>(simd, pick::<S>(a, kind), p, ax, i);
             let above = replace::<S>(&mut to_a, i, force);
             all = add::<S>(simd, all, sub::<S>(simd, above, force));
-            let force = spring::<S, DAMPED>(simd, pick::<S>(b, kind), p, bx, i);
+            let force = spring::<S, KIND>(simd, pick::<S>(b, kind), p, bx, i);
             put::<S>(&mut to_b, i, force);
             all = add::<S>(simd, all, sub::<S>(simd, pick::<S>(above_left, i), force));
-            let force = spring::<S, DAMPED>(simd, pick::<S>(c, kind), p, cx, i);
+            let force = spring::<S, KIND>(simd, pick::<S>(c, kind), p, cx, i);
             put::<S>(&mut to_c, i, force);
             all = add::<S>(simd, all, sub::<S>(simd, pick::<S>(above_right, i), force));
-            let force = spring::<S, DAMPED>(simd, pick::<S>(d, kind), p, dx, i);
+            let force = spring::<S, KIND>(simd, pick::<S>(d, kind), p, dx, i);
             let above2 = replace::<S>(&mut to_d, i, force);
             all = add::<S>(simd, all, sub::<S>(simd, above2, force));
             then.put(simd, i, p, others.apply(simd, i, p.1, all));
@@ -709,9 +740,9 @@ fn replace<S: Simd>(a: &mut ColumnsMut<S>, i: usize, by: Vectors<S>) -> Vectors<
 }
 
 /// The forces of springs from particles at p with velocity u to others, as they pull at the latter: s d with
-/// s = k - k r / L + c (w . d) / L2.
+/// s = k - k r / L + c (w . d) / L2. Of tangents, with w between vectors and q = k - k r / L: q w + (k - q + c) (w . d) d / L2.
 #[inline(always)]
-fn spring<S: Simd, const DAMPED: bool>(
+fn spring<S: Simd, const KIND: u8>(
     simd: S,
     law: Vectors<S>,
     (p, u): (Vectors<S>, Vectors<S>),
@@ -719,9 +750,29 @@ fn spring<S: Simd, const DAMPED: bool>(
     i: usize,
 ) -> Vectors<S> {
     let d = sub::<S>(simd, p, pick::<S>(x, i));
-    let inverse = inverse_root(simd, dot(simd, d, d));
+    let square = dot(simd, d, d);
+    let inverse = inverse_root(simd, square);
+    if KIND == TANGENT || KIND == CLAMPED {
+        let zero = simd.splat_f64s(0.0);
+        // Without a length there is no direction.
+        let has_length = simd.less_than_f64s(zero, square);
+        let inverse = simd.select_f64s(has_length, inverse, zero);
+        let mut across = simd.negate_mul_add_f64s(law[1], inverse, law[0]);
+        if KIND == CLAMPED {
+            across = simd.max_f64s(across, zero);
+        }
+        let w = sub::<S>(simd, u, pick::<S>(v, i));
+        let turn = simd.mul_f64s(simd.mul_f64s(dot(simd, w, d), inverse), inverse);
+        let more = simd.add_f64s(simd.sub_f64s(law[0], across), law[2]);
+        let s = simd.mul_f64s(turn, more);
+        return [
+            simd.mul_add_f64s(s, d[0], simd.mul_f64s(across, w[0])),
+            simd.mul_add_f64s(s, d[1], simd.mul_f64s(across, w[1])),
+            simd.mul_add_f64s(s, d[2], simd.mul_f64s(across, w[2])),
+        ];
+    }
     let mut s = simd.negate_mul_add_f64s(law[1], inverse, law[0]);
-    if DAMPED {
+    if KIND == DAMPED {
         let rate = dot(simd, sub::<S>(simd, u, pick::<S>(v, i)), d);
         let rate = simd.mul_f64s(simd.mul_f64s(rate, inverse), inverse);
         s = simd.mul_add_f64s(law[2], rate, s);
@@ -781,6 +832,7 @@ mod tests {
                 let by = |run: &dyn Fn(Forces)| {
                     let mut f = vec![f64::NAN; x.len()];
                     run(Forces {
+                        of: Of::Forces,
                         sheet: &sheet,
                         x: &x,
                         v: &v,

@@ -2,6 +2,7 @@
 //! Witkin, *Large Steps in Cloth Simulation*, 1998: what is pinned stays as it is, however many iterations there are.
 
 use super::tangent::Tangent;
+use crate::system::Mechanics;
 
 /// Scratch for a system of one size.
 pub(crate) struct ConjugateGradients {
@@ -38,6 +39,7 @@ impl ConjugateGradients {
     /// Solves A x = b from x = 0 to a relative residual. b has nothing where particles are pinned.
     pub fn solve(
         &mut self,
+        mechanics: &dyn Mechanics,
         tangent: &Tangent,
         b: &[f64],
         x: &mut [f64],
@@ -67,7 +69,7 @@ impl ConjugateGradients {
         p.copy_from_slice(z);
         let mut rz = dot(r, z);
         while solution.iterations < most && solution.residual > tolerance {
-            tangent.product(p, q);
+            tangent.product(mechanics, p, q);
             let curvature = dot(p, q);
             if !(curvature > 0.0 && rz > 0.0) {
                 solution.indefinite = true;
@@ -115,8 +117,18 @@ impl ConjugateGradients {
     }
 }
 
+/// In sixteen sums, which do not wait for one another.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    let mut sums = [0.0; 16];
+    let (blocks, rest) = a.as_chunks::<16>();
+    let (others, other_rest) = b.as_chunks::<16>();
+    for (a, b) in blocks.iter().zip(others) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += a * b;
+        }
+    }
+    let rest = rest.iter().zip(other_rest).map(|(a, b)| a * b);
+    sums.into_iter().chain(rest).sum()
 }
 
 /// z = B^-1 r

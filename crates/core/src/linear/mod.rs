@@ -103,7 +103,13 @@ impl Solver {
     }
 
     /// Solves A x = b to a relative residual. `None` if A is not positive definite.
-    pub fn solve(&mut self, b: &[f64], x: &mut [f64], tolerance: f64) -> (Work, Option<f64>) {
+    pub fn solve(
+        &mut self,
+        mechanics: &dyn Mechanics,
+        b: &[f64],
+        x: &mut [f64],
+        tolerance: f64,
+    ) -> (Work, Option<f64>) {
         let couplings = self.tangent.couplings().len().max(1) as f64;
         let iterations = SPREAD * (1.0 + self.stiffness).sqrt() * libm::log(2.0 / tolerance);
         let factoring =
@@ -142,7 +148,9 @@ impl Solver {
                 (work, Some(0.0))
             }
             _ => {
-                let solution = self.iterative.solve(&self.tangent, b, x, tolerance, MOST);
+                let solution =
+                    self.iterative
+                        .solve(mechanics, &self.tangent, b, x, tolerance, MOST);
                 let work = Work {
                     solves: 1,
                     iterations: solution.iterations,

@@ -2,7 +2,7 @@
 //! multiplied without square roots. Pinned particles are filtered: their rows are those of the identity, and no vector
 //! that is solved for has anything there.
 
-use crate::system::{Coupling, Mechanics};
+use crate::system::{Coupling, Matrix, Mechanics};
 
 /// A, K and what of it is needed to solve with them.
 pub(crate) struct Tangent {
@@ -11,8 +11,13 @@ pub(crate) struct Tangent {
     weights: Vec<[f64; 2]>,
     /// Of each particle in A; 0 where it is pinned.
     masses: Vec<f64>,
+    /// 0 where it is pinned, 1 elsewhere.
+    free: Vec<f64>,
     /// Whether stiffness across compressed springs counts as none.
     clamped: bool,
+    /// Where and for what step it was gathered.
+    x: Vec<f64>,
+    a: f64,
 }
 
 impl Tangent {
@@ -25,7 +30,10 @@ impl Tangent {
             weights: vec![[0.0; 2]; couplings.len()],
             couplings,
             masses: vec![0.0; n],
+            free: vec![0.0; n],
             clamped: false,
+            x: vec![0.0; 3 * n],
+            a: 0.0,
         }
     }
 
@@ -50,9 +58,16 @@ impl Tangent {
             [a * a * across, a * a * (c.along - across) + a * c.damping]
         }));
         let drag = a * mechanics.drag_coefficient();
-        for (m, w) in self.masses.iter_mut().zip(mechanics.inverse_masses()) {
-            *m = if *w == 0.0 { 0.0 } else { 1.0 / w + drag };
+        let particles = self.masses.iter_mut().zip(&mut self.free);
+        for ((m, free), w) in particles.zip(mechanics.inverse_masses()) {
+            (*m, *free) = if *w == 0.0 {
+                (0.0, 0.0)
+            } else {
+                (1.0 / w + drag, 1.0)
+            };
         }
+        self.x.copy_from_slice(x);
+        self.a = a;
     }
 
     /// The mass of particle i in A; 0 if it is pinned.
@@ -94,7 +109,17 @@ impl Tangent {
     }
 
     /// out = A p, for a p without pinned particles; nor has out any.
-    pub fn product(&self, p: &[f64], out: &mut [f64]) {
+    pub fn product(&self, mechanics: &dyn Mechanics, p: &[f64], out: &mut [f64]) {
+        let matrix = Matrix {
+            x: &self.x,
+            a: self.a,
+            clamped: self.clamped,
+            masses: &self.masses,
+            free: &self.free,
+        };
+        if mechanics.multiply(&matrix, p, out) {
+            return;
+        }
         let n = self.particles();
         for (out, p) in out.chunks_exact_mut(n).zip(p.chunks_exact(n)) {
             for ((out, p), m) in out.iter_mut().zip(p).zip(&self.masses) {

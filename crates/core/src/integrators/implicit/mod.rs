@@ -181,7 +181,7 @@ impl Mechanical {
                 // Small steps are solved closely, so that errors fall with the step as they should.
                 Newton::Once => 1e-4 * solver.stiffness().clamp(1e-2, 1.0).powi(4),
             };
-            let (cost, solved) = solver.solve(rhs, dv, tolerance);
+            let (cost, solved) = solver.solve(mechanics, rhs, dv, tolerance);
             *work += cost;
             match solved {
                 Some(_) => break,

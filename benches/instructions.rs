@@ -1,0 +1,132 @@
+//! Instructions of the main kernels, counted by callgrind: a guard against what makes them slower, on any machine.
+//!
+//! `cargo bench --bench instructions` compares with the limits below, a tenth above what was counted when they were set.
+//! Callgrind knows vectors of four numbers, so those are what is counted. Without `valgrind` nothing is, unless
+//! `A3_REQUIRE_VALGRIND` is set.
+
+use std::hint::black_box;
+use std::process::{Command, ExitCode};
+
+use a3_core::{Grid, Integrator, Mechanics, Network, Scene, integrators, scenes};
+
+/// What is counted: on a cloth of 32 x 32 particles, in thousands of instructions at most.
+const LIMITS: [(&str, u64); 9] = [
+    ("forces of a sheet", 1),
+    ("forces of a damped sheet", 1),
+    ("forces of single springs", 1),
+    ("force differential", 1),
+    ("step of rk4", 1),
+    ("step of verlet", 1),
+    ("step of pefrl", 1),
+    ("step of dopri5", 1),
+    ("step of backward-euler", 1),
+];
+
+/// Runs of a kernel between which instructions are counted.
+const RUNS: [u64; 2] = [2, 6];
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["run", kernel, times] => {
+            run(kernel, times.parse().expect("a number of times"));
+            ExitCode::SUCCESS
+        }
+        _ if arguments.iter().any(|argument| argument == "--test") => ExitCode::SUCCESS,
+        _ => compare(),
+    }
+}
+
+/// Counts all, and says which take more than they should.
+fn compare() -> ExitCode {
+    let mut good = true;
+    println!("instructions by callgrind, in thousands, and what they may be at most");
+    for (kernel, most) in LIMITS {
+        let counts = RUNS.map(|times| count(kernel, times));
+        let [Some(few), Some(many)] = counts else {
+            println!("valgrind does not run here: nothing was counted");
+            return if std::env::var_os("A3_REQUIRE_VALGRIND").is_some() {
+                ExitCode::FAILURE
+            } else {
+                ExitCode::SUCCESS
+            };
+        };
+        let thousands = (many - few) / (RUNS[1] - RUNS[0]) / 1000;
+        let mark = if thousands > most { "  TOO MANY" } else { "" };
+        println!("{kernel:<26} {thousands:>6} {most:>6}{mark}");
+        good &= thousands <= most;
+    }
+    if good {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+/// Instructions of this program when it runs the kernel so many times.
+fn count(kernel: &str, times: u64) -> Option<u64> {
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(std::env::current_exe().ok()?)
+        .args(["run", kernel, &times.to_string()])
+        .output()
+        .ok()?;
+    let text = String::from_utf8(output.stderr).ok()?;
+    let line = text.lines().find(|line| line.contains("Collected"))?;
+    line.split_whitespace().last()?.parse().ok()
+}
+
+fn cloth(name: &str) -> Scene {
+    let grid = Grid::new(32, 32).expect("a grid");
+    let entry = scenes::find(name).expect("a scene");
+    entry.build(Some(grid)).expect("a cloth")
+}
+
+fn network(scene: &Scene) -> &Network {
+    scene.model.network().expect("a cloth is a network")
+}
+
+fn run(kernel: &str, times: u64) {
+    let scene = cloth(if kernel == "forces of a sheet" {
+        "mit"
+    } else {
+        "cloth"
+    });
+    let network = network(&scene);
+    let (x, v) = scene.state.split_at(scene.state.len() / 2);
+    let mut f = vec![0.0; x.len()];
+    match kernel {
+        "forces of a sheet" | "forces of a damped sheet" => {
+            for _ in 0..times {
+                network.spring_forces(black_box(x), v, &mut f);
+            }
+        }
+        "forces of single springs" => {
+            let mut list = Network::new(vec![1.0; network.particles()]).expect("a network");
+            for spring in network.springs() {
+                list.add_spring(spring).expect("a spring");
+            }
+            for _ in 0..times {
+                list.spring_forces(black_box(x), v, &mut f);
+            }
+        }
+        "force differential" => {
+            for _ in 0..times {
+                network.force_differential(0.0, black_box(x), v, v, x, &mut f);
+            }
+        }
+        step => {
+            let name = step.trim_start_matches("step of ");
+            let method = integrators::find(name).expect("a method");
+            let system = scene.model.system();
+            let mut integrator: Box<dyn Integrator> = method.integrator(system).expect("it serves");
+            let mut y = scene.state.clone();
+            for _ in 0..times {
+                integrator
+                    .step(system, 0.0, 1e-3, black_box(&mut y))
+                    .expect("a step");
+            }
+        }
+    }
+    black_box(f);
+}
