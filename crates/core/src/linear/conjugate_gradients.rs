@@ -1,7 +1,10 @@
 //! Conjugate gradients, preconditioned by the inverse of each particle's own 3 x 3 block, filtered as in Baraff and
 //! Witkin, *Large Steps in Cloth Simulation*, 1998: what is pinned stays as it is, however many iterations there are.
 
+use std::array;
+
 use super::tangent::Tangent;
+use crate::forces::columns;
 use crate::system::Mechanics;
 
 /// Scratch for a system of one size.
@@ -10,8 +13,8 @@ pub(crate) struct ConjugateGradients {
     z: Vec<f64>,
     p: Vec<f64>,
     q: Vec<f64>,
-    /// The inverse block of each particle: xx, yy, zz, xy, xz, yz.
-    inverses: Vec<[f64; 6]>,
+    /// The inverse block of each particle, in columns: xx, yy, zz, xy, xz, yz.
+    inverses: [Vec<f64>; 6],
 }
 
 /// How it ended.
@@ -32,7 +35,7 @@ impl ConjugateGradients {
             z: zeros(),
             p: zeros(),
             q: zeros(),
-            inverses: vec![[0.0; 6]; particles],
+            inverses: array::from_fn(|_| vec![0.0; particles]),
         }
     }
 
@@ -65,9 +68,8 @@ impl ConjugateGradients {
         if scale == 0.0 {
             return solution;
         }
-        precondition(inverses, r, z);
+        let mut rz = descend(0.0, [p, q], inverses, [x, r, z]).1;
         p.copy_from_slice(z);
-        let mut rz = dot(r, z);
         while solution.iterations < most && solution.residual > tolerance {
             tangent.product(mechanics, p, q);
             let curvature = dot(p, q);
@@ -75,15 +77,9 @@ impl ConjugateGradients {
                 solution.indefinite = true;
                 return solution;
             }
-            let step = rz / curvature;
-            for (((x, r), p), q) in x.iter_mut().zip(&mut *r).zip(&*p).zip(&*q) {
-                *x += step * p;
-                *r -= step * q;
-            }
+            let (rr, next) = descend(rz / curvature, [p, q], inverses, [x, r, z]);
             solution.iterations += 1;
-            solution.residual = dot(r, r).sqrt() / scale;
-            precondition(inverses, r, z);
-            let next = dot(r, z);
+            solution.residual = rr.sqrt() / scale;
             let turn = next / rz;
             rz = next;
             for (p, z) in p.iter_mut().zip(&*z) {
@@ -95,26 +91,69 @@ impl ConjugateGradients {
 
     /// Inverts the blocks on the diagonal.
     fn prepare(&mut self, tangent: &Tangent) {
-        let blocks = &mut self.inverses;
-        for (i, block) in blocks.iter_mut().enumerate() {
-            let m = tangent.mass(i);
-            *block = [m, m, m, 0.0, 0.0, 0.0];
+        let [xx, yy, zz, ..] = &mut self.inverses;
+        for diagonal in [xx, yy, zz] {
+            diagonal.copy_from_slice(tangent.masses());
+        }
+        for column in &mut self.inverses[3..] {
+            column.fill(0.0);
         }
         for (i, j, block) in tangent.blocks() {
-            for end in [i, j] {
-                for (sum, part) in blocks[end].iter_mut().zip(block) {
-                    *sum += part;
-                }
+            for (column, part) in self.inverses.iter_mut().zip(block) {
+                column[i] += part;
+                column[j] += part;
             }
         }
-        for (i, block) in blocks.iter_mut().enumerate() {
-            *block = if tangent.mass(i) == 0.0 {
-                [0.0; 6]
-            } else {
-                inverse(*block)
-            };
+        for (i, m) in tangent.masses().iter().enumerate() {
+            let block = array::from_fn(|k| self.inverses[k][i]);
+            let inverse = if *m == 0.0 { [0.0; 6] } else { inverse(block) };
+            for (column, part) in self.inverses.iter_mut().zip(inverse) {
+                column[i] = part;
+            }
         }
     }
+}
+
+/// Particles that are gone through at a time, while they are in the nearest cache.
+const BLOCK: usize = 256;
+
+/// x += step p, r -= step q, z = B^-1 r. Of the new ones, r . r and r . z.
+fn descend(
+    step: f64,
+    [p, q]: [&[f64]; 2],
+    inverses: &[Vec<f64>; 6],
+    [x, r, z]: [&mut [f64]; 3],
+) -> (f64, f64) {
+    let n = p.len() / 3;
+    let (mut rr, mut rz) = (0.0, 0.0);
+    for start in (0..n).step_by(BLOCK) {
+        let block = start..n.min(start + BLOCK);
+        for axis in 0..3 {
+            let part = axis * n + block.start..axis * n + block.end;
+            let (x, p) = (&mut x[part.clone()], &p[part.clone()]);
+            for (x, p) in x.iter_mut().zip(p) {
+                *x += step * p;
+            }
+            let (r, q) = (&mut r[part.clone()], &q[part]);
+            for (r, q) in r.iter_mut().zip(q) {
+                *r -= step * q;
+            }
+            rr += dot(r, r);
+        }
+        let [rx, ry, rw] = columns(r, &block);
+        for (axis, k) in [[0, 3, 4], [3, 1, 5], [4, 5, 2]].into_iter().enumerate() {
+            let [a, b, c] = k.map(|k| &inverses[k][block.clone()]);
+            let z = &mut z[axis * n + block.start..axis * n + block.end];
+            let of_r = rx.iter().zip(ry).zip(rw);
+            for ((z, ((x, y), w)), ((a, b), c)) in
+                z.iter_mut().zip(of_r).zip(a.iter().zip(b).zip(c))
+            {
+                *z = a * x + b * y + c * w;
+            }
+            rz += dot([rx, ry, rw][axis], z);
+        }
+    }
+    (rr, rz)
 }
 
 /// In sixteen sums, which do not wait for one another.
@@ -129,21 +168,6 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     }
     let rest = rest.iter().zip(other_rest).map(|(a, b)| a * b);
     sums.into_iter().chain(rest).sum()
-}
-
-/// z = B^-1 r
-fn precondition(inverses: &[[f64; 6]], r: &[f64], z: &mut [f64]) {
-    let n = inverses.len();
-    let (rx, rest) = r.split_at(n);
-    let (ry, rz) = rest.split_at(n);
-    let (zx, rest) = z.split_at_mut(n);
-    let (zy, zz) = rest.split_at_mut(n);
-    for (i, [xx, yy, zz_, xy, xz, yz]) in inverses.iter().enumerate() {
-        let (a, b, c) = (rx[i], ry[i], rz[i]);
-        zx[i] = xx * a + xy * b + xz * c;
-        zy[i] = xy * a + yy * b + yz * c;
-        zz[i] = xz * a + yz * b + zz_ * c;
-    }
 }
 
 /// Of a symmetric block; if that is not positive definite, of its diagonal's sizes.

@@ -11,10 +11,10 @@ pub(crate) use tangent::Tangent;
 use crate::integrators::Work;
 use crate::system::Mechanics;
 
-/// Prices in evaluations of forces that are found spring by spring, measured on cloth of 20 x 20 to 128 x 128 and on chains
-/// (see the tests): of an iteration, ...
-const ITERATION: f64 = 2.5;
-/// ... of gathering the matrix, ...
+/// Prices measured on cloth of 20 x 20 to 128 x 128 and on chains (see the tests): of an iteration, in evaluations of the
+/// system's forces; ...
+const ITERATION: f64 = 2.4;
+/// ... in evaluations of forces that are found spring by spring, of gathering the matrix, ...
 const GATHERING: f64 = 4.0;
 /// ... of a factorisation: the least, and that of its operations over the number of couplings to the power 2/3; ...
 const FACTORISATION: [f64; 2] = [45.0, 0.42];
@@ -114,8 +114,8 @@ impl Solver {
         let iterations = SPREAD * (1.0 + self.stiffness).sqrt() * libm::log(2.0 / tolerance);
         let factoring =
             |operations: f64| FACTORISATION[0] + FACTORISATION[1] * libm::cbrt(operations).powi(2);
-        let worth_a_look =
-            self.factorised || factoring(self.least_operations()) < ITERATION * iterations;
+        let worth_a_look = self.factorised
+            || factoring(self.least_operations()) * self.speed < ITERATION * iterations;
         if self.direct_always.unwrap_or(worth_a_look) && !self.looked {
             self.look();
         }
@@ -129,7 +129,7 @@ impl Solver {
         });
         let goes_direct = self
             .direct_always
-            .unwrap_or(worth_a_look && direct_price < ITERATION * iterations);
+            .unwrap_or(worth_a_look && direct_price * self.speed < ITERATION * iterations);
         match &mut self.direct {
             Some(direct) if goes_direct => {
                 let mut work = Work {
@@ -154,7 +154,7 @@ impl Solver {
                 let work = Work {
                     solves: 1,
                     iterations: solution.iterations,
-                    algebra: ITERATION * solution.iterations as f64 * self.speed,
+                    algebra: ITERATION * solution.iterations as f64,
                     residual: if solution.indefinite {
                         0.0
                     } else {

@@ -146,10 +146,10 @@ impl Cholesky {
         let start =
             |particle: usize, column: usize| self.column_starts[3 * particle + column] as usize;
         for i in 0..tangent.particles() {
-            let m = if tangent.mass(i) == 0.0 {
+            let m = if tangent.masses()[i] == 0.0 {
                 1.0
             } else {
-                tangent.mass(i)
+                tangent.masses()[i]
             };
             for b in 0..3 {
                 self.values[start(i, b)] = m;
@@ -158,7 +158,7 @@ impl Cholesky {
         for ((i, j, block), (low, place)) in tangent.blocks().zip(&self.places) {
             let [xx, yy, zz, xy, xz, yz] = block;
             let full = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-            let free = |k: usize| tangent.mass(k) != 0.0;
+            let free = |k: usize| tangent.masses()[k] != 0.0;
             for end in [i, j] {
                 if free(end) {
                     for (b, row) in full.iter().enumerate() {

@@ -70,9 +70,9 @@ impl Tangent {
         self.a = a;
     }
 
-    /// The mass of particle i in A; 0 if it is pinned.
-    pub fn mass(&self, i: usize) -> f64 {
-        self.masses[i]
+    /// The mass of each particle in A; 0 where it is pinned.
+    pub fn masses(&self) -> &[f64] {
+        &self.masses
     }
 
     /// The 3 x 3 block of each coupling in A: xx, yy, zz, xy, xz, yz.

@@ -182,7 +182,7 @@ fn solves_measured() {
                 iterations = solver
                     .solve(&network, black_box(&b), &mut dv, tolerance)
                     .0
-                    .iterations
+                    .iterations;
             });
             solver.look();
             let direct = solver.direct.as_mut().unwrap();
