@@ -5,9 +5,11 @@
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 
 use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
-use a3_core::{Grid, Mechanics, Model, Network, Scene, Spring, integrators, scenes};
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use a3_core::{Grid, Mechanics, Model, Network, Scene, Sheet, Spring, integrators, scenes};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 
 const SIDES: [usize; 7] = [8, 16, 32, 64, 128, 256, 512];
 
@@ -69,7 +71,12 @@ fn forces(c: &mut Criterion) {
                     network.spring_forces(black_box(x), black_box(v), &mut f);
                 });
             });
+            let rest = vec![0.0; x.len()];
             let damped = springs[0].law.damping > 0.0;
+            group.bench_function(BenchmarkId::new("differential at rest", side), |b| {
+                let dv = if damped { x } else { &rest };
+                b.iter(|| network.force_differential(0.0, black_box(x), &rest, x, dv, &mut f));
+            });
             group.bench_function(BenchmarkId::new("plain list", side), |b| {
                 b.iter(|| {
                     f.fill(0.0);
@@ -196,4 +203,52 @@ criterion_group! {
         .measurement_time(std::time::Duration::from_secs(1));
     targets = forces, forces_of_a_list, evaluation, steps, steps_by_size
 }
-criterion_main!(benches);
+
+fn main() {
+    let begun = SystemTime::now();
+    benches();
+    Criterion::default().configure_from_args().final_summary();
+    ratios(begun);
+}
+
+/// Prints the springs per second of what this run measured, and how many times those of the plain list they are.
+fn ratios(begun: SystemTime) {
+    let home = std::env::var_os("CRITERION_HOME").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/criterion"),
+        PathBuf::from,
+    );
+    let mean = |group: &str, kernel: &str, side: usize| -> Option<f64> {
+        let file = home.join(format!("{group}/{kernel}/{side}/new/estimates.json"));
+        let fresh = file.metadata().ok()?.modified().ok()? >= begun;
+        let text = std::fs::read_to_string(file).ok().filter(|_| fresh)?;
+        let estimates: serde_json::Value = serde_json::from_str(&text).ok()?;
+        estimates["mean"]["point_estimate"].as_f64()
+    };
+    for (group, kernel, plain, what) in [
+        ("forces_cloth", "sheet", "plain list", "sheet, damped"),
+        ("forces_mit", "sheet", "plain list", "sheet, undamped"),
+        ("forces_list", "network", "plain list", "single springs"),
+        (
+            "forces_list",
+            "network, shuffled",
+            "plain list, shuffled",
+            "single springs, shuffled",
+        ),
+    ] {
+        for side in SIDES {
+            let found = mean(group, kernel, side).zip(mean(group, plain, side));
+            if let Some((kernel, plain)) = found {
+                let grid = Grid::new(side, side).unwrap();
+                let springs = Sheet::new(grid, 1.0, [1.0; 3], 0.0)
+                    .unwrap()
+                    .springs()
+                    .count();
+                println!(
+                    "{what:<26} {side:>4} x {side:<4} {:>6.0} million springs/s, {:>4.2} times the plain list",
+                    1e3 * springs as f64 / kernel,
+                    plain / kernel
+                );
+            }
+        }
+    }
+}

@@ -461,9 +461,29 @@ impl Mechanics for Network {
         dv: &[f64],
         df: &mut [f64],
     ) {
-        df.fill(0.0);
-        self.springs()
-            .for_each(|spring| springs::add_differential(&spring, x, v, dx, dv, df));
+        // How the turning of damped springs changes their forces, vectors do not know.
+        let turns = self.kick_reads_velocity() && v.iter().any(|v| *v != 0.0);
+        if let Some(sheet) = self.only_sheet().filter(|_| !turns) {
+            let of = |stiffness, damping, p: &[f64], out: &mut [f64]| {
+                let (of, sheet) = (
+                    Of::Tangent { clamped: false },
+                    sheet.scaled(stiffness, damping),
+                );
+                sheet::set(of, &sheet, x, p, out, &Ending::default());
+            };
+            of(1.0, 0.0, dx, df);
+            if sheet.is_damped() && dv.iter().any(|dv| *dv != 0.0) {
+                let mut damping = vec![0.0; df.len()];
+                of(0.0, 1.0, dv, &mut damping);
+                df.iter_mut()
+                    .zip(damping)
+                    .for_each(|(df, more)| *df += more);
+            }
+        } else {
+            df.fill(0.0);
+            self.springs()
+                .for_each(|spring| springs::add_differential(&spring, x, v, dx, dv, df));
+        }
         if let Some(c) = self.drag {
             drag::add(c, dv, df);
         }
@@ -492,7 +512,7 @@ impl Mechanics for Network {
             inverse_masses: Some(matrix.free),
             ..Ending::default()
         };
-        sheet::set(of, &sheet.for_step(a), matrix.x, p, out, &ending);
+        sheet::set(of, &sheet.scaled(a * a, a), matrix.x, p, out, &ending);
         true
     }
 

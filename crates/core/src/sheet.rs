@@ -65,12 +65,12 @@ impl Sheet {
         self.laws.iter().any(|law| law.damping > 0.0)
     }
 
-    /// With the stiffness times a2 and the damping times a.
-    pub(crate) fn for_step(&self, a: f64) -> Self {
+    /// With springs so many times as stiff, and so many times as damped.
+    pub(crate) fn scaled(&self, stiffness: f64, damping: f64) -> Self {
         let mut sheet = *self;
         for law in &mut sheet.laws {
-            law.stiffness *= a * a;
-            law.damping *= a;
+            law.stiffness *= stiffness;
+            law.damping *= damping;
         }
         sheet
     }
