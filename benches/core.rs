@@ -110,9 +110,7 @@ fn forces_of_a_list(c: &mut Criterion) {
             springs.swap(k, (random >> 33) as usize % (k + 1));
         }
         let mut list = Network::new(vec![1.0; side * side]).unwrap();
-        for spring in &springs {
-            list.add_spring(*spring).unwrap();
-        }
+        list.add_springs(springs.iter().copied()).unwrap();
         let (x, v) = scene.state.split_at(scene.state.len() / 2);
         let mut f = vec![0.0; x.len()];
         let order = if shuffled { ", shuffled" } else { "" };

@@ -103,9 +103,7 @@ fn run(kernel: &str, times: u64) {
         }
         "forces of single springs" => {
             let mut list = Network::new(vec![1.0; network.particles()]).expect("a network");
-            for spring in network.springs() {
-                list.add_spring(spring).expect("a spring");
-            }
+            list.add_springs(network.springs()).expect("springs");
             for _ in 0..times {
                 list.spring_forces(black_box(x), v, &mut f);
             }

@@ -135,6 +135,20 @@ impl Network {
         Ok(())
     }
 
+    /// Adds springs in whatever order, and keeps all in the order of their ends: neighbours in memory are then used one
+    /// after another.
+    ///
+    /// # Errors
+    /// As [`add_spring`](Self::add_spring), for the first that cannot be: none after it is added.
+    pub fn add_springs(&mut self, springs: impl IntoIterator<Item = Spring>) -> Result<(), Error> {
+        let added = springs
+            .into_iter()
+            .try_for_each(|spring| self.add_spring(spring));
+        self.list
+            .sort_by_key(|Spring { i, j, .. }| (*i.min(j), *i.max(j)));
+        added
+    }
+
     /// Holds the first particles together as a sheet.
     ///
     /// # Errors

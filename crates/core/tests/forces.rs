@@ -127,6 +127,32 @@ fn sheets_agree_with_the_plain_formula() {
 }
 
 #[test]
+fn springs_in_no_order_are_put_in_one_and_pull_alike() {
+    let scene = scene_with_grid("cloth", 9, 14);
+    let sheet = scene.model.network().unwrap();
+    let mut springs: Vec<Spring> = sheet.springs().collect();
+    let count = springs.len();
+    for k in 0..count {
+        springs.swap(k, (7919 * k + 13) % count);
+    }
+    let mut list = Network::new(vec![1.0; sheet.particles()]).unwrap();
+    list.add_springs(springs.iter().copied()).unwrap();
+    let ends: Vec<_> = list.springs().map(|s| s.i.min(s.j)).collect();
+    assert!(ends.is_sorted() && ends.len() == count);
+    let y = shaken(&scene.state, 0.05);
+    let (x, v) = y.split_at(y.len() / 2);
+    let (mut f, mut expected) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    list.spring_forces(x, v, &mut f);
+    sheet.spring_forces(x, v, &mut expected);
+    assert!(distance(&f, &expected) < 1e-13 * size(&expected));
+    let wrong = Spring {
+        j: 9 * 14,
+        ..springs[0]
+    };
+    assert!(list.add_springs([wrong]).is_err());
+}
+
+#[test]
 fn a_spring_of_length_zero_has_no_force() {
     for damping in [0.0, 1.0] {
         let mut network = Network::new(vec![1.0; 2]).unwrap();
