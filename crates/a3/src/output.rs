@@ -66,16 +66,28 @@ pub fn free_picture_name(scene: &str) -> Result<String, Failure> {
         .ok_or_else(|| Failure::run("there are 9999 pictures here already"))
 }
 
-/// Writes `bytes` to `path`: beside it first, then in its place. What is no ordinary file is written to as it is.
+/// Writes `bytes` to `path`.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    write_with(path, |file| file.write_all(bytes))
+}
+
+/// Lets `content` write to `path`: beside it first, then in its place. What is no ordinary file is written to as it is.
+pub fn write_with(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Failure> {
     // A link stays one: what it leads to is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.into());
     let result = match fs::metadata(&target) {
         Ok(there) if !there.is_file() => fs::File::options()
             .write(true)
             .open(&target)
-            .and_then(|mut file| file.write_all(bytes)),
-        there => replace(&target, bytes, there.ok().map(|there| there.permissions())),
+            .and_then(|file| buffered(file, content).map(drop)),
+        there => replace(
+            &target,
+            content,
+            there.ok().map(|there| there.permissions()),
+        ),
     };
     result.map_err(|e| {
         // The name of the temporary file is nobody's business.
@@ -86,7 +98,11 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 }
 
 /// With the permissions of the old file, or those of any new one.
-fn replace(path: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> io::Result<()> {
+fn replace(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    permissions: Option<fs::Permissions>,
+) -> io::Result<()> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".a3-");
     #[cfg(unix)]
@@ -95,14 +111,23 @@ fn replace(path: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> i
         // Less what the umask takes.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder(path))?;
+    let file = builder.tempfile_in(folder(path))?;
     if let Some(permissions) = permissions {
         file.as_file().set_permissions(permissions)?;
     }
-    file.write_all(bytes)?;
+    let file = buffered(file, content)?;
     file.as_file().sync_all()?;
     file.persist(path).map_err(|e| e.error)?;
     Ok(())
+}
+
+fn buffered<F: Write>(
+    file: F,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<F> {
+    let mut writer = io::BufWriter::new(file);
+    content(&mut writer)?;
+    writer.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
 /// Eight-bit RGBA rows from the top, as PNG.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use a3_core::Simulation;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::cli::Simulate;
 use crate::{Failure, output, progress};
@@ -25,9 +25,19 @@ struct State<'a> {
     /// Total (J); none for a system without forces.
     energy: Option<f64>,
     /// In m.
-    positions: Vec<[f64; 3]>,
+    positions: Rows<'a>,
     /// In m/s.
-    velocities: Vec<[f64; 3]>,
+    velocities: Rows<'a>,
+}
+
+/// An n x 3 matrix, of which each row is written as it comes.
+struct Rows<'a>(&'a [f64]);
+
+impl Serialize for Rows<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let n = self.0.len() / 3;
+        serializer.collect_seq((0..n).map(|i| [0, n, 2 * n].map(|column| self.0[column + i])))
+    }
 }
 
 pub fn run(options: &Simulate) -> Result<(), Failure> {
@@ -37,19 +47,22 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         output::check(&options.output, &["json"])?;
     }
     progress::advance(&mut simulation, options.run.until, |_| {}).map_err(Failure::run)?;
-    let mut json = serde_json::to_string(&state(&simulation)).map_err(Failure::run)?;
-    json.push('\n');
+    let velocities = simulation.velocities();
+    let state = state(&simulation, &velocities);
     if to_stdout {
-        output::say(&json)
+        let json = serde_json::to_string(&state).map_err(Failure::run)?;
+        output::say(&format!("{json}\n"))
     } else {
-        output::write(&options.output, json.as_bytes())
+        output::write_with(&options.output, |file| {
+            serde_json::to_writer(&mut *file, &state)?;
+            writeln!(file)
+        })
     }
 }
 
-fn state(simulation: &Simulation) -> State<'_> {
+fn state<'a>(simulation: &'a Simulation, velocities: &'a [f64]) -> State<'a> {
     let n = simulation.particles();
     let adaptive = simulation.method().is_adaptive();
-    let rows = |a: &[f64]| (0..n).map(|i| [a[i], a[n + i], a[2 * n + i]]).collect();
     State {
         scene: simulation.scene().name,
         solver: simulation.method().name,
@@ -59,7 +72,7 @@ fn state(simulation: &Simulation) -> State<'_> {
         steps: simulation.steps(),
         evaluations: simulation.work().evaluations,
         energy: simulation.energy().map(|energy| energy.total()),
-        positions: rows(simulation.state()),
-        velocities: rows(&simulation.velocities()),
+        positions: Rows(&simulation.state()[..3 * n]),
+        velocities: Rows(velocities),
     }
 }
