@@ -17,7 +17,7 @@ const ITERATION: f64 = 2.4;
 /// ... in evaluations of forces that are found spring by spring, of gathering the matrix, ...
 const GATHERING: f64 = 4.0;
 /// ... of a factorisation: the least, and that of its operations over the number of couplings to the power 2/3; ...
-const FACTORISATION: [f64; 2] = [45.0, 0.42];
+const FACTORISATION: [f64; 2] = [45.0, 0.33];
 /// ... and of a solve with its factor: the least, and that of its numbers over the number of couplings.
 const SOLVE: [f64; 2] = [6.0, 0.2];
 /// Conjugate gradients take about this times sqrt(1 + a2 w2) ln(2/tolerance) iterations.
