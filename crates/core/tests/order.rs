@@ -2,7 +2,7 @@
 
 mod common;
 
-use a3_core::{Network, Path, Spring, SpringKind, SpringLaw, Vector3, integrators};
+use a3_core::{Grid, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3, integrators};
 use common::{distance, integrate, method};
 
 fn network(spring_damping: f64) -> Network {
@@ -75,5 +75,50 @@ fn every_method_has_its_order() {
                 m.order
             );
         }
+    }
+}
+
+/// Steps that sweep over rows put pins in their places stage by stage.
+#[test]
+fn sheets_led_by_their_pins_keep_the_order() {
+    let grid = Grid::new(4, 5).unwrap();
+    let n = grid.particles();
+    let mut network = Network::new(vec![0.5; n]).unwrap();
+    let sheet = Sheet::new(grid, 0.5, [40.0, 20.0, 10.0], 0.01).unwrap();
+    network.set_sheet(sheet).unwrap();
+    network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
+    let mut y = vec![0.0; 6 * n];
+    for k in 0..n {
+        (y[k], y[2 * n + k]) = (0.5 * (k % 5) as f64, 0.5 * (k / 5) as f64);
+    }
+    for i in [0, 4] {
+        let path = Path::Sine {
+            center: Vector3::new(y[i], 0.0, 0.0),
+            amplitude: Vector3::new(0.3, 0.0, 0.2),
+            rate: 3.0,
+            phase: 0.0,
+        };
+        network.pin(i, path).unwrap();
+        for axis in 0..3 {
+            y[3 * n + axis * n + i] = path.at(0.0).velocity[axis];
+        }
+    }
+    let exact = integrate(&network, method("dop853"), &y, 1.0 / 512.0, 512);
+    for name in [
+        "euler",
+        "heun",
+        "midpoint",
+        "rk4",
+        "symplectic",
+        "verlet",
+        "pefrl",
+    ] {
+        let m = method(name);
+        let error = |steps: u64| {
+            let found = integrate(&network, m, &y, 1.0 / steps as f64, steps);
+            distance(&found, &exact)
+        };
+        let order = (error(100) / error(200)).log2();
+        assert!(order > f64::from(m.order) - 0.2, "{name}: {order}");
     }
 }
