@@ -160,6 +160,14 @@ impl Window {
             .expect("rows of a window that is three deep are three")
     }
 
+    /// Fills a column of a row, and the vector that it ends in with zeros: a state that was lost may have left others.
+    pub fn load(&mut self, row: usize, column: usize, from: &[f64]) {
+        let (stride, cols) = (self.stride, self.cols);
+        let to = &mut self.row_mut(row)[column * stride + PAD..][..cols.next_multiple_of(PAD)];
+        to[..cols].copy_from_slice(from);
+        to[cols..].fill(0.0);
+    }
+
     /// The six columns of a row.
     pub fn columns_mut(&mut self, row: usize) -> [&mut [f64]; 6] {
         let (stride, cols) = (self.stride, self.cols);
