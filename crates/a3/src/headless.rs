@@ -12,7 +12,7 @@ const SECONDS: u32 = 10;
 /// `why` there is no window, and what is done instead.
 pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     eprintln!("{why}: simulating {SECONDS} seconds without a window.");
-    let scene = session.first().scene().name;
+    let scene = session.first().scene().name.clone();
     if session.panes.len() > 1 {
         session.run_to(f64::from(SECONDS));
         output::say(&compare::table(&session))?;
@@ -22,7 +22,7 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     match pollster::block_on(Gpu::headless()) {
         Ok(gpu) => {
             let offscreen = Offscreen::new(&gpu, SIZE).map_err(Failure::run)?;
-            let name = output::free_picture_name(scene)?;
+            let name = output::free_picture_name(&scene)?;
             compare::save(&gpu, &offscreen, &mut session, name.as_ref())?;
             output::say(&format!("picture: {name}\n"))?;
         }

@@ -93,11 +93,7 @@ impl Show {
         if simulation.scene().trail.is_some() {
             self.draw_trail();
         }
-        if simulation.scene().grid.is_some() {
-            self.draw_pins(simulation);
-        } else {
-            self.draw_parts(simulation);
-        }
+        self.draw_parts(simulation);
         self.draw_obstacles(simulation);
         if let Some(i) = self.springs_of {
             self.draw_springs_of(simulation, i);
@@ -144,21 +140,17 @@ impl Show {
         }
     }
 
-    fn draw_pins(&mut self, simulation: &Simulation) {
-        for (i, _) in simulation
-            .model()
-            .network()
-            .into_iter()
-            .flat_map(Network::pins)
-        {
-            self.ball(i, 0.032, INK);
-        }
-    }
-
-    /// A small system: coils for its springs, balls for its particles.
+    /// What has no surface: coils for its springs, balls for its particles. Of what has one, pins.
     fn draw_parts(&mut self, simulation: &Simulation) {
         let network = simulation.model().network();
-        for spring in network.into_iter().flat_map(a3_core::Network::springs) {
+        let covered = simulation.scene().surface.particles();
+        for (i, _) in network.into_iter().flat_map(Network::pins) {
+            if i < covered {
+                self.ball(i, 0.032, INK);
+            }
+        }
+        let springs = network.into_iter().flat_map(Network::springs);
+        for spring in springs.filter(|spring| spring.i.max(spring.j) >= covered) {
             let points = coil(
                 simulation.position(spring.i),
                 simulation.position(spring.j),
@@ -170,7 +162,7 @@ impl Show {
                     .map(|ends| Line::new(ends[0], ends[1], 2.4, STEEL)),
             );
         }
-        for i in 0..simulation.particles() {
+        for i in covered..simulation.particles() {
             let pinned = network.is_some_and(|n| n.is_pinned(i)) && simulation.grabbed() != Some(i);
             let (radius, color) = if pinned { (0.045, INK) } else { (0.085, RED) };
             self.ball(i, radius, color);
@@ -250,25 +242,20 @@ pub fn list_springs_of(simulation: &Simulation, i: usize) -> String {
     format!("particle {i} has {} springs\n{lines}", springs.len())
 }
 
-/// What stays the same from frame to frame. Small systems are drawn by balls and coils instead.
+/// What stays the same from frame to frame. What has no surface is drawn by balls and coils instead.
 pub fn topology(simulation: &Simulation) -> Topology {
-    let points = simulation.particles();
-    let Some(grid) = simulation.scene().grid else {
-        return Topology {
-            points,
-            ..Topology::default()
-        };
-    };
-    let structural = simulation
+    let surface = &simulation.scene().surface;
+    let covered = surface.particles();
+    let springs = simulation
         .model()
         .network()
         .into_iter()
-        .flat_map(a3_core::Network::springs);
+        .flat_map(Network::springs);
     Topology {
-        points,
-        triangles: grid.triangles().map(|t| t.map(|i| i as u32)).collect(),
-        wires: structural
-            .filter(|s| s.kind == SpringKind::Structural)
+        points: simulation.particles(),
+        triangles: surface.triangles.clone(),
+        wires: springs
+            .filter(|s| s.kind == SpringKind::Structural && s.i.max(s.j) < covered)
             .map(|s| [s.i as u32, s.j as u32])
             .collect(),
     }

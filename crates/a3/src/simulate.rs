@@ -64,7 +64,7 @@ fn state<'a>(simulation: &'a Simulation, velocities: &'a [f64]) -> State<'a> {
     let n = simulation.particles();
     let adaptive = simulation.method().is_adaptive();
     State {
-        scene: simulation.scene().name,
+        scene: &simulation.scene().name,
         solver: simulation.method().name,
         step: (!adaptive).then_some(simulation.setting()),
         tolerance: adaptive.then_some(simulation.setting()),

@@ -45,7 +45,7 @@ pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
 pub use network::{Energy, Network};
 pub use path::{Path, Place};
-pub use scenes::{Model, Scene, SceneEntry, Swing, View};
+pub use scenes::{Model, Scene, SceneEntry, Surface, Swing, View};
 pub use sheet::Sheet;
 pub use simulation::Simulation;
 pub use spring::{Spring, SpringKind, SpringLaw};

@@ -208,10 +208,11 @@ fn nothing_enters_the_sphere_or_the_floor() {
 
 fn bare(model: Model, state: Vec<f64>) -> Scene {
     Scene {
-        name: "bare",
+        name: "bare".into(),
         model,
         state,
         grid: None,
+        surface: std::sync::Arc::default(),
         swing: None,
         wind: None,
         trail: None,

@@ -239,7 +239,7 @@ impl Graphics {
             self.scale(),
             &readings,
         )?;
-        let name = output::free_picture_name(session.first().scene().name)?;
+        let name = output::free_picture_name(&session.first().scene().name)?;
         output::write(name.as_ref(), &output::png(&pixels, size)?)?;
         Ok(name)
     }

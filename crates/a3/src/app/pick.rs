@@ -37,9 +37,11 @@ pub fn pick(
     let places: Vec<_> = (0..simulation.particles()).map(project).collect();
     // On the screen, in units of its height.
     let gap = |at: [f32; 2]| ((at[0] - pointer[0]) * aspect).hypot(at[1] - pointer[1]);
-    let on_surface = simulation.scene().grid.and_then(|grid| {
-        grid.triangles()
+    let on_surface = {
+        let triangles = simulation.scene().surface.triangles.iter();
+        triangles
             .filter_map(|corners| {
+                let corners = corners.map(|i| i as usize);
                 let [a, b, c] = corners.map(|i| places[i]);
                 let (a, b, c) = (a?, b?, c?);
                 let [u, v, w] = weights(pointer, a.0, b.0, c.0)?;
@@ -52,7 +54,7 @@ pub fn pick(
                     .into_iter()
                     .min_by(|a, b| near(a).total_cmp(&near(b)))
             })
-    });
+    };
     let nearest = || {
         let near =
             |(i, place): (usize, &Option<([f32; 2], f32)>)| place.map(|(at, _)| (i, gap(at)));

@@ -44,7 +44,7 @@ impl<'a> Study<'a> {
         let grid = scene.grid;
         let blank = Record {
             version: VERSION.into(),
-            scene: scene.name.into(),
+            scene: scene.name.clone(),
             rows: grid.map_or(0, |grid| grid.rows()),
             cols: grid.map_or(0, |grid| grid.cols()),
             wind,

@@ -141,7 +141,7 @@ pub fn look_ahead(
         return Ok(None);
     };
     let of = if stiffness == 1.0 {
-        scene.name.to_owned()
+        scene.name.clone()
     } else {
         format!("{} at {stiffness} times its stiffness", scene.name)
     };

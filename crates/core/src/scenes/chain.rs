@@ -1,5 +1,7 @@
 //! The course's chain: four particles, the first fixed.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 
 use super::{Model, Scene, SceneEntry, Swing, View, at_rest};
@@ -32,10 +34,11 @@ fn make() -> Result<Scene, Error> {
     network.set_gravity(Vector3::new(0.0, -9.8, 0.0));
     network.set_drag(0.1)?;
     Ok(Scene {
-        name: "chain",
+        name: "chain".into(),
         model: Model::Network(Box::new(network)),
         state: at_rest(&positions),
         grid: None,
+        surface: Arc::default(),
         swing: Some(Swing {
             amplitude: Vector3::new(0.6, 0.0, 0.0),
             rate: 1.5,

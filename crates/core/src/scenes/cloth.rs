@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::{Model, Scene, SceneEntry, Swing, View, at_rest};
+use super::{Model, Scene, SceneEntry, Surface, Swing, View, at_rest};
 use crate::colliders::Floor;
 use crate::error::Error;
 use crate::forces::Wind;
@@ -90,10 +90,11 @@ fn make(grid: Grid) -> Result<Scene, Error> {
     }
     let target = Vector3::new(0.0, 0.48 * top, 0.2);
     Ok(Scene {
-        name: "cloth",
+        name: "cloth".into(),
         model: Model::Network(Box::new(network)),
         state,
         grid: Some(grid),
+        surface: Surface::of_grid(grid).into(),
         swing: Some(Swing {
             amplitude: Vector3::new(0.0, 0.0, 0.5),
             rate: 2.2,

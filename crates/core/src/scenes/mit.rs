@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Model, Scene, SceneEntry, Swing, View, at_rest};
+use super::{Model, Scene, SceneEntry, Surface, Swing, View, at_rest};
 use crate::colliders::{Floor, Sphere};
 use crate::error::Error;
 use crate::forces::Wind;
@@ -56,10 +56,11 @@ fn make(name: &'static str, grid: Grid, sphere: Option<Sphere>) -> Result<Scene,
     }
     let size = (grid.rows().max(grid.cols()) as f64 / 15.0).max(1.0);
     Ok(Scene {
-        name,
+        name: name.into(),
         model: Model::Network(Box::new(network)),
         state: at_rest(&positions),
         grid: Some(grid),
+        surface: Surface::of_grid(grid).into(),
         swing: Some(Swing {
             amplitude: Vector3::new(0.0, 0.0, 2.0),
             rate: 1.0 / 1.5,

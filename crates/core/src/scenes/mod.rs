@@ -5,6 +5,7 @@ mod cloth;
 mod mit;
 mod pendulum;
 mod simple;
+mod surface;
 
 use std::sync::Arc;
 
@@ -16,6 +17,8 @@ use crate::grid::Grid;
 use crate::integrators::Method;
 use crate::network::Network;
 use crate::system::ParticleSystem;
+
+pub use surface::Surface;
 
 /// A first-order system that can be shared with its runs.
 pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
@@ -77,14 +80,16 @@ pub struct View {
 /// A model with the state it starts from.
 #[derive(Clone)]
 pub struct Scene {
-    /// As in the table.
-    pub name: &'static str,
+    /// As in the table, or in its file.
+    pub name: String,
     /// What is simulated.
     pub model: Model,
     /// y at t = 0.
     pub state: Vec<f64>,
-    /// The grid of a cloth: it can be drawn as a surface.
+    /// The grid of its cloth.
     pub grid: Option<Grid>,
+    /// What is drawn as a surface.
+    pub surface: Arc<Surface>,
     /// What key `s` does to the pins.
     pub swing: Option<Swing>,
     /// What key `d` lets blow.

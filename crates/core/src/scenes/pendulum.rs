@@ -1,5 +1,7 @@
 //! One particle on a spring that hangs from a fixed point.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 
 use super::{Model, Scene, SceneEntry, Swing, View, at_rest};
@@ -29,10 +31,11 @@ fn make() -> Result<Scene, Error> {
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
     network.set_drag(0.1)?;
     Ok(Scene {
-        name: "pendulum",
+        name: "pendulum".into(),
         model: Model::Network(Box::new(network)),
         state: at_rest(&positions),
         grid: None,
+        surface: Arc::default(),
         swing: Some(Swing {
             amplitude: Vector3::new(0.3, 0.0, 0.0),
             rate: 2.0,

@@ -14,10 +14,11 @@ pub(super) const ENTRY: SceneEntry = SceneEntry {
     grid: None,
     make: |_| {
         Ok(Scene {
-            name: "simple",
+            name: "simple".into(),
             model: Model::FirstOrder(Arc::new(Circle)),
             state: vec![1.0, 0.0, 0.0],
             grid: None,
+            surface: Arc::default(),
             swing: None,
             wind: None,
             trail: Some(0),

@@ -198,14 +198,16 @@ mod tests {
         let mut seen = vec![];
         for _ in 0..scenes::SCENES.len() {
             seen.push((
-                session.panes[0].simulation.scene().name,
+                session.panes[0].simulation.scene().name.clone(),
                 session.panes[0].simulation.method().name,
             ));
             assert!(session.act(Action::NextScene, 0));
         }
         let expected = ["cloth", "simple", "pendulum", "chain", "mit", "mit-sphere"];
         assert_eq!(
-            seen.iter().map(|(scene, _)| *scene).collect::<Vec<_>>(),
+            seen.iter()
+                .map(|(scene, _)| scene.as_str())
+                .collect::<Vec<_>>(),
             expected
         );
         // Verlet cannot serve the circle, and serves the others again.
