@@ -4,7 +4,7 @@ mod common;
 
 use std::time::Instant;
 
-use a3_core::{Grid, Mechanics, Network, Path, Sheet, Simulation, Vector3, View};
+use a3_core::{Grid, Mechanics, Network, Path, Sheet, Simulation, Vector3};
 use a3_core::{Model, Scene};
 use approx::assert_relative_eq;
 use common::{integrate, method, oscillator, scene, simulation};
@@ -177,19 +177,8 @@ fn falling(side: usize, omega: f64) -> Scene {
     }
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
     Scene {
-        name: "falling",
-        model: Model::Network(Box::new(network)),
-        state,
         grid: Some(grid),
-        swing: None,
-        wind: None,
-        trail: None,
-        step_scale: 1.0,
-        reach: 10.0,
-        view: View {
-            eye: Vector3::z(),
-            target: Vector3::zeros(),
-        },
+        ..Scene::new("falling", Model::Network(Box::new(network)), state)
     }
 }
 

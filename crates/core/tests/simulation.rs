@@ -207,22 +207,7 @@ fn nothing_enters_the_sphere_or_the_floor() {
 }
 
 fn bare(model: Model, state: Vec<f64>) -> Scene {
-    Scene {
-        name: "bare".into(),
-        model,
-        state,
-        grid: None,
-        surface: std::sync::Arc::default(),
-        swing: None,
-        wind: None,
-        trail: None,
-        view: View {
-            eye: Vector3::z(),
-            target: Vector3::zeros(),
-        },
-        step_scale: 1.0,
-        reach: 10.0,
-    }
+    Scene::new("bare", model, state)
 }
 
 /// A sphere that comes along at 2 m/s hits a particle that slides past at 3 m/s: the particle is put on the surface,

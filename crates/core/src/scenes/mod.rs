@@ -106,6 +106,27 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// A model and the state it starts from, without surface, hands and wind, seen from the front and a little from the
+    /// right and from above.
+    #[must_use]
+    pub fn new(name: impl Into<String>, model: Model, state: Vec<f64>) -> Self {
+        let (target, radius) = bounds(&state[..(3 * model.particles()).min(state.len())]);
+        let eye = target + Vector3::new(0.5, 0.15, 1.0).normalize() * (2.8 * radius);
+        Self {
+            name: name.into(),
+            model,
+            state,
+            grid: None,
+            surface: Arc::default(),
+            swing: None,
+            wind: None,
+            trail: None,
+            view: View { eye, target },
+            step_scale: 1.0,
+            reach: 10.0,
+        }
+    }
+
     /// The method's default step (s) on this scene to two digits, as one would type it, or its default tolerance.
     #[must_use]
     pub fn default_setting(&self, method: &Method) -> f64 {
@@ -177,4 +198,25 @@ fn at_rest(positions: &[Vector3<f64>]) -> Vec<f64> {
         }
     }
     y
+}
+
+/// The middle of the smallest upright box around the particles, and the distance of the farthest from it, at least 1.
+pub(crate) fn bounds(x: &[f64]) -> (Vector3<f64>, f64) {
+    let n = x.len() / 3;
+    let range = |axis: usize| {
+        let column = &x[axis * n..(axis + 1) * n];
+        column
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
+                (low.min(x), high.max(x))
+            })
+    };
+    let middle = Vector3::from_fn(|axis, _| {
+        let (low, high) = range(axis);
+        0.5 * (low + high)
+    });
+    let radius = (0..n)
+        .map(|i| (Vector3::new(x[i], x[n + i], x[2 * n + i]) - middle).norm())
+        .fold(1.0, f64::max);
+    (middle, radius)
 }

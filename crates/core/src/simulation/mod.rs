@@ -9,7 +9,7 @@ use nalgebra::{DMatrixView, Vector3};
 use crate::error::{BlowUp, Cause, Error, positive};
 use crate::integrators::{Adaptive, Integrator, Method, Tolerance, Work};
 use crate::network::Energy;
-use crate::scenes::{Model, Scene};
+use crate::scenes::{Model, Scene, bounds};
 use crate::system::ParticleSystem;
 
 /// A particle this many times the scene's radius away from its middle is lost.
@@ -534,25 +534,4 @@ fn cause(error: Error) -> Result<Cause, Error> {
         Error::NoConvergence { residual } => Ok(Cause::NoConvergence { residual }),
         error => Err(error),
     }
-}
-
-/// The middle of the smallest upright box around the particles, and the distance of the farthest from it, at least 1.
-fn bounds(x: &[f64]) -> (Vector3<f64>, f64) {
-    let n = x.len() / 3;
-    let range = |axis: usize| {
-        let column = &x[axis * n..(axis + 1) * n];
-        column
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
-                (low.min(x), high.max(x))
-            })
-    };
-    let middle = Vector3::from_fn(|axis, _| {
-        let (low, high) = range(axis);
-        0.5 * (low + high)
-    });
-    let radius = (0..n)
-        .map(|i| (Vector3::new(x[i], x[n + i], x[2 * n + i]) - middle).norm())
-        .fold(1.0, f64::max);
-    (middle, radius)
 }
