@@ -2,9 +2,7 @@
 
 mod common;
 
-use a3_core::{
-    Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3, View,
-};
+use a3_core::{Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3};
 use common::method;
 use serde::Deserialize;
 
@@ -59,21 +57,11 @@ fn simulate(reference: &Reference, name: &str, h: f64) -> Simulation {
     }
     network.set_gravity(Vector3::from(reference.gravity));
     network.set_drag(reference.drag).unwrap();
-    let scene = Scene {
-        name: "reference",
-        model: Model::Network(Box::new(network)),
-        state: column_major(&reference.positions, &reference.velocities),
-        grid: None,
-        swing: None,
-        wind: None,
-        trail: None,
-        step_scale: 1.0,
-        reach: 10.0,
-        view: View {
-            eye: Vector3::z(),
-            target: Vector3::zeros(),
-        },
-    };
+    let scene = Scene::new(
+        "reference",
+        Model::Network(Box::new(network)),
+        column_major(&reference.positions, &reference.velocities),
+    );
     Simulation::new(scene, method(name), h).unwrap()
 }
 

@@ -5,9 +5,7 @@ mod common;
 use std::sync::Arc;
 
 use a3_core::colliders::Sphere;
-use a3_core::{
-    Cause, Error, Model, Network, ParticleSystem, Path, Scene, Simulation, Vector3, View,
-};
+use a3_core::{Cause, Error, Model, Network, ParticleSystem, Path, Scene, Simulation, Vector3};
 use approx::assert_relative_eq;
 use common::{method, scene, simulation};
 
