@@ -193,8 +193,8 @@ fn typed(setting: f64) -> String {
 
 fn command(what: &What, method: &Method, setting: f64) -> String {
     let mut words = format!("a3 {} {}", method.letter, typed(setting));
-    if what.scene.name != "cloth" {
-        let _ = write!(words, " --scene {}", what.scene.name);
+    if what.scene.typed != "cloth" {
+        let _ = write!(words, " --scene {}", what.scene.typed);
     }
     if let Some(grid) = what.grid {
         let _ = write!(words, " --grid {}x{}", grid.rows(), grid.cols());

@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use a3_core::{Grid, Method, Scene, SceneEntry, Simulation, integrators, scenes};
+use a3_core::{Grid, Method, Scene, Simulation, integrators};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
 use crate::Failure;
 use crate::app::Session;
+use crate::scene_file::Source;
 
 /// Physical simulation of mass-spring systems: pull at cloth, and see which integrator holds.
 #[derive(Parser)]
@@ -41,7 +42,7 @@ pub enum Command {
     /// Compare two to four methods side by side, in a window or as PNG
     Compare(Compare),
     /// List the scenes: particles, springs, length of the state, forces
-    Scenes,
+    Scenes(Scenes),
     /// List the solvers: order, evaluations per step, default step or tolerance
     Solvers,
 }
@@ -49,9 +50,9 @@ pub enum Command {
 /// What is simulated.
 #[derive(Args, Clone)]
 pub struct What {
-    /// Scene, one of those that `a3 scenes` lists
-    #[arg(long, value_name = "NAME", default_value = "cloth", value_parser = scene)]
-    pub scene: &'static SceneEntry,
+    /// Scene, one of those that `a3 scenes` lists, or a file of your own
+    #[arg(long, value_name = "NAME|FILE", default_value = "cloth", value_parser = Source::find)]
+    pub scene: Source,
     /// Rows and columns of a cloth, such as 30x40
     #[arg(long, value_name = "ROWSxCOLS", value_parser = grid, allow_hyphen_values = true)]
     pub grid: Option<Grid>,
@@ -65,9 +66,9 @@ pub struct What {
 
 #[derive(Args)]
 pub struct Window {
-    /// Solver by letter or name: e, t, r, ... (`a3 solvers` lists them)
-    #[arg(default_value = "t", value_parser = solver)]
-    pub solver: &'static Method,
+    /// Solver by letter or name: e, t, r, ... (`a3 solvers` lists them); without it, the scene's own, or t
+    #[arg(value_parser = solver)]
+    pub solver: Option<&'static Method>,
     /// Step in seconds, or relative tolerance of an adaptive solver; without it, the solver's own
     #[arg(value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
@@ -78,6 +79,9 @@ pub struct Window {
     pub springs_of: Option<usize>,
     #[command(flatten)]
     pub look: Look,
+    /// Load the scene's file again whenever it is saved
+    #[arg(long)]
+    pub watch: bool,
 }
 
 /// How a window begins.
@@ -92,6 +96,16 @@ pub struct Look {
     /// Write what is on the screen as lines of text to stderr
     #[arg(long, hide = true)]
     pub status: bool,
+}
+
+#[derive(Args)]
+pub struct Scenes {
+    /// Print the file of a scene, as a start for one of your own
+    #[arg(long, value_name = "NAME", value_parser = Source::find)]
+    pub print: Option<Source>,
+    /// Print the JSON Schema of scene files, by which editors complete and check them
+    #[arg(long, conflicts_with = "print")]
+    pub schema: bool,
 }
 
 #[derive(Args)]
@@ -227,22 +241,27 @@ pub struct Compare {
 /// A run without a window.
 #[derive(Args)]
 pub struct Run {
-    /// Solver by letter or name
+    /// Solver by letter or name; without it, the scene's own, or t
     #[arg(value_parser = solver)]
-    pub solver: &'static Method,
-    /// Step in seconds, or relative tolerance of an adaptive solver (a, x, f)
+    pub solver: Option<&'static Method>,
+    /// Step in seconds, or relative tolerance of an adaptive solver (a, x, f); without it, the solver's own
     #[arg(value_parser = step, allow_negative_numbers = true)]
-    pub step: f64,
-    /// Simulated seconds; the last step is shortened to end exactly there
+    pub step: Option<f64>,
+    /// Simulated seconds, or the scene's own; the last step is shortened to end exactly there
     #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true)]
-    pub until: f64,
+    pub until: Option<f64>,
     #[command(flatten)]
     pub what: What,
 }
 
 impl Window {
     pub fn session(&self) -> Result<Session, Failure> {
-        let method = (self.solver, self.step);
+        if self.watch && self.what.scene.path.is_none() {
+            return Err(Failure::usage(
+                "--watch is for a scene of your own, as in `--scene flag.toml --watch`",
+            ));
+        }
+        let method = (self.what.scene.solver_or(self.solver), self.step);
         Session::new(&self.what, &[method], &self.look, self.springs_of)
     }
 }
@@ -267,6 +286,17 @@ impl What {
         step: Option<f64>,
     ) -> Result<Simulation, Failure> {
         let scene = self.scene.build(self.grid).map_err(Failure::usage)?;
+        self.run(scene, solver, step)
+    }
+
+    /// A run of that scene.
+    fn run(
+        &self,
+        scene: Scene,
+        solver: &'static Method,
+        step: Option<f64>,
+    ) -> Result<Simulation, Failure> {
+        let name = scene.name.clone();
         for (asked, there, option) in [
             (self.wind, scene.wind.is_some(), "wind"),
             (self.swing, scene.swing.is_some(), "swing"),
@@ -287,7 +317,7 @@ impl What {
                     .filter(|m| !m.needs_mechanics)
                     .map(|m| m.name);
                 let any = any.collect::<Vec<_>>().join(", ");
-                Failure::usage(format!("scene {}: {e}; use one of {any}", self.scene.name))
+                Failure::usage(format!("scene {name}: {e}; use one of {any}"))
             }
             e => Failure::usage(e),
         })?;
@@ -312,7 +342,16 @@ impl What {
 
 impl Run {
     pub fn simulation(&self) -> Result<Simulation, Failure> {
-        self.what.simulation(self.solver, Some(self.step))
+        let solver = self.what.scene.solver_or(self.solver);
+        self.what.simulation(solver, self.step)
+    }
+
+    /// Where it ends (s).
+    pub fn end(&self) -> Result<f64, Failure> {
+        let own = self.what.scene.description.duration;
+        self.until.or(own).ok_or_else(|| {
+            Failure::usage("how long? give --until T in seconds, such as --until 10")
+        })
     }
 }
 
@@ -447,13 +486,6 @@ fn solver(text: &str) -> Result<&'static Method, String> {
     })
 }
 
-fn scene(text: &str) -> Result<&'static SceneEntry, String> {
-    scenes::find(text).ok_or_else(|| {
-        let names: Vec<_> = scenes::SCENES.iter().map(|s| s.name).collect();
-        format!("the scenes are {}", names.join(", "))
-    })
-}
-
 fn pair<T: std::str::FromStr>(text: &str) -> Option<(T, T)> {
     let (a, b) = text.split_once(['x', 'X', '×'])?;
     Some((a.parse().ok()?, b.parse().ok()?))
@@ -469,6 +501,11 @@ fn size(text: &str) -> Result<(u32, u32), String> {
         Some((w, h)) if w > 0 && h > 0 => Ok((w, h)),
         _ => Err("a size is WIDTHxHEIGHT in pixels, such as 1280x720".into()),
     }
+}
+
+/// What is between the first quotes: the value that was refused.
+fn value_of(head: &str) -> &str {
+    head.split('\'').nth(1).unwrap_or_default()
 }
 
 /// Help and version as clap prints them; anything else in one line.
@@ -492,8 +529,13 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         .lines()
         .find_map(|line| line.trim().strip_prefix("tip: "));
     Err(Failure::Usage(match (error.kind(), tip) {
-        // Its own words end with what is right.
-        (ErrorKind::ValueValidation, _) => line,
+        // Its own words end with what is right, and those of a file's faults begin with its name.
+        (ErrorKind::ValueValidation, _) => match line.split_once("': ") {
+            Some((head, rest)) if head.contains(" '") && rest.starts_with(value_of(head)) => {
+                rest.into()
+            }
+            _ => line,
+        },
         (ErrorKind::ArgumentConflict | ErrorKind::MissingRequiredArgument, _)
             if line.contains("--error") =>
         {

@@ -14,7 +14,7 @@ pub const SIZE: (u32, u32) = (1280, 720);
 pub fn run(options: &Compare) -> Result<(), Failure> {
     let mut session = options.session()?;
     let (Some(path), Some(until)) = (&options.output, options.until) else {
-        return app::open(session, options.look.status);
+        return app::open(session, options.look.status, None);
     };
     if options.look.paused {
         return Err(Failure::usage(

@@ -1,7 +1,9 @@
 //! `a3 scenes` and `a3 solvers`: what there is.
 
+use a3_core::scenes::Description;
 use a3_core::{integrators, scenes};
 
+use crate::cli::Scenes;
 use crate::{Failure, output};
 
 /// Columns as wide as their widest cell; those whose heading starts with a space are right-aligned.
@@ -34,7 +36,13 @@ pub fn table(rows: &[Vec<String>]) -> String {
         .collect()
 }
 
-pub fn scenes() -> Result<(), Failure> {
+pub fn scenes(options: &Scenes) -> Result<(), Failure> {
+    if let Some(source) = &options.print {
+        return output::say(source.text());
+    }
+    if options.schema {
+        return output::say(&(Description::schema() + "\n"));
+    }
     let heading = [
         "scene",
         "grid",
@@ -50,14 +58,18 @@ pub fn scenes() -> Result<(), Failure> {
         let network = scene.model.network();
         rows.push(vec![
             entry.name.into(),
-            entry
-                .grid
-                .map_or("-".into(), |(rows, cols)| format!("{rows}x{cols}")),
+            scene.grid.map_or("-".into(), |grid| {
+                format!("{}x{}", grid.rows(), grid.cols())
+            }),
             scene.model.particles().to_string(),
             network.map_or(0, |n| n.springs().count()).to_string(),
             scene.model.system().dim().to_string(),
             network.map_or("-".into(), |n| n.forces_in_use().join(", ")),
-            entry.summary.into(),
+            entry
+                .description()
+                .ok()
+                .and_then(|d| d.summary)
+                .unwrap_or_default(),
         ]);
     }
     output::say(&table(&rows))

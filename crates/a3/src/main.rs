@@ -14,6 +14,7 @@ mod output;
 mod plot;
 mod progress;
 mod render;
+mod scene_file;
 mod show;
 mod simulate;
 mod stability;
@@ -53,7 +54,7 @@ fn main() -> ExitCode {
             Some(Command::Chart(options)) => chart::run(&options),
             Some(Command::Stability(options)) => stability::run(&options),
             Some(Command::Choose(options)) => choose::run(&options),
-            Some(Command::Scenes) => list::scenes(),
+            Some(Command::Scenes(options)) => list::scenes(&options),
             Some(Command::Solvers) => list::solvers(),
         },
         Err(error) => cli::explain(&error),

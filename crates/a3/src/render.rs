@@ -21,7 +21,7 @@ pub fn run(options: &Render) -> Result<(), Failure> {
         output::say(&show::list_springs_of(&simulation, i))?;
     }
     let mut show = Show::new(options.wireframe, options.springs_of);
-    progress::advance(&mut simulation, options.run.until, |simulation| {
+    progress::advance(&mut simulation, options.run.end()?, |simulation| {
         show.follow(simulation);
     })
     .map_err(Failure::run)?;

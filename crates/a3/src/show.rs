@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use a3_core::{Network, Simulation, Spring, SpringKind, SpringLaw, Vector3};
+use a3_core::{Network, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3};
 use a3_render::{Ball, Camera, Line, Picture, Style, Topology};
 
 /// Linear colours.
@@ -261,9 +261,14 @@ pub fn topology(simulation: &Simulation) -> Topology {
     }
 }
 
-/// Where the scene wants to be looked at from.
+/// Where the run's scene wants to be looked at from.
 pub fn camera(simulation: &Simulation) -> Camera {
-    let view = simulation.scene().view;
+    camera_of(simulation.scene())
+}
+
+/// Where a scene wants to be looked at from.
+pub fn camera_of(scene: &Scene) -> Camera {
+    let view = scene.view;
     Camera::look_at(to_f32(view.eye), to_f32(view.target))
 }
 

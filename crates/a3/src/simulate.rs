@@ -46,7 +46,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     if !to_stdout {
         output::check(&options.output, &["json"])?;
     }
-    progress::advance(&mut simulation, options.run.until, |_| {}).map_err(Failure::run)?;
+    progress::advance(&mut simulation, options.run.end()?, |_| {}).map_err(Failure::run)?;
     let velocities = simulation.velocities();
     let state = state(&simulation, &velocities);
     if to_stdout {

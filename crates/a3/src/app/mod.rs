@@ -11,6 +11,7 @@ mod reference;
 mod session;
 mod status;
 mod text;
+mod watch;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -30,6 +31,7 @@ use graphics::{Graphics, Outcome};
 use keys::Action;
 use pick::Grip;
 use status::Status;
+use watch::Watch;
 
 pub use hud::{Readings, digits};
 pub use pane::Pane;
@@ -49,11 +51,15 @@ pub fn run(options: &cli::Window) -> Result<(), Failure> {
     if let Some(i) = options.springs_of {
         print!("{}", show::list_springs_of(session.first(), i));
     }
-    open(session, options.look.status)
+    let watch = options
+        .watch
+        .then(|| Watch::new(options.what.scene.files()));
+    open(session, options.look.status, watch)
 }
 
 /// Opens the window, or does its job without one. With `status`, what is on the screen is told on stderr.
-pub fn open(mut session: Session, status: bool) -> Result<(), Failure> {
+/// A scene whose files are watched is loaded again when they change.
+pub fn open(mut session: Session, status: bool, watch: Option<Watch>) -> Result<(), Failure> {
     let event_loop = match event_loop() {
         Ok(event_loop) => event_loop,
         Err(why) => return headless::run(&why, session),
@@ -71,6 +77,7 @@ pub fn open(mut session: Session, status: bool) -> Result<(), Failure> {
         visible: true,
         held: 0,
         status: status.then(Status::default),
+        watch,
         failure: None,
         session,
     };
@@ -130,6 +137,7 @@ struct App {
     /// Devices opened so far.
     devices: u32,
     status: Option<Status>,
+    watch: Option<Watch>,
     failure: Option<Failure>,
 }
 
@@ -197,16 +205,29 @@ impl App {
                     self.last = Instant::now();
                 }
                 if self.session.act(action, self.pointed()) {
-                    self.hand = Hand::Empty;
-                    self.button = None;
-                    if let Some(graphics) = &mut self.graphics {
-                        graphics.set_scene(&self.session);
-                    }
-                    self.title();
+                    self.scene_changed();
                 }
             }
         }
         self.redraw();
+    }
+
+    /// Another scene is shown now.
+    fn scene_changed(&mut self) {
+        self.hand = Hand::Empty;
+        self.button = None;
+        if let Some(graphics) = &mut self.graphics {
+            graphics.set_scene(&self.session);
+        }
+        self.title();
+    }
+
+    /// Loads the scene again if its file was saved.
+    fn look_at_files(&mut self) {
+        if self.watch.as_mut().is_some_and(Watch::changed) && self.session.reload() {
+            self.last = Instant::now();
+            self.scene_changed();
+        }
     }
 
     fn title(&self) {
@@ -268,6 +289,7 @@ impl App {
 
     /// Brings the simulation up to date and draws it.
     fn frame(&mut self, event_loop: &ActiveEventLoop) {
+        self.look_at_files();
         let now = Instant::now();
         let real = now.duration_since(self.last).as_secs_f64();
         self.last = now;
@@ -296,7 +318,8 @@ impl App {
                     Some(now + self.frame_time())
                 } else {
                     let again = again.map(|delay| now + delay.max(self.frame_time()));
-                    [again, message_ends].into_iter().flatten().min()
+                    let look = self.watch.as_ref().map(Watch::next);
+                    [again, message_ends, look].into_iter().flatten().min()
                 };
                 if let Some(next) = next {
                     self.wait_until(event_loop, next);

@@ -4,7 +4,7 @@ mod acts;
 
 use std::time::{Duration, Instant};
 
-use a3_core::{Method, SceneEntry, Simulation, Vector3};
+use a3_core::{Method, Simulation, Vector3, scenes};
 use a3_render::Camera;
 
 use super::hud::Readings;
@@ -33,7 +33,8 @@ pub struct Session {
     pub readings: Readings,
     /// The scene and grid asked for, to come back to.
     asked: cli::What,
-    entry: &'static SceneEntry,
+    /// Which of the scenes is shown: that of the user, if it is a file, and those of the table.
+    at: usize,
     /// Where there are several panes.
     reference: Option<Reference>,
     /// Simulated time that the panes have been brought to (s): each is less than a step behind.
@@ -87,7 +88,10 @@ impl Session {
                 ..Readings::default()
             },
             asked: what.clone(),
-            entry: what.scene,
+            at: scenes::SCENES
+                .iter()
+                .position(|entry| entry.name == what.scene.typed)
+                .unwrap_or(0),
             reference: Reference::new(&panes)?,
             clock: 0.0,
             message_ends: None,
@@ -266,6 +270,12 @@ impl Session {
     pub fn say(&mut self, message: impl Into<String>) {
         self.readings.message = Some(message.into());
         self.message_ends = Some(Instant::now() + MESSAGE_TIME);
+    }
+
+    /// Says something until something else is said.
+    pub fn warn(&mut self, message: impl Into<String>) {
+        self.readings.message = Some(message.into());
+        self.message_ends = None;
     }
 
     /// Takes a message down whose time is over. Until when the one that is up stays.

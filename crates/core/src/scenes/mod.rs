@@ -1,10 +1,8 @@
-//! One file a scene, one table. A scene is data: a model, the state it starts from, and what a hand or an eye needs.
+//! Scenes. A scene is data: a model, the state it starts from, and what a hand or an eye needs. The built-in ones are
+//! files like those that users write, in one table.
 
-mod chain;
-mod cloth;
-mod mit;
-mod pendulum;
-mod simple;
+mod circle;
+mod description;
 mod surface;
 
 use std::sync::Arc;
@@ -18,6 +16,9 @@ use crate::integrators::Method;
 use crate::network::Network;
 use crate::system::ParticleSystem;
 
+use circle::Circling;
+
+pub use description::*;
 pub use surface::Surface;
 
 /// A first-order system that can be shared with its runs.
@@ -100,6 +101,12 @@ pub struct Scene {
     pub view: View,
     /// A method's default step times this holds: less than 1 for a cloth finer than its own grid.
     pub step_scale: f64,
+    /// The method to begin with, if the scene says one.
+    pub solver: Option<&'static Method>,
+    /// Its step (s) or tolerance.
+    pub step: Option<f64>,
+    /// How long it is run where no one says (s).
+    pub duration: Option<f64>,
     /// A hand stretches the springs it holds to this many times their rest length, and then waits for the other end.
     /// Less than 10 only where more would blow up a run that otherwise holds.
     pub reach: f64,
@@ -123,11 +130,15 @@ impl Scene {
             trail: None,
             view: View { eye, target },
             step_scale: 1.0,
+            solver: None,
+            step: None,
+            duration: None,
             reach: 10.0,
         }
     }
 
-    /// The method's default step (s) on this scene to two digits, as one would type it, or its default tolerance.
+    /// The method's step (s) on this scene to two digits, as one would type it, or its tolerance: the scene's own, or the
+    /// method's default.
     #[must_use]
     pub fn default_setting(&self, method: &Method) -> f64 {
         let scale = if method.is_adaptive() {
@@ -135,7 +146,14 @@ impl Scene {
         } else {
             self.step_scale
         };
-        let setting = method.default_setting * scale;
+        let own = self.step.filter(|_| {
+            self.solver
+                .is_some_and(|solver| std::ptr::eq(solver, method))
+        });
+        let setting = own.unwrap_or(method.default_setting) * scale;
+        if scale == 1.0 {
+            return setting;
+        }
         format!("{setting:.1e}").parse().unwrap_or(setting)
     }
 }
@@ -145,59 +163,53 @@ impl Scene {
 pub struct SceneEntry {
     /// As typed on the command line.
     pub name: &'static str,
-    /// What it is, in a line.
-    pub summary: &'static str,
-    /// Rows and columns by default, if it has any.
-    pub grid: Option<(usize, usize)>,
-    make: fn(Grid) -> Result<Scene, Error>,
+    /// Its file.
+    pub text: &'static str,
 }
 
 impl SceneEntry {
+    /// What its file says.
+    ///
+    /// # Errors
+    /// None: that every file can be read is tested.
+    pub fn description(&self) -> Result<Description, Error> {
+        Ok(Description::parse(self.text)?)
+    }
+
     /// Builds the scene with this grid, or with its own.
     ///
     /// # Errors
     /// A grid is asked of a scene that has none.
     pub fn build(&self, grid: Option<Grid>) -> Result<Scene, Error> {
-        match (self.grid, grid) {
-            (None, Some(_)) => Err(Error::Invalid(format!(
-                "the scene {} has no grid",
-                self.name
-            ))),
-            (Some(_), Some(grid)) => (self.make)(grid),
-            (own, None) => {
-                let (rows, cols) = own.unwrap_or((2, 2));
-                (self.make)(Grid::new(rows, cols)?)
-            }
-        }
+        let no_files = &mut |name: &str| Err(format!("{name}: built-in scenes have no files"));
+        Ok(self.description()?.build(grid, no_files)?)
     }
+}
+
+macro_rules! entry {
+    ($name:literal) => {
+        SceneEntry {
+            name: $name,
+            text: include_str!(concat!("builtin/", $name, ".toml")),
+        }
+    };
 }
 
 /// Every scene, in the order in which key `t` shows them.
 pub static SCENES: &[SceneEntry] = &[
-    cloth::ENTRY,
-    simple::ENTRY,
-    pendulum::ENTRY,
-    chain::ENTRY,
-    mit::ENTRY,
-    mit::WITH_SPHERE,
+    entry!("cloth"),
+    entry!("simple"),
+    entry!("pendulum"),
+    entry!("chain"),
+    entry!("mit"),
+    entry!("mit-sphere"),
+    entry!("jelly"),
 ];
 
 /// The scene of this name.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static SceneEntry> {
     SCENES.iter().find(|scene| scene.name == name)
-}
-
-/// The state [x | v] of particles at rest.
-fn at_rest(positions: &[Vector3<f64>]) -> Vec<f64> {
-    let n = positions.len();
-    let mut y = vec![0.0; 6 * n];
-    for (i, position) in positions.iter().enumerate() {
-        for axis in 0..3 {
-            y[axis * n + i] = position[axis];
-        }
-    }
-    y
 }
 
 /// The middle of the smallest upright box around the particles, and the distance of the farthest from it, at least 1.

@@ -1,12 +1,13 @@
 //! What the keys do to a session.
 
-use a3_core::{Error, Method, Simulation, integrators, scenes};
+use a3_core::{Error, Method, Scene, Simulation, integrators, scenes};
 use a3_render::Style;
 
 use super::super::keys::Action;
 use super::super::pane::{PORTION, Pane};
 use super::super::reference::Reference;
 use super::{KEY_BUDGET, Session};
+use crate::scene_file::Source;
 use crate::{cli, show};
 
 /// Steps of the keys + and -, in each decade.
@@ -119,21 +120,78 @@ impl Session {
         }
     }
 
-    /// The next scene of the table, with the same solvers if it can be, and the same steps.
+    /// The next scene of the table, or that of the user.
     fn next_scene(&mut self) {
-        let here = scenes::SCENES
-            .iter()
-            .position(|entry| std::ptr::eq(entry, self.entry))
-            .unwrap_or(0);
-        let entry = &scenes::SCENES[(here + 1) % scenes::SCENES.len()];
-        let grid = self
-            .asked
-            .grid
-            .filter(|_| std::ptr::eq(entry, self.asked.scene));
+        let own = usize::from(self.asked.scene.path.is_some());
+        let next = (self.at + 1) % (scenes::SCENES.len() + own);
+        let name = match next.checked_sub(own) {
+            None => &self.asked.scene.typed,
+            Some(k) => scenes::SCENES[k].name,
+        };
+        let asked = name == self.asked.scene.typed;
+        let grid = self.asked.grid.filter(|_| asked);
+        let source = if asked {
+            Ok(self.asked.scene.clone())
+        } else {
+            Source::find(name)
+        };
+        let scene = source.and_then(|source| source.build(grid));
+        match scene {
+            Ok(scene) => {
+                self.camera = show::camera_of(&scene);
+                self.set_scene(&scene);
+                self.at = next;
+            }
+            Err(why) => self.say(why),
+        }
+    }
+
+    /// Loads the scene again from its file, as it is now. What can be kept stays: the camera, solvers and steps, unless the
+    /// file says others than before. Whether it could be loaded; if not, it is said why, and all goes on.
+    pub fn reload(&mut self) -> bool {
+        let loaded = Source::find(&self.asked.scene.typed);
+        let loaded = loaded.and_then(|source| Ok((source.build(self.asked.grid)?, source)));
+        let (scene, source) = match loaded {
+            Ok(loaded) => loaded,
+            Err(why) => {
+                self.warn(why);
+                return false;
+            }
+        };
+        let (new, old) = (&source.description, &self.asked.scene.description);
+        if new.camera != old.camera {
+            self.camera = show::camera_of(&scene);
+        }
+        let run = (new.solver != old.solver || new.step != old.step)
+            .then_some(scene.solver)
+            .flatten();
+        self.say(format!("loaded {} again", source.typed));
+        self.asked.scene = source;
+        self.at = 0;
+        let (windy, swinging) = (self.first().windy(), self.first().swinging());
+        self.set_scene(&scene);
+        self.do_to_all(|run| {
+            run.set_wind(windy);
+            run.set_swinging(swinging);
+        });
+        if let Some(method) = run {
+            let setting = scene.default_setting(method);
+            for pane in &mut self.panes {
+                if let Err(why) = pane.simulation.set_method(method, setting) {
+                    self.readings.message = Some(why.to_string());
+                }
+                pane.wanted = method;
+            }
+            self.adapt();
+        }
+        true
+    }
+
+    /// Begins another scene, with the same solvers if it can be, and the same steps.
+    fn set_scene(&mut self, scene: &Scene) {
         let mut said = None;
         let mut start = |pane: &Pane| {
-            let start =
-                |method| Simulation::new(entry.build(grid)?, method, pane.simulation.setting());
+            let start = |method| Simulation::new(scene.clone(), method, pane.simulation.setting());
             // Heun serves every scene.
             start(pane.wanted).or_else(|why| {
                 said = Some(format!("{why}: the explicit trapezoid steps in"));
@@ -143,14 +201,12 @@ impl Session {
         let simulations: Result<Vec<_>, Error> = self.panes.iter().map(&mut start).collect();
         match simulations {
             Ok(simulations) => {
-                self.camera = show::camera(&simulations[0]);
                 for (pane, simulation) in self.panes.iter_mut().zip(simulations) {
                     pane.set_simulation(simulation);
                 }
                 // What builds a pane builds the reference.
                 self.reference = Reference::new(&self.panes).ok().flatten();
                 self.readings.no_error = None;
-                self.entry = entry;
                 self.stand();
             }
             Err(why) => said = Some(why.to_string()),
@@ -203,7 +259,7 @@ mod tests {
             ));
             assert!(session.act(Action::NextScene, 0));
         }
-        let expected = ["cloth", "simple", "pendulum", "chain", "mit", "mit-sphere"];
+        let expected: Vec<_> = scenes::SCENES.iter().map(|entry| entry.name).collect();
         assert_eq!(
             seen.iter()
                 .map(|(scene, _)| scene.as_str())
@@ -212,17 +268,16 @@ mod tests {
         );
         // Verlet cannot serve the circle, and serves the others again.
         let solvers: Vec<_> = seen.iter().map(|(_, solver)| *solver).collect();
-        assert_eq!(
-            solvers,
-            [
-                "verlet",
-                "trapezoid",
-                "verlet",
-                "verlet",
-                "verlet",
-                "verlet"
-            ]
-        );
+        for (scene, solver) in expected.iter().zip(solvers) {
+            assert_eq!(
+                solver,
+                if *scene == "simple" {
+                    "trapezoid"
+                } else {
+                    "verlet"
+                }
+            );
+        }
         assert_eq!(session.panes[0].simulation.scene().name, "cloth");
     }
 

@@ -1,0 +1,60 @@
+//! Scenes as JSON: particles and springs, one by one, with states that the motion is known to reach.
+
+use a3_core::scenes::{Description, Particles, Pin};
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Listed {
+    name: Option<String>,
+    note: Option<String>,
+    #[serde(rename = "units")]
+    _units: Option<String>,
+    gravity: Option<[f64; 3]>,
+    drag: Option<f64>,
+    mass: Vec<f64>,
+    #[serde(default)]
+    pinned: Vec<usize>,
+    positions: Vec<[f64; 3]>,
+    #[serde(default)]
+    velocities: Vec<[f64; 3]>,
+    #[serde(default)]
+    springs: Vec<(usize, usize, f64, f64, f64)>,
+    /// What others computed: not needed to run it.
+    #[serde(rename = "error_bound")]
+    _error_bound: Option<f64>,
+    #[serde(rename = "states")]
+    _states: Option<IgnoredAny>,
+}
+
+pub fn parse(text: &str) -> Result<Description, String> {
+    let listed: Listed = serde_json::from_str(text).map_err(|e| {
+        let why = e.to_string();
+        let why = why.split(" at line ").next().unwrap_or_default();
+        format!("line {}: {why}", e.line())
+    })?;
+    let pin = Pin {
+        particles: listed.pinned,
+        ..Pin::default()
+    };
+    Ok(Description {
+        name: listed.name,
+        summary: listed.note,
+        gravity: listed.gravity,
+        drag: listed.drag,
+        particles: Some(Particles {
+            positions: listed.positions,
+            velocities: listed.velocities,
+            mass: None,
+            masses: listed.mass,
+            springs: listed.springs,
+            pin: if pin.particles.is_empty() {
+                vec![]
+            } else {
+                vec![pin]
+            },
+        }),
+        ..Description::default()
+    })
+}

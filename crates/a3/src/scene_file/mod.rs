@@ -1,0 +1,177 @@
+//! Scenes by name, or from files: TOML, or the JSON of particles and springs.
+
+mod listed;
+mod mesh;
+
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+use a3_core::scenes::{self, Description};
+use a3_core::{Grid, Method, Scene, integrators};
+
+/// The longest file of a scene (bytes).
+const LONGEST: u64 = 16 << 20;
+/// The longest line of one (bytes): more is no text that anyone wrote.
+const LONGEST_LINE: usize = 8 << 20;
+
+/// A scene as it was asked for.
+#[derive(Clone)]
+pub struct Source {
+    /// As typed: a name of the table, or a path.
+    pub typed: String,
+    /// Where it was read, if it is a file.
+    pub path: Option<PathBuf>,
+    pub description: Arc<Description>,
+    text: Arc<str>,
+}
+
+impl Source {
+    /// The scene of that name, or in that file.
+    pub fn find(typed: &str) -> Result<Self, String> {
+        if let Some(entry) = scenes::find(typed) {
+            return Ok(Self {
+                typed: typed.into(),
+                path: None,
+                description: Arc::new(entry.description().map_err(|e| e.to_string())?),
+                text: entry.text.into(),
+            });
+        }
+        let path = Path::new(typed);
+        let extension = path
+            .extension()
+            .and_then(|e| e.to_str())
+            .map(str::to_lowercase);
+        let json = match extension.as_deref() {
+            Some("toml") => false,
+            Some("json") => true,
+            _ => return Err(unknown(typed)),
+        };
+        let text = read_text(path).map_err(|why| format!("{typed}: {why}"))?;
+        let parsed = if json {
+            listed::parse(&text)
+        } else {
+            Description::parse(&text).map_err(|fault| fault.to_string())
+        };
+        let mut description = parsed.map_err(|why| place(typed, &why))?;
+        if description.name.is_none() {
+            let stem = path
+                .file_stem()
+                .map(|stem| stem.to_string_lossy().into_owned());
+            description.name = stem;
+        }
+        Ok(Self {
+            typed: typed.into(),
+            path: Some(path.into()),
+            description: Arc::new(description),
+            text: text.into(),
+        })
+    }
+
+    /// The scene, with this grid of its cloth or with its own.
+    pub fn build(&self, grid: Option<Grid>) -> Result<Scene, String> {
+        let mut mesh = |name: &str| {
+            let file = beside(self.path.as_deref(), name)?;
+            mesh::read(&file)
+        };
+        self.description.build(grid, &mut mesh).map_err(|fault| {
+            let fault = fault.locate(&self.text);
+            match &self.path {
+                Some(_) => place(&self.typed, &fault.to_string()),
+                None => fault.to_string(),
+            }
+        })
+    }
+
+    /// The solver that was asked for, or the scene's own, or the explicit trapezoid, which serves every scene.
+    pub fn solver_or(&self, asked: Option<&'static Method>) -> &'static Method {
+        let own = || integrators::find(self.description.solver.as_deref()?);
+        asked
+            .or_else(own)
+            .or_else(|| integrators::find("trapezoid"))
+            .unwrap_or(&integrators::METHODS[0])
+    }
+
+    /// What its file says, whoever wrote it.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The files it depends on: its own and its meshes'.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let meshes = self.description.mesh.iter();
+        let meshes = meshes.filter_map(|mesh| beside(self.path.as_deref(), &mesh.file).ok());
+        self.path.iter().cloned().chain(meshes).collect()
+    }
+}
+
+/// `FILE:LINE: what`, as compilers say it, where there is a line.
+fn place(file: &str, why: &str) -> String {
+    match why.strip_prefix("line ") {
+        Some(rest) => format!("{file}:{rest}"),
+        None => format!("{file}: {why}"),
+    }
+}
+
+fn unknown(typed: &str) -> String {
+    let names = || scenes::SCENES.iter().map(|entry| entry.name);
+    let near = names()
+        .map(|name| (strsim::jaro_winkler(typed, name), name))
+        .filter(|(likeness, _)| *likeness > 0.7)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let hint = near.map_or(String::new(), |(_, name)| format!("did you mean {name}? "));
+    let names: Vec<_> = names().collect();
+    format!(
+        "{hint}the scenes are {}, and files that end in .toml or .json",
+        names.join(", ")
+    )
+}
+
+/// The bytes of an ordinary file that is not too long.
+fn read(path: &Path, longest: u64) -> Result<Vec<u8>, String> {
+    let meta = fs::metadata(path).map_err(|e| format!("not read: {e}"))?;
+    if !meta.is_file() {
+        return Err("it is no ordinary file".into());
+    }
+    let too_long = || format!("it is longer than {} MiB", longest >> 20);
+    if meta.len() > longest {
+        return Err(too_long());
+    }
+    let mut bytes = vec![];
+    let file = File::open(path).map_err(|e| format!("not read: {e}"))?;
+    file.take(longest + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|e| format!("not read: {e}"))?;
+    if bytes.len() as u64 > longest {
+        return Err(too_long());
+    }
+    Ok(bytes)
+}
+
+fn read_text(path: &Path) -> Result<String, String> {
+    let text = String::from_utf8(read(path, LONGEST)?)
+        .map_err(|e| format!("it is no UTF-8 text: byte {}", e.utf8_error().valid_up_to()))?;
+    match text.lines().position(|line| line.len() > LONGEST_LINE) {
+        Some(k) => Err(format!(
+            "line {} is longer than {} MiB",
+            k + 1,
+            LONGEST_LINE >> 20
+        )),
+        None => Ok(text),
+    }
+}
+
+/// The path of a file that a scene names: beside the scene, or in a folder beside it.
+fn beside(scene: Option<&Path>, name: &str) -> Result<PathBuf, String> {
+    let below = Path::new(name)
+        .components()
+        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    if !below || name.is_empty() {
+        return Err(format!(
+            "`{name}` must be a path from the scene's folder downwards, without `..`"
+        ));
+    }
+    let folder = scene.and_then(Path::parent).unwrap_or(Path::new(""));
+    Ok(folder.join(name))
+}

@@ -1,0 +1,15 @@
+//! One particle whose velocity is its position turned by a right angle, f = (-y, x, 0): a circle for ever.
+
+use crate::system::ParticleSystem;
+
+pub(super) struct Circling;
+
+impl ParticleSystem for Circling {
+    fn dim(&self) -> usize {
+        3
+    }
+
+    fn eval_f(&self, _t: f64, y: &[f64], dydt: &mut [f64]) {
+        dydt.copy_from_slice(&[-y[1], y[0], 0.0]);
+    }
+}

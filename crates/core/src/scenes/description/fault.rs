@@ -1,0 +1,170 @@
+//! What is wrong with a scene's text, and where.
+
+use std::fmt;
+
+use toml::de::{DeTable, DeValue};
+
+/// What is wrong, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// From 1, once it is known.
+    pub line: Option<usize>,
+    /// Such as `cloth.size`; of the second cloth `cloth.1.size`. Empty for the whole.
+    pub key: String,
+    /// What it is, and what would be right.
+    pub why: String,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(line) = self.line {
+            write!(f, "line {line}: ")?;
+        }
+        if !self.key.is_empty() {
+            write!(f, "{}: ", self.key)?;
+        }
+        f.write_str(&self.why)
+    }
+}
+
+impl std::error::Error for Fault {}
+
+impl From<Fault> for crate::Error {
+    fn from(fault: Fault) -> Self {
+        Self::Invalid(fault.to_string())
+    }
+}
+
+impl Fault {
+    pub(super) fn new(key: impl Into<String>, why: impl fmt::Display) -> Self {
+        Self {
+            line: None,
+            key: key.into(),
+            why: why.to_string(),
+        }
+    }
+
+    /// With the line of its key in that text.
+    #[must_use]
+    pub fn locate(self, text: &str) -> Self {
+        let place = || {
+            let table = DeTable::parse(text).ok()?;
+            place(table.get_ref(), &self.key)
+        };
+        Self {
+            line: self.line.or_else(|| place().map(|at| line(text, at))),
+            ..self
+        }
+    }
+
+    pub(super) fn of_toml(text: &str, error: &toml::de::Error) -> Self {
+        let at = error.span().map(|span| span.start);
+        let key = at.and_then(|at| {
+            let table = DeTable::parse(text).ok()?;
+            Some(key_at(table.get_ref(), at))
+        });
+        Self {
+            line: at.map(|at| line(text, at)),
+            key: key.unwrap_or_default(),
+            why: explain(error.message()),
+        }
+    }
+}
+
+fn line(text: &str, at: usize) -> usize {
+    1 + text.bytes().take(at).filter(|b| *b == b'\n').count()
+}
+
+/// Where the value of a key begins: of the longest part of it that is there.
+fn place(table: &DeTable, key: &str) -> Option<usize> {
+    let mut parts = key.split('.');
+    let first = parts.next()?;
+    let (name, value) = table.get_key_value(first)?;
+    let mut at = name.span().start;
+    let mut value = value.get_ref();
+    for part in parts {
+        let next = match value {
+            DeValue::Table(table) => table.get_key_value(part).map(|(name, v)| (name.span(), v)),
+            DeValue::Array(array) => match part.parse::<usize>() {
+                Ok(i) => array.get(i).map(|v| (v.span(), v)),
+                // The only one goes without a number.
+                Err(_) => array
+                    .first()
+                    .and_then(|v| v.get_ref().as_table()?.get_key_value(part))
+                    .map(|(name, v)| (name.span(), v)),
+            },
+            _ => None,
+        };
+        let Some((span, v)) = next else { break };
+        (at, value) = (span.start, v.get_ref());
+    }
+    Some(at)
+}
+
+/// The key whose value, or whose name, is at that byte.
+fn key_at(table: &DeTable, at: usize) -> String {
+    for (name, value) in table {
+        let (name_span, span) = (name.span(), value.span());
+        let inside = span.contains(&at);
+        if !inside && !name_span.contains(&at) {
+            continue;
+        }
+        let name = name.get_ref().to_string();
+        let rest = match value.get_ref() {
+            DeValue::Table(inner) if inside => key_at(inner, at),
+            DeValue::Array(items) if inside => {
+                let item = items
+                    .iter()
+                    .enumerate()
+                    .find(|(_, v)| v.span().contains(&at));
+                match item.map(|(i, v)| (i, v.get_ref())) {
+                    Some((i, DeValue::Table(inner))) => {
+                        let rest = key_at(inner, at);
+                        match (items.len(), rest.is_empty()) {
+                            (1, _) => rest,
+                            (_, true) => i.to_string(),
+                            (_, false) => format!("{i}.{rest}"),
+                        }
+                    }
+                    _ => String::new(),
+                }
+            }
+            _ => String::new(),
+        };
+        return if rest.is_empty() {
+            name
+        } else {
+            format!("{name}.{rest}")
+        };
+    }
+    String::new()
+}
+
+/// The reader's words, in ours.
+fn explain(message: &str) -> String {
+    let message = message.lines().next().unwrap_or_default();
+    let quoted: Vec<_> = message.split('`').skip(1).step_by(2).collect();
+    if let (true, [unknown, known @ ..]) = (
+        message.starts_with("unknown field") || message.starts_with("unknown variant"),
+        &quoted[..],
+    ) {
+        let what = if message.starts_with("unknown field") {
+            "there is no key"
+        } else {
+            "there is no"
+        };
+        let nearest = known
+            .iter()
+            .map(|name| (strsim::jaro_winkler(unknown, name), *name))
+            .filter(|(likeness, _)| *likeness > 0.7)
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        let hint = nearest.map_or(String::new(), |(_, name)| {
+            format!("did you mean `{name}`? ")
+        });
+        return format!("{what} `{unknown}`: {hint}there are {}", known.join(", "));
+    }
+    if let (true, [missing, ..]) = (message.starts_with("missing field"), &quoted[..]) {
+        return format!("needs the key `{missing}`");
+    }
+    message.to_owned()
+}
