@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use crate::colliders::{Floor, Sphere};
+use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
 use crate::error::{Error, at_least, positive};
 use crate::forces::flow::{self, Flow};
 use crate::forces::sheet::Of;
@@ -57,6 +57,8 @@ pub struct Network {
     drag: Option<f64>,
     wind: Option<Wind>,
     spheres: Vec<Sphere>,
+    boxes: Vec<Cuboid>,
+    capsules: Vec<Capsule>,
     floor: Option<Floor>,
 }
 
@@ -88,6 +90,8 @@ impl Network {
             drag: None,
             wind: None,
             spheres: vec![],
+            boxes: vec![],
+            capsules: vec![],
             floor: None,
         })
     }
@@ -254,6 +258,51 @@ impl Network {
         &self.spheres
     }
 
+    /// Leads sphere k along `path` from now on.
+    ///
+    /// # Errors
+    /// There is no such sphere.
+    pub fn lead_sphere(&mut self, k: usize, path: Path) -> Result<(), Error> {
+        self.check_sphere(k)?;
+        self.spheres[k].path = path;
+        Ok(())
+    }
+
+    /// # Errors
+    /// There is no sphere k.
+    pub fn check_sphere(&self, k: usize) -> Result<(), Error> {
+        match self.spheres.len() {
+            count if k < count => Ok(()),
+            0 => Err(Error::Invalid("there is no sphere here".into())),
+            count => Err(Error::Invalid(format!(
+                "there is no sphere {k}: they are numbered 0 to {}",
+                count - 1
+            ))),
+        }
+    }
+
+    /// Puts a box in the way.
+    pub fn add_box(&mut self, cuboid: Cuboid) {
+        self.boxes.push(cuboid);
+    }
+
+    /// The boxes in the way.
+    #[must_use]
+    pub fn boxes(&self) -> &[Cuboid] {
+        &self.boxes
+    }
+
+    /// Puts a capsule in the way.
+    pub fn add_capsule(&mut self, capsule: Capsule) {
+        self.capsules.push(capsule);
+    }
+
+    /// The capsules in the way.
+    #[must_use]
+    pub fn capsules(&self) -> &[Capsule] {
+        &self.capsules
+    }
+
     /// Lays a floor.
     pub fn set_floor(&mut self, floor: Floor) {
         self.floor = Some(floor);
@@ -316,6 +365,8 @@ impl Network {
             (self.drag.is_some(), "drag"),
             (self.wind.is_some(), "wind"),
             (!self.spheres.is_empty(), "sphere"),
+            (!self.boxes.is_empty(), "box"),
+            (!self.capsules.is_empty(), "capsule"),
             (self.floor.is_some(), "floor"),
         ]
         .into_iter()
@@ -569,6 +620,12 @@ impl Mechanics for Network {
     fn constrain(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
         for sphere in &self.spheres {
             sphere.push_out(t, x, v);
+        }
+        for cuboid in &self.boxes {
+            cuboid.push_out(t, x, v);
+        }
+        for capsule in &self.capsules {
+            capsule.push_out(t, x, v);
         }
         if let Some(floor) = self.floor {
             floor.push_out(x, v);

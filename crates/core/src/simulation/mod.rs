@@ -36,6 +36,7 @@ pub struct Simulation {
     swing_phase: f64,
     /// The grabbed particle, and whether it was pinned before.
     grabbed: Option<(usize, bool)>,
+    grabbed_sphere: Option<usize>,
     blow_up: Option<BlowUp>,
     good: Good,
     middle: Vector3<f64>,
@@ -146,6 +147,7 @@ impl Simulation {
             swinging: false,
             swing_phase: 0.0,
             grabbed: None,
+            grabbed_sphere: None,
             blow_up: None,
             good,
             middle,
@@ -481,7 +483,8 @@ impl Simulation {
         self.model = self.scene.model.clone();
         self.y.copy_from_slice(&self.scene.state);
         (self.since, self.taken, self.steps) = (0.0, 0, 0);
-        (self.work, self.blow_up, self.grabbed) = (Work::default(), None, None);
+        (self.work, self.blow_up) = (Work::default(), None);
+        (self.grabbed, self.grabbed_sphere) = (None, None);
         // The first step is chosen anew too: a run that was reset is the same run.
         if let Ok(stepper) = Stepper::new(self.method, self.model.system(), self.setting) {
             self.stepper = stepper;
