@@ -1,11 +1,13 @@
 //! Particles, springs, pins, and only the forces that a scene asked for.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
 use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
 use crate::error::{Error, at_least, positive};
+use crate::forces::air::OnTriangles;
 use crate::forces::flow::{self, Flow};
 use crate::forces::sheet::Of;
 use crate::forces::{columns_mut, drag, ending::Ending, gravity, sheet, springs, wind::Wind};
@@ -56,6 +58,7 @@ pub struct Network {
     gravity: Option<Vector3<f64>>,
     drag: Option<f64>,
     wind: Option<Wind>,
+    triangles: Arc<[[u32; 3]]>,
     spheres: Vec<Sphere>,
     boxes: Vec<Cuboid>,
     capsules: Vec<Capsule>,
@@ -89,6 +92,7 @@ impl Network {
             gravity: None,
             drag: None,
             wind: None,
+            triangles: Arc::default(),
             spheres: vec![],
             boxes: vec![],
             capsules: vec![],
@@ -247,6 +251,44 @@ impl Network {
         self.wind.as_ref()
     }
 
+    /// Spans triangles between particles, for [wind](Wind::on_triangles) to blow on, in place of those there were.
+    ///
+    /// # Errors
+    /// A corner does not exist.
+    pub fn set_triangles(
+        &mut self,
+        triangles: impl IntoIterator<Item = [usize; 3]>,
+    ) -> Result<(), Error> {
+        let checked = triangles.into_iter().map(|corners| {
+            corners.iter().try_for_each(|&i| self.check_particle(i))?;
+            Ok(corners.map(|i| i as u32))
+        });
+        self.triangles = checked.collect::<Result<_, Error>>()?;
+        Ok(())
+    }
+
+    /// The triangles.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The wind at time t, if it blows on triangles.
+    fn air(&self, t: f64) -> Option<OnTriangles<'_>> {
+        let wind = self.wind.as_ref()?;
+        Some(OnTriangles {
+            wind,
+            air: wind.air()?,
+            t,
+            triangles: &self.triangles,
+        })
+    }
+
+    /// The wind, if it pushes particles.
+    fn push(&self) -> Option<&Wind> {
+        self.wind.as_ref().filter(|wind| wind.air().is_none())
+    }
+
     /// Puts a sphere in the way.
     pub fn add_sphere(&mut self, sphere: Sphere) {
         self.spheres.push(sphere);
@@ -355,12 +397,17 @@ impl Network {
             .chain(self.list.iter().map(|s| s.law))
     }
 
+    /// Whether any spring is.
+    fn is_damped(&self) -> bool {
+        self.laws().any(|law| law.damping > 0.0)
+    }
+
     /// Names of the forces and obstacles this network pays for.
     #[must_use]
     pub fn forces_in_use(&self) -> Vec<&'static str> {
         [
             (self.laws().next().is_some(), "springs"),
-            (self.kick_reads_velocity(), "spring damping"),
+            (self.is_damped(), "spring damping"),
             (self.gravity.is_some(), "gravity"),
             (self.drag.is_some(), "drag"),
             (self.wind.is_some(), "wind"),
@@ -381,7 +428,7 @@ impl Network {
 
     /// What the ending makes of the springs' forces.
     fn evaluate(&self, x: &[f64], v: &[f64], f: &mut [f64], ending: &Ending) {
-        if let Some(sheet) = self.only_sheet() {
+        if let Some(sheet) = self.only_sheet().filter(|_| ending.air.is_none()) {
             sheet::set(Of::Forces, sheet, x, v, f, ending);
             return;
         }
@@ -450,7 +497,8 @@ impl Network {
     fn others(&self, part: Part, t: f64) -> Ending<'_> {
         let all = part != Part::Kick;
         Ending {
-            wind: self.wind.as_ref().map(|wind| (wind, t)),
+            wind: self.push().map(|wind| (wind, t)),
+            air: self.air(t),
             gravity: self.gravity.filter(|_| all).map(|g| (g, &*self.masses)),
             drag: self.drag.filter(|_| all),
             inertia: None,
@@ -514,7 +562,9 @@ impl Mechanics for Network {
     }
 
     fn rows(&self) -> Option<&dyn Rows> {
-        self.only_sheet().map(|_| self as &dyn Rows)
+        // Triangles reach into rows above, which a sweep has left behind.
+        let sweeps = self.only_sheet().is_some() && self.air(0.0).is_none();
+        sweeps.then_some(self as &dyn Rows)
     }
 
     fn force_differential(
@@ -527,7 +577,7 @@ impl Mechanics for Network {
         df: &mut [f64],
     ) {
         // How the turning of damped springs changes their forces, vectors do not know.
-        let turns = self.kick_reads_velocity() && v.iter().any(|v| *v != 0.0);
+        let turns = self.is_damped() && v.iter().any(|v| *v != 0.0);
         if let Some(sheet) = self.only_sheet().filter(|_| !turns) {
             let of = |stiffness, damping, p: &[f64], out: &mut [f64]| {
                 let (of, sheet) = (
@@ -552,8 +602,11 @@ impl Mechanics for Network {
         if let Some(c) = self.drag {
             drag::add(c, dv, df);
         }
-        if let Some(wind) = &self.wind {
+        if let Some(wind) = self.push() {
             wind.add_differential(t, x, dx, df);
+        }
+        if let Some(air) = self.air(t) {
+            air.add_differential(x, v, dx, dv, df);
         }
     }
 
@@ -607,7 +660,7 @@ impl Mechanics for Network {
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        self.laws().any(|law| law.damping > 0.0)
+        self.air(0.0).is_some() || self.is_damped()
     }
 
     /// x' = v, v' = g - (c/m) v, exactly.
