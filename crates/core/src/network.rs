@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
 use crate::error::{Error, at_least, positive};
 use crate::forces::air::OnTriangles;
+use crate::forces::buckling::{self, Buckling, Strip};
 use crate::forces::flow::{self, Flow};
 use crate::forces::sheet::Of;
 use crate::forces::{columns_mut, drag, ending::Ending, gravity, sheet, springs, wind::Wind};
@@ -29,7 +30,7 @@ struct Pin {
 pub struct Energy {
     /// m v2 / 2
     pub kinetic: f64,
-    /// k (L - r)2 / 2
+    /// k (L - r)2 / 2, and that of arcs
     pub elastic: f64,
     /// -m g . x
     pub gravitational: f64,
@@ -53,6 +54,7 @@ pub struct Network {
     inverse_masses: Vec<f64>,
     sheet: Option<Sheet>,
     list: Vec<Spring>,
+    strips: Vec<Strip>,
     /// In the order of their particles.
     pins: Vec<Pin>,
     gravity: Option<Vector3<f64>>,
@@ -88,6 +90,7 @@ impl Network {
             masses,
             sheet: None,
             list: vec![],
+            strips: vec![],
             pins: vec![],
             gravity: None,
             drag: None,
@@ -131,16 +134,36 @@ impl Network {
     /// # Errors
     /// An end does not exist, or both are the same.
     pub fn add_spring(&mut self, spring: Spring) -> Result<(), Error> {
-        self.check_particle(spring.i)?;
-        self.check_particle(spring.j)?;
-        if spring.i == spring.j {
-            return Err(Error::Invalid(format!(
-                "a spring needs two ends, and this has {} twice",
-                spring.i
-            )));
-        }
+        self.check_ends(spring.i, spring.j)?;
         self.list.push(spring);
         Ok(())
+    }
+
+    fn check_ends(&self, i: usize, j: usize) -> Result<(), Error> {
+        self.check_particle(i)?;
+        self.check_particle(j)?;
+        if i == j {
+            return Err(Error::Invalid(format!(
+                "a spring needs two ends, and this has {i} twice"
+            )));
+        }
+        Ok(())
+    }
+
+    /// Adds a bend spring that buckles, in place of one that does not.
+    ///
+    /// # Errors
+    /// An end does not exist, or both are the same; a number is negative or not finite; the rest length or the stiffness
+    /// against bending is 0, or the compression stiffness less than 4 pi2 `k_b` / r3.
+    pub fn add_buckling(&mut self, buckling: Buckling) -> Result<(), Error> {
+        self.check_ends(buckling.i, buckling.j)?;
+        self.strips.push(Strip::new(buckling)?);
+        Ok(())
+    }
+
+    /// The bend springs that buckle.
+    pub fn buckling(&self) -> impl Iterator<Item = Buckling> {
+        self.strips.iter().map(|strip| strip.of)
     }
 
     /// Adds springs in whatever order, and keeps all in the order of their ends: neighbours in memory are then used one
@@ -362,7 +385,7 @@ impl Network {
         self.sheet.as_ref()
     }
 
-    /// Every spring by itself, those of the sheet first.
+    /// Every spring by itself, those of the sheet first; none that buckles.
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
         self.sheet
             .iter()
@@ -370,9 +393,11 @@ impl Network {
             .chain(self.list.iter().copied())
     }
 
-    /// The springs attached to particle i.
+    /// The springs attached to particle i, those that buckle as they are while straight.
     pub fn springs_of(&self, i: usize) -> impl Iterator<Item = Spring> {
-        self.springs().filter(move |s| s.i == i || s.j == i)
+        self.springs()
+            .chain(self.strips.iter().map(Strip::straight))
+            .filter(move |s| s.i == i || s.j == i)
     }
 
     /// Makes every spring so many times as stiff, and damps it by the root of that more: its damping ratio stays.
@@ -387,6 +412,12 @@ impl Network {
             law.stiffness *= factor;
             law.damping *= factor.sqrt();
         }
+        for Strip { of, .. } in &mut self.strips {
+            of.bending *= factor;
+            of.compression *= factor;
+            of.tension *= factor;
+            of.damping *= factor.sqrt();
+        }
         Ok(())
     }
 
@@ -400,6 +431,7 @@ impl Network {
     /// Whether any spring is.
     fn is_damped(&self) -> bool {
         self.laws().any(|law| law.damping > 0.0)
+            || self.strips.iter().any(|strip| strip.of.damping > 0.0)
     }
 
     /// Names of the forces and obstacles this network pays for.
@@ -407,6 +439,7 @@ impl Network {
     pub fn forces_in_use(&self) -> Vec<&'static str> {
         [
             (self.laws().next().is_some(), "springs"),
+            (!self.strips.is_empty(), "buckling"),
             (self.is_damped(), "spring damping"),
             (self.gravity.is_some(), "gravity"),
             (self.drag.is_some(), "drag"),
@@ -443,6 +476,7 @@ impl Network {
             None => f.fill(0.0),
         }
         springs::add_list(&self.list, x, v, f);
+        springs::add_list(&self.strips, x, v, f);
         ending.apply(x, v, f);
     }
 
@@ -450,7 +484,8 @@ impl Network {
     fn only_sheet(&self) -> Option<&Sheet> {
         self.sheet
             .as_ref()
-            .filter(|sheet| self.list.is_empty() && sheet.grid().particles() == self.particles())
+            .filter(|sheet| sheet.grid().particles() == self.particles())
+            .filter(|_| self.list.is_empty() && self.strips.is_empty())
     }
 
     /// The drag and the gravity that a drift carries.
@@ -519,10 +554,9 @@ impl Network {
                     .sum::<f64>()
             })
             .sum();
-        let elastic = self
-            .springs()
-            .map(|s| 0.5 * s.law.stiffness * (springs::length(x, &s) - s.law.rest_length).powi(2))
-            .sum();
+        let straight = self.springs().map(|spring| springs::energy(&spring, x));
+        let buckled = self.strips.iter().map(|strip| springs::energy(strip, x));
+        let elastic = straight.chain(buckled).sum();
         let gravitational = self
             .gravity
             .map_or(0.0, |g| gravity::energy(g, &self.masses, x));
@@ -596,8 +630,9 @@ impl Mechanics for Network {
             }
         } else {
             df.fill(0.0);
-            self.springs()
-                .for_each(|spring| springs::add_differential(&spring, x, v, dx, dv, df));
+            self.couplings(x, &mut |coupling| {
+                springs::add_differential(&coupling, x, v, dx, dv, df);
+            });
         }
         if let Some(c) = self.drag {
             drag::add(c, dv, df);
@@ -613,6 +648,9 @@ impl Mechanics for Network {
     fn couplings(&self, x: &[f64], visit: &mut dyn FnMut(Coupling)) {
         self.springs()
             .for_each(|spring| visit(springs::coupling(&spring, x)));
+        self.strips
+            .iter()
+            .for_each(|strip| visit(springs::coupling(strip, x)));
     }
 
     fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> bool {
@@ -636,9 +674,10 @@ impl Mechanics for Network {
 
     fn speed(&self) -> f64 {
         let sheet = self.sheet.iter().flat_map(Sheet::springs).count() as f64;
-        let all = sheet + self.list.len() as f64;
+        let (list, strips) = (self.list.len() as f64, self.strips.len() as f64);
+        let all = sheet + list + strips;
         if all > 0.0 {
-            all / (sheet / sheet::SPEED + self.list.len() as f64)
+            all / (sheet / sheet::SPEED + list + strips * buckling::PRICE)
         } else {
             1.0
         }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use a3_core::forces::{Air, Wind};
+use a3_core::forces::{Air, Buckling, Wind};
 use a3_core::{
     Grid, Mechanics, Model, Network, ParticleSystem, Sheet, Simulation, Spring, SpringKind,
     SpringLaw, Vector3, scenes,
@@ -33,6 +33,29 @@ fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
         network.set_wind(scene.wind);
         Some((entry.name, network, shaken(&scene.state, 0.05)))
     });
+    let buckling = (0..2).map(|k| {
+        let scene = scene_with_grid("cloth", 6, 7);
+        let grid = scene.grid.unwrap();
+        let mut network = Network::new(vec![0.02; grid.particles()]).unwrap();
+        for row in 0..6 {
+            for col in 0..5 {
+                let (i, j) = (grid.index_of(row, col), grid.index_of(row, col + 2));
+                network
+                    .add_buckling(Buckling {
+                        i,
+                        j,
+                        rest_length: 1.4 - 0.1 * col as f64,
+                        bending: 0.3,
+                        compression: 20.0,
+                        tension: 7.0,
+                        damping: 0.2 * f64::from(k),
+                    })
+                    .unwrap();
+            }
+        }
+        ("buckling", Box::new(network), shaken(&scene.state, 0.05))
+    });
+    let of_scenes = of_scenes.chain(buckling);
     let in_the_air = [("cloth in the air", "cloth"), ("mit in the air", "mit")];
     of_scenes.chain(in_the_air.map(|(title, name)| {
         let scene = scene_with_grid(name, 6, 7);
