@@ -1,5 +1,7 @@
 //! Particles, springs, pins, and only the forces that a scene asked for.
 
+mod tearing;
+
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -55,6 +57,10 @@ pub struct Network {
     sheet: Option<Sheet>,
     list: Vec<Spring>,
     strips: Vec<Strip>,
+    /// The length over rest length at which springs break.
+    tear: Option<f64>,
+    /// The ends of those that have, in order.
+    torn: Vec<[usize; 2]>,
     /// In the order of their particles.
     pins: Vec<Pin>,
     gravity: Option<Vector3<f64>>,
@@ -91,6 +97,8 @@ impl Network {
             sheet: None,
             list: vec![],
             strips: vec![],
+            tear: None,
+            torn: vec![],
             pins: vec![],
             gravity: None,
             drag: None,
@@ -448,6 +456,7 @@ impl Network {
             (!self.boxes.is_empty(), "box"),
             (!self.capsules.is_empty(), "capsule"),
             (self.floor.is_some(), "floor"),
+            (self.tear.is_some(), "tearing"),
         ]
         .into_iter()
         .filter_map(|(used, name)| used.then_some(name))

@@ -77,3 +77,18 @@ fn no_step_in_the_air_allocates_but_the_first() {
         assert_eq!(count, 0, "{}", method.name);
     }
 }
+
+#[test]
+fn no_step_that_tears_nothing_allocates() {
+    for name in ["cloth", "chain"] {
+        for method in integrators::METHODS {
+            let mut scene = scenes::find(name).unwrap().build(None).unwrap();
+            if let Model::Network(network) = &mut scene.model {
+                network.set_tear(Some(1e3)).unwrap();
+            }
+            let mut run = Simulation::new(scene, method, method.default_setting).unwrap();
+            let count = allocations(|| run.take_steps(20).unwrap());
+            assert_eq!(count, 0, "{} on {name}", method.name);
+        }
+    }
+}
