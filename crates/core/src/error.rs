@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use nalgebra::Vector3;
+
 /// Why something could not be built or stepped.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -157,6 +159,18 @@ pub(crate) fn positive(what: &str, value: f64) -> Result<(), Error> {
     } else {
         Err(Error::Invalid(format!(
             "{what} must be a finite number above 0, not {value}"
+        )))
+    }
+}
+
+/// `Ok` if all three numbers are finite, else an error that names them.
+pub(crate) fn finite(what: &str, vector: Vector3<f64>) -> Result<(), Error> {
+    if vector.iter().all(|x| x.is_finite()) {
+        Ok(())
+    } else {
+        Err(Error::Invalid(format!(
+            "{what} must be three finite numbers, not {}, {}, {}",
+            vector.x, vector.y, vector.z
         )))
     }
 }

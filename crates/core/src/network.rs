@@ -1,11 +1,16 @@
 //! Particles, springs, pins, and only the forces that a scene asked for.
 
+mod tearing;
+
 use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::colliders::{Floor, Sphere};
+use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
 use crate::error::{Error, at_least, positive};
+use crate::forces::air::OnTriangles;
+use crate::forces::buckling::{self, Buckling, Strip};
 use crate::forces::flow::{self, Flow};
 use crate::forces::sheet::Of;
 use crate::forces::{columns_mut, drag, ending::Ending, gravity, sheet, springs, wind::Wind};
@@ -27,7 +32,7 @@ struct Pin {
 pub struct Energy {
     /// m v2 / 2
     pub kinetic: f64,
-    /// k (L - r)2 / 2
+    /// k (L - r)2 / 2, and that of arcs
     pub elastic: f64,
     /// -m g . x
     pub gravitational: f64,
@@ -51,12 +56,20 @@ pub struct Network {
     inverse_masses: Vec<f64>,
     sheet: Option<Sheet>,
     list: Vec<Spring>,
+    strips: Vec<Strip>,
+    /// The length over rest length at which springs break.
+    tear: Option<f64>,
+    /// The ends of those that have, in order.
+    torn: Vec<[usize; 2]>,
     /// In the order of their particles.
     pins: Vec<Pin>,
     gravity: Option<Vector3<f64>>,
     drag: Option<f64>,
     wind: Option<Wind>,
+    triangles: Arc<[[u32; 3]]>,
     spheres: Vec<Sphere>,
+    boxes: Vec<Cuboid>,
+    capsules: Vec<Capsule>,
     floor: Option<Floor>,
 }
 
@@ -83,11 +96,17 @@ impl Network {
             masses,
             sheet: None,
             list: vec![],
+            strips: vec![],
+            tear: None,
+            torn: vec![],
             pins: vec![],
             gravity: None,
             drag: None,
             wind: None,
+            triangles: Arc::default(),
             spheres: vec![],
+            boxes: vec![],
+            capsules: vec![],
             floor: None,
         })
     }
@@ -123,16 +142,36 @@ impl Network {
     /// # Errors
     /// An end does not exist, or both are the same.
     pub fn add_spring(&mut self, spring: Spring) -> Result<(), Error> {
-        self.check_particle(spring.i)?;
-        self.check_particle(spring.j)?;
-        if spring.i == spring.j {
-            return Err(Error::Invalid(format!(
-                "a spring needs two ends, and this has {} twice",
-                spring.i
-            )));
-        }
+        self.check_ends(spring.i, spring.j)?;
         self.list.push(spring);
         Ok(())
+    }
+
+    fn check_ends(&self, i: usize, j: usize) -> Result<(), Error> {
+        self.check_particle(i)?;
+        self.check_particle(j)?;
+        if i == j {
+            return Err(Error::Invalid(format!(
+                "a spring needs two ends, and this has {i} twice"
+            )));
+        }
+        Ok(())
+    }
+
+    /// Adds a bend spring that buckles, in place of one that does not.
+    ///
+    /// # Errors
+    /// An end does not exist, or both are the same; a number is negative or not finite; the rest length or the stiffness
+    /// against bending is 0, or the compression stiffness less than 4 pi2 `k_b` / r3.
+    pub fn add_buckling(&mut self, buckling: Buckling) -> Result<(), Error> {
+        self.check_ends(buckling.i, buckling.j)?;
+        self.strips.push(Strip::new(buckling)?);
+        Ok(())
+    }
+
+    /// The bend springs that buckle.
+    pub fn buckling(&self) -> impl Iterator<Item = Buckling> {
+        self.strips.iter().map(|strip| strip.of)
     }
 
     /// Adds springs in whatever order, and keeps all in the order of their ends: neighbours in memory are then used one
@@ -243,6 +282,44 @@ impl Network {
         self.wind.as_ref()
     }
 
+    /// Spans triangles between particles, for [wind](Wind::on_triangles) to blow on, in place of those there were.
+    ///
+    /// # Errors
+    /// A corner does not exist.
+    pub fn set_triangles(
+        &mut self,
+        triangles: impl IntoIterator<Item = [usize; 3]>,
+    ) -> Result<(), Error> {
+        let checked = triangles.into_iter().map(|corners| {
+            corners.iter().try_for_each(|&i| self.check_particle(i))?;
+            Ok(corners.map(|i| i as u32))
+        });
+        self.triangles = checked.collect::<Result<_, Error>>()?;
+        Ok(())
+    }
+
+    /// The triangles.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The wind at time t, if it blows on triangles.
+    fn air(&self, t: f64) -> Option<OnTriangles<'_>> {
+        let wind = self.wind.as_ref()?;
+        Some(OnTriangles {
+            wind,
+            air: wind.air()?,
+            t,
+            triangles: &self.triangles,
+        })
+    }
+
+    /// The wind, if it pushes particles.
+    fn push(&self) -> Option<&Wind> {
+        self.wind.as_ref().filter(|wind| wind.air().is_none())
+    }
+
     /// Puts a sphere in the way.
     pub fn add_sphere(&mut self, sphere: Sphere) {
         self.spheres.push(sphere);
@@ -252,6 +329,51 @@ impl Network {
     #[must_use]
     pub fn spheres(&self) -> &[Sphere] {
         &self.spheres
+    }
+
+    /// Leads sphere k along `path` from now on.
+    ///
+    /// # Errors
+    /// There is no such sphere.
+    pub fn lead_sphere(&mut self, k: usize, path: Path) -> Result<(), Error> {
+        self.check_sphere(k)?;
+        self.spheres[k].path = path;
+        Ok(())
+    }
+
+    /// # Errors
+    /// There is no sphere k.
+    pub fn check_sphere(&self, k: usize) -> Result<(), Error> {
+        match self.spheres.len() {
+            count if k < count => Ok(()),
+            0 => Err(Error::Invalid("there is no sphere here".into())),
+            count => Err(Error::Invalid(format!(
+                "there is no sphere {k}: they are numbered 0 to {}",
+                count - 1
+            ))),
+        }
+    }
+
+    /// Puts a box in the way.
+    pub fn add_box(&mut self, cuboid: Cuboid) {
+        self.boxes.push(cuboid);
+    }
+
+    /// The boxes in the way.
+    #[must_use]
+    pub fn boxes(&self) -> &[Cuboid] {
+        &self.boxes
+    }
+
+    /// Puts a capsule in the way.
+    pub fn add_capsule(&mut self, capsule: Capsule) {
+        self.capsules.push(capsule);
+    }
+
+    /// The capsules in the way.
+    #[must_use]
+    pub fn capsules(&self) -> &[Capsule] {
+        &self.capsules
     }
 
     /// Lays a floor.
@@ -271,7 +393,7 @@ impl Network {
         self.sheet.as_ref()
     }
 
-    /// Every spring by itself, those of the sheet first.
+    /// Every spring by itself, those of the sheet first; none that buckles.
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
         self.sheet
             .iter()
@@ -279,9 +401,11 @@ impl Network {
             .chain(self.list.iter().copied())
     }
 
-    /// The springs attached to particle i.
+    /// The springs attached to particle i, those that buckle as they are while straight.
     pub fn springs_of(&self, i: usize) -> impl Iterator<Item = Spring> {
-        self.springs().filter(move |s| s.i == i || s.j == i)
+        self.springs()
+            .chain(self.strips.iter().map(Strip::straight))
+            .filter(move |s| s.i == i || s.j == i)
     }
 
     /// Makes every spring so many times as stiff, and damps it by the root of that more: its damping ratio stays.
@@ -296,6 +420,12 @@ impl Network {
             law.stiffness *= factor;
             law.damping *= factor.sqrt();
         }
+        for Strip { of, .. } in &mut self.strips {
+            of.bending *= factor;
+            of.compression *= factor;
+            of.tension *= factor;
+            of.damping *= factor.sqrt();
+        }
         Ok(())
     }
 
@@ -306,17 +436,27 @@ impl Network {
             .chain(self.list.iter().map(|s| s.law))
     }
 
+    /// Whether any spring is.
+    fn is_damped(&self) -> bool {
+        self.laws().any(|law| law.damping > 0.0)
+            || self.strips.iter().any(|strip| strip.of.damping > 0.0)
+    }
+
     /// Names of the forces and obstacles this network pays for.
     #[must_use]
     pub fn forces_in_use(&self) -> Vec<&'static str> {
         [
             (self.laws().next().is_some(), "springs"),
-            (self.kick_reads_velocity(), "spring damping"),
+            (!self.strips.is_empty(), "buckling"),
+            (self.is_damped(), "spring damping"),
             (self.gravity.is_some(), "gravity"),
             (self.drag.is_some(), "drag"),
             (self.wind.is_some(), "wind"),
             (!self.spheres.is_empty(), "sphere"),
+            (!self.boxes.is_empty(), "box"),
+            (!self.capsules.is_empty(), "capsule"),
             (self.floor.is_some(), "floor"),
+            (self.tear.is_some(), "tearing"),
         ]
         .into_iter()
         .filter_map(|(used, name)| used.then_some(name))
@@ -330,7 +470,7 @@ impl Network {
 
     /// What the ending makes of the springs' forces.
     fn evaluate(&self, x: &[f64], v: &[f64], f: &mut [f64], ending: &Ending) {
-        if let Some(sheet) = self.only_sheet() {
+        if let Some(sheet) = self.only_sheet().filter(|_| ending.air.is_none()) {
             sheet::set(Of::Forces, sheet, x, v, f, ending);
             return;
         }
@@ -345,6 +485,7 @@ impl Network {
             None => f.fill(0.0),
         }
         springs::add_list(&self.list, x, v, f);
+        springs::add_list(&self.strips, x, v, f);
         ending.apply(x, v, f);
     }
 
@@ -352,7 +493,8 @@ impl Network {
     fn only_sheet(&self) -> Option<&Sheet> {
         self.sheet
             .as_ref()
-            .filter(|sheet| self.list.is_empty() && sheet.grid().particles() == self.particles())
+            .filter(|sheet| sheet.grid().particles() == self.particles())
+            .filter(|_| self.list.is_empty() && self.strips.is_empty())
     }
 
     /// The drag and the gravity that a drift carries.
@@ -399,7 +541,8 @@ impl Network {
     fn others(&self, part: Part, t: f64) -> Ending<'_> {
         let all = part != Part::Kick;
         Ending {
-            wind: self.wind.as_ref().map(|wind| (wind, t)),
+            wind: self.push().map(|wind| (wind, t)),
+            air: self.air(t),
             gravity: self.gravity.filter(|_| all).map(|g| (g, &*self.masses)),
             drag: self.drag.filter(|_| all),
             inertia: None,
@@ -420,10 +563,9 @@ impl Network {
                     .sum::<f64>()
             })
             .sum();
-        let elastic = self
-            .springs()
-            .map(|s| 0.5 * s.law.stiffness * (springs::length(x, &s) - s.law.rest_length).powi(2))
-            .sum();
+        let straight = self.springs().map(|spring| springs::energy(&spring, x));
+        let buckled = self.strips.iter().map(|strip| springs::energy(strip, x));
+        let elastic = straight.chain(buckled).sum();
         let gravitational = self
             .gravity
             .map_or(0.0, |g| gravity::energy(g, &self.masses, x));
@@ -463,7 +605,9 @@ impl Mechanics for Network {
     }
 
     fn rows(&self) -> Option<&dyn Rows> {
-        self.only_sheet().map(|_| self as &dyn Rows)
+        // Triangles reach into rows above, which a sweep has left behind.
+        let sweeps = self.only_sheet().is_some() && self.air(0.0).is_none();
+        sweeps.then_some(self as &dyn Rows)
     }
 
     fn force_differential(
@@ -476,7 +620,7 @@ impl Mechanics for Network {
         df: &mut [f64],
     ) {
         // How the turning of damped springs changes their forces, vectors do not know.
-        let turns = self.kick_reads_velocity() && v.iter().any(|v| *v != 0.0);
+        let turns = self.is_damped() && v.iter().any(|v| *v != 0.0);
         if let Some(sheet) = self.only_sheet().filter(|_| !turns) {
             let of = |stiffness, damping, p: &[f64], out: &mut [f64]| {
                 let (of, sheet) = (
@@ -495,20 +639,27 @@ impl Mechanics for Network {
             }
         } else {
             df.fill(0.0);
-            self.springs()
-                .for_each(|spring| springs::add_differential(&spring, x, v, dx, dv, df));
+            self.couplings(x, &mut |coupling| {
+                springs::add_differential(&coupling, x, v, dx, dv, df);
+            });
         }
         if let Some(c) = self.drag {
             drag::add(c, dv, df);
         }
-        if let Some(wind) = &self.wind {
+        if let Some(wind) = self.push() {
             wind.add_differential(t, x, dx, df);
+        }
+        if let Some(air) = self.air(t) {
+            air.add_differential(x, v, dx, dv, df);
         }
     }
 
     fn couplings(&self, x: &[f64], visit: &mut dyn FnMut(Coupling)) {
         self.springs()
             .for_each(|spring| visit(springs::coupling(&spring, x)));
+        self.strips
+            .iter()
+            .for_each(|strip| visit(springs::coupling(strip, x)));
     }
 
     fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> bool {
@@ -532,9 +683,10 @@ impl Mechanics for Network {
 
     fn speed(&self) -> f64 {
         let sheet = self.sheet.iter().flat_map(Sheet::springs).count() as f64;
-        let all = sheet + self.list.len() as f64;
+        let (list, strips) = (self.list.len() as f64, self.strips.len() as f64);
+        let all = sheet + list + strips;
         if all > 0.0 {
-            all / (sheet / sheet::SPEED + self.list.len() as f64)
+            all / (sheet / sheet::SPEED + list + strips * buckling::PRICE)
         } else {
             1.0
         }
@@ -556,7 +708,7 @@ impl Mechanics for Network {
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        self.laws().any(|law| law.damping > 0.0)
+        self.air(0.0).is_some() || self.is_damped()
     }
 
     /// x' = v, v' = g - (c/m) v, exactly.
@@ -569,6 +721,12 @@ impl Mechanics for Network {
     fn constrain(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
         for sphere in &self.spheres {
             sphere.push_out(t, x, v);
+        }
+        for cuboid in &self.boxes {
+            cuboid.push_out(t, x, v);
+        }
+        for capsule in &self.capsules {
+            capsule.push_out(t, x, v);
         }
         if let Some(floor) = self.floor {
             floor.push_out(x, v);

@@ -3,7 +3,8 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use a3_core::{Simulation, integrators, scenes};
+use a3_core::forces::{Air, Wind};
+use a3_core::{Model, Simulation, Vector3, integrators, scenes};
 
 /// The system's allocator, which counts this thread's allocations.
 struct Counting;
@@ -54,6 +55,40 @@ fn no_step_allocates() {
             run.set_swinging(true);
             let count = allocations(|| run.take_steps(20).unwrap());
             assert_eq!(count, 0, "{} on {}", method.name, entry.name);
+        }
+    }
+}
+
+/// Air that sets in ends the sweeps of a sheet: the next step makes room for whole arrays, and none after it.
+#[test]
+fn no_step_in_the_air_allocates_but_the_first() {
+    for method in integrators::METHODS {
+        let mut scene = scenes::find("cloth").unwrap().build(None).unwrap();
+        if let Model::Network(network) = &mut scene.model {
+            let grid = network.sheet().unwrap().grid();
+            network.set_triangles(grid.triangles()).unwrap();
+        }
+        let air = Air::new(1.2, 1.2, 0.5).unwrap();
+        scene.wind = Some(Wind::on_triangles(1, Vector3::new(0.0, 0.0, 3.0), air));
+        let mut run = Simulation::new(scene, method, method.default_setting).unwrap();
+        run.set_wind(true);
+        run.take_steps(1).unwrap();
+        let count = allocations(|| run.take_steps(20).unwrap());
+        assert_eq!(count, 0, "{}", method.name);
+    }
+}
+
+#[test]
+fn no_step_that_tears_nothing_allocates() {
+    for name in ["cloth", "chain"] {
+        for method in integrators::METHODS {
+            let mut scene = scenes::find(name).unwrap().build(None).unwrap();
+            if let Model::Network(network) = &mut scene.model {
+                network.set_tear(Some(1e3)).unwrap();
+            }
+            let mut run = Simulation::new(scene, method, method.default_setting).unwrap();
+            let count = allocations(|| run.take_steps(20).unwrap());
+            assert_eq!(count, 0, "{} on {name}", method.name);
         }
     }
 }

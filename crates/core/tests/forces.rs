@@ -2,7 +2,7 @@
 
 mod common;
 
-use a3_core::forces::Wind;
+use a3_core::forces::{Air, Buckling, Wind};
 use a3_core::{
     Grid, Mechanics, Model, Network, ParticleSystem, Sheet, Simulation, Spring, SpringKind,
     SpringLaw, Vector3, scenes,
@@ -25,14 +25,49 @@ fn shaken(state: &[f64], by: f64) -> Vec<f64> {
 }
 
 fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
-    scenes::SCENES.iter().filter_map(|entry| {
+    let of_scenes = scenes::SCENES.iter().filter_map(|entry| {
         let scene = entry.build(None).unwrap();
         let Model::Network(mut network) = scene.model else {
             return None;
         };
         network.set_wind(scene.wind);
         Some((entry.name, network, shaken(&scene.state, 0.05)))
-    })
+    });
+    let buckling = (0..2).map(|k| {
+        let scene = scene_with_grid("cloth", 6, 7);
+        let grid = scene.grid.unwrap();
+        let mut network = Network::new(vec![0.02; grid.particles()]).unwrap();
+        for row in 0..6 {
+            for col in 0..5 {
+                let (i, j) = (grid.index_of(row, col), grid.index_of(row, col + 2));
+                network
+                    .add_buckling(Buckling {
+                        i,
+                        j,
+                        rest_length: 1.4 - 0.1 * col as f64,
+                        bending: 0.3,
+                        compression: 20.0,
+                        tension: 7.0,
+                        damping: 0.2 * f64::from(k),
+                    })
+                    .unwrap();
+            }
+        }
+        ("buckling", Box::new(network), shaken(&scene.state, 0.05))
+    });
+    let of_scenes = of_scenes.chain(buckling);
+    let in_the_air = [("cloth in the air", "cloth"), ("mit in the air", "mit")];
+    of_scenes.chain(in_the_air.map(|(title, name)| {
+        let scene = scene_with_grid(name, 6, 7);
+        let mut network = scene.model.network().unwrap().clone();
+        network
+            .set_triangles(scene.grid.unwrap().triangles())
+            .unwrap();
+        let air = Air::new(1.2, 1.1, 0.7).unwrap();
+        let wind = Wind::on_triangles(3, Vector3::new(1.0, 0.5, 4.0), air);
+        network.set_wind(Some(wind));
+        (title, Box::new(network), shaken(&scene.state, 0.05))
+    }))
 }
 
 #[test]
@@ -297,7 +332,7 @@ fn the_wind_pushes() {
     run.advance_to(41.5).unwrap();
     assert!(run.positions().column(2).mean() > calm + 0.05);
     assert_eq!(
-        Wind::new(3, Vector3::zeros()).force(1.0, [0.0; 3]),
+        Wind::new(3, Vector3::zeros()).at(1.0, [0.0; 3]),
         Vector3::zeros()
     );
 }

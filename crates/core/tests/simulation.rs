@@ -254,6 +254,58 @@ fn a_moving_sphere_pushes_without_friction() {
     assert_eq!(run.velocities(), [5.0, 0.0, 0.0]);
 }
 
+#[test]
+fn a_sphere_goes_where_it_is_pulled_pushes_cloth_and_comes_back_with_a_reset() {
+    for name in ["rk4", "dopri5"] {
+        let mut run = simulation("mit-sphere", name, method(name).default_setting);
+        let of = |run: &Simulation| {
+            let sphere = run.model().network().unwrap().spheres()[0];
+            (sphere.path.at(run.time()).position, sphere.radius)
+        };
+        run.advance_to(0.5).unwrap();
+        let (home, radius) = of(&run);
+        assert!(run.grab_sphere(1).is_err() && run.grabbed_sphere().is_none());
+        run.grab_sphere(0).unwrap();
+        run.advance_to(0.6).unwrap();
+        assert_eq!((run.grabbed_sphere(), of(&run).0), (Some(0), home));
+        let target = home + Vector3::new(0.3, 0.8, -0.2);
+        let mut touched = false;
+        while run.time() < 1.6 {
+            run.pull_sphere(target);
+            run.advance_to(run.time() + 1.0 / 60.0).unwrap();
+            let center = of(&run).0;
+            for i in 0..run.particles() {
+                let distance = (run.position(i) - center).norm();
+                assert!(distance > radius - 1e-9, "{name}");
+                touched |= distance < radius + 1e-9;
+            }
+        }
+        assert!(touched, "{name}");
+        assert_relative_eq!(of(&run).0, target, epsilon = 1e-12);
+        // On the move when it is let go: it stops there, and a pull moves nothing any more.
+        run.pull_sphere(home);
+        run.advance_to(run.time() + 0.01).unwrap();
+        run.release_sphere();
+        let left = of(&run).0;
+        assert!((left - target).norm() > 0.1 && (left - home).norm() > 0.1);
+        run.pull_sphere(home);
+        run.advance_to(run.time() + 0.1).unwrap();
+        assert_eq!((run.grabbed_sphere(), of(&run).0), (None, left));
+        run.grab_sphere(0).unwrap();
+        run.reset();
+        assert_eq!((run.grabbed_sphere(), of(&run).0), (None, home));
+    }
+    // There is none.
+    let mut run = simulation("cloth", "rk4", 0.01);
+    assert!(
+        run.grab_sphere(0)
+            .unwrap_err()
+            .to_string()
+            .contains("no sphere")
+    );
+    simulation("simple", "rk4", 0.01).grab_sphere(0).unwrap();
+}
+
 /// A system that fails in one way or another at t > 0.35.
 struct Failing(fn() -> f64, usize);
 

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::{Nearest, push_out};
 use crate::path::Path;
 
 /// Keeps particles out of a ball.
@@ -15,27 +16,31 @@ pub struct Sphere {
 
 impl Sphere {
     pub(crate) fn push_out(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
-        let center = self.path.at(t);
-        let c = center.position;
-        let n = x.len() / 3;
-        for i in 0..n {
-            let (dx, dy, dz) = (x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
-            let squared = dx * dx + dy * dy + dz * dz;
-            if squared >= self.radius * self.radius {
-                continue;
-            }
-            let distance = squared.sqrt();
-            let normal = if distance > 0.0 {
-                Vector3::new(dx, dy, dz) / distance
-            } else {
-                Vector3::y()
-            };
-            let velocity = Vector3::new(v[i], v[n + i], v[2 * n + i]) - center.velocity;
-            let inwards = velocity.dot(&normal).min(0.0);
-            for axis in 0..3 {
-                x[axis * n + i] = c[axis] + self.radius * normal[axis];
-                v[axis * n + i] -= inwards * normal[axis];
-            }
-        }
+        push_out(&self.path.at(t), x, v, |d| {
+            nearest(d, self.radius, Vector3::y)
+        });
+    }
+}
+
+/// The nearest point of a ball's surface to an inner point at d from its centre; `aside` is where the centre is put.
+pub(super) fn nearest(
+    d: Vector3<f64>,
+    radius: f64,
+    aside: impl Fn() -> Vector3<f64>,
+) -> Option<Nearest> {
+    let squared = d.x * d.x + d.y * d.y + d.z * d.z;
+    if squared < radius * radius {
+        let distance = squared.sqrt();
+        let normal = if distance > 0.0 {
+            d / distance
+        } else {
+            aside()
+        };
+        Some(Nearest {
+            point: radius * normal,
+            normal,
+        })
+    } else {
+        None
     }
 }

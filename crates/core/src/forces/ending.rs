@@ -2,12 +2,15 @@
 
 use nalgebra::Vector3;
 
+use super::air::OnTriangles;
 use super::{Wind, columns, columns_mut, drag, gravity};
 
 /// The forces to be added, and the masses to divide by.
 #[derive(Default)]
 pub(crate) struct Ending<'a> {
     pub wind: Option<(&'a Wind, f64)>,
+    /// Vectors do not know it.
+    pub air: Option<OnTriangles<'a>>,
     /// With the masses.
     pub gravity: Option<(Vector3<f64>, &'a [f64])>,
     pub drag: Option<f64>,
@@ -22,6 +25,9 @@ impl Ending<'_> {
         let n = x.len() / 3;
         if let Some((wind, t)) = self.wind {
             wind.add(t, columns(x, &(0..n)), &mut columns_mut(f));
+        }
+        if let Some(air) = self.air {
+            air.add(x, v, f);
         }
         for (axis, f) in f.chunks_exact_mut(n).enumerate() {
             if let Some((g, masses)) = self.gravity {

@@ -1,5 +1,7 @@
 //! One file a force. Each adds to the forces f (N), the sheet, which is the first, sets them; positions x, velocities v and f are n x 3, column-major.
 
+pub(crate) mod air;
+pub(crate) mod buckling;
 pub(crate) mod drag;
 pub(crate) mod ending;
 pub(crate) mod flow;
@@ -9,6 +11,8 @@ pub(crate) mod sheet;
 pub(crate) mod springs;
 pub(crate) mod wind;
 
+pub use air::Air;
+pub use buckling::Buckling;
 pub use wind::Wind;
 
 use std::ops::Range;

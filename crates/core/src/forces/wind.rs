@@ -1,16 +1,17 @@
 //! A gentle wind in gusts: a steady breeze and a few plane waves whose directions, lengths and periods come from
 //! a seed. A pure function of seed, time and position, so that every stage of a step feels the same wind and a run
-//! can be repeated.
+//! can be repeated. It pushes each particle alike, or it is the velocity of air that streams past triangles.
 
 use nalgebra::Vector3;
 
+use super::Air;
 use crate::random::SplitMix;
 
 const WAVES: usize = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wave {
-    /// In N.
+    /// In N, or m/s.
     amplitude: Vector3<f64>,
     /// In rad/m.
     number: Vector3<f64>,
@@ -27,11 +28,13 @@ impl Wave {
     }
 }
 
-/// The wind's force on a particle: a breeze and four waves.
+/// A breeze and four waves: forces on particles, or the velocity of the air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wind {
     breeze: Vector3<f64>,
     waves: [Wave; WAVES],
+    /// What blows on triangles.
+    air: Option<Air>,
 }
 
 impl Wind {
@@ -52,14 +55,38 @@ impl Wind {
         Self {
             breeze: force,
             waves,
+            air: None,
         }
     }
 
-    /// The force (N) on a particle at x (m) at time t (s).
+    /// A wind that pushes at the [triangles](crate::Network::set_triangles) of a network, with air that moves at
+    /// `velocity` (m/s) on the average, and never faster than 2.2 times that.
     #[must_use]
-    pub fn force(&self, t: f64, x: [f64; 3]) -> Vector3<f64> {
+    pub fn on_triangles(seed: u64, velocity: Vector3<f64>, air: Air) -> Self {
+        Self {
+            air: Some(air),
+            ..Self::new(seed, velocity)
+        }
+    }
+
+    /// What blows on triangles, if it does.
+    #[must_use]
+    pub fn air(&self) -> Option<Air> {
+        self.air
+    }
+
+    /// The force (N) on a particle at x (m) at time t (s), or the velocity (m/s) of the air there.
+    #[must_use]
+    pub fn at(&self, t: f64, x: [f64; 3]) -> Vector3<f64> {
         self.waves.iter().fold(self.breeze, |f, wave| {
             f + wave.amplitude * libm::sin(wave.argument(t, x))
+        })
+    }
+
+    /// How that changes with x, as x moves by `towards`.
+    pub(crate) fn differential(&self, t: f64, x: [f64; 3], towards: Vector3<f64>) -> Vector3<f64> {
+        self.waves.iter().fold(Vector3::zeros(), |df, wave| {
+            df + wave.amplitude * (libm::cos(wave.argument(t, x)) * wave.number.dot(&towards))
         })
     }
 
@@ -73,7 +100,7 @@ impl Wind {
 
     pub(crate) fn add(&self, t: f64, x: [&[f64]; 3], f: &mut [&mut [f64]; 3]) {
         for i in 0..x[0].len() {
-            let force = self.force(t, x.map(|x| x[i]));
+            let force = self.at(t, x.map(|x| x[i]));
             for axis in 0..3 {
                 f[axis][i] += force[axis];
             }
@@ -85,11 +112,9 @@ impl Wind {
         for i in 0..n {
             let at = [x[i], x[n + i], x[2 * n + i]];
             let towards = Vector3::new(dx[i], dx[n + i], dx[2 * n + i]);
-            for wave in &self.waves {
-                let slope = libm::cos(wave.argument(t, at)) * wave.number.dot(&towards);
-                for axis in 0..3 {
-                    df[axis * n + i] += wave.amplitude[axis] * slope;
-                }
+            let change = self.differential(t, at, towards);
+            for axis in 0..3 {
+                df[axis * n + i] += change[axis];
             }
         }
     }
@@ -102,7 +127,7 @@ mod tests {
     #[test]
     fn a_wind_is_its_seed() {
         let (a, b) = (Wind::new(7, Vector3::z()), Wind::new(7, Vector3::z()));
-        assert_eq!(a.force(1.5, [0.1, 0.2, 0.3]), b.force(1.5, [0.1, 0.2, 0.3]));
+        assert_eq!(a.at(1.5, [0.1, 0.2, 0.3]), b.at(1.5, [0.1, 0.2, 0.3]));
         assert_ne!(a, Wind::new(8, Vector3::z()));
     }
 
@@ -112,7 +137,7 @@ mod tests {
         let wind = Wind::new(1, mean);
         let mut sum = Vector3::zeros();
         for k in 0..100_000 {
-            let force = wind.force(f64::from(k) * 0.01, [0.3, -0.2, 0.1]);
+            let force = wind.at(f64::from(k) * 0.01, [0.3, -0.2, 0.1]);
             assert!(force.norm() <= 2.2 * mean.norm());
             sum += force;
         }

@@ -118,18 +118,21 @@ impl Simulation {
     /// as the other end comes along.
     pub fn pull(&mut self, target: Vector3<f64>) {
         let Some((i, _)) = self.grabbed else { return };
-        let (from, start) = (self.position(i), self.time());
+        let from = self.position(i);
         let target = self.within_reach(i, from, target);
-        let time = PULL_TIME.max((target - from).norm() / (PULL_SPEED * self.radius));
-        self.pin(
-            i,
-            Path::Line {
-                from,
-                to: target,
-                start,
-                end: start + time,
-            },
-        );
+        self.pin(i, self.way(from, target));
+    }
+
+    /// The way of a hand that begins now.
+    fn way(&self, from: Vector3<f64>, to: Vector3<f64>) -> Path {
+        let start = self.time();
+        let time = PULL_TIME.max((to - from).norm() / (PULL_SPEED * self.radius));
+        Path::Line {
+            from,
+            to,
+            start,
+            end: start + time,
+        }
     }
 
     /// The point on the way of particle i to `target` up to which no spring of its own is stretched too far. A spring
@@ -171,6 +174,52 @@ impl Simulation {
             self.leave_pin(i);
         } else if let Some(network) = self.network_mut() {
             network.unpin(i);
+        }
+    }
+
+    /// The grabbed sphere.
+    #[must_use]
+    pub fn grabbed_sphere(&self) -> Option<usize> {
+        self.grabbed_sphere
+    }
+
+    /// Takes hold of sphere k where it is, and lets go of any other. Does nothing in a scene without masses, where
+    /// spheres push nothing.
+    ///
+    /// # Errors
+    /// There is no such sphere.
+    pub fn grab_sphere(&mut self, k: usize) -> Result<(), Error> {
+        self.release_sphere();
+        let Some(network) = self.model.network() else {
+            return Ok(());
+        };
+        network.check_sphere(k)?;
+        self.grabbed_sphere = Some(k);
+        self.lead_sphere(|_, position| Path::Still(position));
+        Ok(())
+    }
+
+    /// Moves the grabbed sphere's centre to `target` (m), as fast as a pulled particle.
+    pub fn pull_sphere(&mut self, target: Vector3<f64>) {
+        self.lead_sphere(|run, position| run.way(position, target));
+    }
+
+    /// Lets go of the sphere: it stays where it is.
+    pub fn release_sphere(&mut self) {
+        self.lead_sphere(|_, position| Path::Still(position));
+        self.grabbed_sphere = None;
+    }
+
+    /// Gives the grabbed sphere the path that `path` makes of its place.
+    fn lead_sphere(&mut self, path: impl FnOnce(&Self, Vector3<f64>) -> Path) {
+        let network = self.model.network().zip(self.grabbed_sphere);
+        let Some(sphere) = network.and_then(|(network, k)| network.spheres().get(k)) else {
+            return;
+        };
+        let path = path(self, sphere.path.at(self.time()).position);
+        if let Some((k, network)) = self.grabbed_sphere.zip(self.network_mut()) {
+            // It is there: it was found above.
+            let _ = network.lead_sphere(k, path);
         }
     }
 }

@@ -8,7 +8,7 @@ use nalgebra::{DMatrixView, Vector3};
 
 use crate::error::{BlowUp, Cause, Error, positive};
 use crate::integrators::{Adaptive, Integrator, Method, Tolerance, Work};
-use crate::network::Energy;
+use crate::network::{Energy, Network};
 use crate::scenes::{Model, Scene, bounds};
 use crate::system::ParticleSystem;
 
@@ -36,6 +36,7 @@ pub struct Simulation {
     swing_phase: f64,
     /// The grabbed particle, and whether it was pinned before.
     grabbed: Option<(usize, bool)>,
+    grabbed_sphere: Option<usize>,
     blow_up: Option<BlowUp>,
     good: Good,
     middle: Vector3<f64>,
@@ -146,6 +147,7 @@ impl Simulation {
             swinging: false,
             swing_phase: 0.0,
             grabbed: None,
+            grabbed_sphere: None,
             blow_up: None,
             good,
             middle,
@@ -159,7 +161,7 @@ impl Simulation {
         &self.scene
     }
 
-    /// The model as it is now: pins led, wind on or off.
+    /// The model as it is now: pins led, wind on or off, springs broken.
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
@@ -263,6 +265,12 @@ impl Simulation {
             .map(|network| network.largest_stretch(x))
     }
 
+    /// Springs that have broken: as the number changes, what is drawn of them does.
+    #[must_use]
+    pub fn tears(&self) -> usize {
+        self.model.network().map_or(0, Network::tears)
+    }
+
     /// The middle of the scene as it began, and the distance of its farthest particle from there, at least 1 (m).
     #[must_use]
     pub fn extent(&self) -> (Vector3<f64>, f64) {
@@ -355,7 +363,9 @@ impl Simulation {
             }
             Err(error) => Some(cause(error)?),
         };
-        self.judge(cause, t + h)
+        self.judge(cause, t + h)?;
+        self.tear();
+        Ok(())
     }
 
     /// Sees to it that an adaptive method's step reaches past the time shown. Where it ends.
@@ -413,6 +423,16 @@ impl Simulation {
                 constrain(system, time, &mut self.y);
             }
             self.since = time;
+            self.tear();
+        }
+    }
+
+    /// Breaks what is stretched too far in the state shown.
+    fn tear(&mut self) {
+        if let Model::Network(network) = &mut self.model
+            && network.tear(&self.y[..self.y.len() / 2]) > 0
+        {
+            self.look_again();
         }
     }
 
@@ -475,13 +495,14 @@ impl Simulation {
             .map(|k| Cause::NotFinite { particle: k % n })
     }
 
-    /// Back to the beginning. Wind and swing stay on if they are; the hand lets go.
+    /// Back to the beginning, with what was torn mended. Wind and swing stay on if they are; the hand lets go.
     pub fn reset(&mut self) {
         let (windy, swinging) = (self.windy(), self.swinging);
         self.model = self.scene.model.clone();
         self.y.copy_from_slice(&self.scene.state);
         (self.since, self.taken, self.steps) = (0.0, 0, 0);
-        (self.work, self.blow_up, self.grabbed) = (Work::default(), None, None);
+        (self.work, self.blow_up) = (Work::default(), None);
+        (self.grabbed, self.grabbed_sphere) = (None, None);
         // The first step is chosen anew too: a run that was reset is the same run.
         if let Ok(stepper) = Stepper::new(self.method, self.model.system(), self.setting) {
             self.stepper = stepper;
