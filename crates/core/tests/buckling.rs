@@ -5,7 +5,6 @@ mod common;
 use a3_core::forces::Buckling;
 use a3_core::{
     Mechanics, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
-    View,
 };
 use approx::assert_relative_eq;
 use common::{distance, integrate, method, scene_with_grid, size};
@@ -224,21 +223,7 @@ fn strip() -> Scene {
         network.pin(i, path).unwrap();
         state[3 * PARTICLES + i] = path.at(0.0).velocity.x;
     }
-    Scene {
-        name: "strip",
-        model: Model::Network(Box::new(network)),
-        state,
-        grid: None,
-        swing: None,
-        wind: None,
-        trail: None,
-        view: View {
-            eye: Vector3::z(),
-            target: Vector3::zeros(),
-        },
-        step_scale: 1.0,
-        reach: 10.0,
-    }
+    Scene::new("strip", Model::Network(Box::new(network)), state)
 }
 
 /// What each particle but the ends turns the strip by (rad), in the plane.

@@ -14,7 +14,10 @@ fn lattice(grid: [usize; 3]) -> Scene {
         "[[jelly]]\ngrid = {grid:?}\nsize = [1, 2, 3]\nmass = 1\nstiffness = [1, 1, 1]\nat = [0, 0, 0]"
     );
     let none = &mut |_: &str| Err(String::new());
-    Description::parse(&text).unwrap().build(None, none).unwrap()
+    Description::parse(&text)
+        .unwrap()
+        .build(None, none)
+        .unwrap()
 }
 
 /// Six times the volume within a surface is the sum of a . (b x c) over its triangles.
@@ -75,7 +78,11 @@ fn the_skin_is_closed_and_faces_outwards() {
             *edges.entry(edge).or_insert(0) += 1;
         }
     }
-    assert!(edges.iter().all(|([a, b], n)| *n == 1 && edges.contains_key(&[*b, *a])));
+    assert!(
+        edges
+            .iter()
+            .all(|([a, b], n)| *n == 1 && edges.contains_key(&[*b, *a]))
+    );
     let run = Simulation::new(scene, method("r"), 0.01).unwrap();
     assert!((volume(&run) - 6.0).abs() < 1e-12);
 }

@@ -5,7 +5,7 @@ mod common;
 use a3_core::forces::{Air, Buckling, Wind};
 use a3_core::{
     Mechanics, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
-    View, integrators,
+    integrators,
 };
 use approx::assert_relative_eq;
 use common::{method, scene, scene_with_grid};
@@ -32,21 +32,7 @@ fn chain(limit: Option<f64>) -> Scene {
     for i in 0..4 {
         state[4 + i] = -0.5 * i as f64;
     }
-    Scene {
-        name: "chain",
-        model: Model::Network(Box::new(network)),
-        state,
-        grid: None,
-        swing: None,
-        wind: None,
-        trail: None,
-        view: View {
-            eye: Vector3::z(),
-            target: Vector3::zeros(),
-        },
-        step_scale: 1.0,
-        reach: 10.0,
-    }
+    Scene::new("chain", Model::Network(Box::new(network)), state)
 }
 
 fn network_of(run: &Simulation) -> &Network {

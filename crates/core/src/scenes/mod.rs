@@ -203,6 +203,7 @@ pub static SCENES: &[SceneEntry] = &[
     entry!("chain"),
     entry!("mit"),
     entry!("mit-sphere"),
+    entry!("flag"),
     entry!("jelly"),
 ];
 

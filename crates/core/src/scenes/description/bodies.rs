@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::build::{Assembly, Sizes};
 use super::lattice::Lattice;
-use super::{Fault, Mesh, Pin, Spot, SpringSpec, Triple};
+use super::{BucklingSpec, Fault, Mesh, Pin, Spot, SpringSpec, Triple};
 use crate::error::{Error, at_least, positive};
+use crate::forces::Buckling;
 use crate::grid::Grid;
 use crate::sheet::Sheet;
 use crate::spring::{Spring, SpringKind, SpringLaw};
@@ -40,6 +41,8 @@ pub struct Cloth {
     pub damping: Option<f64>,
     /// Damping over the critical one of a particle on a structural spring, whatever the grid. Or `damping`.
     pub damping_ratio: Option<f64>,
+    /// Makes bend springs buckle; stretched, they have the stiffness given above.
+    pub buckling: Option<BucklingSpec>,
     /// Where the middle of the first row is (m). Or `foot`.
     pub at: Option<Triple>,
     /// Where the middle of the last row is (m), of a cloth without folds. Or `at`.
@@ -139,6 +142,8 @@ pub struct Chain {
     /// Of each spring (N s/m).
     #[serde(default)]
     pub damping: f64,
+    /// Holds it straight by bend springs that buckle, from each particle to the next but one.
+    pub buckling: Option<BucklingSpec>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
     /// What is pinned.
@@ -217,6 +222,26 @@ fn finite(key: &'static str, triple: Option<Triple>) -> Result<Vector3<f64>, Wro
     super::build::finite(triple.unwrap_or_default()).map_err(|why| (key, why))
 }
 
+impl BucklingSpec {
+    /// Between two particles, of that rest length (m); stretched, of that stiffness and damping.
+    fn strip(
+        &self,
+        [i, j]: [usize; 2],
+        rest_length: f64,
+        [tension, damping]: [f64; 2],
+    ) -> Buckling {
+        Buckling {
+            i,
+            j,
+            rest_length,
+            bending: self.bending,
+            compression: self.compression,
+            tension,
+            damping,
+        }
+    }
+}
+
 /// A body that a scene is put together from.
 pub(super) trait Body {
     /// Particles and springs, checked before memory is taken.
@@ -290,6 +315,17 @@ impl Body for Cloth {
         };
         let time = damping_time(self.damping, self.damping_ratio, mass, self.stiffness[0])?;
         let sheet = at("stiffness", Sheet::new(grid, spacing, self.stiffness, time))?;
+        let (sheet, strips) = match &self.buckling {
+            None => (sheet, vec![]),
+            Some(of) => {
+                let [structural, shear, bend] = self.stiffness;
+                let ends = sheet.springs().filter(|s| s.kind == SpringKind::Bend);
+                let strips = ends.map(|s| of.strip([s.i, s.j], 2.0 * spacing, [bend, bend * time]));
+                let strips = strips.collect();
+                let rest = Sheet::new(grid, spacing, [structural, shear, 0.0], time);
+                (at("stiffness", rest)?, strips)
+            }
+        };
         let (right, down) = (self.axis("right")?, self.axis("down")?);
         if right.dot(&down).abs() > 1e-6 {
             return Err(("down", "it must be at a right angle to `right`".into()));
@@ -326,6 +362,7 @@ impl Body for Cloth {
         let surface = grid.triangles().map(|t| t.map(|i| (first + i) as u32));
         assembly.surface.triangles.extend(surface);
         assembly.end_surface();
+        assembly.add_strips(first, strips);
         if first == 0 {
             (assembly.sheet, assembly.grid) = (Some(sheet), Some(grid));
         } else {
@@ -609,6 +646,10 @@ impl Body for Chain {
             law,
         });
         assembly.add_springs(first, springs);
+        if let Some(of) = &self.buckling {
+            let strip = |i| of.strip([i, i + 2], 2.0 * rest_length, [0.0, 0.0]);
+            assembly.add_strips(first, (0..n - 2).map(strip).collect());
+        }
         Ok(())
     }
 

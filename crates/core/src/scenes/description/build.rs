@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 
 use super::bodies::{Body, Woven, in_body};
 use super::{Description, Fault, Mesh, Pin, Shift, Sine, SpringSpec, Triple};
-use crate::colliders::{Floor, Sphere};
+use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
 use crate::error::{at_least, positive};
-use crate::forces::Wind;
+use crate::forces::{Air, Buckling, Wind};
 use crate::grid::{Grid, MAX_PARTICLES};
 use crate::integrators;
 use crate::network::Network;
@@ -39,6 +39,7 @@ pub(super) struct Assembly {
     pub grid: Option<Grid>,
     pub surface: Surface,
     springs: Vec<Spring>,
+    strips: Vec<Buckling>,
     pins: Vec<(usize, Path)>,
 }
 
@@ -46,6 +47,15 @@ impl Assembly {
     /// Springs between particles that are numbered from `first` on.
     pub fn add_springs(&mut self, first: usize, springs: impl IntoIterator<Item = Spring>) {
         self.springs.extend(springs.into_iter().map(|s| Spring {
+            i: s.i + first,
+            j: s.j + first,
+            ..s
+        }));
+    }
+
+    /// Buckling springs between particles that are numbered from `first` on.
+    pub fn add_strips(&mut self, first: usize, strips: Vec<Buckling>) {
+        self.strips.extend(strips.into_iter().map(|s| Buckling {
             i: s.i + first,
             j: s.j + first,
             ..s
@@ -365,13 +375,7 @@ impl Description {
             ));
         }
         let mut assembly = Assembly::default();
-        let name = |kind: &str, k: usize, count: usize| {
-            if count == 1 {
-                kind.to_owned()
-            } else {
-                format!("{kind}.{k}")
-            }
-        };
+        let name = |kind: &str, k: usize, count: usize| Place::of(kind, k, count).0;
         for (k, body) in self.cloth.iter().enumerate() {
             assembly.add(&name("cloth", k, self.cloth.len()), body)?;
         }
@@ -402,6 +406,7 @@ impl Description {
             masses,
             sheet,
             springs,
+            strips,
             pins,
             surface,
             grid,
@@ -413,6 +418,14 @@ impl Description {
             network.set_sheet(sheet).map_err(whole)?;
         }
         network.add_springs(springs).map_err(whole)?;
+        for (k, strip) in strips.into_iter().enumerate() {
+            let wrong = |e| Fault::new("buckling", format!("bend spring {k}, counted from 0: {e}"));
+            network.add_buckling(strip).map_err(wrong)?;
+        }
+        let triangles = surface.triangles.iter();
+        network
+            .set_triangles(triangles.map(|t| t.map(|i| i as usize)))
+            .map_err(whole)?;
         for (i, path) in pins {
             network.pin(i, path).map_err(whole)?;
         }
@@ -442,24 +455,53 @@ impl Description {
             let height = number(height).map_err(|why| Fault::new("floor", why))?;
             network.set_floor(Floor { height });
         }
-        if self.sphere.len() > MAX_OBSTACLES {
-            return Err(Fault::new(
-                "sphere",
-                format!("there are at most {MAX_OBSTACLES}"),
-            ));
+        network
+            .set_tear(self.tear)
+            .map_err(|e| Fault::new("tear", e))?;
+        self.add_obstacles(network)
+    }
+
+    fn add_obstacles(&self, network: &mut Network) -> Result<(), Fault> {
+        for (key, count) in [
+            ("sphere", self.sphere.len()),
+            ("box", self.boxes.len()),
+            ("capsule", self.capsule.len()),
+        ] {
+            if count > MAX_OBSTACLES {
+                let why = format!("there are at most {MAX_OBSTACLES}, not {count}");
+                return Err(Fault::new(key, why));
+            }
         }
         for (k, sphere) in self.sphere.iter().enumerate() {
-            let key = |part: &str| match self.sphere.len() {
-                1 => format!("sphere.{part}"),
-                _ => format!("sphere.{k}.{part}"),
-            };
-            positive("it", sphere.radius).map_err(|e| Fault::new(key("radius"), e))?;
-            let center = finite(sphere.center).map_err(|why| Fault::new(key("center"), why))?;
-            let path = path(center, sphere.sine.as_ref(), sphere.shift.as_ref());
+            let at = Place::of("sphere", k, self.sphere.len());
+            at.check("radius", positive("it", sphere.radius))?;
+            let center = at.vector("center", sphere.center)?;
             network.add_sphere(Sphere {
-                path: path.map_err(|(part, why)| Fault::new(key(part), why))?,
+                path: at.path(center, sphere.sine.as_ref(), sphere.shift.as_ref())?,
                 radius: sphere.radius,
             });
+        }
+        for (k, cuboid) in self.boxes.iter().enumerate() {
+            let at = Place::of("box", k, self.boxes.len());
+            let center = at.vector("center", cuboid.center)?;
+            let path = at.path(center, cuboid.sine.as_ref(), cuboid.shift.as_ref())?;
+            let size = at.vector("size", cuboid.size)?;
+            let turn = at.vector("rotation", cuboid.rotation.unwrap_or_default())?;
+            for edge in cuboid.size {
+                at.check("size", positive("each edge", edge))?;
+            }
+            network.add_box(at.check("size", Cuboid::new(path, 0.5 * size, turn))?);
+        }
+        for (k, capsule) in self.capsule.iter().enumerate() {
+            let at = Place::of("capsule", k, self.capsule.len());
+            let (from, to) = (
+                at.vector("from", capsule.from)?,
+                at.vector("to", capsule.to)?,
+            );
+            let path = at.path(from, capsule.sine.as_ref(), capsule.shift.as_ref())?;
+            let ends = [Vector3::zeros(), to - from];
+            let capsule = Capsule::new(path, ends, capsule.radius);
+            network.add_capsule(at.check("radius", capsule)?);
         }
         Ok(())
     }
@@ -468,24 +510,74 @@ impl Description {
         let (Some(wind), Some(network)) = (&self.wind, network) else {
             return Ok(None);
         };
-        let (key, force, scale) = match (wind.force, wind.force_per_mass) {
-            (Some(force), None) => ("wind.force", force, 1.0),
-            (None, Some(force)) => ("wind.force_per_mass", force, mean(network.masses())),
-            (Some(_), Some(_)) => {
-                return Err(Fault::new(
-                    "wind.force_per_mass",
-                    "give either `force` or `force_per_mass`, not both",
-                ));
-            }
-            (None, None) => {
-                return Err(Fault::new(
-                    "wind",
-                    "needs one of the keys `force` and `force_per_mass`",
-                ));
-            }
+        let given = [
+            ("wind.force", wind.force),
+            ("wind.force_per_mass", wind.force_per_mass),
+            ("wind.velocity", wind.velocity),
+        ];
+        let given: Vec<_> = given
+            .into_iter()
+            .filter_map(|(key, x)| Some((key, x?)))
+            .collect();
+        let [(key, blow)] = given[..] else {
+            return Err(Fault::new(
+                "wind",
+                "give one of the keys `force`, `force_per_mass` and `velocity`",
+            ));
         };
-        let force = finite(force).map_err(|why| Fault::new(key, why))?;
-        Ok(Some(Wind::new(wind.seed, force * scale)))
+        let blow = finite(blow).map_err(|why| Fault::new(key, why))?;
+        let air = [
+            ("wind.density", wind.density, 1.2),
+            ("wind.drag", wind.drag, 1.2),
+            ("wind.lift", wind.lift, 0.6),
+        ];
+        if key != "wind.velocity" {
+            if let Some((key, ..)) = air.iter().find(|(_, given, _)| given.is_some()) {
+                return Err(Fault::new(*key, "it is for a wind with a `velocity`"));
+            }
+            let of_particles = if key == "wind.force" {
+                1.0
+            } else {
+                mean(network.masses())
+            };
+            return Ok(Some(Wind::new(wind.seed, blow * of_particles)));
+        }
+        for (key, given, usual) in air {
+            at_least(0.0, "it", given.unwrap_or(usual)).map_err(|e| Fault::new(key, e))?;
+        }
+        let [density, drag, lift] = air.map(|(_, given, usual)| given.unwrap_or(usual));
+        let air = Air::new(density, drag, lift).map_err(|e| Fault::new("wind", e))?;
+        Ok(Some(Wind::on_triangles(wind.seed, blow, air)))
+    }
+}
+
+/// The key of one of several pieces.
+struct Place(String);
+
+impl Place {
+    fn of(kind: &str, k: usize, count: usize) -> Self {
+        Self(if count == 1 {
+            kind.into()
+        } else {
+            format!("{kind}.{k}")
+        })
+    }
+
+    fn check<T>(&self, part: &str, result: Result<T, crate::Error>) -> Result<T, Fault> {
+        result.map_err(|e| Fault::new(format!("{}.{part}", self.0), e))
+    }
+
+    fn vector(&self, part: &str, triple: Triple) -> Result<Vector3<f64>, Fault> {
+        finite(triple).map_err(|why| Fault::new(format!("{}.{part}", self.0), why))
+    }
+
+    fn path(
+        &self,
+        from: Vector3<f64>,
+        sine: Option<&Sine>,
+        shift: Option<&Shift>,
+    ) -> Result<Path, Fault> {
+        path(from, sine, shift).map_err(|(part, why)| Fault::new(format!("{}.{part}", self.0), why))
     }
 }
 

@@ -72,6 +72,14 @@ pub struct Description {
     /// Pins of any particles, by number. They come after those of the bodies, and instead of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
+    /// Springs break when they are stretched to this many times their rest length. Without it, they do not.
+    pub tear: Option<f64>,
+    /// Boxes in the way.
+    #[serde(rename = "box", skip_serializing_if = "Vec::is_empty")]
+    pub boxes: Vec<BoxSpec>,
+    /// Capsules in the way: rods with round ends.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub capsule: Vec<CapsuleSpec>,
     /// Spheres in the way.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sphere: Vec<SphereSpec>,
@@ -92,7 +100,8 @@ pub struct Camera {
     pub target: Triple,
 }
 
-/// A gentle wind in gusts, repeatable by its seed. It pushes each particle, by `force` or by `force_per_mass`.
+/// A gentle wind in gusts, repeatable by its seed. It pushes each particle by `force` or by `force_per_mass`, or blows with a
+/// `velocity` on the triangles of surfaces.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct WindSpec {
@@ -102,6 +111,14 @@ pub struct WindSpec {
     pub force: Option<Triple>,
     /// The same over the (mean) mass of a particle (m/s2), instead.
     pub force_per_mass: Option<Triple>,
+    /// Mean velocity of the air (m/s), instead: it pushes triangles along its flow and across it.
+    pub velocity: Option<Triple>,
+    /// Density of that air (kg/m3); 1.2 if not given.
+    pub density: Option<f64>,
+    /// Its drag coefficient; 1.2 if not given.
+    pub drag: Option<f64>,
+    /// Its lift coefficient; 0.6 if not given.
+    pub lift: Option<f64>,
 }
 
 /// To and fro by `amplitude` (m), at `rate` (rad/s).
@@ -188,6 +205,53 @@ pub struct SphereSpec {
     /// Once, from here to there.
     #[serde(default)]
     pub shift: Option<Shift>,
+}
+
+/// A box that particles stay out of. It may move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxSpec {
+    /// Its middle (m).
+    pub center: Triple,
+    /// Edges (m).
+    pub size: Triple,
+    /// Turned about this axis by its length (rad).
+    #[serde(default)]
+    pub rotation: Option<Triple>,
+    /// To and fro.
+    #[serde(default)]
+    pub sine: Option<Sine>,
+    /// Once, from here to there.
+    #[serde(default)]
+    pub shift: Option<Shift>,
+}
+
+/// A capsule that particles stay out of: all that is within `radius` of the way from one point to another. It may move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CapsuleSpec {
+    /// In m.
+    pub from: Triple,
+    /// In m.
+    pub to: Triple,
+    /// In m.
+    pub radius: f64,
+    /// To and fro.
+    #[serde(default)]
+    pub sine: Option<Sine>,
+    /// Once, from here to there.
+    #[serde(default)]
+    pub shift: Option<Shift>,
+}
+
+/// Bend springs that buckle: pressed, they give way as a strip does that bends into an arc, instead of pushing ever more.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BucklingSpec {
+    /// Stiffness of the strip against bending (N m2).
+    pub bending: f64,
+    /// Its stiffness while it is pressed and still straight (N/m).
+    pub compression: f64,
 }
 
 /// A state, a line for each particle.
