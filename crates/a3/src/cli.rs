@@ -321,7 +321,9 @@ impl What {
             }
             e => Failure::usage(e),
         })?;
-        simulation.set_wind(self.wind);
+        if self.wind {
+            simulation.set_wind(true);
+        }
         simulation.set_swinging(self.swing);
         Ok(simulation)
     }

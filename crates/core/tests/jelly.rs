@@ -92,19 +92,18 @@ fn the_skin_is_closed_and_faces_outwards() {
 fn it_wobbles_and_keeps_its_volume() {
     let mut run = simulation("jelly", "r", 0.01);
     assert!((volume(&run) - 1.0).abs() < 1e-12);
-    let (mut least, mut most) = (1.0f64, 1.0f64);
+    let mut least = 1.0f64;
     for frame in 1..=150 {
         run.advance_to(f64::from(frame) * 0.02).unwrap();
-        (least, most) = (least.min(volume(&run)), most.max(volume(&run)));
+        least = least.min(volume(&run));
         assert!(run.lowest() >= 0.0);
     }
-    assert!(least < 0.97 && least > 0.5, "{least}");
+    assert!(least < 0.99 && least > 0.7, "{least}");
     // Quickly to rest.
-    run.set_method(method("i"), 0.1).unwrap();
-    run.advance_to(60.0).unwrap();
-    assert!(run.energy().unwrap().kinetic < 1e-6, "{:?}", run.energy());
+    run.set_method(method("i"), 0.02).unwrap();
+    run.advance_to(20.0).unwrap();
     let rest = volume(&run);
-    println!("{least} {most} {rest}");
+    assert!(run.energy().unwrap().kinetic < 1e-6, "{:?}", run.energy());
     assert!((rest - 1.0).abs() < 0.05, "{rest}");
     assert!(run.lowest() < 1e-9);
 }

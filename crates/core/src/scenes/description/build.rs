@@ -327,6 +327,12 @@ impl Description {
             });
         }
         scene.wind = self.wind(scene.model.network())?;
+        if let (true, Model::Network(network)) = (
+            self.wind.as_ref().is_some_and(|wind| wind.on),
+            &mut scene.model,
+        ) {
+            network.set_wind(scene.wind);
+        }
         self.how_it_runs(&mut scene)?;
         Ok(scene)
     }

@@ -46,7 +46,7 @@ pub struct Description {
     pub trail: Option<usize>,
     /// Where it is looked at from.
     pub camera: Option<Camera>,
-    /// The wind that key d lets blow.
+    /// The wind that key d lets blow, or calms.
     pub wind: Option<WindSpec>,
     /// What key s does to the pins.
     pub swing: Option<SwingSpec>,
@@ -105,6 +105,9 @@ pub struct Camera {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct WindSpec {
+    /// Whether it blows from the beginning.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub on: bool,
     /// Another number, other gusts.
     pub seed: u64,
     /// Mean force on each particle (N).
