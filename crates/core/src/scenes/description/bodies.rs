@@ -328,7 +328,8 @@ impl Body for Cloth {
         };
         let (right, down) = (self.axis("right")?, self.axis("down")?);
         if right.dot(&down).abs() > 1e-6 {
-            return Err(("down", "it must be at a right angle to `right`".into()));
+            let key = if self.down.is_some() { "down" } else { "right" };
+            return Err((key, "`right` and `down` must be at a right angle".into()));
         }
         let height = down * (spacing * (rows - 1) as f64);
         let top = match (self.at, self.foot) {

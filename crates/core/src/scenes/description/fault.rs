@@ -61,7 +61,7 @@ impl Fault {
         let at = error.span().map(|span| span.start);
         let key = at.and_then(|at| {
             let table = DeTable::parse(text).ok()?;
-            Some(key_at(table.get_ref(), at))
+            key_at(table.get_ref(), at)
         });
         Self {
             line: at.map(|at| line(text, at)),
@@ -101,43 +101,31 @@ fn place(table: &DeTable, key: &str) -> Option<usize> {
     Some(at)
 }
 
-/// The key whose value, or whose name, is at that byte.
-fn key_at(table: &DeTable, at: usize) -> String {
-    for (name, value) in table {
-        let (name_span, span) = (name.span(), value.span());
-        let inside = span.contains(&at);
-        if !inside && !name_span.contains(&at) {
-            continue;
-        }
-        let name = name.get_ref().to_string();
+/// The key whose value, or whose name, is at that byte. A table's own span is that of its header: what is in it is looked
+/// at first.
+fn key_at(table: &DeTable, at: usize) -> Option<String> {
+    table.iter().find_map(|(name, value)| {
         let rest = match value.get_ref() {
-            DeValue::Table(inner) if inside => key_at(inner, at),
-            DeValue::Array(items) if inside => {
-                let item = items
-                    .iter()
-                    .enumerate()
-                    .find(|(_, v)| v.span().contains(&at));
-                match item.map(|(i, v)| (i, v.get_ref())) {
-                    Some((i, DeValue::Table(inner))) => {
-                        let rest = key_at(inner, at);
-                        match (items.len(), rest.is_empty()) {
-                            (1, _) => rest,
-                            (_, true) => i.to_string(),
-                            (_, false) => format!("{i}.{rest}"),
-                        }
-                    }
-                    _ => String::new(),
-                }
-            }
-            _ => String::new(),
+            DeValue::Table(inner) => key_at(inner, at),
+            DeValue::Array(items) => items.iter().enumerate().find_map(|(i, item)| {
+                let rest = key_at(item.get_ref().as_table()?, at);
+                let own = || item.span().contains(&at).then(String::new);
+                let number = (items.len() > 1).then(|| i.to_string());
+                Some(join(number, rest.or_else(own)?))
+            }),
+            _ => None,
         };
-        return if rest.is_empty() {
-            name
-        } else {
-            format!("{name}.{rest}")
-        };
+        let own = || (name.span().contains(&at) || value.span().contains(&at)).then(String::new);
+        Some(join(Some(name.get_ref().to_string()), rest.or_else(own)?))
+    })
+}
+
+fn join(first: Option<String>, rest: String) -> String {
+    match first {
+        None => rest,
+        Some(first) if rest.is_empty() => first,
+        Some(first) => format!("{first}.{rest}"),
     }
-    String::new()
 }
 
 /// The reader's words, in ours.
