@@ -280,17 +280,18 @@ impl What {
         }
         let step = step.unwrap_or_else(|| scene.default_setting(solver));
         check_setting(solver, step)?;
-        let mut simulation = Simulation::new(scene, solver, step).map_err(|e| match e {
-            a3_core::Error::NeedsMechanics { .. } => {
-                let any = integrators::METHODS
-                    .iter()
-                    .filter(|m| !m.needs_mechanics)
-                    .map(|m| m.name);
-                let any = any.collect::<Vec<_>>().join(", ");
-                Failure::usage(format!("scene {}: {e}; use one of {any}", self.scene.name))
-            }
-            e => Failure::usage(e),
-        })?;
+        if let Err(e) = solver.check(scene.model.system()) {
+            let serve = integrators::METHODS
+                .iter()
+                .filter(|m| m.check(scene.model.system()).is_ok())
+                .map(|m| m.name);
+            let serve = serve.collect::<Vec<_>>().join(", ");
+            return Err(Failure::usage(format!(
+                "scene {}: {e}; use one of {serve}",
+                scene.name
+            )));
+        }
+        let mut simulation = Simulation::new(scene, solver, step).map_err(Failure::usage)?;
         simulation.set_wind(self.wind);
         simulation.set_swinging(self.swing);
         Ok(simulation)

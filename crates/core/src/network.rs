@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use crate::colliders::{Floor, Sphere};
+use crate::constraints::{Constraint, Constraints};
 use crate::error::{Error, at_least, positive};
 use crate::forces::flow::{self, Flow};
 use crate::forces::sheet::Of;
@@ -56,6 +57,7 @@ pub struct Network {
     gravity: Option<Vector3<f64>>,
     drag: Option<f64>,
     wind: Option<Wind>,
+    constraints: Constraints,
     spheres: Vec<Sphere>,
     floor: Option<Floor>,
 }
@@ -87,6 +89,7 @@ impl Network {
             gravity: None,
             drag: None,
             wind: None,
+            constraints: Constraints::default(),
             spheres: vec![],
             floor: None,
         })
@@ -243,6 +246,47 @@ impl Network {
         self.wind.as_ref()
     }
 
+    /// Holds particles by one more constraint, by forces: a state that breaks it is drawn back to it.
+    ///
+    /// # Errors
+    /// There is no such particle, both ends of a rod are the same, or a number makes no sense.
+    pub fn add_constraint(&mut self, constraint: Constraint) -> Result<(), Error> {
+        let (first, second) = constraint.ends();
+        self.check_particle(first)?;
+        self.check_particle(second.unwrap_or(first))?;
+        self.constraints.add(constraint)
+    }
+
+    /// The constraints, their directions of length 1.
+    #[must_use]
+    pub fn constraints(&self) -> &[Constraint] {
+        self.constraints.list()
+    }
+
+    /// The rods attached to particle i: the other end and the length (m) of each.
+    pub fn rods_of(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        self.constraints().iter().filter_map(move |c| match *c {
+            Constraint::Rod { i: a, j: b, length } if a == i || b == i => Some((a + b - i, length)),
+            _ => None,
+        })
+    }
+
+    /// How far the positions x are from what the constraints ask for: the largest |C| (m). `None` without constraints.
+    #[must_use]
+    pub fn constraint_error(&self, x: &[f64]) -> Option<f64> {
+        self.constraints.error(x)
+    }
+
+    /// Takes errors of the constraints back like a critically damped spring of this natural frequency w (1/s), C'' = -w2 C -
+    /// 2 w C'. It is 10 unless set: gone within a second, and slow for any step that shows motion at all. Explicit
+    /// methods need steps well below 1 / w.
+    ///
+    /// # Errors
+    /// w is not a finite number above 0.
+    pub fn set_feedback(&mut self, w: f64) -> Result<(), Error> {
+        self.constraints.set_feedback(w)
+    }
+
     /// Puts a sphere in the way.
     pub fn add_sphere(&mut self, sphere: Sphere) {
         self.spheres.push(sphere);
@@ -311,16 +355,25 @@ impl Network {
     pub fn forces_in_use(&self) -> Vec<&'static str> {
         [
             (self.laws().next().is_some(), "springs"),
-            (self.kick_reads_velocity(), "spring damping"),
+            (self.springs_damped(), "spring damping"),
             (self.gravity.is_some(), "gravity"),
             (self.drag.is_some(), "drag"),
             (self.wind.is_some(), "wind"),
+            (self.is_constrained(), "constraints"),
             (!self.spheres.is_empty(), "sphere"),
             (self.floor.is_some(), "floor"),
         ]
         .into_iter()
         .filter_map(|(used, name)| used.then_some(name))
         .collect()
+    }
+
+    fn is_constrained(&self) -> bool {
+        !self.constraints.list().is_empty()
+    }
+
+    fn springs_damped(&self) -> bool {
+        self.laws().any(|law| law.damping > 0.0)
     }
 
     /// The springs' part of the force (N).
@@ -355,14 +408,14 @@ impl Network {
             .filter(|sheet| self.list.is_empty() && sheet.grid().particles() == self.particles())
     }
 
-    /// The drag and the gravity that a drift carries.
+    /// The drag and the gravity that a drift carries: with constraints none, which hold against all forces together.
     fn drifting(&self, part: Part) -> (f64, Vector3<f64>) {
         match part {
-            Part::Kick => (
+            Part::Kick if !self.is_constrained() => (
                 self.drag.unwrap_or_default(),
                 self.gravity.unwrap_or_default(),
             ),
-            Part::All | Part::Push => (0.0, Vector3::zeros()),
+            _ => (0.0, Vector3::zeros()),
         }
     }
 
@@ -397,13 +450,25 @@ impl Network {
 
     /// What is added to the springs' forces at time t: of all forces, or of those that kick.
     fn others(&self, part: Part, t: f64) -> Ending<'_> {
-        let all = part != Part::Kick;
+        let all = part != Part::Kick || self.is_constrained();
         Ending {
             wind: self.wind.as_ref().map(|wind| (wind, t)),
             gravity: self.gravity.filter(|_| all).map(|g| (g, &*self.masses)),
             drag: self.drag.filter(|_| all),
             inertia: None,
             inverse_masses: None,
+        }
+    }
+
+    /// Adds the forces of the constraints, if there are any, to all others.
+    fn hold(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        if self.is_constrained() {
+            let pin = |i: usize| {
+                let pin = self.pins_of(i..i + 1).first();
+                pin.map_or_else(Vector3::zeros, |pin| pin.path.at(t).acceleration)
+            };
+            self.constraints
+                .add_forces(&self.inverse_masses, pin, [x, v], f);
         }
     }
 
@@ -452,9 +517,15 @@ impl Mechanics for Network {
 
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.evaluate(x, v, f, &self.others(Part::All, t));
+        self.hold(t, x, v, f);
     }
 
     fn accelerations(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
+        if self.is_constrained() {
+            self.forces(t, x, v, a);
+            self.divide_by_masses(a);
+            return;
+        }
         let ending = Ending {
             inverse_masses: Some(&self.inverse_masses),
             ..self.others(Part::All, t)
@@ -463,7 +534,13 @@ impl Mechanics for Network {
     }
 
     fn rows(&self) -> Option<&dyn Rows> {
-        self.only_sheet().map(|_| self as &dyn Rows)
+        self.only_sheet()
+            .filter(|_| !self.is_constrained())
+            .map(|_| self as &dyn Rows)
+    }
+
+    fn feedback(&self) -> Option<f64> {
+        self.is_constrained().then(|| self.constraints.feedback())
     }
 
     fn force_differential(
@@ -476,7 +553,7 @@ impl Mechanics for Network {
         df: &mut [f64],
     ) {
         // How the turning of damped springs changes their forces, vectors do not know.
-        let turns = self.kick_reads_velocity() && v.iter().any(|v| *v != 0.0);
+        let turns = self.springs_damped() && v.iter().any(|v| *v != 0.0);
         if let Some(sheet) = self.only_sheet().filter(|_| !turns) {
             let of = |stiffness, damping, p: &[f64], out: &mut [f64]| {
                 let (of, sheet) = (
@@ -550,16 +627,17 @@ impl Mechanics for Network {
         }
     }
 
-    /// Springs and wind. Gravity and drag are in the drift.
+    /// Springs and wind. Gravity and drag are in the drift, unless there are constraints.
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.evaluate(x, v, f, &self.others(Part::Kick, t));
+        self.hold(t, x, v, f);
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        self.laws().any(|law| law.damping > 0.0)
+        self.springs_damped() || self.is_constrained()
     }
 
-    /// x' = v, v' = g - (c/m) v, exactly.
+    /// x' = v, v' = g - (c/m) v, exactly; with constraints v stays.
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
         let all = 0..self.particles();
         self.flow(Part::Kick, h, all, columns_mut(x), columns_mut(v));

@@ -46,7 +46,9 @@ fn no_step_allocates() {
                 Simulation::new(entry.build(None).unwrap(), method, method.default_setting)
             else {
                 assert!(
-                    method.needs_mechanics && entry.build(None).unwrap().model.network().is_none()
+                    method
+                        .check(entry.build(None).unwrap().model.system())
+                        .is_err()
                 );
                 continue;
             };

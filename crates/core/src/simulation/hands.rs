@@ -15,6 +15,9 @@ const PULL_TIME: f64 = 1.0 / 30.0;
 /// ... but no faster than this many radii of the scene per second.
 const PULL_SPEED: f64 = 10.0;
 
+/// How short and how long a hand makes a rod, in lengths: what it does faster than the other end follows.
+const ROD: (f64, f64) = (0.95, 1.05);
+
 impl Simulation {
     fn network_mut(&mut self) -> Option<&mut Network> {
         self.look_again();
@@ -113,9 +116,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs hold it back. A hand
-    /// is strong and not almighty: it stretches a spring it holds as far as the scene allows, and gets farther
-    /// as the other end comes along.
+    /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs or rods hold it back. A hand
+    /// is strong and not almighty: it stretches a spring it holds as far as the scene allows, a rod hardly at all, and
+    /// gets farther as the other end comes along.
     pub fn pull(&mut self, target: Vector3<f64>) {
         let Some((i, _)) = self.grabbed else { return };
         let (from, start) = (self.position(i), self.time());
@@ -132,31 +135,21 @@ impl Simulation {
         );
     }
 
-    /// The point on the way of particle i to `target` up to which no spring of its own is stretched too far. A spring
-    /// that is already may not get longer.
+    /// The point on the way of particle i to `target` up to which no spring of its own is stretched too far, and no rod
+    /// stretched or squeezed. One that is already may not get longer, or shorter.
     fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
         let way = target - from;
-        let springs = self
-            .model
-            .network()
-            .into_iter()
-            .flat_map(|network| network.springs_of(i));
+        let network = || self.model.network().into_iter();
+        let springs = network()
+            .flat_map(|network| network.springs_of(i))
+            .map(|s| (s.i + s.j - i, 0.0, self.scene.reach * s.law.rest_length));
+        let rods = network()
+            .flat_map(|network| network.rods_of(i))
+            .map(|(other, length)| (other, ROD.0 * length, ROD.1 * length));
         let share = springs
-            .map(|s| {
-                let other = self.position(s.i + s.j - i);
-                let limit = (self.scene.reach * s.law.rest_length).max((from - other).norm());
-                // The larger root u of |from + u way - other| = limit.
-                let d = from - other;
-                let (a, b, c) = (
-                    way.norm_squared(),
-                    d.dot(&way),
-                    d.norm_squared() - limit * limit,
-                );
-                if a > 0.0 {
-                    (-b + (b * b - a * c).max(0.0).sqrt()) / a
-                } else {
-                    1.0
-                }
+            .chain(rods)
+            .map(|(other, shortest, longest)| {
+                share(from - self.position(other), way, shortest, longest)
             })
             .fold(1.0, f64::min);
         from + share * way
@@ -172,6 +165,24 @@ impl Simulation {
         } else if let Some(network) = self.network_mut() {
             network.unpin(i);
         }
+    }
+}
+
+/// How much of a way is left to what is at d (m) from the other end, until it is as near or as far as it may get, or as it
+/// is already: at most all, 1.
+fn share(d: Vector3<f64>, way: Vector3<f64>, shortest: f64, longest: f64) -> f64 {
+    let (a, b, distance) = (way.norm_squared(), d.dot(&way), d.norm());
+    if a == 0.0 {
+        return 1.0;
+    }
+    // Where it crosses a limit: the roots u of |d + u way| = limit are (-b -+ root) / a.
+    let squared = |limit: f64| b * b - a * (d.norm_squared() - limit * limit);
+    let leaves = (-b + squared(longest.max(distance)).max(0.0).sqrt()) / a;
+    let enters = squared(shortest.min(distance));
+    if shortest > 0.0 && b < 0.0 && enters >= 0.0 {
+        leaves.min(((-b - enters.sqrt()) / a).max(0.0))
+    } else {
+        leaves
     }
 }
 
