@@ -296,7 +296,6 @@ impl What {
         solver: &'static Method,
         step: Option<f64>,
     ) -> Result<Simulation, Failure> {
-        let name = scene.name.clone();
         for (asked, there, option) in [
             (self.wind, scene.wind.is_some(), "wind"),
             (self.swing, scene.swing.is_some(), "swing"),
@@ -310,17 +309,18 @@ impl What {
         }
         let step = step.unwrap_or_else(|| scene.default_setting(solver));
         check_setting(solver, step)?;
-        let mut simulation = Simulation::new(scene, solver, step).map_err(|e| match e {
-            a3_core::Error::NeedsMechanics { .. } => {
-                let any = integrators::METHODS
-                    .iter()
-                    .filter(|m| !m.needs_mechanics)
-                    .map(|m| m.name);
-                let any = any.collect::<Vec<_>>().join(", ");
-                Failure::usage(format!("scene {name}: {e}; use one of {any}"))
-            }
-            e => Failure::usage(e),
-        })?;
+        if let Err(e) = solver.check(scene.model.system()) {
+            let serve = integrators::METHODS
+                .iter()
+                .filter(|m| m.check(scene.model.system()).is_ok())
+                .map(|m| m.name);
+            let serve = serve.collect::<Vec<_>>().join(", ");
+            return Err(Failure::usage(format!(
+                "scene {}: {e}; use one of {serve}",
+                scene.name
+            )));
+        }
+        let mut simulation = Simulation::new(scene, solver, step).map_err(Failure::usage)?;
         if self.wind {
             simulation.set_wind(true);
         }

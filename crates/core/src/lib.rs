@@ -22,6 +22,7 @@
 
 pub mod accuracy;
 pub mod colliders;
+pub mod constraints;
 mod error;
 pub mod forces;
 mod grid;
@@ -39,6 +40,7 @@ pub mod stability;
 mod system;
 mod threads;
 
+pub use constraints::Constraint;
 pub use error::{BlowUp, Cause, Error};
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};

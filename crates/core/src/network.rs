@@ -8,6 +8,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
+use crate::constraints::{Constraint, Constraints};
 use crate::error::{Error, at_least, positive};
 use crate::forces::air::OnTriangles;
 use crate::forces::buckling::{self, Buckling, Strip};
@@ -25,6 +26,15 @@ use crate::system::{Coupling, Matrix, Mechanics, place_pins};
 struct Pin {
     particle: usize,
     path: Path,
+}
+
+/// A spring from where a hand is to a free particle, critically damped: -m (w2 (x - p) + 2 w (v - p')).
+#[derive(Clone, Debug)]
+struct Hand {
+    particle: usize,
+    path: Path,
+    /// w (1/s).
+    frequency: f64,
 }
 
 /// Energy by kind (J). Gravity's is zero at the origin.
@@ -67,6 +77,8 @@ pub struct Network {
     drag: Option<f64>,
     wind: Option<Wind>,
     triangles: Arc<[[u32; 3]]>,
+    constraints: Constraints,
+    hand: Option<Hand>,
     spheres: Vec<Sphere>,
     boxes: Vec<Cuboid>,
     capsules: Vec<Capsule>,
@@ -104,6 +116,8 @@ impl Network {
             drag: None,
             wind: None,
             triangles: Arc::default(),
+            constraints: Constraints::default(),
+            hand: None,
             spheres: vec![],
             boxes: vec![],
             capsules: vec![],
@@ -320,6 +334,70 @@ impl Network {
         self.wind.as_ref().filter(|wind| wind.air().is_none())
     }
 
+    /// Holds particles by one more constraint, by forces: a state that breaks it is drawn back to it.
+    ///
+    /// # Errors
+    /// There is no such particle, both ends of a rod are the same, or a number makes no sense.
+    pub fn add_constraint(&mut self, constraint: Constraint) -> Result<(), Error> {
+        let (first, second) = constraint.ends();
+        self.check_particle(first)?;
+        self.check_particle(second.unwrap_or(first))?;
+        self.constraints.add(constraint)
+    }
+
+    /// The constraints, their directions of length 1.
+    #[must_use]
+    pub fn constraints(&self) -> &[Constraint] {
+        self.constraints.list()
+    }
+
+    /// Whether constraints hold particle i.
+    #[must_use]
+    pub fn is_held(&self, i: usize) -> bool {
+        self.constraints()
+            .iter()
+            .any(|c| c.ends().0 == i || c.ends().1 == Some(i))
+    }
+
+    /// Draws particle i, which constraints hold, to a path, by a spring of that frequency (1/s): they stay as they are, which
+    /// a pin would tear.
+    pub(crate) fn draw(&mut self, particle: usize, path: Path, frequency: f64) {
+        self.hand = Some(Hand {
+            particle,
+            path,
+            frequency,
+        });
+    }
+
+    /// Ends that.
+    pub(crate) fn let_go(&mut self) {
+        self.hand = None;
+    }
+
+    /// The rods attached to particle i: the other end and the length (m) of each.
+    pub fn rods_of(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        self.constraints().iter().filter_map(move |c| match *c {
+            Constraint::Rod { i: a, j: b, length } if a == i || b == i => Some((a + b - i, length)),
+            _ => None,
+        })
+    }
+
+    /// How far the positions x are from what the constraints ask for: the largest |C| (m). `None` without constraints.
+    #[must_use]
+    pub fn constraint_error(&self, x: &[f64]) -> Option<f64> {
+        self.constraints.error(x)
+    }
+
+    /// Takes errors of the constraints back like a critically damped spring of this natural frequency w (1/s), C'' = -w2 C -
+    /// 2 w C'. It is 10 unless set: gone within a second, and slow for any step that shows motion at all. Explicit
+    /// methods need steps well below 1 / w.
+    ///
+    /// # Errors
+    /// w is not a finite number above 0.
+    pub fn set_feedback(&mut self, w: f64) -> Result<(), Error> {
+        self.constraints.set_feedback(w)
+    }
+
     /// Puts a sphere in the way.
     pub fn add_sphere(&mut self, sphere: Sphere) {
         self.spheres.push(sphere);
@@ -436,22 +514,17 @@ impl Network {
             .chain(self.list.iter().map(|s| s.law))
     }
 
-    /// Whether any spring is.
-    fn is_damped(&self) -> bool {
-        self.laws().any(|law| law.damping > 0.0)
-            || self.strips.iter().any(|strip| strip.of.damping > 0.0)
-    }
-
     /// Names of the forces and obstacles this network pays for.
     #[must_use]
     pub fn forces_in_use(&self) -> Vec<&'static str> {
         [
             (self.laws().next().is_some(), "springs"),
             (!self.strips.is_empty(), "buckling"),
-            (self.is_damped(), "spring damping"),
+            (self.springs_damped(), "spring damping"),
             (self.gravity.is_some(), "gravity"),
             (self.drag.is_some(), "drag"),
             (self.wind.is_some(), "wind"),
+            (self.is_constrained(), "constraints"),
             (!self.spheres.is_empty(), "sphere"),
             (!self.boxes.is_empty(), "box"),
             (!self.capsules.is_empty(), "capsule"),
@@ -461,6 +534,16 @@ impl Network {
         .into_iter()
         .filter_map(|(used, name)| used.then_some(name))
         .collect()
+    }
+
+    fn is_constrained(&self) -> bool {
+        !self.constraints.list().is_empty()
+    }
+
+    /// Whether any spring is.
+    fn springs_damped(&self) -> bool {
+        self.laws().any(|law| law.damping > 0.0)
+            || self.strips.iter().any(|strip| strip.of.damping > 0.0)
     }
 
     /// The springs' part of the force (N).
@@ -497,14 +580,14 @@ impl Network {
             .filter(|_| self.list.is_empty() && self.strips.is_empty())
     }
 
-    /// The drag and the gravity that a drift carries.
+    /// The drag and the gravity that a drift carries: with constraints none, which hold against all forces together.
     fn drifting(&self, part: Part) -> (f64, Vector3<f64>) {
         match part {
-            Part::Kick => (
+            Part::Kick if !self.is_constrained() => (
                 self.drag.unwrap_or_default(),
                 self.gravity.unwrap_or_default(),
             ),
-            Part::All | Part::Push => (0.0, Vector3::zeros()),
+            _ => (0.0, Vector3::zeros()),
         }
     }
 
@@ -539,7 +622,7 @@ impl Network {
 
     /// What is added to the springs' forces at time t: of all forces, or of those that kick.
     fn others(&self, part: Part, t: f64) -> Ending<'_> {
-        let all = part != Part::Kick;
+        let all = part != Part::Kick || self.is_constrained();
         Ending {
             wind: self.push().map(|wind| (wind, t)),
             air: self.air(t),
@@ -547,6 +630,27 @@ impl Network {
             drag: self.drag.filter(|_| all),
             inertia: None,
             inverse_masses: None,
+        }
+    }
+
+    /// Adds the forces of the constraints, if there are any, to all others: among them that of a hand.
+    fn hold(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        if self.is_constrained() {
+            if let Some(hand) = &self.hand {
+                let (n, place, w) = (self.particles(), hand.path.at(t), hand.frequency);
+                for axis in 0..3 {
+                    let k = axis * n + hand.particle;
+                    let pull = w * w * (x[k] - place.position[axis])
+                        + 2.0 * w * (v[k] - place.velocity[axis]);
+                    f[k] -= self.masses[hand.particle] * pull;
+                }
+            }
+            let pin = |i: usize| {
+                let pin = self.pins_of(i..i + 1).first();
+                pin.map_or_else(Vector3::zeros, |pin| pin.path.at(t).acceleration)
+            };
+            self.constraints
+                .add_forces(&self.inverse_masses, pin, [x, v], f);
         }
     }
 
@@ -594,9 +698,15 @@ impl Mechanics for Network {
 
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.evaluate(x, v, f, &self.others(Part::All, t));
+        self.hold(t, x, v, f);
     }
 
     fn accelerations(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
+        if self.is_constrained() {
+            self.forces(t, x, v, a);
+            self.divide_by_masses(a);
+            return;
+        }
         let ending = Ending {
             inverse_masses: Some(&self.inverse_masses),
             ..self.others(Part::All, t)
@@ -605,9 +715,14 @@ impl Mechanics for Network {
     }
 
     fn rows(&self) -> Option<&dyn Rows> {
-        // Triangles reach into rows above, which a sweep has left behind.
-        let sweeps = self.only_sheet().is_some() && self.air(0.0).is_none();
+        // Triangles reach into rows above, which a sweep has left behind; constraints reach anywhere.
+        let sweeps =
+            self.only_sheet().is_some() && self.air(0.0).is_none() && !self.is_constrained();
         sweeps.then_some(self as &dyn Rows)
+    }
+
+    fn feedback(&self) -> Option<f64> {
+        self.is_constrained().then(|| self.constraints.feedback())
     }
 
     fn force_differential(
@@ -620,7 +735,7 @@ impl Mechanics for Network {
         df: &mut [f64],
     ) {
         // How the turning of damped springs changes their forces, vectors do not know.
-        let turns = self.is_damped() && v.iter().any(|v| *v != 0.0);
+        let turns = self.springs_damped() && v.iter().any(|v| *v != 0.0);
         if let Some(sheet) = self.only_sheet().filter(|_| !turns) {
             let of = |stiffness, damping, p: &[f64], out: &mut [f64]| {
                 let (of, sheet) = (
@@ -702,16 +817,17 @@ impl Mechanics for Network {
         }
     }
 
-    /// Springs and wind. Gravity and drag are in the drift.
+    /// Springs and wind. Gravity and drag are in the drift, unless there are constraints.
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.evaluate(x, v, f, &self.others(Part::Kick, t));
+        self.hold(t, x, v, f);
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        self.air(0.0).is_some() || self.is_damped()
+        self.air(0.0).is_some() || self.springs_damped() || self.is_constrained()
     }
 
-    /// x' = v, v' = g - (c/m) v, exactly.
+    /// x' = v, v' = g - (c/m) v, exactly; with constraints v stays.
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
         let all = 0..self.particles();
         self.flow(Part::Kick, h, all, columns_mut(x), columns_mut(v));

@@ -90,6 +90,13 @@ pub trait Mechanics {
         None
     }
 
+    /// The natural frequency (1/s) with which errors of constraints are taken back, if the forces hold any. What they do for
+    /// that, [`force_differential`](Self::force_differential) and [`couplings`](Self::couplings) leave out: methods
+    /// that solve with these do not serve then.
+    fn feedback(&self) -> Option<f64> {
+        None
+    }
+
     /// Writes dF = dF/dx dx + dF/dv dv to `df`, without forming a matrix.
     fn force_differential(
         &self,

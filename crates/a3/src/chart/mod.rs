@@ -106,13 +106,13 @@ pub fn methods(scene: &Scene, asked: &[&'static Method]) -> Result<Vec<&'static 
     if asked.is_empty() {
         let all = integrators::METHODS.iter();
         return Ok(all
-            .filter(|m| m.integrator(scene.model.system()).is_ok())
+            .filter(|m| m.check(scene.model.system()).is_ok())
             .collect());
     }
     let mut methods: Vec<&'static Method> = vec![];
     for &method in asked {
         method
-            .integrator(scene.model.system())
+            .check(scene.model.system())
             .map_err(|e| Failure::usage(format!("scene {}: {e}", scene.name)))?;
         if !methods.iter().any(|m| std::ptr::eq(*m, method)) {
             methods.push(method);

@@ -40,7 +40,7 @@ pub fn choose(
     let mut methods: Vec<_> = METHODS.iter().collect();
     methods.sort_by_key(|method| std::cmp::Reverse(method.order));
     for method in methods {
-        if method.integrator(scene.model.system()).is_err() {
+        if method.check(scene.model.system()).is_err() {
             continue;
         }
         // The second best, which is the runner-up so far.

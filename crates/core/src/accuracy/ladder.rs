@@ -25,7 +25,7 @@ pub fn ladder(
     most: u64,
 ) -> Result<Vec<f64>, Error> {
     let system = scene.model.system();
-    method.integrator(system)?;
+    method.check(system)?;
     if method.is_adaptive() {
         return Ok((TOLERANCES.1..=TOLERANCES.0)
             .rev()

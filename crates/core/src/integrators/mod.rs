@@ -116,14 +116,29 @@ pub struct Method {
 }
 
 impl Method {
+    /// `Ok` if the method serves this system.
+    ///
+    /// # Errors
+    /// The method needs forces and masses, and the system has none; or it is implicit, and the system has constraints.
+    pub fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
+        match system.mechanics() {
+            None if self.needs_mechanics => Err(Error::NeedsMechanics { method: self.name }),
+            Some(mechanics) if self.implicit && mechanics.feedback().is_some() => {
+                Err(Error::Invalid(format!(
+                    "{} does not know constraints: an explicit solver does",
+                    self.title
+                )))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// An integrator with scratch for this system.
     ///
     /// # Errors
-    /// The method needs forces and masses, and the system has none.
+    /// As [`check`](Self::check).
     pub fn integrator(&self, system: &dyn ParticleSystem) -> Result<Box<dyn Integrator>, Error> {
-        if self.needs_mechanics && system.mechanics().is_none() {
-            return Err(Error::NeedsMechanics { method: self.name });
-        }
+        self.check(system)?;
         Ok((self.create)(system))
     }
 

@@ -15,6 +15,12 @@ const PULL_TIME: f64 = 1.0 / 30.0;
 /// ... but no faster than this many radii of the scene per second.
 const PULL_SPEED: f64 = 10.0;
 
+/// What constraints hold is drawn by a spring, as if from so many radii of the scene away at most.
+const PULL_REACH: f64 = 0.05;
+
+/// How short and how long a hand makes a rod, in lengths: what it does faster than the other end follows.
+const ROD: (f64, f64) = (0.95, 1.05);
+
 impl Simulation {
     fn network_mut(&mut self) -> Option<&mut Network> {
         self.look_again();
@@ -97,8 +103,8 @@ impl Simulation {
         self.grabbed.map(|(i, _)| i)
     }
 
-    /// Takes hold of particle i, and lets go of any other. Does nothing in a scene without masses, where there is
-    /// nothing to hold against.
+    /// Takes hold of particle i, and lets go of any other: it is a pin then; or, if it is free but for constraints, a spring
+    /// draws it. Does nothing in a scene without masses, where there is nothing to hold against.
     ///
     /// # Errors
     /// There is no such particle.
@@ -109,18 +115,39 @@ impl Simulation {
         };
         network.check_particle(i)?;
         self.grabbed = Some((i, network.is_pinned(i)));
-        self.pin(i, Path::Still(self.position(i)));
+        self.lead(i, Path::Still(self.position(i)));
         Ok(())
     }
 
-    /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs hold it back. A hand
-    /// is strong and not almighty: it stretches a spring it holds as far as the scene allows, and gets farther
-    /// as the other end comes along.
+    /// Leads the grabbed particle along `path`: as a pin, or, if it is free but for constraints, by a spring.
+    fn lead(&mut self, i: usize, path: Path) {
+        if self.draws(i) {
+            if let Some(network) = self.network_mut() {
+                network.draw(i, path, 1.0 / PULL_TIME);
+            }
+        } else {
+            self.pin(i, path);
+        }
+    }
+
+    fn draws(&self, i: usize) -> bool {
+        self.model
+            .network()
+            .is_some_and(|network| network.is_held(i) && self.grabbed != Some((i, true)))
+    }
+
+    /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs or rods hold it back. A hand
+    /// is strong and not almighty: it stretches a spring it holds as far as the scene allows, a rod hardly at all, and
+    /// gets farther as the other end comes along.
     pub fn pull(&mut self, target: Vector3<f64>) {
         let Some((i, _)) = self.grabbed else { return };
         let from = self.position(i);
-        let target = self.within_reach(i, from, target);
-        self.pin(i, self.way(from, target));
+        let target = if self.draws(i) {
+            from + (target - from).cap_magnitude(PULL_REACH * self.radius)
+        } else {
+            self.within_reach(i, from, target)
+        };
+        self.lead(i, self.way(from, target));
     }
 
     /// The way of a hand that begins now.
@@ -135,31 +162,21 @@ impl Simulation {
         }
     }
 
-    /// The point on the way of particle i to `target` up to which no spring of its own is stretched too far. A spring
-    /// that is already may not get longer.
+    /// The point on the way of particle i to `target` up to which no spring of its own is stretched too far, and no rod
+    /// stretched or squeezed. One that is already may not get longer, or shorter.
     fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
         let way = target - from;
-        let springs = self
-            .model
-            .network()
-            .into_iter()
-            .flat_map(|network| network.springs_of(i));
+        let network = || self.model.network().into_iter();
+        let springs = network()
+            .flat_map(|network| network.springs_of(i))
+            .map(|s| (s.i + s.j - i, 0.0, self.scene.reach * s.law.rest_length));
+        let rods = network()
+            .flat_map(|network| network.rods_of(i))
+            .map(|(other, length)| (other, ROD.0 * length, ROD.1 * length));
         let share = springs
-            .map(|s| {
-                let other = self.position(s.i + s.j - i);
-                let limit = (self.scene.reach * s.law.rest_length).max((from - other).norm());
-                // The larger root u of |from + u way - other| = limit.
-                let d = from - other;
-                let (a, b, c) = (
-                    way.norm_squared(),
-                    d.dot(&way),
-                    d.norm_squared() - limit * limit,
-                );
-                if a > 0.0 {
-                    (-b + (b * b - a * c).max(0.0).sqrt()) / a
-                } else {
-                    1.0
-                }
+            .chain(rods)
+            .map(|(other, shortest, longest)| {
+                share(from - self.position(other), way, shortest, longest)
             })
             .fold(1.0, f64::min);
         from + share * way
@@ -174,6 +191,7 @@ impl Simulation {
             self.leave_pin(i);
         } else if let Some(network) = self.network_mut() {
             network.unpin(i);
+            network.let_go();
         }
     }
 
@@ -221,6 +239,24 @@ impl Simulation {
             // It is there: it was found above.
             let _ = network.lead_sphere(k, path);
         }
+    }
+}
+
+/// How much of a way is left to what is at d (m) from the other end, until it is as near or as far as it may get, or as it
+/// is already: at most all, 1.
+fn share(d: Vector3<f64>, way: Vector3<f64>, shortest: f64, longest: f64) -> f64 {
+    let (a, b, distance) = (way.norm_squared(), d.dot(&way), d.norm());
+    if a == 0.0 {
+        return 1.0;
+    }
+    // Where it crosses a limit: the roots u of |d + u way| = limit are (-b -+ root) / a.
+    let squared = |limit: f64| b * b - a * (d.norm_squared() - limit * limit);
+    let leaves = (-b + squared(longest.max(distance)).max(0.0).sqrt()) / a;
+    let enters = squared(shortest.min(distance));
+    if shortest > 0.0 && b < 0.0 && enters >= 0.0 {
+        leaves.min(((-b - enters.sqrt()) / a).max(0.0))
+    } else {
+        leaves
     }
 }
 

@@ -77,7 +77,7 @@ pub struct Rest {
 }
 
 /// The state in which the scene comes to rest, wind and swing off: found by implicit Euler in growing steps. `None` for
-/// a first-order scene, and for one that does not settle.
+/// a scene that this method does not serve or that is first order, and for one that does not settle.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -85,6 +85,9 @@ pub fn rest(scene: &Scene) -> Result<Option<Rest>, Error> {
     let Some((implicit, network)) = find("implicit").zip(scene.model.network()) else {
         return Ok(None);
     };
+    if implicit.check(network).is_err() {
+        return Ok(None);
+    }
     let mut run = Simulation::new(scene.clone(), implicit, 0.05)?;
     let mut random = SplitMix(4);
     for (step, steps, leaves) in SETTLING {

@@ -15,8 +15,8 @@ const MULTIPLICATIONS: f64 = 2e9;
 const DENSE: usize = 300;
 
 /// The modes around the state y, fastest first: of a mechanical system by Lanczos's method on the mass-normalised
-/// stiffness, each with the damping of its own shape; of a small first-order one from its Jacobian. A system that is
-/// neither has none. Negative stiffness is a mode that buckles.
+/// stiffness, each with the damping of its own shape, and of its constraints the mode in which errors are taken back; of a
+/// small first-order system from its Jacobian. A system that is neither has none. Negative stiffness is a mode that buckles.
 #[must_use]
 pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let mut modes = match system.mechanics() {
@@ -24,6 +24,7 @@ pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
             let (x, _) = y.split_at(y.len() / 2);
             let mut modes = vec![];
             of_mechanics(mechanics, t, x, PRODUCTS, &mut |mode, _| modes.push(mode));
+            modes.extend(of_constraints(mechanics));
             modes
         }
         None if y.len() <= DENSE => of_jacobian(system, t, y),
@@ -209,6 +210,15 @@ fn of_mechanics(
     }
 }
 
+/// In which errors of all constraints are taken back.
+fn of_constraints(mechanics: &dyn Mechanics) -> Option<Mode> {
+    mechanics.feedback().map(|w| Mode {
+        stiffness: w * w,
+        drag: 0.0,
+        damping: 2.0 * w,
+    })
+}
+
 /// One mode for each pair of eigenvalues of the Jacobian, by central differences.
 fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let n = y.len();
@@ -252,7 +262,7 @@ impl LargestMode {
         &self.shape
     }
 
-    /// The fastest mode around the positions x: within 1 % the first time, and as close as the cloth has moved since
+    /// The fastest mode around the positions x, that of constraints if they have a faster one: within 1 % the first time, and as close as the cloth has moved since
     /// afterwards. Takes 24 products with the force differential the first time, and then 4.
     #[must_use]
     pub fn estimate(&mut self, mechanics: &dyn Mechanics, t: f64, x: &[f64]) -> Option<Mode> {
@@ -276,10 +286,12 @@ impl LargestMode {
             largest = normalise(&mut next);
             if !(largest.is_finite() && largest > 0.0) {
                 self.shape.clear();
-                return None;
+                return of_constraints(mechanics);
             }
             std::mem::swap(&mut self.shape, &mut next);
         }
-        Some(stiffness.mode(largest, &self.shape, &mut next))
+        let mode = stiffness.mode(largest, &self.shape, &mut next);
+        let faster = of_constraints(mechanics).filter(|other| other.stiffness > mode.stiffness);
+        faster.or(Some(mode))
     }
 }
