@@ -203,6 +203,7 @@ pub static SCENES: &[SceneEntry] = &[
     entry!("chain"),
     entry!("mit"),
     entry!("mit-sphere"),
+    entry!("double-pendulum"),
     entry!("flag"),
     entry!("jelly"),
 ];

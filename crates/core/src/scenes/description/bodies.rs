@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::build::{Assembly, Sizes};
 use super::lattice::Lattice;
 use super::{BucklingSpec, Fault, Mesh, Pin, Spot, SpringSpec, Triple};
+use crate::constraints::Constraint;
 use crate::error::{Error, at_least, positive};
 use crate::forces::Buckling;
 use crate::grid::Grid;
@@ -136,7 +137,11 @@ pub struct Chain {
     /// Mass of each particle (kg).
     pub mass: f64,
     /// Of each spring (N/m).
+    #[serde(default)]
     pub stiffness: f64,
+    /// Rods instead of springs.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rigid: bool,
     /// Rest length of each spring (m); without it, that of the beginning.
     pub rest_length: Option<f64>,
     /// Of each spring (N s/m).
@@ -646,7 +651,16 @@ impl Body for Chain {
             j: i + 1,
             law,
         });
-        assembly.add_springs(first, springs);
+        if self.rigid {
+            at("rest_length", positive("that of a rod", rest_length))?;
+            assembly.rods.extend(springs.map(|s| Constraint::Rod {
+                i: first + s.i,
+                j: first + s.j,
+                length: rest_length,
+            }));
+        } else {
+            assembly.add_springs(first, springs);
+        }
         if let Some(of) = &self.buckling {
             let strip = |i| of.strip([i, i + 2], 2.0 * rest_length, [0.0, 0.0]);
             assembly.add_strips(first, (0..n - 2).map(strip).collect());

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::bodies::{Body, Woven, in_body};
-use super::{Description, Fault, Mesh, Pin, Shift, Sine, SpringSpec, Triple};
+use super::{ConstraintSpec, Description, Fault, Mesh, Pin, Shift, Sine, SpringSpec, Triple};
 use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
+use crate::constraints::Constraint;
 use crate::error::{at_least, positive};
 use crate::forces::{Air, Buckling, Wind};
 use crate::grid::{Grid, MAX_PARTICLES};
@@ -40,6 +41,7 @@ pub(super) struct Assembly {
     pub surface: Surface,
     springs: Vec<Spring>,
     strips: Vec<Buckling>,
+    pub rods: Vec<Constraint>,
     pins: Vec<(usize, Path)>,
 }
 
@@ -405,7 +407,7 @@ impl Description {
         assembly.springs.extend(between);
         let more = pins("", &self.pin, &assembly.positions, |_| None)?;
         assembly.pins.extend(more);
-        let state = column_major(&assembly.positions)
+        let state: Vec<_> = column_major(&assembly.positions)
             .chain(column_major(&assembly.velocities))
             .collect();
         let Assembly {
@@ -413,6 +415,7 @@ impl Description {
             sheet,
             springs,
             strips,
+            rods,
             pins,
             surface,
             grid,
@@ -428,6 +431,10 @@ impl Description {
             let wrong = |e| Fault::new("buckling", format!("bend spring {k}, counted from 0: {e}"));
             network.add_buckling(strip).map_err(wrong)?;
         }
+        for rod in rods {
+            network.add_constraint(rod).map_err(whole)?;
+        }
+        self.add_constraints(&mut network, &state)?;
         let triangles = surface.triangles.iter();
         network
             .set_triangles(triangles.map(|t| t.map(|i| i as usize)))
@@ -437,6 +444,55 @@ impl Description {
         }
         self.set_forces(&mut network)?;
         Ok((Model::Network(Box::new(network)), state, surface, grid))
+    }
+
+    fn add_constraints(&self, network: &mut Network, state: &[f64]) -> Result<(), Fault> {
+        if let Some(w) = self.feedback {
+            let set = network.set_feedback(w);
+            set.map_err(|e| Fault::new("feedback", e))?;
+        }
+        let n = network.particles();
+        for (k, spec) in self.constraint.iter().enumerate() {
+            let at = Place::of("constraint", k, self.constraint.len());
+            let constraint = match spec {
+                ConstraintSpec {
+                    rod: Some([i, j]),
+                    length,
+                    particle: None,
+                    point: None,
+                    line: None,
+                    circle: None,
+                    sphere: None,
+                } => {
+                    for end in [i, j] {
+                        at.check("rod", network.check_particle(*end))?;
+                    }
+                    let point = |i: usize| Vector3::new(state[i], state[n + i], state[2 * n + i]);
+                    Constraint::Rod {
+                        i: *i,
+                        j: *j,
+                        length: length.unwrap_or((point(*i) - point(*j)).norm()),
+                    }
+                }
+                ConstraintSpec {
+                    rod: None,
+                    length: None,
+                    particle: Some(particle),
+                    ..
+                } => {
+                    at.check("particle", network.check_particle(*particle))?;
+                    at.wire(*particle, spec)?
+                }
+                _ => {
+                    return Err(at.wrong(
+                        "takes either `rod`, of two particles, or `particle` with one of `point`, `line`, `circle`, `sphere`",
+                    ));
+                }
+            };
+            let added = network.add_constraint(constraint);
+            added.map_err(|e| at.wrong(e))?;
+        }
+        Ok(())
     }
 
     fn set_forces(&self, network: &mut Network) -> Result<(), Fault> {
@@ -566,6 +622,39 @@ impl Place {
             kind.into()
         } else {
             format!("{kind}.{k}")
+        })
+    }
+
+    fn wrong(&self, why: impl std::fmt::Display) -> Fault {
+        Fault::new(self.0.clone(), why)
+    }
+
+    /// What a particle stays on.
+    fn wire(&self, particle: usize, spec: &ConstraintSpec) -> Result<Constraint, Fault> {
+        Ok(match (spec.point, &spec.line, &spec.circle, &spec.sphere) {
+            (Some(position), None, None, None) => Constraint::Point {
+                particle,
+                position: self.vector("point", position)?,
+            },
+            (None, Some(line), None, None) => Constraint::Line {
+                particle,
+                point: self.vector("line.point", line.point)?,
+                direction: self.vector("line.direction", line.direction)?,
+            },
+            (None, None, Some(circle), None) => Constraint::Circle {
+                particle,
+                center: self.vector("circle.center", circle.center)?,
+                normal: self.vector("circle.normal", circle.normal)?,
+                radius: circle.radius,
+            },
+            (None, None, None, Some(sphere)) => Constraint::Sphere {
+                particle,
+                center: self.vector("sphere.center", sphere.center)?,
+                radius: sphere.radius,
+            },
+            _ => {
+                return Err(self.wrong("takes one of `point`, `line`, `circle`, `sphere`"));
+            }
         })
     }
 

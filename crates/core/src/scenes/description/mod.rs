@@ -69,6 +69,11 @@ pub struct Description {
     /// Springs between any particles: [i, j, stiffness (N/m), rest length (m), damping (N s/m)].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,
+    /// Rods and wires, which explicit solvers keep exactly.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constraint: Vec<ConstraintSpec>,
+    /// How fast what is off its constraint comes back (1/s); 10 if not given.
+    pub feedback: Option<f64>,
     /// Pins of any particles, by number. They come after those of the bodies, and instead of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
@@ -166,6 +171,59 @@ pub struct Pin {
     pub sine: Option<Sine>,
     /// Once, from here to there.
     pub shift: Option<Shift>,
+}
+
+/// What holds particles without springs: a `rod` between two, or a `point`, a `line`, a `circle` or a `sphere` that one
+/// `particle` stays on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ConstraintSpec {
+    /// Two particles.
+    pub rod: Option<[usize; 2]>,
+    /// Of the rod (m); without it, the distance that they have.
+    pub length: Option<f64>,
+    /// The particle that stays on one of what follows.
+    pub particle: Option<usize>,
+    /// A point (m).
+    pub point: Option<Triple>,
+    /// A straight line.
+    pub line: Option<LineSpec>,
+    /// A circle.
+    pub circle: Option<CircleSpec>,
+    /// A sphere.
+    pub sphere: Option<BallSpec>,
+}
+
+/// A straight line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineSpec {
+    /// One of its points (m).
+    pub point: Triple,
+    /// Of any length but 0.
+    pub direction: Triple,
+}
+
+/// A circle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CircleSpec {
+    /// In m.
+    pub center: Triple,
+    /// Of its plane, of any length but 0.
+    pub normal: Triple,
+    /// In m.
+    pub radius: f64,
+}
+
+/// The surface of a ball.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BallSpec {
+    /// In m.
+    pub center: Triple,
+    /// In m.
+    pub radius: f64,
 }
 
 /// `amplitude sin(rate t + phase)` from where it is.
