@@ -17,6 +17,7 @@ use crate::app::Session;
     a3 e 0.05 --scene simple           watch Euler's circle spiral outwards\n  \
     a3 simulate rk4 0.001 --until 2 --output state.json\n  \
     a3 render v 0.005 --until 3 --output cloth.png --size 1920x1080\n  \
+    a3 render v 0.005 --until 3 --output cloth.gif --size 480x360\n  \
     a3 compare e:0.05 r:0.05 --scene simple\n\nIn the window, h shows the keys."
 )]
 pub struct Cli {
@@ -30,7 +31,7 @@ pub struct Cli {
 pub enum Command {
     /// Simulate without a window and write the final state as JSON
     Simulate(Simulate),
-    /// Simulate without a window and write a picture as PNG
+    /// Simulate without a window and write a picture or a film: PNG, GIF, MP4
     Render(Render),
     /// Chart speed against accuracy: every solver on your scene, its true error and its cost
     Chart(Chart),
@@ -104,12 +105,27 @@ pub struct Simulate {
 }
 
 #[derive(Args)]
+#[command(after_help = "Outputs:\n  FILE.png       the picture at the end\n  \
+    FILE.gif       a film that loops, 25 frames a second unless --fps says otherwise\n  \
+    FILE.mp4       a film as H.264, by an installed ffmpeg, 30 frames a second\n  \
+    FILE-####.png  a film as numbered pictures, as many digits as #, 30 frames a second\n\n\
+    Frames are at T + k / N exactly, from --from to --until; steps that would pass one are shortened. A film that \
+    blows up\nor is interrupted keeps the frames until then.")]
 pub struct Render {
     #[command(flatten)]
     pub run: Run,
-    /// File to write, ending in .png
-    #[arg(long, short, value_name = "FILE.png")]
+    /// File to write: its ending says what
+    #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
+    /// Frames a second of a film
+    #[arg(long, value_name = "N", value_parser = rate, allow_negative_numbers = true)]
+    pub fps: Option<f64>,
+    /// Simulated seconds before a film begins
+    #[arg(long, value_name = "T", value_parser = beginning, allow_negative_numbers = true)]
+    pub from: Option<f64>,
+    /// Leave out floor and background: PNG with opacity, GIF with transparent pixels
+    #[arg(long)]
+    pub transparent: bool,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, allow_hyphen_values = true)]
     pub size: (u32, u32),
@@ -391,6 +407,20 @@ fn until(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
         _ => Err("the end is a number of seconds from 0 to 1e9, such as 10".into()),
+    }
+}
+
+fn beginning(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
+        _ => Err("a film begins at a number of seconds from 0 to 1e9, such as 2.5".into()),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if (0.1..=1000.0).contains(&rate) => Ok(rate),
+        _ => Err("a rate is a number of frames a second from 0.1 to 1000, such as 30".into()),
     }
 }
 

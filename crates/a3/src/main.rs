@@ -7,6 +7,8 @@ mod chart;
 mod choose;
 mod cli;
 mod compare;
+mod film;
+mod frames;
 mod headless;
 mod interrupt;
 mod list;
