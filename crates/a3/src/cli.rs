@@ -29,7 +29,7 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Simulate without a window and write the final state as JSON
+    /// Simulate without a window and write the final state, or every frame: JSON, CSV, OBJ, PC2, GLB
     Simulate(Simulate),
     /// Simulate without a window and write a picture or a film: PNG, GIF, MP4
     Render(Render),
@@ -96,12 +96,31 @@ pub struct Look {
 }
 
 #[derive(Args)]
+#[command(
+    after_help = "Outputs, all in m and s, y up:\n  FILE.json      the final state at full precision; with --fps those of \
+    all frames, as an array\n  \
+    FILE.csv       frames at full precision: frame,time,particle,x,y,z,vx,vy,vz\n  \
+    FILE.obj       the final surface with normals; without a surface points and lines\n  \
+    FILE-####.obj  the same of each frame, as many digits as #\n  \
+    FILE.pc2       PointCache2, for Blender's modifier Mesh Cache on the mesh FILE.obj, written beside\n  \
+    FILE.glb       glTF 2.0 with a morph target a frame, 600 at most\n\n\
+    Frames are at k / N exactly, from 0 to --until; steps that would pass one are shortened. Particles\n\
+    keep their order and numbers in all files. OBJ, PC2 and GLB are in single precision. A run that blows\n\
+    up or is interrupted writes nothing, but for the whole files of a sequence."
+)]
 pub struct Simulate {
     #[command(flatten)]
     pub run: Run,
-    /// File to write, ending in .json, or - for standard output
-    #[arg(long, short, value_name = "FILE.json")]
+    /// File to write: its ending says what; - is JSON to standard output
+    #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
+    /// Frames a second, of files that have several; 30 unless it is said
+    #[arg(long, value_name = "N", value_parser = rate, allow_negative_numbers = true)]
+    pub fps: Option<f64>,
+    /// File for a summary as JSON, or - for standard output: energy at the beginning and the end and its largest
+    /// drift, the largest stretch, steps, evaluations, real time
+    #[arg(long, value_name = "FILE.json")]
+    pub summary: Option<PathBuf>,
 }
 
 #[derive(Args)]

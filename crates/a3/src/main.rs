@@ -7,6 +7,7 @@ mod chart;
 mod choose;
 mod cli;
 mod compare;
+mod export;
 mod film;
 mod frames;
 mod headless;

@@ -187,6 +187,11 @@ fn beside(path: &Path, permissions: Option<fs::Permissions>) -> io::Result<Named
     Ok(file)
 }
 
+/// A file without a name, in the folder of one that is in the making.
+pub fn scratch(path: &Path) -> Result<File, Failure> {
+    tempfile::tempfile_in(folder(path)).map_err(|e| not_written(path, &e))
+}
+
 fn not_written(path: &Path, error: &io::Error) -> Failure {
     // The name of the temporary file is nobody's business.
     let why = error.to_string();

@@ -49,6 +49,7 @@ pub fn skip(why: &str, required: &str) {
 }
 
 /// Whether there is no adapter to draw with.
+#[allow(dead_code, reason = "only films are drawn")]
 pub fn gpu_is_missing(output: &Output) -> bool {
     let stderr = text(&output.stderr);
     let missing = stderr.contains("mesa-vulkan-drivers");
