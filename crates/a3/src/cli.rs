@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use a3_core::{Grid, Method, Scene, SceneEntry, Simulation, integrators, scenes};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 use crate::Failure;
 use crate::app::Session;
@@ -45,6 +46,17 @@ pub enum Command {
     Scenes,
     /// List the solvers: order, evaluations per step, default step or tolerance
     Solvers,
+    /// Print what a shell needs to complete what is typed
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
+    /// Print the manual as a man page, or write a page for each command
+    Man {
+        /// Folder for a3.1, a3-simulate.1, ...; without it, one page with everything to standard output
+        #[arg(long, short, value_name = "FOLDER")]
+        output: Option<PathBuf>,
+    },
 }
 
 /// What is simulated.
@@ -96,18 +108,17 @@ pub struct Look {
 }
 
 #[derive(Args)]
-#[command(
-    after_help = "Outputs, all in m and s, y up:\n  FILE.json      the final state at full precision; with --fps those of \
-    all frames, as an array\n  \
+#[command(after_help = "Outputs, all in m and s, y up:\n  \
+    FILE.json      the final state at full precision; with --fps, that of all frames\n  \
     FILE.csv       frames at full precision: frame,time,particle,x,y,z,vx,vy,vz\n  \
     FILE.obj       the final surface with normals; without a surface points and lines\n  \
     FILE-####.obj  the same of each frame, as many digits as #\n  \
-    FILE.pc2       PointCache2, for Blender's modifier Mesh Cache on the mesh FILE.obj, written beside\n  \
+    FILE.pc2       a PointCache2, and beside it FILE.obj, the mesh that it moves\n  \
     FILE.glb       glTF 2.0 with a morph target a frame, 600 at most\n\n\
     Frames are at k / N exactly, from 0 to --until; steps that would pass one are shortened. Particles\n\
     keep their order and numbers in all files. OBJ, PC2 and GLB are in single precision. A run that blows\n\
-    up or is interrupted writes nothing, but for the whole files of a sequence."
-)]
+    up or is interrupted writes nothing, but for the whole files of a sequence. In Blender a PC2 is for the\n\
+    modifier Mesh Cache, its axes left as they are.")]
 pub struct Simulate {
     #[command(flatten)]
     pub run: Run,
@@ -128,8 +139,8 @@ pub struct Simulate {
     FILE.gif       a film that loops, 25 frames a second unless --fps says otherwise\n  \
     FILE.mp4       a film as H.264, by an installed ffmpeg, 30 frames a second\n  \
     FILE-####.png  a film as numbered pictures, as many digits as #, 30 frames a second\n\n\
-    Frames are at T + k / N exactly, from --from to --until; steps that would pass one are shortened. A film that \
-    blows up\nor is interrupted keeps the frames until then.")]
+    Frames are at T + k / N exactly, from --from to --until; steps that would pass one are shortened. A film that\n\
+    blows up or is interrupted keeps the frames until then.")]
 pub struct Render {
     #[command(flatten)]
     pub run: Run,

@@ -13,6 +13,7 @@ mod frames;
 mod headless;
 mod interrupt;
 mod list;
+mod manual;
 mod output;
 mod plot;
 mod progress;
@@ -58,6 +59,8 @@ fn main() -> ExitCode {
             Some(Command::Choose(options)) => choose::run(&options),
             Some(Command::Scenes) => list::scenes(),
             Some(Command::Solvers) => list::solvers(),
+            Some(Command::Completions { shell }) => manual::completions(shell),
+            Some(Command::Man { output }) => manual::run(output.as_deref()),
         },
         Err(error) => cli::explain(&error),
     };

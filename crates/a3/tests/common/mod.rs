@@ -1,5 +1,7 @@
 //! The program as it is typed, in a folder of its own.
 
+#![allow(dead_code, reason = "not every test needs all of it")]
+
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -49,7 +51,6 @@ pub fn skip(why: &str, required: &str) {
 }
 
 /// Whether there is no adapter to draw with.
-#[allow(dead_code, reason = "only films are drawn")]
 pub fn gpu_is_missing(output: &Output) -> bool {
     let stderr = text(&output.stderr);
     let missing = stderr.contains("mesa-vulkan-drivers");
