@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use crate::Failure;
+use crate::interrupt::Temporary;
 
 /// `Ok` if the path ends as it should and its folder is there: said before the work, not after.
 pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
@@ -93,7 +94,11 @@ pub struct Draft {
 
 enum Sheet {
     /// With the place it is to go to.
-    Beside(NamedTempFile, PathBuf),
+    Beside {
+        file: NamedTempFile,
+        target: PathBuf,
+        _temporary: Temporary,
+    },
     AsIs(File),
 }
 
@@ -106,8 +111,13 @@ impl Draft {
                 let file = File::options().write(true).open(&target);
                 file.map(Sheet::AsIs)
             }
-            there => beside(&target, there.ok().map(|there| there.permissions()))
-                .map(|file| Sheet::Beside(file, target)),
+            there => beside(&target, there.ok().map(|there| there.permissions())).map(|file| {
+                Sheet::Beside {
+                    _temporary: Temporary::new(file.path()),
+                    file,
+                    target,
+                }
+            }),
         };
         Ok(Self {
             path: path.into(),
@@ -118,7 +128,7 @@ impl Draft {
     /// Where another program may write it; nowhere, if it is no ordinary file.
     pub fn beside(&self) -> Option<&Path> {
         match self.file.get_ref() {
-            Sheet::Beside(file, _) => Some(file.path()),
+            Sheet::Beside { file, .. } => Some(file.path()),
             Sheet::AsIs(_) => None,
         }
     }
@@ -131,7 +141,7 @@ impl Draft {
             .into_inner()
             .map_err(io::IntoInnerError::into_error);
         let placed = placed.and_then(|sheet| match sheet {
-            Sheet::Beside(file, target) => {
+            Sheet::Beside { file, target, .. } => {
                 file.as_file().sync_all()?;
                 file.persist(target).map_err(|e| e.error)?;
                 Ok(())
@@ -160,7 +170,7 @@ impl Write for Draft {
 impl Write for Sheet {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
-            Self::Beside(file, _) => file.write(bytes),
+            Self::Beside { file, .. } => file.write(bytes),
             Self::AsIs(file) => file.write(bytes),
         }
     }

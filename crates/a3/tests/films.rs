@@ -445,3 +445,33 @@ fn an_interrupted_film_keeps_what_was_before() {
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), names.len());
 }
+
+/// The first interrupt waits for an ffmpeg that takes its time, the second does not.
+#[test]
+#[cfg(unix)]
+fn a_second_interrupt_ends_at_once_and_leaves_nothing() {
+    let (folder, programs) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    stand_in(programs.path(), "cat >/dev/null; sleep 5");
+    let words = [
+        "render", "v", "0.01", "--until", "1000", "--size", "80x60", "--output", "x.mp4",
+    ];
+    let path = format!("{}:/usr/bin:/bin", programs.path().display());
+    let child = command(folder.path(), &words)
+        .env("PATH", path)
+        .spawn()
+        .unwrap();
+    let id = child.id().to_string();
+    std::thread::sleep(Duration::from_secs(2));
+    let begun = Instant::now();
+    for _ in 0..2 {
+        asked(folder.path(), "kill", &["-INT", &id]);
+        std::thread::sleep(Duration::from_millis(500));
+    }
+    let output = child.wait_with_output().unwrap();
+    if gpu_is_missing(&output) {
+        return;
+    }
+    assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
+    assert!(begun.elapsed() < Duration::from_secs(4));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}

@@ -139,3 +139,49 @@ fn failure(encoder: &Encoder<Draft>, error: EncodingError) -> Failure {
     };
     encoder.get_ref().failure(&error)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A frame has the smallest part that changed: one pixel where nothing did.
+    #[test]
+    fn only_what_changed_is_sent() {
+        let folder = tempfile::tempdir().ok().unwrap();
+        let path = folder.path().join("x.gif");
+        let mut film = Box::new(Gif::new(&path, (5, 4), 4.0, false).ok().unwrap());
+        let mut picture = [200, 100, 50, 255].repeat(20);
+        let mut add = |picture: &[u8]| assert!(film.add(picture).is_ok());
+        add(&picture);
+        // Nothing that is seen.
+        picture[0] = 201;
+        add(&picture);
+        for pixel in [1 + 5, 3 + 5 * 2] {
+            picture[4 * pixel..4 * pixel + 3].copy_from_slice(&[0, 0, 255]);
+        }
+        add(&picture);
+        assert!(film.finish().is_ok());
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::RGBA);
+        let file = std::fs::File::open(path).ok().unwrap();
+        let mut decoder = options.read_info(file).ok().unwrap();
+        let mut next = || decoder.read_next_frame().ok().flatten().cloned();
+        let places: Vec<_> = std::iter::from_fn(&mut next)
+            .map(|frame| {
+                (
+                    frame.left,
+                    frame.top,
+                    frame.width,
+                    frame.height,
+                    frame.buffer.to_vec(),
+                )
+            })
+            .collect();
+        let (blue, none) = ([0, 0, 255, 255], [0; 4]);
+        let part = [blue, none, none, none, none, blue].concat();
+        assert_eq!(places.len(), 3);
+        assert_eq!(places[0], (0, 0, 5, 4, [200, 100, 50, 255].repeat(20)));
+        assert_eq!(places[1], (0, 0, 1, 1, none.to_vec()));
+        assert_eq!(places[2], (1, 1, 3, 2, part));
+    }
+}
