@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use a3_core::{Grid, Method, Scene, Simulation, integrators};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 use crate::Failure;
 use crate::app::Session;
@@ -18,6 +19,7 @@ use crate::scene_file::Source;
     a3 e 0.05 --scene simple           watch Euler's circle spiral outwards\n  \
     a3 simulate rk4 0.001 --until 2 --output state.json\n  \
     a3 render v 0.005 --until 3 --output cloth.png --size 1920x1080\n  \
+    a3 render v 0.005 --until 3 --output cloth.gif --size 480x360\n  \
     a3 compare e:0.05 r:0.05 --scene simple\n\nIn the window, h shows the keys."
 )]
 pub struct Cli {
@@ -29,9 +31,9 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Simulate without a window and write the final state as JSON
+    /// Simulate without a window and write the final state, or every frame: JSON, CSV, OBJ, PC2, GLB
     Simulate(Simulate),
-    /// Simulate without a window and write a picture as PNG
+    /// Simulate without a window and write a picture or a film: PNG, GIF, MP4
     Render(Render),
     /// Chart speed against accuracy: every solver on your scene, its true error and its cost
     Chart(Chart),
@@ -45,6 +47,17 @@ pub enum Command {
     Scenes(Scenes),
     /// List the solvers: order, evaluations per step, default step or tolerance
     Solvers,
+    /// Print what a shell needs to complete what is typed
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
+    /// Print the manual as a man page, or write a page for each command
+    Man {
+        /// Folder for a3.1, a3-simulate.1, ...; without it, one page with everything to standard output
+        #[arg(long, short, value_name = "FOLDER")]
+        output: Option<PathBuf>,
+    },
 }
 
 /// What is simulated.
@@ -109,21 +122,54 @@ pub struct Scenes {
 }
 
 #[derive(Args)]
+#[command(after_help = "Outputs, all in m and s, y up:\n  \
+    FILE.json      the final state at full precision; with --fps, that of all frames\n  \
+    FILE.csv       frames at full precision: frame,time,particle,x,y,z,vx,vy,vz\n  \
+    FILE.obj       the final surface with normals; without a surface points and lines\n  \
+    FILE-####.obj  the same of each frame, as many digits as #\n  \
+    FILE.pc2       a PointCache2, and beside it FILE.obj, the mesh that it moves\n  \
+    FILE.glb       glTF 2.0 with a morph target a frame, 600 at most\n\n\
+    Frames are at k / N exactly, from 0 to --until; steps that would pass one are shortened. Particles\n\
+    keep their order and numbers in all files. OBJ, PC2 and GLB are in single precision. A run that blows\n\
+    up or is interrupted writes nothing, but for the whole files of a sequence. In Blender a PC2 is for the\n\
+    modifier Mesh Cache, its axes left as they are.")]
 pub struct Simulate {
     #[command(flatten)]
     pub run: Run,
-    /// File to write, ending in .json, or - for standard output
-    #[arg(long, short, value_name = "FILE.json")]
+    /// File to write: its ending says what; - is JSON to standard output
+    #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
+    /// Frames a second, of files that have several; 30 unless it is said
+    #[arg(long, value_name = "N", value_parser = rate, allow_negative_numbers = true)]
+    pub fps: Option<f64>,
+    /// File for a summary as JSON, or - for standard output: energy at the beginning and the end and its largest
+    /// drift, the largest stretch, steps, evaluations, real time
+    #[arg(long, value_name = "FILE.json")]
+    pub summary: Option<PathBuf>,
 }
 
 #[derive(Args)]
+#[command(after_help = "Outputs:\n  FILE.png       the picture at the end\n  \
+    FILE.gif       a film that loops, 25 frames a second unless --fps says otherwise\n  \
+    FILE.mp4       a film as H.264, by an installed ffmpeg, 30 frames a second\n  \
+    FILE-####.png  a film as numbered pictures, as many digits as #, 30 frames a second\n\n\
+    Frames are at T + k / N exactly, from --from to --until; steps that would pass one are shortened. A film that\n\
+    blows up or is interrupted keeps the frames until then.")]
 pub struct Render {
     #[command(flatten)]
     pub run: Run,
-    /// File to write, ending in .png
-    #[arg(long, short, value_name = "FILE.png")]
+    /// File to write: its ending says what
+    #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
+    /// Frames a second of a film
+    #[arg(long, value_name = "N", value_parser = rate, allow_negative_numbers = true)]
+    pub fps: Option<f64>,
+    /// Simulated seconds before a film begins
+    #[arg(long, value_name = "T", value_parser = beginning, allow_negative_numbers = true)]
+    pub from: Option<f64>,
+    /// Leave out floor and background: PNG with opacity, GIF with transparent pixels
+    #[arg(long)]
+    pub transparent: bool,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, allow_hyphen_values = true)]
     pub size: (u32, u32),
@@ -432,6 +478,20 @@ fn until(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
         _ => Err("the end is a number of seconds from 0 to 1e9, such as 10".into()),
+    }
+}
+
+fn beginning(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
+        _ => Err("a film begins at a number of seconds from 0 to 1e9, such as 2.5".into()),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(rate) if (0.1..=1000.0).contains(&rate) => Ok(rate),
+        _ => Err("a rate is a number of frames a second from 0.1 to 1000, such as 30".into()),
     }
 }
 

@@ -7,9 +7,13 @@ mod chart;
 mod choose;
 mod cli;
 mod compare;
+mod export;
+mod film;
+mod frames;
 mod headless;
 mod interrupt;
 mod list;
+mod manual;
 mod output;
 mod plot;
 mod progress;
@@ -56,6 +60,8 @@ fn main() -> ExitCode {
             Some(Command::Choose(options)) => choose::run(&options),
             Some(Command::Scenes(options)) => list::scenes(&options),
             Some(Command::Solvers) => list::solvers(),
+            Some(Command::Completions { shell }) => manual::completions(shell),
+            Some(Command::Man { output }) => manual::run(output.as_deref()),
         },
         Err(error) => cli::explain(&error),
     };

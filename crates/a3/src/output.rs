@@ -1,10 +1,13 @@
 //! Files that are whole or absent.
 
-use std::fs;
-use std::io::{self, Write};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use tempfile::NamedTempFile;
+
 use crate::Failure;
+use crate::interrupt::Temporary;
 
 /// `Ok` if the path ends as it should and its folder is there: said before the work, not after.
 pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
@@ -71,38 +74,114 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     write_with(path, |file| file.write_all(bytes))
 }
 
-/// Lets `content` write to `path`: beside it first, then in its place. What is no ordinary file is written to as it is.
+/// Lets `content` write to `path`.
 pub fn write_with(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Failure> {
-    // A link stays one: what it leads to is replaced.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.into());
-    let result = match fs::metadata(&target) {
-        Ok(there) if !there.is_file() => fs::File::options()
-            .write(true)
-            .open(&target)
-            .and_then(|file| buffered(file, content).map(drop)),
-        there => replace(
-            &target,
-            content,
-            there.ok().map(|there| there.permissions()),
-        ),
-    };
-    result.map_err(|e| {
-        // The name of the temporary file is nobody's business.
-        let why = e.to_string();
-        let why = why.split(" at path").next().unwrap_or_default();
-        Failure::run(format!("{}: not written: {why}", path.display()))
-    })
+    let mut draft = Draft::new(path)?;
+    content(&mut draft).map_err(|e| not_written(path, &e))?;
+    draft.place()
 }
 
-/// With the permissions of the old file, or those of any new one.
-fn replace(
-    path: &Path,
-    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    permissions: Option<fs::Permissions>,
-) -> io::Result<()> {
+/// A file in the making: beside its place until it is whole. One that is dropped leaves nothing behind. What is no
+/// ordinary file is written to as it is.
+pub struct Draft {
+    /// As it was asked for.
+    path: PathBuf,
+    file: BufWriter<Sheet>,
+}
+
+enum Sheet {
+    /// With the place it is to go to.
+    Beside {
+        file: NamedTempFile,
+        target: PathBuf,
+        _temporary: Temporary,
+    },
+    AsIs(File),
+}
+
+impl Draft {
+    pub fn new(path: &Path) -> Result<Self, Failure> {
+        // A link stays one: what it leads to is replaced.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.into());
+        let sheet = match fs::metadata(&target) {
+            Ok(there) if !there.is_file() => {
+                let file = File::options().write(true).open(&target);
+                file.map(Sheet::AsIs)
+            }
+            there => beside(&target, there.ok().map(|there| there.permissions())).map(|file| {
+                Sheet::Beside {
+                    _temporary: Temporary::new(file.path()),
+                    file,
+                    target,
+                }
+            }),
+        };
+        Ok(Self {
+            path: path.into(),
+            file: BufWriter::new(sheet.map_err(|e| not_written(path, &e))?),
+        })
+    }
+
+    /// Where another program may write it; nowhere, if it is no ordinary file.
+    pub fn beside(&self) -> Option<&Path> {
+        match self.file.get_ref() {
+            Sheet::Beside { file, .. } => Some(file.path()),
+            Sheet::AsIs(_) => None,
+        }
+    }
+
+    /// It is whole.
+    pub fn place(self) -> Result<(), Failure> {
+        let path = self.path;
+        let placed = self
+            .file
+            .into_inner()
+            .map_err(io::IntoInnerError::into_error);
+        let placed = placed.and_then(|sheet| match sheet {
+            Sheet::Beside { file, target, .. } => {
+                file.as_file().sync_all()?;
+                file.persist(target).map_err(|e| e.error)?;
+                Ok(())
+            }
+            Sheet::AsIs(_) => Ok(()),
+        });
+        placed.map_err(|e| not_written(&path, &e))
+    }
+
+    /// What to say of a write that failed.
+    pub fn failure(&self, error: &io::Error) -> Failure {
+        not_written(&self.path, error)
+    }
+}
+
+impl Write for Draft {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Write for Sheet {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Beside { file, .. } => file.write(bytes),
+            Self::AsIs(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A new file with these permissions, or with those of any new one.
+fn beside(path: &Path, permissions: Option<fs::Permissions>) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".a3-");
     #[cfg(unix)]
@@ -115,19 +194,19 @@ fn replace(
     if let Some(permissions) = permissions {
         file.as_file().set_permissions(permissions)?;
     }
-    let file = buffered(file, content)?;
-    file.as_file().sync_all()?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
+    Ok(file)
 }
 
-fn buffered<F: Write>(
-    file: F,
-    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<F> {
-    let mut writer = io::BufWriter::new(file);
-    content(&mut writer)?;
-    writer.into_inner().map_err(io::IntoInnerError::into_error)
+/// A file without a name, in the folder of one that is in the making.
+pub fn scratch(path: &Path) -> Result<File, Failure> {
+    tempfile::tempfile_in(folder(path)).map_err(|e| not_written(path, &e))
+}
+
+fn not_written(path: &Path, error: &io::Error) -> Failure {
+    // The name of the temporary file is nobody's business.
+    let why = error.to_string();
+    let why = why.split(" at path").next().unwrap_or_default();
+    Failure::run(format!("{}: not written: {why}", path.display()))
 }
 
 /// Eight-bit RGBA rows from the top, as PNG.

@@ -18,6 +18,28 @@ pub fn advance(
     let begun = Instant::now();
     let start = simulation.time();
     let mut bar: Option<ProgressBar> = None;
+    let done = march(simulation, until, |simulation| {
+        frame(simulation);
+        if bar.is_none() && begun.elapsed() > Duration::from_secs(1) {
+            bar = Some(new_bar());
+        }
+        if let Some(bar) = &bar {
+            bar.set_position((1000.0 * (simulation.time() - start) / (until - start)) as u64);
+        }
+        true
+    });
+    if let Some(bar) = bar {
+        bar.finish_and_clear();
+    }
+    done.map(drop)
+}
+
+/// As [`advance`], without a bar, and only as long as `frame` says to go on. Whether it got there.
+pub fn march(
+    simulation: &mut Simulation,
+    until: f64,
+    mut frame: impl FnMut(&Simulation) -> bool,
+) -> Result<bool, Error> {
     let adaptive = simulation.method().is_adaptive();
     let step = if adaptive {
         FRAME
@@ -37,20 +59,12 @@ pub fn advance(
         } else {
             simulation.take_steps(whole as u64)?;
         }
-        frame(simulation);
-        if bar.is_none() && begun.elapsed() > Duration::from_secs(1) {
-            bar = Some(new_bar());
-        }
-        if let Some(bar) = &bar {
-            bar.set_position((1000.0 * (simulation.time() - start) / (until - start)) as u64);
+        if !frame(simulation) {
+            return Ok(false);
         }
     }
     simulation.advance_to(until)?;
-    frame(simulation);
-    if let Some(bar) = bar {
-        bar.finish_and_clear();
-    }
-    Ok(())
+    Ok(frame(simulation))
 }
 
 /// The bar of work that is measured in some unit, shown at once.

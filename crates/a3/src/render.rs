@@ -1,11 +1,12 @@
-//! `a3 render`: a picture without a window.
+//! `a3 render`: pictures and films without a window.
 
+use a3_core::Simulation;
 use a3_render::{Camera, Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer};
 
 use crate::app::{Pane, Readings, Text, hud, layout};
 use crate::cli::{self, Render};
 use crate::show::{self, Show};
-use crate::{Failure, output, progress};
+use crate::{Failure, film, output, progress};
 
 /// Pictures of this height (px) have lines of one point a pixel.
 const POINTS: f32 = 720.0;
@@ -13,39 +14,63 @@ const POINTS: f32 = 720.0;
 pub fn run(options: &Render) -> Result<(), Failure> {
     let mut simulation = options.run.simulation()?;
     cli::check_particle(&simulation, options.springs_of)?;
-    output::check(&options.output, &["png"])?;
-    let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
-    // Before the work, not after: the device may not have pictures of this size.
-    let offscreen = Offscreen::new(&gpu, options.size).map_err(Failure::usage)?;
+    let (path, size) = (&options.output, options.size);
+    output::check(path, &["png", "gif", "mp4"])?;
+    // Before the work, not after: there may be no ffmpeg, and the device may not have pictures of this size.
+    let film = film::begin(options)?;
+    let mut painter = Painter::new(&simulation, size)?;
     if let Some(i) = options.springs_of {
         output::say(&show::list_springs_of(&simulation, i))?;
     }
     let mut show = Show::new(options.wireframe, options.springs_of);
+    show.transparent = options.transparent;
+    if let Some(film) = film {
+        return film::shoot(&mut simulation, &mut show, &mut painter, film, path);
+    }
     progress::advance(&mut simulation, options.run.end()?, |simulation| {
         show.follow(simulation);
     })
     .map_err(Failure::run)?;
-    let pixels = draw_one(&gpu, &offscreen, Pane::new(simulation, show))?;
-    output::write(&options.output, &output::png(&pixels, options.size)?)
+    let pixels = painter.draw(&mut show, &simulation)?;
+    output::write(path, &output::png(&pixels, size)?)
+}
+
+/// Draws a run as often as asked, seen from where its scene wants it.
+pub struct Painter {
+    gpu: Gpu,
+    offscreen: Offscreen,
+    renderer: Renderer,
+    camera: Camera,
+}
+
+impl Painter {
+    /// For pictures of this run, of this size (px).
+    pub fn new(simulation: &Simulation, size: (u32, u32)) -> Result<Self, Failure> {
+        let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
+        let offscreen = Offscreen::new(&gpu, size).map_err(Failure::usage)?;
+        let samples = gpu.samples(OFFSCREEN_FORMAT);
+        let topology = show::topology(simulation);
+        Ok(Self {
+            renderer: Renderer::new(&gpu, OFFSCREEN_FORMAT, samples, &topology),
+            camera: show::camera(simulation),
+            offscreen,
+            gpu,
+        })
+    }
+
+    /// The run as it is now: rows from the top, four bytes a pixel.
+    pub fn draw(&mut self, show: &mut Show, simulation: &Simulation) -> Result<Vec<u8>, Failure> {
+        show.compose(simulation);
+        let picture = show.picture(self.camera, scale(self.offscreen.size()));
+        self.offscreen
+            .render(&self.gpu, &mut self.renderer, &picture)
+            .map_err(Failure::run)
+    }
 }
 
 /// Pixels per point in a picture of this size.
 pub fn scale(size: (u32, u32)) -> f32 {
     (size.1 as f32 / POINTS).max(0.5)
-}
-
-/// A run as it is now, seen from where its scene wants it.
-pub fn draw_one(gpu: &Gpu, offscreen: &Offscreen, pane: Pane) -> Result<Vec<u8>, Failure> {
-    let camera = show::camera(&pane.simulation);
-    let scale = scale(offscreen.size());
-    draw(
-        gpu,
-        offscreen,
-        &mut [pane],
-        camera,
-        scale,
-        &Readings::default(),
-    )
 }
 
 /// Panes as they are now, several of them with the text over them.

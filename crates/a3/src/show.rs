@@ -26,6 +26,8 @@ pub struct Show {
     pub style: Style,
     /// The particle whose springs are highlighted.
     pub springs_of: Option<usize>,
+    /// Without floor and background.
+    pub transparent: bool,
     trail: VecDeque<[f32; 3]>,
     points: Vec<[f32; 4]>,
     balls: Vec<Ball>,
@@ -42,6 +44,7 @@ impl Show {
                 Style::Shaded
             },
             springs_of,
+            transparent: false,
             trail: VecDeque::new(),
             points: vec![],
             balls: vec![],
@@ -113,6 +116,7 @@ impl Show {
             balls: &self.balls,
             lines: &self.lines,
             floor: self.floor,
+            transparent: self.transparent,
         }
     }
 

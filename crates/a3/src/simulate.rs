@@ -1,78 +1,139 @@
-//! `a3 simulate`: the final state as JSON.
+//! `a3 simulate`: where a run ends or how it gets there, in files that other programs read.
 
 use std::path::Path;
+use std::time::Instant;
 
 use a3_core::Simulation;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::cli::Simulate;
-use crate::{Failure, output, progress};
+use crate::frames::Sequence;
+use crate::progress::{self, Bar};
+use crate::{Failure, export, interrupt, output};
 
+/// What is known of a run when it is over.
 #[derive(Serialize)]
-struct State<'a> {
-    scene: &'a str,
-    solver: &'a str,
-    /// In s, of a method with fixed steps.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    step: Option<f64>,
-    /// Relative, of an adaptive method.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    tolerance: Option<f64>,
+struct Summary {
+    scene: String,
+    solver: &'static str,
+    frames: usize,
     /// In s.
     time: f64,
     steps: u64,
     evaluations: u64,
-    /// Total (J); none for a system without forces.
-    energy: Option<f64>,
-    /// In m.
-    positions: Rows<'a>,
-    /// In m/s.
-    velocities: Rows<'a>,
+    /// None for a system without forces.
+    energy: Option<Energy>,
+    /// Length over rest length; none without springs.
+    largest_stretch: Option<f64>,
+    /// Real time (s).
+    wall_time: f64,
 }
 
-/// An n x 3 matrix, of which each row is written as it comes.
-struct Rows<'a>(&'a [f64]);
+/// Total (J).
+#[derive(Clone, Copy, Serialize)]
+struct Energy {
+    begin: f64,
+    end: f64,
+    /// From the beginning, either way.
+    largest_drift: f64,
+}
 
-impl Serialize for Rows<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let n = self.0.len() / 3;
-        serializer.collect_seq((0..n).map(|i| [0, n, 2 * n].map(|column| self.0[column + i])))
+/// What a summary needs to see on the way.
+#[derive(Default)]
+struct Watch {
+    energy: Option<Energy>,
+    stretch: Option<f64>,
+}
+
+impl Watch {
+    fn look(&mut self, simulation: &Simulation) {
+        if let Some(total) = simulation.energy().map(|energy| energy.total()) {
+            let energy = self.energy.get_or_insert(Energy {
+                begin: total,
+                end: total,
+                largest_drift: 0.0,
+            });
+            energy.end = total;
+            energy.largest_drift = energy.largest_drift.max((total - energy.begin).abs());
+        }
+        if let Some(stretch) = simulation.largest_stretch() {
+            self.stretch = Some(self.stretch.map_or(stretch, |most| most.max(stretch)));
+        }
     }
 }
 
 pub fn run(options: &Simulate) -> Result<(), Failure> {
-    let to_stdout = options.output == Path::new("-");
+    let begun = Instant::now();
     let mut simulation = options.run.simulation()?;
-    if !to_stdout {
-        output::check(&options.output, &["json"])?;
+    let stdout = Path::new("-");
+    if let Some(path) = options.summary.as_deref() {
+        if path == stdout && options.output == stdout {
+            return Err(Failure::usage(
+                "standard output gets --output or --summary, not both",
+            ));
+        }
+        if path != stdout {
+            output::check(path, &["json"])?;
+        }
     }
-    progress::advance(&mut simulation, options.run.end()?, |_| {}).map_err(Failure::run)?;
-    let velocities = simulation.velocities();
-    let state = state(&simulation, &velocities);
-    if to_stdout {
-        let json = serde_json::to_string(&state).map_err(Failure::run)?;
-        output::say(&format!("{json}\n"))
-    } else {
-        output::write_with(&options.output, |file| {
-            serde_json::to_writer(&mut *file, &state)?;
-            writeln!(file)
-        })
+    let (frames, mut export) = export::begin(options, &simulation)?;
+    let mut watch = options.summary.is_some().then(Watch::default);
+    if let Some(watch) = &mut watch {
+        watch.look(&simulation);
     }
-}
-
-fn state<'a>(simulation: &'a Simulation, velocities: &'a [f64]) -> State<'a> {
-    let n = simulation.particles();
-    let adaptive = simulation.method().is_adaptive();
-    State {
-        scene: &simulation.scene().name,
+    interrupt::listen();
+    let bar = Bar::new(options.run.end()?);
+    for (k, time) in frames.times().enumerate() {
+        let mut before = simulation.time();
+        let reached = progress::march(&mut simulation, time, |simulation| {
+            if let Some(watch) = &mut watch {
+                watch.look(simulation);
+            }
+            bar.advance(simulation.time() - before);
+            before = simulation.time();
+            interrupt::go_on()
+        });
+        if reached != Ok(true) {
+            bar.clear();
+        }
+        let kept = || kept(&options.output, k, frames.count);
+        match reached {
+            Ok(true) => {}
+            Ok(false) => return Err(Failure::Interrupted(format!("interrupted: {}", kept()))),
+            Err(error) if k > 0 => return Err(Failure::run(format!("{error}; {}", kept()))),
+            Err(error) => return Err(Failure::run(error)),
+        }
+        export.add(&simulation)?;
+    }
+    bar.clear();
+    export.finish()?;
+    let (Some(path), Some(watch)) = (&options.summary, watch) else {
+        return Ok(());
+    };
+    let summary = Summary {
+        scene: simulation.scene().name.clone(),
         solver: simulation.method().name,
-        step: (!adaptive).then_some(simulation.setting()),
-        tolerance: adaptive.then_some(simulation.setting()),
+        frames: frames.count,
         time: simulation.time(),
         steps: simulation.steps(),
         evaluations: simulation.work().evaluations,
-        energy: simulation.energy().map(|energy| energy.total()),
-        positions: Rows(&simulation.state()[..3 * n]),
-        velocities: Rows(velocities),
+        energy: watch.energy,
+        largest_stretch: watch.stretch,
+        wall_time: begun.elapsed().as_secs_f64(),
+    };
+    let text = serde_json::to_string_pretty(&summary).map_err(Failure::run)? + "\n";
+    if path == stdout {
+        output::say(&text)
+    } else {
+        output::write(path, text.as_bytes())
+    }
+}
+
+/// What there is of a run that ended early. A file is whole or absent, and so is each one of a sequence.
+fn kept(path: &Path, done: usize, count: usize) -> String {
+    if Sequence::of(path).is_some() && done > 0 {
+        format!("{} has the first {done} of {count} frames", path.display())
+    } else {
+        "nothing was written".into()
     }
 }

@@ -3,7 +3,7 @@
 use crate::gpu::{Gpu, GpuError};
 use crate::picture::{Picture, Tile};
 use crate::renderer::Renderer;
-use crate::targets::Targets;
+use crate::targets::{GAP, Targets};
 
 /// Eight bits each of red, green, blue and opacity.
 pub const OFFSCREEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -81,7 +81,8 @@ impl Offscreen {
         self.targets.size()
     }
 
-    /// Draws one picture, and brings the pixels back: rows from the top, four bytes a pixel.
+    /// Draws one picture, and brings the pixels back: rows from the top, four bytes a pixel, the colours not multiplied
+    /// by the opacity.
     ///
     /// # Errors
     /// The device was lost, or refused something.
@@ -116,7 +117,14 @@ impl Offscreen {
         let mut encoder = gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        renderer.draw(&mut self.targets.pass(&mut encoder, &self.view));
+        let transparent = pictures.iter().any(|(picture, _)| picture.transparent);
+        let clear = if transparent {
+            wgpu::Color::TRANSPARENT
+        } else {
+            GAP
+        };
+        let targets = &self.targets;
+        renderer.draw(&mut targets.pass_over(&mut encoder, &self.view, clear));
         let format = text_format(gpu);
         let view = self.texture.create_view(&wgpu::TextureViewDescriptor {
             format: Some(format),
@@ -153,6 +161,66 @@ impl Offscreen {
         }
         drop(mapped);
         self.buffer.unmap();
+        if transparent {
+            straighten(&mut pixels);
+        }
         Ok(pixels)
+    }
+}
+
+/// What is blended over nothing, and averaged with it at edges, comes multiplied by its opacity: darker than it is.
+fn straighten(pixels: &mut [u8]) {
+    for pixel in pixels.chunks_exact_mut(4) {
+        let opacity = f32::from(pixel[3]) / 255.0;
+        if pixel[3] > 0 && pixel[3] < 255 {
+            for channel in &mut pixel[..3] {
+                *channel = encoded(linear(*channel) / opacity);
+            }
+        }
+    }
+}
+
+/// From sRGB (IEC 61966-2-1) to light.
+fn linear(channel: u8) -> f32 {
+    let c = f32::from(channel) / 255.0;
+    if c <= 0.04045 {
+        c / 12.92
+    } else {
+        ((c + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// From light to sRGB.
+fn encoded(light: f32) -> u8 {
+    let light = light.min(1.0);
+    let c = if light <= 0.003_130_8 {
+        12.92 * light
+    } else {
+        1.055 * light.powf(1.0 / 2.4) - 0.055
+    };
+    (255.0 * c).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_and_its_code_are_inverse() {
+        for channel in 0..=255 {
+            assert_eq!(encoded(linear(channel)), channel);
+        }
+    }
+
+    #[test]
+    fn half_covered_pixels_have_the_colour_of_what_covers_them() {
+        let color = [200u8, 60, 9];
+        let half = color.map(|c| encoded(0.5 * linear(c)));
+        let mut pixels = [half[0], half[1], half[2], 128, 1, 2, 3, 255, 0, 0, 0, 0];
+        straighten(&mut pixels);
+        for (c, right) in pixels.iter().zip(color) {
+            assert!(c.abs_diff(right) <= 3, "{pixels:?}");
+        }
+        assert_eq!(pixels[4..], [1, 2, 3, 255, 0, 0, 0, 0]);
     }
 }

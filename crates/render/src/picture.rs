@@ -83,6 +83,8 @@ pub struct Picture<'a> {
     pub lines: &'a [Line],
     /// Height of the floor (m), if there is one.
     pub floor: Option<f32>,
+    /// Without floor, shadows and background: to be laid over something else.
+    pub transparent: bool,
 }
 
 /// A part of the target (px), inside it and not empty.

@@ -109,8 +109,10 @@ impl Renderer {
             pass.set_pipeline(&p.floor);
             pass.draw(0..4, 0..1);
         }
-        pass.set_pipeline(&p.background);
-        pass.draw(0..3, 0..1);
+        if frame.background {
+            pass.set_pipeline(&p.background);
+            pass.draw(0..3, 0..1);
+        }
         if frame.floor {
             pass.set_stencil_reference(0);
             if frame.mesh {
@@ -250,6 +252,7 @@ mod tests {
             balls: &[],
             lines: &[],
             floor: None,
+            transparent: false,
         };
         Offscreen::new(gpu, (96, 64))
             .unwrap()

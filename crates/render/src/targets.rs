@@ -6,7 +6,7 @@ use crate::gpu::Gpu;
 pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusStencil8;
 
 /// Linear, between pictures: the ink of lines.
-const GAP: wgpu::Color = wgpu::Color {
+pub(crate) const GAP: wgpu::Color = wgpu::Color {
     r: 0.035,
     g: 0.05,
     b: 0.09,
@@ -61,6 +61,16 @@ impl Targets {
         encoder: &'e mut wgpu::CommandEncoder,
         destination: &wgpu::TextureView,
     ) -> wgpu::RenderPass<'e> {
+        self.pass_over(encoder, destination, GAP)
+    }
+
+    /// As [`pass`](Self::pass), with this colour where nothing is drawn.
+    pub(crate) fn pass_over<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        destination: &wgpu::TextureView,
+        clear: wgpu::Color,
+    ) -> wgpu::RenderPass<'e> {
         let (view, resolve_target, store) = match &self.multisampled {
             Some(view) => (view, Some(destination), wgpu::StoreOp::Discard),
             None => (destination, None, wgpu::StoreOp::Store),
@@ -72,7 +82,7 @@ impl Targets {
                 depth_slice: None,
                 resolve_target,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(GAP),
+                    load: wgpu::LoadOp::Clear(clear),
                     store,
                 },
             })],

@@ -41,6 +41,7 @@ pub(crate) struct View {
 pub(crate) struct Frame {
     pub(crate) tile: Tile,
     pub(crate) floor: bool,
+    pub(crate) background: bool,
     pub(crate) mesh: bool,
     pub(crate) small_balls: u32,
     pub(crate) balls: u32,
@@ -92,9 +93,11 @@ impl View {
         self.frame = Frame {
             tile,
             // From below it would hide everything.
-            floor: picture
-                .floor
-                .is_some_and(|height| picture.camera.eye().y > height),
+            floor: !picture.transparent
+                && picture
+                    .floor
+                    .is_some_and(|height| picture.camera.eye().y > height),
+            background: !picture.transparent,
             mesh: picture.style == Style::Shaded && mesh.indices > 0,
             small_balls: balls.iter().filter(|ball| ball.radius < LARGE).count() as u32,
             balls: balls.len() as u32,

@@ -161,3 +161,46 @@ fn pictures_side_by_side() {
         "nothing is drawn beside the parts"
     );
 }
+
+/// Without floor and background, what is solid is as it was, and edges keep their colour.
+#[test]
+fn transparent_pictures_show_the_same_things() {
+    let Some(gpu) = gpu() else { return };
+    let mut sheet = Sheet::new();
+    sheet.lines[0].color = [0.9, 0.4, 0.02, 1.0];
+    let samples = gpu.samples(OFFSCREEN_FORMAT);
+    let mut renderer = Renderer::new(&gpu, OFFSCREEN_FORMAT, samples, &sheet.topology);
+    let offscreen = Offscreen::new(&gpu, SIZE).unwrap();
+    let mut draw = |sheet: &Sheet, transparent| {
+        let picture = a3_render::Picture {
+            transparent,
+            ..sheet.picture(Style::Shaded)
+        };
+        let pixels = offscreen.render(&gpu, &mut renderer, &picture).unwrap();
+        RgbaImage::from_raw(SIZE.0, SIZE.1, pixels).unwrap()
+    };
+    let (paper, bare) = (draw(&sheet, false), draw(&sheet, true));
+    assert!(paper.pixels().all(|p| p.0[3] == 255));
+    let solid = |p: &image::Rgba<u8>| p.0[3] == 255;
+    assert!(
+        paper
+            .pixels()
+            .zip(bare.pixels())
+            .all(|(a, b)| !solid(b) || a == b)
+    );
+    let count = bare.pixels().filter(|p| solid(p)).count();
+    let empty = bare.pixels().filter(|p| p.0 == [0; 4]).count();
+    let all = (SIZE.0 * SIZE.1) as usize;
+    assert!(
+        count > all / 20 && empty > all / 2,
+        "{count} {empty} of {all}"
+    );
+    assert!(count + empty < all, "edges are smooth");
+    // The line alone has one colour, (0.9, 0.4, 0.02) as sRGB, wherever one sees it.
+    sheet.balls.clear();
+    sheet.points.fill([0.0; 4]);
+    for pixel in draw(&sheet, true).pixels().filter(|p| p.0[3] > 60) {
+        let off = |c: usize| pixel.0[c].abs_diff([243, 170, 39][c]);
+        assert!((0..3).all(|c| off(c) < 12), "{pixel:?}");
+    }
+}

@@ -90,6 +90,7 @@ impl Sheet {
             balls: &self.balls,
             lines: &self.lines,
             floor: Some(0.0),
+            transparent: false,
         }
     }
 }

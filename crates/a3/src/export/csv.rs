@@ -1,0 +1,53 @@
+//! CSV: a row a particle and frame, at full precision.
+
+use std::path::Path;
+
+use a3_core::Simulation;
+
+use super::Export;
+use crate::Failure;
+use crate::output::Draft;
+
+/// About how many bytes a row has.
+pub const ROW: f64 = 150.0;
+
+pub struct Csv {
+    writer: csv::Writer<Draft>,
+    frames: usize,
+}
+
+impl Csv {
+    pub fn new(path: &Path) -> Result<Self, Failure> {
+        let mut csv = Self {
+            writer: csv::Writer::from_writer(Draft::new(path)?),
+            frames: 0,
+        };
+        csv.row(("frame", "time", "particle", "x", "y", "z", "vx", "vy", "vz"))?;
+        Ok(csv)
+    }
+
+    fn row(&mut self, row: impl serde::Serialize) -> Result<(), Failure> {
+        let written = self.writer.serialize(row);
+        written.map_err(|e| self.writer.get_ref().failure(&e.into()))
+    }
+}
+
+impl Export for Csv {
+    fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+        let (n, x, v) = (
+            simulation.particles(),
+            simulation.state(),
+            simulation.velocities(),
+        );
+        for i in 0..n {
+            let of = |column: &[f64]| (column[i], column[n + i], column[2 * n + i]);
+            self.row((self.frames, simulation.time(), i, of(x), of(&v)))?;
+        }
+        self.frames += 1;
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), Failure> {
+        self.writer.into_inner().map_err(Failure::run)?.place()
+    }
+}

@@ -1,0 +1,270 @@
+//! glTF 2.0 in one binary file (Khronos, *glTF 2.0 Specification*): the first frame as a mesh, every other one as a morph
+//! target, and an animation that goes from one to the next.
+
+use std::fs::File;
+use std::io::{self, Seek, Write};
+use std::path::Path;
+
+use a3_core::Simulation;
+use serde_json::{Value, json};
+
+use super::shape::{Shape, positions};
+use super::{Export, rows};
+use crate::Failure;
+use crate::frames::Frames;
+use crate::output::{self, Draft};
+
+/// The animation has a weight for each morph target in each frame: the square of the frames.
+const MOST: usize = 600;
+
+/// glTF's names for kinds of numbers, of buffers and of primitives.
+const F32: u32 = 5126;
+const U32: u32 = 5125;
+const VERTICES: u32 = 34962;
+const INDICES: u32 = 34963;
+const POINTS: u32 = 0;
+const LINES: u32 = 1;
+const TRIANGLES: u32 = 4;
+
+/// A vector each vertex.
+type Vectors = Vec<[f32; 3]>;
+
+pub struct Glb {
+    draft: Draft,
+    shape: Shape,
+    frames: Frames,
+    scene: String,
+    binary: Binary,
+    /// Positions and normals of the first frame.
+    first: Option<(Vectors, Vectors)>,
+    /// The accessors of each frame: its positions or displacements, and the normals if it has a surface.
+    attributes: Vec<Value>,
+}
+
+/// The binary part, in a file until it is known how long the part before it is.
+struct Binary {
+    file: io::BufWriter<File>,
+    length: usize,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+/// How many bytes it has, but for the text.
+pub fn size(simulation: &Simulation, frames: Frames) -> f64 {
+    let (n, count) = (simulation.particles() as f64, frames.count as f64);
+    24.0 * n * count
+        + 12.0 * simulation.scene().surface.triangles.len() as f64
+        + 4.0 * count * count
+}
+
+/// `Ok` if there are not too many frames.
+pub fn check(frames: Frames) -> Result<(), Failure> {
+    if frames.count <= MOST {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "{} frames are too many for a .glb, which has at most {MOST}: a lower --fps, or a .pc2 or film-####.obj",
+        frames.count
+    )))
+}
+
+impl Glb {
+    pub fn new(path: &Path, simulation: &Simulation, frames: Frames) -> Result<Self, Failure> {
+        let draft = Draft::new(path)?;
+        let file = output::scratch(path)?;
+        Ok(Self {
+            draft,
+            shape: Shape::of(simulation),
+            frames,
+            scene: simulation.scene().name.clone(),
+            binary: Binary {
+                file: io::BufWriter::new(file),
+                length: 0,
+                views: vec![],
+                accessors: vec![],
+            },
+            first: None,
+            attributes: vec![],
+        })
+    }
+
+    fn has_surface(&self) -> bool {
+        !self.shape.triangles().is_empty()
+    }
+
+    fn write_frame(&mut self, simulation: &Simulation) -> io::Result<()> {
+        let mut x = positions(simulation);
+        let mut normals = if self.has_surface() {
+            self.shape.normals(&x)
+        } else {
+            vec![]
+        };
+        if let Some((x0, normals0)) = &self.first {
+            subtract(&mut x, x0);
+            subtract(&mut normals, normals0);
+        } else {
+            self.first = Some((x.clone(), normals.clone()));
+        }
+        let mut attributes = json!({ "POSITION": self.binary.vectors(&x, true)? });
+        if self.has_surface() {
+            attributes["NORMAL"] = self.binary.vectors(&normals, false)?.into();
+        }
+        self.attributes.push(attributes);
+        Ok(())
+    }
+
+    /// What is drawn: of the surface triangles, of the rest lines and points.
+    fn primitives(&mut self) -> io::Result<Vec<Value>> {
+        let parts = [
+            (TRIANGLES, self.shape.triangles().as_flattened()),
+            (LINES, self.shape.lines.as_flattened()),
+            (POINTS, &self.shape.points[..]),
+        ];
+        let mut primitives = vec![];
+        for (mode, indices) in parts {
+            if indices.is_empty() {
+                continue;
+            }
+            let indices = self.binary.indices(indices)?;
+            // Only a surface has normals.
+            let attributes = self.attributes.iter().map(|attributes| {
+                let mut attributes = attributes.clone();
+                if let Some(names) = attributes.as_object_mut().filter(|_| mode != TRIANGLES) {
+                    names.remove("NORMAL");
+                }
+                attributes
+            });
+            let mut attributes: Vec<_> = attributes.collect();
+            let targets = attributes.split_off(1);
+            let mut primitive = json!({
+                "mode": mode, "attributes": attributes[0], "indices": indices, "material": 0,
+            });
+            if !targets.is_empty() {
+                primitive["targets"] = targets.into();
+            }
+            primitives.push(primitive);
+        }
+        Ok(primitives)
+    }
+
+    /// From each frame to the next: in frame k > 0, the weight of morph target k - 1 is 1 and all others are 0.
+    fn animation(&mut self) -> io::Result<Value> {
+        let times: Vec<f32> = self.frames.times().map(|time| time as f32).collect();
+        let targets = times.len() - 1;
+        let row =
+            |k: usize| (0..targets).map(move |target| if target + 1 == k { 1.0 } else { 0.0 });
+        let input = self.binary.scalars(times.iter().copied(), times.len())?;
+        let (first, last) = (times[0], times[targets]);
+        self.binary.accessors[input]["min"] = json!([first]);
+        self.binary.accessors[input]["max"] = json!([last]);
+        let output = self
+            .binary
+            .scalars((0..times.len()).flat_map(row), times.len() * targets)?;
+        Ok(json!([{
+            "name": "simulation",
+            "samplers": [{ "input": input, "output": output, "interpolation": "LINEAR" }],
+            "channels": [{ "sampler": 0, "target": { "node": 0, "path": "weights" } }],
+        }]))
+    }
+
+    fn write(&mut self) -> io::Result<()> {
+        let mut document = json!({
+            "asset": { "version": "2.0", "generator": concat!("a3 ", env!("CARGO_PKG_VERSION")) },
+            "scene": 0,
+            "scenes": [{ "nodes": [0] }],
+            "nodes": [{ "name": self.scene, "mesh": 0 }],
+            "meshes": [{ "name": self.scene, "primitives": self.primitives()? }],
+            "materials": [{
+                "pbrMetallicRoughness": {
+                    "baseColorFactor": [0.62, 0.045, 0.06, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.7,
+                },
+                "doubleSided": true,
+            }],
+        });
+        if self.frames.count > 1 {
+            document["animations"] = self.animation()?;
+        }
+        let Self { draft, binary, .. } = self;
+        document["bufferViews"] = std::mem::take(&mut binary.views).into();
+        document["accessors"] = std::mem::take(&mut binary.accessors).into();
+        document["buffers"] = json!([{ "byteLength": binary.length }]);
+        let mut text = serde_json::to_vec(&document)?;
+        text.resize(text.len().next_multiple_of(4), b' ');
+        binary.file.flush()?;
+        let mut data = binary.file.get_ref();
+        data.rewind()?;
+        draft.write_all(b"glTF")?;
+        for number in [2, 28 + text.len() + binary.length, text.len()] {
+            draft.write_all(&(number as u32).to_le_bytes())?;
+        }
+        draft.write_all(b"JSON")?;
+        draft.write_all(&text)?;
+        draft.write_all(&(binary.length as u32).to_le_bytes())?;
+        draft.write_all(b"BIN\0")?;
+        io::copy(&mut data, draft)?;
+        Ok(())
+    }
+}
+
+impl Export for Glb {
+    fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+        self.write_frame(simulation)
+            .map_err(|e| self.draft.failure(&e))
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), Failure> {
+        self.write().map_err(|e| self.draft.failure(&e))?;
+        self.draft.place()
+    }
+}
+
+impl Binary {
+    /// The number of a new accessor, over that many bytes that were just written.
+    fn accessor(&mut self, bytes: usize, target: Option<u32>, mut accessor: Value) -> usize {
+        let mut view = json!({ "buffer": 0, "byteOffset": self.length, "byteLength": bytes });
+        if let Some(target) = target {
+            view["target"] = target.into();
+        }
+        accessor["bufferView"] = self.views.len().into();
+        self.views.push(view);
+        self.accessors.push(accessor);
+        self.length += bytes;
+        self.accessors.len() - 1
+    }
+
+    /// With the range that positions must say they have.
+    fn vectors(&mut self, vectors: &[[f32; 3]], with_range: bool) -> io::Result<usize> {
+        rows(&mut self.file, vectors)?;
+        let mut accessor = json!({ "componentType": F32, "type": "VEC3", "count": vectors.len() });
+        if with_range {
+            let of = |start: f32, pick: fn(f32, f32) -> f32| {
+                [0, 1, 2].map(|axis| vectors.iter().map(|v| v[axis]).fold(start, pick))
+            };
+            accessor["min"] = json!(of(f32::INFINITY, f32::min));
+            accessor["max"] = json!(of(f32::NEG_INFINITY, f32::max));
+        }
+        Ok(self.accessor(12 * vectors.len(), Some(VERTICES), accessor))
+    }
+
+    fn indices(&mut self, indices: &[u32]) -> io::Result<usize> {
+        for index in indices {
+            self.file.write_all(&index.to_le_bytes())?;
+        }
+        let accessor = json!({ "componentType": U32, "type": "SCALAR", "count": indices.len() });
+        Ok(self.accessor(4 * indices.len(), Some(INDICES), accessor))
+    }
+
+    fn scalars(&mut self, scalars: impl Iterator<Item = f32>, count: usize) -> io::Result<usize> {
+        for scalar in scalars {
+            self.file.write_all(&scalar.to_le_bytes())?;
+        }
+        let accessor = json!({ "componentType": F32, "type": "SCALAR", "count": count });
+        Ok(self.accessor(4 * count, None, accessor))
+    }
+}
+
+fn subtract(vectors: &mut [[f32; 3]], others: &[[f32; 3]]) {
+    for (v, other) in vectors.iter_mut().zip(others) {
+        *v = [0, 1, 2].map(|k| v[k] - other[k]);
+    }
+}

@@ -1,0 +1,108 @@
+//! Where a run is, frame by frame, in files that other programs read.
+
+mod csv;
+mod glb;
+mod json;
+mod obj;
+mod pc2;
+mod shape;
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use a3_core::Simulation;
+
+use crate::cli::Simulate;
+use crate::frames::{Frames, Sequence};
+use crate::{Failure, output};
+
+/// Frames a second, unless asked otherwise.
+const RATE: f64 = 30.0;
+
+/// The largest files (GiB): in all, and of the format whose lengths have 32 bits.
+const LARGEST: (f64, f64) = (16.0, 4.0);
+
+/// Where frames go.
+pub trait Export {
+    /// The run as it is now.
+    fn add(&mut self, simulation: &Simulation) -> Result<(), Failure>;
+
+    /// That was the last.
+    fn finish(self: Box<Self>) -> Result<(), Failure>;
+}
+
+/// The file that was asked for, and when its frames are. Says before the work what cannot be.
+pub fn begin(
+    options: &Simulate,
+    simulation: &Simulation,
+) -> Result<(Frames, Box<dyn Export>), Failure> {
+    let (path, until) = (options.output.as_path(), options.run.end()?);
+    let last = Frames::new(until, until, RATE)?;
+    if path == Path::new("-") {
+        if options.fps.is_some() {
+            return Err(Failure::usage(
+                "--fps needs a file: standard output gets the final state",
+            ));
+        }
+        return Ok((last, Box::new(json::Json::to_stdout())));
+    }
+    output::check(path, &["json", "csv", "obj", "pc2", "glb"])?;
+    let several = Frames::new(0.0, until, options.fps.unwrap_or(RATE))?;
+    let particles = simulation.particles() as f64;
+    let check = |size: f64, largest: f64| check_size(size, largest).map(|()| several);
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    Ok(match (ending.to_str(), Sequence::of(path)) {
+        (Some("csv"), _) => {
+            let frames = check(csv::ROW * particles * several.count as f64, LARGEST.0)?;
+            (frames, Box::new(csv::Csv::new(path)?))
+        }
+        (Some("pc2"), _) => {
+            let frames = check(pc2::size(simulation, several), LARGEST.0)?;
+            (frames, Box::new(pc2::Pc2::new(path, simulation, frames)?))
+        }
+        (Some("glb"), _) => {
+            glb::check(several)?;
+            let frames = check(glb::size(simulation, several), LARGEST.1)?;
+            (frames, Box::new(glb::Glb::new(path, simulation, frames)?))
+        }
+        (Some("obj"), Some(sequence)) => {
+            sequence.check(several.count)?;
+            let frames = check(obj::size(simulation) * several.count as f64, LARGEST.0)?;
+            let name = obj::Name::Many(sequence, 0);
+            (frames, Box::new(obj::Obj::new(simulation, name)))
+        }
+        (Some("obj"), None) => {
+            if options.fps.is_some() {
+                return Err(Failure::usage(
+                    "an .obj has one frame: --fps is for as many as cloth-####.obj",
+                ));
+            }
+            let name = obj::Name::One(path.into());
+            (last, Box::new(obj::Obj::new(simulation, name)))
+        }
+        _ if options.fps.is_some() => {
+            let frames = check(json::ROW * particles * several.count as f64, LARGEST.0)?;
+            (frames, Box::new(json::Json::new(path, true)?))
+        }
+        _ => (last, Box::new(json::Json::new(path, false)?)),
+    })
+}
+
+/// `Ok` if so many bytes are no more than `largest` (GiB).
+fn check_size(bytes: f64, largest: f64) -> Result<(), Failure> {
+    let size = bytes / 1024f64.powi(3);
+    if size <= largest {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "that would be {size:.1} GiB, and {largest} GiB is the most: a lower --fps or --until, or fewer particles"
+    )))
+}
+
+/// Vectors in little-endian single precision, one after the other.
+fn rows(file: &mut dyn Write, vectors: &[[f32; 3]]) -> io::Result<()> {
+    for number in vectors.as_flattened() {
+        file.write_all(&number.to_le_bytes())?;
+    }
+    Ok(())
+}

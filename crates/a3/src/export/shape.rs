@@ -1,0 +1,81 @@
+//! What others are given of a scene: a surface with normals, and lines and points for what has none.
+
+use std::sync::Arc;
+
+use a3_core::{Network, Simulation, Surface};
+
+/// How particles hang together: what stays the same from frame to frame.
+pub struct Shape {
+    surface: Arc<Surface>,
+    /// Springs of particles that have no surface.
+    pub lines: Vec<[u32; 2]>,
+    /// These particles.
+    pub points: Vec<u32>,
+}
+
+impl Shape {
+    pub fn of(simulation: &Simulation) -> Self {
+        let surface = simulation.scene().surface.clone();
+        let covered = surface.particles();
+        let network = simulation.model().network();
+        let springs = network.into_iter().flat_map(Network::springs);
+        Self {
+            lines: springs
+                .filter(|spring| spring.i.max(spring.j) >= covered)
+                .map(|spring| [spring.i as u32, spring.j as u32])
+                .collect(),
+            points: (covered as u32..simulation.particles() as u32).collect(),
+            surface,
+        }
+    }
+
+    /// Corners, wound against the clock as seen from outside.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.surface.triangles
+    }
+
+    /// How many particles, the first ones, have a surface.
+    pub fn covered(&self) -> usize {
+        self.surface.particles()
+    }
+
+    /// Of length 1 at each particle: the sum over its triangles of the cross product of two sides, so that large ones
+    /// count for more. Upwards where there is none.
+    pub fn normals(&self, positions: &[[f32; 3]]) -> Vec<[f32; 3]> {
+        let mut sums = vec![[0.0f64; 3]; positions.len()];
+        for triangle in self.triangles() {
+            let [a, b, c] = triangle.map(|i| positions[i as usize].map(f64::from));
+            let (u, v) = (minus(b, a), minus(c, a));
+            let cross = [0, 1, 2].map(|k| {
+                let (m, n) = ((k + 1) % 3, (k + 2) % 3);
+                u[m] * v[n] - u[n] * v[m]
+            });
+            for i in triangle {
+                let sum = &mut sums[*i as usize];
+                *sum = [0, 1, 2].map(|k| sum[k] + cross[k]);
+            }
+        }
+        let unit = |n: [f64; 3]| {
+            let length = n.iter().map(|c| c * c).sum::<f64>().sqrt();
+            if length > 1e-30 {
+                n.map(|c| (c / length) as f32)
+            } else {
+                [0.0, 1.0, 0.0]
+            }
+        };
+        sums.into_iter().map(unit).collect()
+    }
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[k] - b[k])
+}
+
+/// Of every particle (m), in single precision: that of all files of geometry.
+pub fn positions(simulation: &Simulation) -> Vec<[f32; 3]> {
+    let n = simulation.particles();
+    let x = simulation.state();
+    (0..n)
+        .map(|i| [x[i] as f32, x[n + i] as f32, x[2 * n + i] as f32])
+        .collect()
+}

@@ -1,0 +1,187 @@
+//! Animated GIF: at most 255 colours a frame, chosen for it, and only what changed since the one before.
+
+use std::io;
+use std::ops::Range;
+use std::path::Path;
+
+use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
+
+use super::Film;
+use super::palette::Palette;
+use crate::Failure;
+use crate::output::Draft;
+
+/// Players take shorter delays for slips (1/100 s).
+const SHORTEST: f64 = 2.0;
+
+/// A pixel shown to within so many of 255 levels is not sent again.
+const NEAR: u8 = 3;
+
+pub struct Gif {
+    encoder: Encoder<Draft>,
+    size: (u32, u32),
+    delay: u16,
+    /// What is on the screen, where frames are laid over one another: where they are opaque.
+    shown: Option<Vec<[u8; 3]>>,
+    transparent: bool,
+}
+
+/// A frame's delay (1/100 s), whole, for so many frames a second.
+pub fn delay(fps: f64) -> f64 {
+    (100.0 / fps).round().max(SHORTEST)
+}
+
+impl Gif {
+    pub fn new(
+        path: &Path,
+        (width, height): (u32, u32),
+        delay: f64,
+        transparent: bool,
+    ) -> Result<Self, Failure> {
+        let side = |side| {
+            u16::try_from(side).map_err(|_| {
+                Failure::usage(format!("a GIF's sides are at most {} pixels", u16::MAX))
+            })
+        };
+        let (across, down) = (side(width)?, side(height)?);
+        let encoder = Encoder::new(Draft::new(path)?, across, down, &[]);
+        let mut encoder =
+            encoder.map_err(|e| Failure::run(format!("{}: not written: {e}", path.display())))?;
+        encoder
+            .set_repeat(Repeat::Infinite)
+            .map_err(|e| failure(&encoder, e))?;
+        Ok(Self {
+            encoder,
+            size: (width, height),
+            delay: delay as u16,
+            shown: None,
+            transparent,
+        })
+    }
+
+    /// Whether this pixel has to be sent.
+    fn is_new(&self, k: usize, pixel: &[u8]) -> bool {
+        match &self.shown {
+            _ if self.transparent => pixel[3] >= 128,
+            None => true,
+            Some(shown) => (0..3).any(|c| shown[k][c].abs_diff(pixel[c]) > NEAR),
+        }
+    }
+}
+
+impl Film for Gif {
+    fn add(&mut self, pixels: &[u8]) -> Result<(), Failure> {
+        let width = self.size.0 as usize;
+        let color = |k: usize| [pixels[4 * k], pixels[4 * k + 1], pixels[4 * k + 2]];
+        let new: Vec<bool> = pixels
+            .chunks_exact(4)
+            .enumerate()
+            .map(|(k, pixel)| self.is_new(k, pixel))
+            .collect();
+        let sent = || (0..new.len()).filter(|&k| new[k]);
+        let palette = Palette::of(sent().map(color), 255);
+        // The one past the last stands for none.
+        let none = palette.colors.len() as u8;
+        let index = |k: usize| {
+            if new[k] {
+                palette.index(color(k))
+            } else {
+                none
+            }
+        };
+        let (columns, rows) = bounds(sent(), width);
+        let part = rows
+            .clone()
+            .flat_map(|y| columns.clone().map(move |x| y * width + x));
+        let mut frame = Frame {
+            delay: self.delay,
+            left: columns.start as u16,
+            top: rows.start as u16,
+            width: columns.len() as u16,
+            height: rows.len() as u16,
+            transparent: Some(none),
+            palette: Some([&palette.colors[..], &[[0; 3]]].concat().concat()),
+            buffer: part.map(index).collect::<Vec<_>>().into(),
+            ..Frame::default()
+        };
+        if self.transparent {
+            // What was there is taken away: nothing could be laid over it that is not seen.
+            frame.dispose = DisposalMethod::Background;
+        }
+        let shown = self.shown.get_or_insert_with(|| vec![[0; 3]; new.len()]);
+        for k in sent() {
+            shown[k] = palette.colors[usize::from(palette.index(color(k)))];
+        }
+        self.encoder
+            .write_frame(&frame)
+            .map_err(|e| failure(&self.encoder, e))
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), Failure> {
+        self.encoder.into_inner().map_err(Failure::run)?.place()
+    }
+}
+
+/// The columns and rows of the smallest part of a picture that has these pixels: one pixel at least.
+fn bounds(pixels: impl Iterator<Item = usize>, width: usize) -> (Range<usize>, Range<usize>) {
+    let join = |a: Range<usize>, b: Range<usize>| a.start.min(b.start)..a.end.max(b.end);
+    pixels
+        .map(|k| (k % width, k / width))
+        .map(|(x, y)| (x..x + 1, y..y + 1))
+        .reduce(|a, b| (join(a.0, b.0), join(a.1, b.1)))
+        .unwrap_or((0..1, 0..1))
+}
+
+fn failure(encoder: &Encoder<Draft>, error: EncodingError) -> Failure {
+    let error = match error {
+        EncodingError::Io(error) => error,
+        error => io::Error::other(error),
+    };
+    encoder.get_ref().failure(&error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A frame has the smallest part that changed: one pixel where nothing did.
+    #[test]
+    fn only_what_changed_is_sent() {
+        let folder = tempfile::tempdir().ok().unwrap();
+        let path = folder.path().join("x.gif");
+        let mut film = Box::new(Gif::new(&path, (5, 4), 4.0, false).ok().unwrap());
+        let mut picture = [200, 100, 50, 255].repeat(20);
+        let mut add = |picture: &[u8]| assert!(film.add(picture).is_ok());
+        add(&picture);
+        // Nothing that is seen.
+        picture[0] = 201;
+        add(&picture);
+        for pixel in [1 + 5, 3 + 5 * 2] {
+            picture[4 * pixel..4 * pixel + 3].copy_from_slice(&[0, 0, 255]);
+        }
+        add(&picture);
+        assert!(film.finish().is_ok());
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::RGBA);
+        let file = std::fs::File::open(path).ok().unwrap();
+        let mut decoder = options.read_info(file).ok().unwrap();
+        let mut next = || decoder.read_next_frame().ok().flatten().cloned();
+        let places: Vec<_> = std::iter::from_fn(&mut next)
+            .map(|frame| {
+                (
+                    frame.left,
+                    frame.top,
+                    frame.width,
+                    frame.height,
+                    frame.buffer.to_vec(),
+                )
+            })
+            .collect();
+        let (blue, none) = ([0, 0, 255, 255], [0; 4]);
+        let part = [blue, none, none, none, none, blue].concat();
+        assert_eq!(places.len(), 3);
+        assert_eq!(places[0], (0, 0, 5, 4, [200, 100, 50, 255].repeat(20)));
+        assert_eq!(places[1], (0, 0, 1, 1, none.to_vec()));
+        assert_eq!(places[2], (1, 1, 3, 2, part));
+    }
+}

@@ -1,0 +1,149 @@
+//! Films: what a run looks like, frame by frame, as a GIF, an MP4 or numbered pictures.
+
+mod gif;
+mod mp4;
+mod palette;
+
+use std::path::Path;
+
+use a3_core::Simulation;
+
+use crate::cli::Render;
+use crate::frames::{Frames, Sequence};
+use crate::progress::{self, Bar};
+use crate::render::Painter;
+use crate::show::Show;
+use crate::{Failure, interrupt, output};
+
+/// Frames a second of a GIF, whose delays are whole hundredths of a second, and of all else.
+const RATE: (f64, f64) = (25.0, 30.0);
+
+/// Where frames go: rows from the top, four bytes a pixel.
+pub trait Film {
+    /// One more.
+    fn add(&mut self, pixels: &[u8]) -> Result<(), Failure>;
+
+    /// That was the last.
+    fn finish(self: Box<Self>) -> Result<(), Failure>;
+}
+
+/// A film, and when its frames are.
+pub type Plan = (Frames, Box<dyn Film>);
+
+/// Numbered pictures.
+struct Pictures {
+    sequence: Sequence,
+    size: (u32, u32),
+    count: usize,
+}
+
+impl Film for Pictures {
+    fn add(&mut self, pixels: &[u8]) -> Result<(), Failure> {
+        let file = self.sequence.file(self.count);
+        self.count += 1;
+        output::write(&file, &output::png(pixels, self.size)?)
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
+/// The film that was asked for, unless it was a picture. Says before the work what cannot be.
+pub fn begin(options: &Render) -> Result<Option<Plan>, Failure> {
+    let (path, size) = (options.output.as_path(), options.size);
+    let until = options.run.end()?;
+    let frames = |rate| Frames::new(options.from.unwrap_or(0.0), until, rate);
+    let rate = options.fps.unwrap_or(RATE.1);
+    let ends_in = |ending: &str| {
+        path.extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case(ending))
+    };
+    if ends_in("gif") {
+        let asked = options.fps.unwrap_or(RATE.0);
+        let delay = gif::delay(asked);
+        let rate = 100.0 / delay;
+        let frames = frames(rate)?;
+        let gif = gif::Gif::new(path, size, delay, options.transparent)?;
+        if (rate - asked).abs() > 1e-9 {
+            eprintln!(
+                "a GIF's delays are whole hundredths of a second, 2 or more: {rate:.4} frames a second, not {asked}"
+            );
+        }
+        return Ok(Some((frames, Box::new(gif))));
+    }
+    if ends_in("mp4") {
+        if options.transparent {
+            return Err(Failure::usage(
+                "an MP4 is never transparent: a .gif, a .png or a sequence such as film-####.png is",
+            ));
+        }
+        return Ok(Some((
+            frames(rate)?,
+            Box::new(mp4::Mp4::new(path, size, rate)?),
+        )));
+    }
+    if let Some(sequence) = Sequence::of(path) {
+        let frames = frames(rate)?;
+        sequence.check(frames.count)?;
+        let pictures = Pictures {
+            sequence,
+            size,
+            count: 0,
+        };
+        return Ok(Some((frames, Box::new(pictures))));
+    }
+    if options.fps.is_some() || options.from.is_some() {
+        return Err(Failure::usage(
+            "--fps and --from are for films: .gif, .mp4, or a sequence such as film-####.png",
+        ));
+    }
+    Ok(None)
+}
+
+/// Films the run. What was filmed before it blew up or was interrupted is kept.
+pub fn shoot(
+    simulation: &mut Simulation,
+    show: &mut Show,
+    painter: &mut Painter,
+    (frames, mut film): Plan,
+    path: &Path,
+) -> Result<(), Failure> {
+    interrupt::listen();
+    let bar = Bar::new(frames.count as f64);
+    bar.say(format!("up to t = {} s ", frames.from));
+    let mut shot = 0;
+    let mut end = Ok(true);
+    for time in frames.times() {
+        end = progress::march(simulation, time, |simulation| {
+            show.follow(simulation);
+            interrupt::go_on()
+        });
+        if end != Ok(true) {
+            break;
+        }
+        if shot == 0 {
+            bar.start();
+        }
+        film.add(&painter.draw(show, simulation)?)?;
+        shot += 1;
+        bar.say(format!("frame {shot} of {} ", frames.count));
+        bar.advance(1.0);
+    }
+    bar.clear();
+    let kept = if shot == 0 {
+        "nothing was filmed".to_owned()
+    } else {
+        film.finish()?;
+        format!(
+            "{} has the first {shot} of {} frames",
+            path.display(),
+            frames.count
+        )
+    };
+    match end {
+        Ok(true) => Ok(()),
+        Ok(false) => Err(Failure::Interrupted(format!("interrupted: {kept}"))),
+        Err(error) => Err(Failure::run(format!("{error}; {kept}"))),
+    }
+}

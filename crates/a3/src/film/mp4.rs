@@ -1,0 +1,127 @@
+//! MP4: H.264 by an installed `ffmpeg`, which is sent the frames.
+
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{self, Read, Seek, Write};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+
+use super::Film;
+use crate::Failure;
+use crate::output::Draft;
+
+/// A film that `ffmpeg` writes beside its place.
+pub struct Mp4 {
+    draft: Option<Draft>,
+    ffmpeg: Child,
+    /// What it complains of.
+    log: File,
+}
+
+impl Mp4 {
+    pub fn new(path: &Path, (width, height): (u32, u32), fps: f64) -> Result<Self, Failure> {
+        if width % 2 + height % 2 > 0 {
+            let even = [width, height].map(|side| side + side % 2);
+            return Err(Failure::usage(format!(
+                "the sides of an MP4 are even, and {width}x{height} is not: {}x{} is",
+                even[0], even[1]
+            )));
+        }
+        let draft = Draft::new(path)?;
+        let Some(beside) = draft.beside() else {
+            return Err(Failure::run(format!(
+                "{}: is no ordinary file, and an MP4 needs one",
+                path.display()
+            )));
+        };
+        // With its protocol: a name may begin with - or contain a colon.
+        let target = [OsString::from("file:"), beside.into()]
+            .into_iter()
+            .collect::<OsString>();
+        let log = tempfile::tempfile().map_err(Failure::run)?;
+        let mut command = Command::new("ffmpeg");
+        command
+            .args(["-hide_banner", "-loglevel", "error", "-y"])
+            .args(["-f", "rawvideo", "-pixel_format", "rgba"])
+            .args(["-video_size", &format!("{width}x{height}")])
+            .args(["-framerate", &fps.to_string(), "-i", "-"])
+            // The colours of high definition, and said to be: players would guess.
+            .args(["-vf", "scale=out_color_matrix=bt709:out_range=tv"])
+            .args([
+                "-colorspace",
+                "bt709",
+                "-color_primaries",
+                "bt709",
+                "-color_trc",
+                "bt709",
+            ])
+            .args(["-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p"])
+            .args(["-movflags", "+faststart", "-f", "mp4"])
+            .arg(target)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(log.try_clone().map_err(Failure::run)?);
+        // Ctrl-C is not for it: it ends when there are no more frames.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let ffmpeg = command.spawn().map_err(|e| match e.kind() {
+            io::ErrorKind::NotFound => Failure::run(
+                "an MP4 is written by ffmpeg, which is not here: install it (apt install ffmpeg), or write a .gif or a \
+                 sequence such as film-####.png",
+            ),
+            _ => Failure::run(format!("ffmpeg does not start: {e}")),
+        })?;
+        Ok(Self {
+            draft: Some(draft),
+            ffmpeg,
+            log,
+        })
+    }
+
+    /// What `ffmpeg` said last, now that it is at its end.
+    fn complaint(&mut self) -> Failure {
+        let mut said = String::new();
+        let read = self
+            .log
+            .rewind()
+            .and_then(|()| self.log.read_to_string(&mut said));
+        let last = said.lines().rev().find(|line| !line.trim().is_empty());
+        let why = last
+            .filter(|_| read.is_ok())
+            .unwrap_or("it does not say why");
+        Failure::run(format!("ffmpeg failed: {}", why.trim()))
+    }
+}
+
+impl Film for Mp4 {
+    fn add(&mut self, pixels: &[u8]) -> Result<(), Failure> {
+        let sent = self
+            .ffmpeg
+            .stdin
+            .as_mut()
+            .map_or(Ok(()), |pipe| pipe.write_all(pixels));
+        sent.map_err(|_| {
+            // It has closed its end.
+            let _ = self.ffmpeg.wait();
+            self.complaint()
+        })
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), Failure> {
+        drop(self.ffmpeg.stdin.take());
+        let status = self.ffmpeg.wait().map_err(Failure::run)?;
+        match self.draft.take() {
+            Some(draft) if status.success() => draft.place(),
+            _ => Err(self.complaint()),
+        }
+    }
+}
+
+/// A film that was given up.
+impl Drop for Mp4 {
+    fn drop(&mut self) {
+        // Nothing, if it is at its end already.
+        let _ = self.ffmpeg.kill();
+        let _ = self.ffmpeg.wait();
+    }
+}

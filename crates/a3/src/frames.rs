@@ -1,0 +1,140 @@
+//! When a run is looked at, and what the files of such a sequence are called.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use crate::Failure;
+
+/// What is more than this was not meant.
+const MOST: f64 = 1e6;
+
+/// Times `from` + k / `rate` (s), the last at or before the end.
+#[derive(Clone, Copy, Debug)]
+pub struct Frames {
+    /// In s.
+    pub from: f64,
+    /// In 1/s.
+    pub rate: f64,
+    /// How many: at least one.
+    pub count: usize,
+    until: f64,
+}
+
+impl Frames {
+    pub fn new(from: f64, until: f64, rate: f64) -> Result<Self, Failure> {
+        if from > until {
+            return Err(Failure::usage(format!(
+                "there is nothing to film: --from {from} is past --until {until}"
+            )));
+        }
+        // The last frame may miss the end by no more than rounding.
+        let count = ((until - from) * rate + 1e-6).floor() + 1.0;
+        if count > MOST {
+            return Err(Failure::usage(format!(
+                "{until} s at {rate} frames a second are {count:.0} frames, and {MOST} is the most: a lower --fps or \
+                 --until"
+            )));
+        }
+        Ok(Self {
+            from,
+            rate,
+            count: count as usize,
+            until,
+        })
+    }
+
+    /// In s.
+    pub fn times(self) -> impl Iterator<Item = f64> {
+        (0..self.count).map(move |k| (self.from + k as f64 / self.rate).min(self.until))
+    }
+}
+
+/// Files that differ by a number: as many digits as the name has `#`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sequence {
+    folder: PathBuf,
+    before: String,
+    digits: usize,
+    after: String,
+}
+
+impl Sequence {
+    /// What this path names, if it names one.
+    pub fn of(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_str()?;
+        let (before, rest) = name.split_once('#')?;
+        let after = rest.trim_start_matches('#');
+        Some(Self {
+            folder: path.parent().unwrap_or(Path::new("")).into(),
+            before: before.into(),
+            digits: 1 + rest.len() - after.len(),
+            after: after.into(),
+        })
+    }
+
+    /// `Ok` if so many files have each a name of its own.
+    pub fn check(&self, count: usize) -> Result<(), Failure> {
+        if self.after.contains('#') {
+            return Err(Failure::usage(
+                "the # of a sequence stand side by side, as in cloth-####.png",
+            ));
+        }
+        let needed = count.to_string().len();
+        if needed > self.digits {
+            return Err(Failure::usage(format!(
+                "{count} frames have numbers of {needed} digits: that many # in the name"
+            )));
+        }
+        Ok(())
+    }
+
+    /// The file of frame k, counted from 0: its number is k + 1.
+    pub fn file(&self, k: usize) -> PathBuf {
+        let (before, after, width) = (&self.before, &self.after, self.digits);
+        let name = format!("{before}{:0width$}{after}", k + 1);
+        self.folder.join(OsString::from(name))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_end_at_or_before_the_end() {
+        let times = |from, until, rate| -> Vec<f64> {
+            let frames = Frames::new(from, until, rate).ok().unwrap();
+            let times: Vec<f64> = frames.times().collect();
+            assert_eq!(times.len(), frames.count);
+            times
+        };
+        assert_eq!(times(0.0, 0.0, 30.0), [0.0]);
+        assert_eq!(times(0.0, 1.0, 4.0), [0.0, 0.25, 0.5, 0.75, 1.0]);
+        assert_eq!(times(0.5, 1.2, 4.0), [0.5, 0.75, 1.0]);
+        // 0.1 * 3 is more than 0.3, and 2.3 / 0.1 less than 23.
+        assert_eq!(times(0.0, 0.3, 10.0).len(), 4);
+        assert_eq!(times(0.0, 2.3, 10.0).len(), 24);
+        assert!(times(0.0, 0.3, 10.0).iter().all(|t| *t <= 0.3));
+    }
+
+    #[test]
+    fn frames_that_cannot_be_are_refused() {
+        assert!(Frames::new(2.0, 1.0, 30.0).is_err());
+        assert!(Frames::new(0.0, 1e9, 30.0).is_err());
+    }
+
+    #[test]
+    fn the_marks_of_a_name_are_its_digits() {
+        let sequence = Sequence::of(Path::new("f#/cloth-###.png")).unwrap();
+        assert_eq!(sequence.file(0), Path::new("f#/cloth-001.png"));
+        assert_eq!(sequence.file(41), Path::new("f#/cloth-042.png"));
+        assert!(sequence.check(999).is_ok() && sequence.check(1000).is_err());
+        assert_eq!(Sequence::of(Path::new("f#/cloth.png")), None);
+        assert!(
+            Sequence::of(Path::new("#-#.png"))
+                .unwrap()
+                .check(1)
+                .is_err()
+        );
+    }
+}

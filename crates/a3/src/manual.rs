@@ -1,0 +1,82 @@
+//! `a3 man` and `a3 completions`: what the command line knows of itself, for man and for shells.
+
+use std::io;
+use std::path::Path;
+
+use clap::{Command, CommandFactory};
+use clap_complete::Shell;
+use clap_mangen::Man;
+
+use crate::cli::Cli;
+use crate::{Failure, output};
+
+/// What this shell reads to complete what is typed.
+pub fn completions(shell: Shell) -> Result<(), Failure> {
+    let mut script = vec![];
+    clap_complete::generate(shell, &mut command(), "a3", &mut script);
+    say(script)
+}
+
+/// One page with everything to standard output, or a page for each command into a folder.
+pub fn run(folder: Option<&Path>) -> Result<(), Failure> {
+    let command = command();
+    let Some(folder) = folder else {
+        let mut page = vec![];
+        whole(&command, &mut page).map_err(Failure::run)?;
+        return say(page);
+    };
+    if !folder.is_dir() {
+        return Err(Failure::run(format!(
+            "there is no folder {}",
+            folder.display()
+        )));
+    }
+    for command in [&command].into_iter().chain(command.get_subcommands()) {
+        let (man, mut page) = (Man::new(command.clone()), vec![]);
+        man.render(&mut page).map_err(Failure::run)?;
+        let page = text(page).map_err(Failure::run)?;
+        output::write(&folder.join(man.get_filename()), page.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// With its names as they are in the end, and without `help`, which says no more than `--help`.
+fn command() -> Command {
+    let mut command = Cli::command().disable_help_subcommand(true);
+    command.build();
+    command
+}
+
+/// The page of the program, with a section for each command.
+fn whole(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
+    let man = Man::new(command.clone());
+    man.render_title(page)?;
+    man.render_name_section(page)?;
+    man.render_synopsis_section(page)?;
+    man.render_options_section(page)?;
+    man.render_extra_section(page)?;
+    for command in command.get_subcommands() {
+        let (man, mut part) = (Man::new(command.clone()), vec![]);
+        man.render_synopsis_section(&mut part)?;
+        man.render_description_section(&mut part)?;
+        man.render_options_section(&mut part)?;
+        if command.get_after_help().is_some() {
+            man.render_extra_section(&mut part)?;
+        }
+        let name = command.get_bin_name().unwrap_or_default();
+        page.extend(format!(".SH \"{name}\"\n").bytes());
+        // Below the command's name.
+        page.extend(text(part)?.replace(".SH ", ".SS ").bytes());
+    }
+    man.render_version_section(page)
+}
+
+fn say(bytes: Vec<u8>) -> Result<(), Failure> {
+    output::say(&text(bytes).map_err(Failure::run)?)
+}
+
+/// What follows the options is not extra.
+fn text(bytes: Vec<u8>) -> io::Result<String> {
+    let text = String::from_utf8(bytes).map_err(io::Error::other)?;
+    Ok(text.replace(".SH EXTRA", ".SH NOTES"))
+}

@@ -1,0 +1,94 @@
+//! The program as it is typed, in a folder of its own.
+
+#![allow(dead_code, reason = "not every test needs all of it")]
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+/// Without a display.
+pub fn command(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_a3"));
+    command
+        .args(words)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        // A folder for the libraries that complain when there is none.
+        .env("XDG_RUNTIME_DIR", folder);
+    command
+}
+
+pub fn a3(folder: &Path, words: &[&str]) -> Output {
+    command(folder, words).output().unwrap()
+}
+
+pub fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+/// The line on stderr, of a program that left with `code` and said nothing else.
+pub fn complaint(output: &Output, code: i32) -> String {
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{stderr}");
+    assert_eq!(stderr.lines().count(), 1, "one line, not\n{stderr}");
+    assert!(output.stdout.is_empty());
+    stderr.trim_end().to_owned()
+}
+
+/// Says loudly what is not tested, unless that variable says that it has to be.
+pub fn skip(why: &str, required: &str) {
+    assert!(
+        std::env::var_os(required).is_none(),
+        "{required} is set: {why}"
+    );
+    // Past the test runner, which keeps what a passing test prints.
+    let _ = writeln!(std::io::stderr(), "SKIPPED, NOT TESTED: {why}");
+}
+
+/// Whether there is no adapter to draw with.
+pub fn gpu_is_missing(output: &Output) -> bool {
+    let stderr = text(&output.stderr);
+    let missing = stderr.contains("mesa-vulkan-drivers");
+    if missing {
+        skip(stderr, "A3_REQUIRE_GPU");
+    }
+    missing
+}
+
+/// Whether that program is not here: one of those that check what others wrote.
+pub fn is_missing(program: &str) -> bool {
+    let found = Command::new(program)
+        .arg("-version")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
+    let missing = found.is_err();
+    if missing {
+        skip(&format!("{program} is not here"), "A3_REQUIRE_CHECKERS");
+    }
+    missing
+}
+
+/// What another program says of a file, which it must find well.
+pub fn asked(folder: &Path, program: &str, words: &[&str]) -> String {
+    let output = Command::new(program)
+        .args(words)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let (stdout, stderr) = (
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr),
+    );
+    assert!(
+        output.status.success(),
+        "{program} {words:?}: {stdout}{stderr}"
+    );
+    stdout.into_owned()
+}

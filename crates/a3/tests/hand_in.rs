@@ -1,0 +1,101 @@
+//! The archive to hand in: made, unpacked, and used as the one who gets it would.
+
+#![allow(missing_docs, reason = "a test")]
+#![cfg(unix)]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use common::{asked, complaint, is_missing, text};
+
+/// The sources as they are here, committed to a repository of their own.
+fn repository(folder: &Path) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    for entry in fs::read_dir(&root).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if name != "target" && name != ".git" {
+            let from = root.join(&name).display().to_string();
+            asked(folder, "cp", &["-R", &from, "."]);
+        }
+    }
+    asked(folder, "git", &["init", "-q"]);
+    asked(folder, "git", &["add", "-A"]);
+    let who = ["-c", "user.name=a", "-c", "user.email=a@b"];
+    let commit = ["-c", "commit.gpgsign=false", "commit", "-q", "-m", "All"];
+    asked(folder, "git", &[&who[..], &commit].concat());
+}
+
+fn hand_in(from: &Path, script: &Path, program: &Path, words: &[&str]) -> Output {
+    Command::new(script)
+        .args(words)
+        .current_dir(from)
+        .env("A3_BINARY", program)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn the_archive_has_the_sources_the_program_and_the_readme() {
+    if ["git", "tar", "strip"].into_iter().any(is_missing) {
+        return;
+    }
+    let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    repository(folder.path());
+    let script = folder.path().join("hand-in");
+    // What is there for debuggers takes long to pack.
+    let programs = tempfile::tempdir().unwrap();
+    let program = programs.path().join("a3");
+    asked(
+        programs.path(),
+        "strip",
+        &["-o", "a3", env!("CARGO_BIN_EXE_a3")],
+    );
+
+    // From another folder, into that one.
+    let output = hand_in(other.path(), &script, &program, &["mine.tar.gz"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("mine.tar.gz"));
+    assert_eq!(fs::read_dir(other.path()).unwrap().count(), 1);
+    asked(other.path(), "tar", &["-xzf", "mine.tar.gz"]);
+    let unpacked = other.path().join("a3");
+    let readme = fs::read_to_string(unpacked.join("README.txt")).unwrap();
+    assert_eq!(
+        readme,
+        fs::read_to_string(folder.path().join("README.md")).unwrap()
+    );
+    // Every file of the commit is there, as it is.
+    let sources = asked(folder.path(), "git", &["ls-files"]);
+    assert!(sources.lines().count() > 100 && sources.contains("crates/core/src/lib.rs"));
+    for source in sources.lines() {
+        let [here, there] =
+            [folder.path(), &unpacked].map(|root| fs::read(root.join(source)).unwrap());
+        assert!(here == there, "{source}");
+    }
+    let state = asked(
+        &unpacked,
+        "./a3",
+        &["simulate", "t", "0.01", "--until", "0.1", "--output", "-"],
+    );
+    let state: serde_json::Value = serde_json::from_str(&state).unwrap();
+    assert_eq!(state["steps"], 10);
+
+    // What is not committed would not be handed in.
+    fs::write(folder.path().join("crates/core/src/new.rs"), "").unwrap();
+    let line = complaint(&hand_in(folder.path(), &script, &program, &[]), 1);
+    assert!(
+        line.starts_with("error: ") && line.contains("crates/core/src/new.rs"),
+        "{line}"
+    );
+    assert!(!folder.path().join("a3-handin.tar.gz").exists());
+    for words in [
+        &["a.tar.gz", "b.tar.gz"][..],
+        &["--help"],
+        &["nowhere/a.tar.gz"],
+    ] {
+        let line = complaint(&hand_in(folder.path(), &script, &program, words), 1);
+        assert!(line.starts_with("error: "), "{line}");
+    }
+}
