@@ -440,3 +440,63 @@ fn editors_get_a_schema() {
         assert!(schema.contains(word), "{word}");
     }
 }
+
+/// Texts that were damaged at random are read or refused, and nothing else; what is read can be evaluated.
+#[test]
+fn damaged_texts_are_refused_or_read() {
+    let mut seed = 1u64;
+    let mut random = |below: usize| {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize % below
+    };
+    let words = [
+        "-1",
+        "0",
+        "nan",
+        "1e400",
+        "[",
+        "]",
+        "{}",
+        "\"",
+        "=",
+        "\n",
+        "999999999999",
+        "[[cloth]]",
+        "true",
+        "é",
+    ];
+    let (mut refused, mut read) = (0, 0);
+    for k in 0..4000 {
+        let mut text: Vec<char> = SCENES[k % SCENES.len()].text.chars().collect();
+        for _ in 0..=random(3) {
+            let at = random(text.len());
+            match random(3) {
+                0 => drop(text.remove(at)),
+                1 => text.truncate(at.max(1)),
+                _ => drop(text.splice(at..at, words[random(words.len())].chars())),
+            }
+        }
+        let text: String = text.into_iter().collect();
+        match build(&text) {
+            Err(fault) => {
+                assert!(
+                    !fault.why.is_empty() && !fault.to_string().contains('\n'),
+                    "{fault}"
+                );
+                refused += 1;
+            }
+            Ok(scene) => {
+                let system = scene.model.system();
+                if system.dim() < 10_000 {
+                    let mut f = vec![0.0; system.dim()];
+                    system.eval_f(0.0, &scene.state, &mut f);
+                    assert!(f.iter().all(|f| f.is_finite()), "{text}");
+                }
+                read += 1;
+            }
+        }
+    }
+    assert!(refused > 500 && read > 500, "{refused} {read}");
+}

@@ -35,7 +35,7 @@ pub struct Study<'a> {
 impl<'a> Study<'a> {
     pub fn new(
         scene: Scene,
-        (wind, swing): (bool, bool),
+        (name, wind, swing): (&str, bool, bool),
         stiffness: f64,
         until: f64,
         methods: &'a [&'static Method],
@@ -44,7 +44,7 @@ impl<'a> Study<'a> {
         let grid = scene.grid;
         let blank = Record {
             version: VERSION.into(),
-            scene: scene.name.clone(),
+            scene: name.into(),
             rows: grid.map_or(0, |grid| grid.rows()),
             cols: grid.map_or(0, |grid| grid.cols()),
             wind,

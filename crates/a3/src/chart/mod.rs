@@ -45,7 +45,9 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
         studies.push((factor, scene));
     }
     let until = until.ok_or_else(|| Failure::run("interrupted before anything was measured"))?;
-    let flags = (options.what.wind, options.what.swing);
+    let what = &options.what;
+    let name = what.scene.fingerprint(&scene);
+    let flags = (&*name, what.wind, what.swing);
     let mut studies: Vec<_> = studies
         .into_iter()
         .map(|(factor, scene)| Study::new(scene, flags, factor, until, &methods, (metric, timed)))

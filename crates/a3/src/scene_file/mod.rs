@@ -98,6 +98,23 @@ impl Source {
         &self.text
     }
 
+    /// What tells it from other scenes: the name, and of a file what it makes of its meshes too.
+    pub fn fingerprint(&self, scene: &Scene) -> String {
+        if self.path.is_none() {
+            return scene.name.clone();
+        }
+        let state = scene.state.iter().flat_map(|y| y.to_le_bytes());
+        // FNV-1a: no secret, and the same everywhere.
+        let hash = self
+            .text
+            .bytes()
+            .chain(state)
+            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+            });
+        format!("{} {hash:016x}", scene.name)
+    }
+
     /// The files it depends on: its own and its meshes'.
     pub fn files(&self) -> Vec<PathBuf> {
         let meshes = self.description.mesh.iter();

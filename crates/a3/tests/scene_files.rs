@@ -1,0 +1,279 @@
+//! Scenes from files: what is read, what is refused, and where it says so.
+
+#![allow(missing_docs, reason = "a test")]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use common::{a3, complaint, text};
+use serde_json::Value;
+
+const SQUARE: &str = "\
+[[mesh]]
+file = \"square.obj\"
+density = 3
+stiffness = [7, 2]
+";
+
+fn simulate(folder: &Path, words: &[&str]) -> Value {
+    let words = [&["simulate"], words, &["--output", "-"]].concat();
+    let output = a3(folder, &words);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Scenes with states that others computed are run as they are, and meet those states.
+#[test]
+fn listed_particles_and_springs_are_a_scene() {
+    let folder = Path::new(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../core/tests/reference"
+    ));
+    for name in ["pendulum", "pendulum_drag", "chain", "mit", "cloth_damped"] {
+        let file = format!("{name}.json");
+        let listed: Value = serde_json::from_slice(&fs::read(folder.join(&file)).unwrap()).unwrap();
+        let state = &listed["states"][0];
+        let until = state["time"].to_string();
+        let run = simulate(folder, &["x", "1e-11", "--scene", &file, "--until", &until]);
+        assert_eq!(run["scene"], listed["name"]);
+        let rows = |value: &Value| -> Vec<f64> {
+            let rows = value.as_array().unwrap().iter();
+            rows.flat_map(|row| row.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()))
+                .collect()
+        };
+        let (ours, theirs) = (rows(&run["positions"]), rows(&state["positions"]));
+        let error = ours
+            .iter()
+            .zip(&theirs)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+        assert!(
+            ours.len() == theirs.len() && error < 1e-7,
+            "{name}: {error:e}"
+        );
+    }
+}
+
+/// What is printed as a start for one's own is the scene itself.
+#[test]
+fn a_printed_scene_is_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in [
+        "cloth",
+        "simple",
+        "mit-sphere",
+        "jelly",
+        "double-pendulum",
+        "flag",
+    ] {
+        let printed = a3(folder.path(), &["scenes", "--print", name]);
+        let file = format!("{name}.toml");
+        fs::write(folder.path().join(&file), &printed.stdout).unwrap();
+        let run = |scene: &str| {
+            let mut state = simulate(
+                folder.path(),
+                &["r", "0.01", "--scene", scene, "--until", "0.2"],
+            );
+            state.as_object_mut().unwrap().remove("wall_time");
+            state
+        };
+        assert_eq!(run(name), run(&file), "{name}");
+    }
+    let schema = a3(folder.path(), &["scenes", "--schema"]);
+    let schema: Value = serde_json::from_slice(&schema.stdout).unwrap();
+    assert!(schema["properties"]["cloth"].is_object());
+}
+
+/// A scene says what it is run with, and the command line has the last word.
+#[test]
+fn a_scene_brings_its_solver_its_step_and_its_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "solver = \"verlet\"\nstep = 0.02\nduration = 0.5\n\
+        [[chain]]\nparticles = 2\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = 5\n";
+    fs::write(folder.path().join("own.toml"), scene).unwrap();
+    let run = simulate(folder.path(), &["--scene", "own.toml"]);
+    assert_eq!(
+        (&run["scene"], &run["solver"], &run["step"], &run["time"]),
+        (&"own".into(), &"verlet".into(), &0.02.into(), &0.5.into())
+    );
+    let run = simulate(folder.path(), &["r", "--scene", "own.toml", "--until", "1"]);
+    assert_eq!(
+        (&run["solver"], &run["step"], &run["time"]),
+        (&"rk4".into(), &0.01.into(), &1.0.into())
+    );
+    fs::write(
+        folder.path().join("no-time.toml"),
+        scene.replace("duration = 0.5\n", ""),
+    )
+    .unwrap();
+    let said = complaint(
+        &a3(
+            folder.path(),
+            &["simulate", "--scene", "no-time.toml", "--output", "-"],
+        ),
+        2,
+    );
+    assert!(said.contains("--until"), "{said}");
+}
+
+/// The same square as OBJ, as glTF with its data inside, and as GLB.
+#[test]
+fn meshes_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    // A quad, with a texture seam that has a corner twice.
+    let obj = "mtllib none.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nusemtl red\nf 1/1 2/1 3/1 4/1\n";
+    fs::write(at("square.obj"), obj).unwrap();
+    let mut bytes = vec![];
+    for x in [0f32, 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.] {
+        bytes.extend(x.to_le_bytes());
+    }
+    for i in [0u16, 1, 2, 0, 2, 3] {
+        bytes.extend(i.to_le_bytes());
+    }
+    let json = |uri: &str| {
+        format!(
+            "{{\"asset\":{{\"version\":\"2.0\"}},\"scene\":0,\"scenes\":[{{\"nodes\":[0]}}],\"nodes\":[{{\"mesh\":0}}],\
+             \"meshes\":[{{\"primitives\":[{{\"attributes\":{{\"POSITION\":0}},\"indices\":1}}]}}],\
+             \"accessors\":[{{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]}},\
+             {{\"bufferView\":1,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}}],\
+             \"bufferViews\":[{{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48}},{{\"buffer\":0,\"byteOffset\":48,\"byteLength\":12}}],\
+             \"buffers\":[{{{uri}\"byteLength\":60}}]}}"
+        )
+    };
+    fs::write(at("square.bin"), &bytes).unwrap();
+    fs::write(at("square.gltf"), json("\"uri\":\"square.bin\",")).unwrap();
+    let mut chunk = json("").into_bytes();
+    chunk.resize(chunk.len().div_ceil(4) * 4, b' ');
+    let mut glb = b"glTF\x02\0\0\0".to_vec();
+    glb.extend((12 + 8 + chunk.len() as u32 + 8 + 60).to_le_bytes());
+    for (kind, data) in [(b"JSON", &chunk), (b"BIN\0", &bytes)] {
+        glb.extend((data.len() as u32).to_le_bytes());
+        glb.extend(kind);
+        glb.extend(data);
+    }
+    fs::write(at("square.glb"), glb).unwrap();
+    let mut states = vec![];
+    for ending in ["obj", "gltf", "glb"] {
+        fs::write(at("scene.toml"), SQUARE.replace("obj", ending)).unwrap();
+        states.push(simulate(
+            folder.path(),
+            &["r", "0.01", "--scene", "scene.toml", "--until", "0.1"],
+        ));
+    }
+    assert_eq!(states[0]["positions"].as_array().unwrap().len(), 4);
+    assert!(states[0] == states[1] && states[1] == states[2]);
+}
+
+#[test]
+fn what_is_wrong_is_said_with_file_and_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let refused = |scene: &str| {
+        let begun = Instant::now();
+        let said = complaint(
+            &a3(
+                folder.path(),
+                &[
+                    "simulate", "r", "0.01", "--scene", scene, "--until", "1", "--output", "-",
+                ],
+            ),
+            2,
+        );
+        assert!(begun.elapsed() < Duration::from_secs(5), "{said}");
+        said
+    };
+    fs::write(at("typo.toml"), "gravity = [0, -9.81, 0]\n\n[[chian]]\n").unwrap();
+    let said = refused("typo.toml");
+    assert!(
+        said.starts_with(
+            "error: typo.toml:3: chian: there is no key `chian`: did you mean `chain`?"
+        ),
+        "{said}"
+    );
+    assert!(refused("clth").contains("did you mean cloth? the scenes are cloth, simple, "));
+    assert!(refused("gone.toml").starts_with("error: gone.toml: not read: "));
+    fs::create_dir(at("folder.toml")).unwrap();
+    assert!(refused("folder.toml").contains("folder.toml: it is no ordinary file"));
+    fs::write(at("latin.toml"), b"name = \"\xe9\"").unwrap();
+    assert!(refused("latin.toml").contains("no UTF-8 text: byte 8"));
+    fs::write(at("list.json"), "{\n\"mass\": [1],\n\"position\": []}").unwrap();
+    assert!(refused("list.json").starts_with("error: list.json:3: unknown field `position`"));
+    for (name, content) in [
+        ("none.obj", ""),
+        ("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"),
+        ("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"),
+        ("junk.glb", "glTF\x02\0\0\0\0\0\0\0"),
+        ("junk.gltf", "{}"),
+        ("deep.gltf", &"[".repeat(100_000)),
+    ] {
+        fs::write(at(name), content).unwrap();
+        fs::write(at("scene.toml"), SQUARE.replace("square.obj", name)).unwrap();
+        let said = refused("scene.toml");
+        assert!(
+            said.starts_with("error: scene.toml:2: mesh.file: "),
+            "{name}: {said}"
+        );
+    }
+    for name in ["../square.obj", "/etc/passwd", "a/../../b.obj", ""] {
+        fs::write(at("scene.toml"), SQUARE.replace("square.obj", name)).unwrap();
+        let said = refused("scene.toml");
+        assert!(
+            said.contains("must be a path from the scene's folder downwards"),
+            "{said}"
+        );
+    }
+    fs::write(at("long.toml"), vec![b'#'; 17 << 20]).unwrap();
+    assert!(refused("long.toml").contains("long.toml: it is longer than 16 MiB"));
+    fs::write(at("line.toml"), vec![b'#'; 9 << 20]).unwrap();
+    assert!(
+        refused("line.toml").contains("line 1 is longer than 8 MiB")
+            || refused("line.toml").starts_with("error: line.toml:1")
+    );
+    let said = complaint(&a3(folder.path(), &["--scene", "cloth", "--watch"]), 2);
+    assert!(
+        said.contains("--watch is for a scene of your own"),
+        "{said}"
+    );
+}
+
+/// Charts of a file's scene do not go on from those of another with the same name.
+#[test]
+fn a_chart_knows_which_scene_it_has() {
+    let folder = tempfile::tempdir().unwrap();
+    let chain = |stiffness: &str| {
+        format!(
+            "name = \"own\"\n[[chain]]\nparticles = 2\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = {stiffness}\nvelocity = [0, 1, 0]\npin = [{{ at = [\"first\"] }}]\n"
+        )
+    };
+    let chart = |stiffness: &str| {
+        fs::write(folder.path().join("own.toml"), chain(stiffness)).unwrap();
+        let words = [
+            "chart",
+            "--scene",
+            "own.toml",
+            "--solvers",
+            "r",
+            "--until",
+            "0.2",
+            "--work",
+            "evaluations",
+            "--data",
+            "own.csv",
+            "--output",
+            "own.svg",
+        ];
+        let output = a3(folder.path(), &words);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        fs::read_to_string(folder.path().join("own.csv"))
+            .unwrap()
+            .lines()
+            .count()
+    };
+    let first = chart("5");
+    assert_eq!(chart("5"), first);
+    assert!(chart("500") > first);
+}
