@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use a3_core::{Simulation, integrators, scenes};
+use a3_core::{Constraint, Model, Network, Path, Scene, Simulation, Vector3, integrators, scenes};
 
 /// The system's allocator, which counts this thread's allocations.
 struct Counting;
@@ -57,5 +57,28 @@ fn no_step_allocates() {
             let count = allocations(|| run.take_steps(20).unwrap());
             assert_eq!(count, 0, "{} on {}", method.name, entry.name);
         }
+    }
+}
+
+#[test]
+fn constraints_allocate_nothing() {
+    let mut network = Network::new(vec![1.0; 5]).unwrap();
+    network.pin(0, Path::Still(Vector3::zeros())).unwrap();
+    for i in 0..4 {
+        let (j, length) = (i + 1, 1.0);
+        network
+            .add_constraint(Constraint::Rod { i, j, length })
+            .unwrap();
+    }
+    let mut state = vec![0.0; 30];
+    for (i, x) in state[..5].iter_mut().enumerate() {
+        *x = i as f64;
+    }
+    for method in integrators::METHODS.iter().filter(|m| !m.implicit) {
+        let model = Model::Network(Box::new(network.clone()));
+        let scene = Scene::new("rods", model, state.clone());
+        let mut run = Simulation::new(scene, method, method.default_setting).unwrap();
+        let count = allocations(|| run.take_steps(20).unwrap());
+        assert_eq!(count, 0, "{}", method.name);
     }
 }
