@@ -23,6 +23,15 @@ struct Pin {
     path: Path,
 }
 
+/// A spring from where a hand is to a free particle, critically damped: -m (w2 (x - p) + 2 w (v - p')).
+#[derive(Clone, Debug)]
+struct Hand {
+    particle: usize,
+    path: Path,
+    /// w (1/s).
+    frequency: f64,
+}
+
 /// Energy by kind (J). Gravity's is zero at the origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
@@ -58,6 +67,7 @@ pub struct Network {
     drag: Option<f64>,
     wind: Option<Wind>,
     constraints: Constraints,
+    hand: Option<Hand>,
     spheres: Vec<Sphere>,
     floor: Option<Floor>,
 }
@@ -90,6 +100,7 @@ impl Network {
             drag: None,
             wind: None,
             constraints: Constraints::default(),
+            hand: None,
             spheres: vec![],
             floor: None,
         })
@@ -261,6 +272,29 @@ impl Network {
     #[must_use]
     pub fn constraints(&self) -> &[Constraint] {
         self.constraints.list()
+    }
+
+    /// Whether constraints hold particle i.
+    #[must_use]
+    pub fn is_held(&self, i: usize) -> bool {
+        self.constraints()
+            .iter()
+            .any(|c| c.ends().0 == i || c.ends().1 == Some(i))
+    }
+
+    /// Draws particle i, which constraints hold, to a path, by a spring of that frequency (1/s): they stay as they are, which
+    /// a pin would tear.
+    pub(crate) fn draw(&mut self, particle: usize, path: Path, frequency: f64) {
+        self.hand = Some(Hand {
+            particle,
+            path,
+            frequency,
+        });
+    }
+
+    /// Ends that.
+    pub(crate) fn let_go(&mut self) {
+        self.hand = None;
     }
 
     /// The rods attached to particle i: the other end and the length (m) of each.
@@ -460,9 +494,18 @@ impl Network {
         }
     }
 
-    /// Adds the forces of the constraints, if there are any, to all others.
+    /// Adds the forces of the constraints, if there are any, to all others: among them that of a hand.
     fn hold(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         if self.is_constrained() {
+            if let Some(hand) = &self.hand {
+                let (n, place, w) = (self.particles(), hand.path.at(t), hand.frequency);
+                for axis in 0..3 {
+                    let k = axis * n + hand.particle;
+                    let pull = w * w * (x[k] - place.position[axis])
+                        + 2.0 * w * (v[k] - place.velocity[axis]);
+                    f[k] -= self.masses[hand.particle] * pull;
+                }
+            }
             let pin = |i: usize| {
                 let pin = self.pins_of(i..i + 1).first();
                 pin.map_or_else(Vector3::zeros, |pin| pin.path.at(t).acceleration)

@@ -15,6 +15,9 @@ const PULL_TIME: f64 = 1.0 / 30.0;
 /// ... but no faster than this many radii of the scene per second.
 const PULL_SPEED: f64 = 10.0;
 
+/// What constraints hold is drawn by a spring, as if from so many radii of the scene away at most.
+const PULL_REACH: f64 = 0.05;
+
 /// How short and how long a hand makes a rod, in lengths: what it does faster than the other end follows.
 const ROD: (f64, f64) = (0.95, 1.05);
 
@@ -112,8 +115,25 @@ impl Simulation {
         };
         network.check_particle(i)?;
         self.grabbed = Some((i, network.is_pinned(i)));
-        self.pin(i, Path::Still(self.position(i)));
+        self.lead(i, Path::Still(self.position(i)));
         Ok(())
+    }
+
+    /// Leads the grabbed particle along `path`: as a pin, or, if it is free but for constraints, by a spring.
+    fn lead(&mut self, i: usize, path: Path) {
+        if self.draws(i) {
+            if let Some(network) = self.network_mut() {
+                network.draw(i, path, 1.0 / PULL_TIME);
+            }
+        } else {
+            self.pin(i, path);
+        }
+    }
+
+    fn draws(&self, i: usize) -> bool {
+        self.model
+            .network()
+            .is_some_and(|network| network.is_held(i) && self.grabbed != Some((i, true)))
     }
 
     /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs or rods hold it back. A hand
@@ -122,9 +142,13 @@ impl Simulation {
     pub fn pull(&mut self, target: Vector3<f64>) {
         let Some((i, _)) = self.grabbed else { return };
         let (from, start) = (self.position(i), self.time());
-        let target = self.within_reach(i, from, target);
+        let target = if self.draws(i) {
+            from + (target - from).cap_magnitude(PULL_REACH * self.radius)
+        } else {
+            self.within_reach(i, from, target)
+        };
         let time = PULL_TIME.max((target - from).norm() / (PULL_SPEED * self.radius));
-        self.pin(
+        self.lead(
             i,
             Path::Line {
                 from,
@@ -164,6 +188,7 @@ impl Simulation {
             self.leave_pin(i);
         } else if let Some(network) = self.network_mut() {
             network.unpin(i);
+            network.let_go();
         }
     }
 }
