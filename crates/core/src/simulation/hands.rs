@@ -103,8 +103,8 @@ impl Simulation {
         self.grabbed.map(|(i, _)| i)
     }
 
-    /// Takes hold of particle i, and lets go of any other. Does nothing in a scene without masses, where there is
-    /// nothing to hold against.
+    /// Takes hold of particle i, and lets go of any other: it is a pin then; or, if it is free but for constraints, a spring
+    /// draws it. Does nothing in a scene without masses, where there is nothing to hold against.
     ///
     /// # Errors
     /// There is no such particle.
