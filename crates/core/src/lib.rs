@@ -17,6 +17,39 @@
 //! assert!(simulation.position(3).y < 0.0);
 //! # Ok::<(), a3_core::Error>(())
 //! ```
+//!
+//! Build a network, step it, and chart it: how far is each method off, and what does it cost?
+//!
+//! ```
+//! use a3_core::accuracy::{Frames, Reference, measure};
+//! use a3_core::{Model, Network, Path, Scene, Spring, SpringKind, SpringLaw, Simulation, Vector3, integrators};
+//!
+//! // A particle on a spring below a pin.
+//! let mut network = Network::new(vec![1.0; 2])?;
+//! let law = SpringLaw::new(50.0, 1.0, 0.0)?;
+//! network.add_spring(Spring { kind: SpringKind::Structural, i: 0, j: 1, law })?;
+//! network.pin(0, Path::Still(Vector3::zeros()))?;
+//! network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
+//! // All x, all y, all z; and the velocities after them.
+//! let state = vec![0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+//! let scene = Scene::new("pendulum", Model::Network(Box::new(network)), state);
+//!
+//! let rk4 = integrators::find("rk4").unwrap();
+//! let mut run = Simulation::new(scene.clone(), rk4, 0.01)?;
+//! run.advance_to(1.0)?;
+//! assert!(run.position(1).y < -0.9);
+//!
+//! // The true error of three steps, and their evaluations of the forces.
+//! let go_on = || true;
+//! let reference = Reference::new(&scene, Frames::new(1.0), &go_on)?.unwrap();
+//! let chart: Vec<_> = [0.02, 0.01, 0.005]
+//!     .iter()
+//!     .map(|step| measure(&scene, rk4, *step, &reference, &go_on))
+//!     .collect::<Result<Option<Vec<_>>, _>>()?
+//!     .unwrap();
+//! assert!(chart.windows(2).all(|w| w[1].errors.position < w[0].errors.position));
+//! # Ok::<(), a3_core::Error>(())
+//! ```
 
 #![forbid(unsafe_code)]
 
