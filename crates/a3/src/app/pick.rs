@@ -3,6 +3,8 @@
 use a3_core::Simulation;
 use a3_render::Camera;
 
+use crate::show;
+
 /// A particle in the hand: what keeps it under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
@@ -38,8 +40,7 @@ pub fn pick(
     // On the screen, in units of its height.
     let gap = |at: [f32; 2]| ((at[0] - pointer[0]) * aspect).hypot(at[1] - pointer[1]);
     let on_surface = {
-        let triangles = simulation.scene().surface.triangles.iter();
-        triangles
+        show::whole_triangles(simulation)
             .filter_map(|corners| {
                 let corners = corners.map(|i| i as usize);
                 let [a, b, c] = corners.map(|i| places[i]);
