@@ -17,6 +17,7 @@ const STEEL: [f32; 4] = [0.30, 0.36, 0.44, 1.0];
 const RED: [f32; 4] = [0.62, 0.045, 0.06, 1.0];
 const AMBER: [f32; 4] = [0.95, 0.42, 0.02, 1.0];
 const TEAL: [f32; 4] = [0.0, 0.33, 0.36, 1.0];
+const ALARM: [f32; 4] = [0.75, 0.02, 0.02, 1.0];
 const VIOLET: [f32; 4] = [0.30, 0.10, 0.55, 1.0];
 
 /// Turns of a drawn coil, and pieces a turn.
@@ -25,6 +26,9 @@ const PIECES: usize = 14;
 
 /// More springs or particles than these without a surface are drawn as lines and small balls: a coil is 170 lines.
 const MANY: usize = 60;
+
+/// A pull over this share of the scene's radius is drawn as the strongest.
+const STRONG: f64 = 0.5;
 
 /// The share of its radius that a sphere in the way is drawn with.
 pub const SHOWN: f32 = 0.965;
@@ -38,6 +42,8 @@ pub struct Show {
     pub style: Style,
     /// The particle whose springs are highlighted.
     pub springs_of: Option<usize>,
+    /// Where the hand wants what it holds (m).
+    pub hand: Option<Vector3<f64>>,
     /// Where and when (s) the trailing particle was.
     trail: VecDeque<(f64, [f32; 3])>,
     parts: Parts,
@@ -57,6 +63,7 @@ impl Show {
                 Style::Shaded
             },
             springs_of,
+            hand: None,
             trail: VecDeque::new(),
             parts: Parts::default(),
             points: vec![],
@@ -124,6 +131,7 @@ impl Show {
         }
         if let Some(i) = simulation.grabbed() {
             self.ball(i, 0.055, AMBER);
+            self.draw_pull(simulation, i);
         }
     }
 
@@ -259,6 +267,25 @@ impl Show {
                 color: STEEL,
             });
         }
+    }
+
+    /// From the particle to where the hand wants it: thicker and redder, the farther that is.
+    fn draw_pull(&mut self, simulation: &Simulation, i: usize) {
+        let Some(hand) = self.hand else { return };
+        let strength = (hand - simulation.position(i)).norm() / simulation.extent().1;
+        if strength < 0.01 {
+            return;
+        }
+        let share = (strength / STRONG).min(1.0) as f32;
+        let color = [0, 1, 2, 3].map(|k| AMBER[k] + share * (ALARM[k] - AMBER[k]));
+        let to = to_f32(hand);
+        self.lines
+            .push(Line::new(self.at(i), to, 2.0 + 6.0 * share, color));
+        self.balls.push(Ball {
+            center: to,
+            radius: 0.035,
+            color,
+        });
     }
 
     fn draw_springs_of(&mut self, simulation: &Simulation, i: usize) {
