@@ -86,7 +86,17 @@ pub fn draw(
     let samples = gpu.samples(OFFSCREEN_FORMAT);
     let topology = show::topology(&panes[0].simulation);
     let mut renderer = Renderer::new(gpu, OFFSCREEN_FORMAT, samples, &topology);
-    for pane in &mut *panes {
+    for (k, pane) in panes.iter_mut().enumerate() {
+        // Each tears in its own way.
+        if k > 0
+            && pane
+                .simulation
+                .model()
+                .network()
+                .is_some_and(|n| n.tear_limit().is_some())
+        {
+            renderer.set_topology_of(gpu, k, &show::topology(&pane.simulation));
+        }
         pane.show.compose(&pane.simulation);
     }
     let panes = &*panes;

@@ -1,9 +1,15 @@
 //! What a run looks like: from particles, springs and obstacles to balls, lines and triangles.
 
+mod parts;
+
 use std::collections::VecDeque;
 
 use a3_core::{Network, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3};
-use a3_render::{Ball, Camera, Line, Picture, Style, Topology};
+use a3_render::{Ball, Camera, Line, Picture, Solid, Style};
+
+use parts::Parts;
+
+pub use parts::{topology, whole_triangles};
 
 /// Linear colours.
 const INK: [f32; 4] = [0.035, 0.05, 0.09, 1.0];
@@ -11,11 +17,21 @@ const STEEL: [f32; 4] = [0.30, 0.36, 0.44, 1.0];
 const RED: [f32; 4] = [0.62, 0.045, 0.06, 1.0];
 const AMBER: [f32; 4] = [0.95, 0.42, 0.02, 1.0];
 const TEAL: [f32; 4] = [0.0, 0.33, 0.36, 1.0];
+const ALARM: [f32; 4] = [0.75, 0.02, 0.02, 1.0];
 const VIOLET: [f32; 4] = [0.30, 0.10, 0.55, 1.0];
 
 /// Turns of a drawn coil, and pieces a turn.
 const TURNS: usize = 12;
 const PIECES: usize = 14;
+
+/// More springs or particles than these without a surface are drawn as lines and small balls: a coil is 170 lines.
+const MANY: usize = 60;
+
+/// A pull over this share of the scene's radius is drawn as the strongest.
+const STRONG: f64 = 0.5;
+
+/// The share of its radius that a sphere in the way is drawn with.
+pub const SHOWN: f32 = 0.965;
 
 /// The most places a trail remembers.
 const TRAIL: usize = 3600;
@@ -28,9 +44,14 @@ pub struct Show {
     pub springs_of: Option<usize>,
     /// Without floor and background.
     pub transparent: bool,
-    trail: VecDeque<[f32; 3]>,
+    /// Where the hand wants what it holds (m).
+    pub hand: Option<Vector3<f64>>,
+    /// Where and when (s) the trailing particle was.
+    trail: VecDeque<(f64, [f32; 3])>,
+    parts: Parts,
     points: Vec<[f32; 4]>,
     balls: Vec<Ball>,
+    solids: Vec<Solid>,
     lines: Vec<Line>,
     floor: Option<f32>,
 }
@@ -45,9 +66,12 @@ impl Show {
             },
             springs_of,
             transparent: false,
+            hand: None,
             trail: VecDeque::new(),
+            parts: Parts::default(),
             points: vec![],
             balls: vec![],
+            solids: vec![],
             lines: vec![],
             floor: None,
         }
@@ -61,7 +85,7 @@ impl Show {
     /// Where the trailing particle has been.
     #[cfg(test)]
     pub fn trail(&self) -> impl Iterator<Item = &[f32; 3]> {
-        self.trail.iter()
+        self.trail.iter().map(|(_, place)| place)
     }
 
     /// Remembers where the trailing particle is.
@@ -69,9 +93,13 @@ impl Show {
         let Some(i) = simulation.scene().trail else {
             return;
         };
-        let here = to_f32(simulation.position(i));
-        if self.trail.back() != Some(&here) {
-            self.trail.push_back(here);
+        let (now, here) = (simulation.time(), to_f32(simulation.position(i)));
+        // After going back in time.
+        while self.trail.back().is_some_and(|(time, _)| *time > now) {
+            self.trail.pop_back();
+        }
+        if self.trail.back().map(|(_, place)| place) != Some(&here) {
+            self.trail.push_back((now, here));
         }
         if self.trail.len() > TRAIL {
             self.trail.pop_front();
@@ -90,11 +118,14 @@ impl Show {
                 .zip(z)
                 .map(|((x, y), z)| [*x as f32, *y as f32, *z as f32, 0.0]),
         );
+        self.parts.look_at(simulation);
+        self.parts.paint(&mut self.points);
         self.balls.clear();
+        self.solids.clear();
         self.lines.clear();
         self.floor = None;
         if simulation.scene().trail.is_some() {
-            self.draw_trail();
+            self.draw_trail(simulation.time());
         }
         self.draw_parts(simulation);
         self.draw_obstacles(simulation);
@@ -103,6 +134,7 @@ impl Show {
         }
         if let Some(i) = simulation.grabbed() {
             self.ball(i, 0.055, AMBER);
+            self.draw_pull(simulation, i);
         }
     }
 
@@ -114,6 +146,7 @@ impl Show {
             scale,
             points: &self.points,
             balls: &self.balls,
+            solids: &self.solids,
             lines: &self.lines,
             floor: self.floor,
             transparent: self.transparent,
@@ -134,9 +167,10 @@ impl Show {
     }
 
     /// Older parts are fainter.
-    fn draw_trail(&mut self) {
-        let n = self.trail.len();
-        for (k, (a, b)) in self.trail.iter().zip(self.trail.iter().skip(1)).enumerate() {
+    fn draw_trail(&mut self, now: f64) {
+        let n = self.trail.partition_point(|(time, _)| *time <= now);
+        let places = || self.trail.iter().take(n).map(|(_, place)| place);
+        for (k, (a, b)) in places().zip(places().skip(1)).enumerate() {
             let age = 1.0 - (k + 1) as f32 / n as f32;
             let [r, g, b_, _] = TEAL;
             self.lines
@@ -144,7 +178,8 @@ impl Show {
         }
     }
 
-    /// What has no surface: coils for its springs, balls for its particles. Of what has one, pins.
+    /// What has no surface: coils for its springs, balls for its particles; lines and small balls where there are many. Of
+    /// what has one, pins.
     fn draw_parts(&mut self, simulation: &Simulation) {
         let network = simulation.model().network();
         let covered = simulation.scene().surface.particles();
@@ -153,13 +188,21 @@ impl Show {
                 self.ball(i, 0.032, INK);
             }
         }
-        let springs = network.into_iter().flat_map(Network::springs);
-        for spring in springs.filter(|spring| spring.i.max(spring.j) >= covered) {
-            let points = coil(
-                simulation.position(spring.i),
-                simulation.position(spring.j),
-                &spring,
-            );
+        let many = self
+            .parts
+            .loose()
+            .len()
+            .max(simulation.particles() - covered)
+            > MANY;
+        for spring in self.parts.loose() {
+            let ends = [spring.i, spring.j];
+            if many {
+                let [a, b] = ends.map(|i| self.at(i));
+                self.lines.push(Line::new(a, b, 1.6, STEEL));
+                continue;
+            }
+            let [a, b] = ends.map(|i| simulation.position(i));
+            let points = coil(a, b, spring);
             self.lines.extend(
                 points
                     .windows(2)
@@ -168,7 +211,12 @@ impl Show {
         }
         for i in covered..simulation.particles() {
             let pinned = network.is_some_and(|n| n.is_pinned(i)) && simulation.grabbed() != Some(i);
-            let (radius, color) = if pinned { (0.045, INK) } else { (0.085, RED) };
+            let (radius, color) = match (pinned, many) {
+                (true, false) => (0.045, INK),
+                (true, true) => (0.032, INK),
+                (false, false) => (0.085, RED),
+                (false, true) => (0.028, RED),
+            };
             self.ball(i, radius, color);
         }
     }
@@ -178,15 +226,70 @@ impl Show {
             return;
         };
         self.floor = network.floor().map(|floor| floor.height as f32);
+        // A little smaller than they are, so that the flat triangles between particles on them stay outside.
+        let inside = |radius: f64| SHOWN * radius as f32;
         for sphere in network.spheres() {
-            let center = to_f32(sphere.path.at(simulation.time()).position);
-            // A little smaller than it is, so that the flat triangles between particles on it stay outside.
             self.balls.push(Ball {
-                center,
-                radius: 0.965 * sphere.radius as f32,
+                center: to_f32(sphere.path.at(simulation.time()).position),
+                radius: inside(sphere.radius),
                 color: STEEL,
             });
         }
+        for cuboid in network.boxes() {
+            let half = cuboid.half_extents;
+            let (gap, round) = (0.02 * half.min(), 0.06 * half.min());
+            let side = |k: usize| {
+                let [x, y, z] = to_f32(cuboid.axes[k]);
+                [x, y, z, (half[k] - gap - round) as f32]
+            };
+            self.solids.push(Solid {
+                center: to_f32(cuboid.path.at(simulation.time()).position),
+                radius: round as f32,
+                axes: [0, 1, 2].map(side),
+                color: STEEL,
+            });
+        }
+        for capsule in network.capsules() {
+            let [a, b] = capsule.ends;
+            let (along, across) = (b - a, a_side(b - a));
+            let half = 0.5 * along.norm();
+            let y = along.try_normalize(0.0).unwrap_or(Vector3::y());
+            let axis = |v: Vector3<f64>, half: f64| {
+                let [x, y, z] = to_f32(v);
+                [x, y, z, half as f32]
+            };
+            let axes = [
+                axis(across, 0.0),
+                axis(y, half),
+                axis(across.cross(&y), 0.0),
+            ];
+            let place = capsule.path.at(simulation.time()).position;
+            self.solids.push(Solid {
+                center: to_f32(place + 0.5 * (a + b)),
+                radius: inside(capsule.radius),
+                axes,
+                color: STEEL,
+            });
+        }
+    }
+
+    /// From the particle to where the hand wants it: thicker and redder, the farther that is.
+    fn draw_pull(&mut self, simulation: &Simulation, i: usize) {
+        let Some(hand) = self.hand else { return };
+        let strength = (hand - simulation.position(i)).norm() / simulation.extent().1;
+        if strength < 0.01 {
+            return;
+        }
+        let share = (strength / STRONG).min(1.0) as f32;
+        let color = [0, 1, 2, 3].map(|k| AMBER[k] + share * (ALARM[k] - AMBER[k]));
+        let to = to_f32(hand);
+        self.lines
+            .push(Line::new(self.at(i), to, 2.0 + 6.0 * share, color));
+        self.balls.push(Ball {
+            center: to,
+            radius: 0.035,
+            color,
+        });
     }
 
     fn draw_springs_of(&mut self, simulation: &Simulation, i: usize) {
@@ -213,7 +316,7 @@ impl Show {
 }
 
 /// The springs attached to particle i.
-fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
+pub fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
     simulation
         .model()
         .network()
@@ -222,15 +325,20 @@ fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
         .collect()
 }
 
+/// What it is called.
+pub fn kind(kind: SpringKind) -> &'static str {
+    match kind {
+        SpringKind::Structural => "structural",
+        SpringKind::Shear => "shear",
+        SpringKind::Bend => "bend",
+    }
+}
+
 /// The springs attached to particle i, a line each.
 pub fn list_springs_of(simulation: &Simulation, i: usize) -> String {
     let springs = springs_of(simulation, i);
     let line = |s: &Spring| {
-        let kind = match s.kind {
-            SpringKind::Structural => "structural",
-            SpringKind::Shear => "shear",
-            SpringKind::Bend => "bend",
-        };
+        let kind = kind(s.kind);
         let SpringLaw {
             stiffness,
             rest_length,
@@ -244,25 +352,6 @@ pub fn list_springs_of(simulation: &Simulation, i: usize) -> String {
     };
     let lines: String = springs.iter().map(line).collect();
     format!("particle {i} has {} springs\n{lines}", springs.len())
-}
-
-/// What stays the same from frame to frame. What has no surface is drawn by balls and coils instead.
-pub fn topology(simulation: &Simulation) -> Topology {
-    let surface = &simulation.scene().surface;
-    let covered = surface.particles();
-    let springs = simulation
-        .model()
-        .network()
-        .into_iter()
-        .flat_map(Network::springs);
-    Topology {
-        points: simulation.particles(),
-        triangles: surface.triangles.clone(),
-        wires: springs
-            .filter(|s| s.kind == SpringKind::Structural && s.i.max(s.j) < covered)
-            .map(|s| [s.i as u32, s.j as u32])
-            .collect(),
-    }
 }
 
 /// Where the run's scene wants to be looked at from.
@@ -280,6 +369,16 @@ fn to_f32(v: Vector3<f64>) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]
 }
 
+/// A unit vector across `along`.
+fn a_side(along: Vector3<f64>) -> Vector3<f64> {
+    let up = if along.y.abs() < 0.9 * along.norm() {
+        Vector3::y()
+    } else {
+        Vector3::x()
+    };
+    along.cross(&up).try_normalize(0.0).unwrap_or(Vector3::z())
+}
+
 /// A coil from a to b with straight ends. Stretched, it gets thinner.
 fn coil(a: Vector3<f64>, b: Vector3<f64>, spring: &Spring) -> Vec<[f32; 3]> {
     let along = b - a;
@@ -287,12 +386,7 @@ fn coil(a: Vector3<f64>, b: Vector3<f64>, spring: &Spring) -> Vec<[f32; 3]> {
     if length < 1e-6 {
         return vec![];
     }
-    let up = if along.y.abs() < 0.9 * length {
-        Vector3::y()
-    } else {
-        Vector3::x()
-    };
-    let side = along.cross(&up).normalize();
+    let side = a_side(along);
     let other = along.cross(&side) / length;
     let rest = spring.law.rest_length.max(1e-3);
     let radius = 0.07 * rest.min(1.0) * (rest / length).clamp(0.4, 1.5).sqrt();

@@ -613,6 +613,70 @@ fn pulling() {
     assert!(app.exit().success());
 }
 
+/// A right click pins and lets go, a right drag does not; a double click lists springs; time goes slowly, and back.
+#[test]
+fn clicks_slow_motion_and_going_back() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+    until("some time", || (app.number("time")? > 1.5).then_some(()));
+    app.press_for("bracketleft", "slowness", "1");
+    app.press_for("bracketleft", "slowness", "2");
+    let (time, begun) = (app.number("time").unwrap(), Instant::now());
+    sleep(Duration::from_secs(2));
+    let factor = (app.number("time").unwrap() - time) / begun.elapsed().as_secs_f64();
+    assert!((0.1..0.32).contains(&factor), "{factor} times real time");
+    app.press_for("bracketright", "slowness", "1");
+    app.press_for("space", "paused", "true");
+    let now = app.number("time").unwrap();
+    app.press_for("comma", "scrubbed", "true");
+    app.press("less");
+    until("a time before", || {
+        (app.number("time")? < now - 0.15).then_some(())
+    });
+    app.press("period");
+    app.press_for("greater", "scrubbed", "false");
+    until("the same time", || {
+        (app.number("time")? == now).then_some(())
+    });
+
+    let (x, y) = display.screen().middle(is_red);
+    let (left, top) = app.corner();
+    let place = [(x - left).to_string(), (y - top).to_string()];
+    let click = |words: &[&str]| {
+        let there = ["mousemove", "--window", &app.window, &place[0], &place[1]];
+        display.xdotool(&[&there[..], words].concat());
+    };
+    assert_eq!(app.get("pins"), "20");
+    click(&["click", "3"]);
+    app.expect("pins", "21");
+    click(&["click", "3"]);
+    app.expect("pins", "20");
+    click(&["click", "--repeat", "2", "--delay", "60", "1"]);
+    until("springs", || (app.get("springs_of") != "-").then_some(()));
+    let before = app.settled();
+    click(&[
+        "mousedown",
+        "3",
+        "mousemove_relative",
+        "60",
+        "20",
+        "mouseup",
+        "3",
+    ]);
+    until("another view", || {
+        (display.screen().difference(&before) > 0.5).then_some(())
+    });
+    assert_eq!(app.get("pins"), "20");
+    display.xdotool(&["mousemove", "--window", &app.window, "1200", "650"]);
+    display.xdotool(&["click", "--repeat", "2", "--delay", "60", "1"]);
+    app.expect("springs_of", "-");
+    app.press("Escape");
+    assert!(app.exit().success());
+}
+
 #[test]
 fn sizes_minimising_a_lost_device_and_closing() {
     let Some(display) = Display::open() else {

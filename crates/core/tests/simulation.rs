@@ -401,3 +401,85 @@ fn soft_springs_give_way() {
     }
     assert_relative_eq!(run.position(2), target, epsilon = 1e-9);
 }
+
+/// Pinned where it is on the way, and let go from there; swinging with the others where they swing.
+#[test]
+fn a_particle_is_pinned_and_let_go() {
+    let mut run = simulation("cloth", "rk4", 0.005);
+    let pinned = |run: &Simulation, i| run.model().network().unwrap().is_pinned(i);
+    run.advance_to(0.5).unwrap();
+    let place = run.position(210);
+    assert_eq!(run.toggle_pin(210), Ok(true));
+    run.advance_to(1.0).unwrap();
+    assert_eq!(run.position(210), place);
+    // Seen when the hand lets go.
+    run.grab(210).unwrap();
+    assert_eq!(run.toggle_pin(210), Ok(false));
+    assert!(pinned(&run, 210));
+    run.release();
+    assert!(!pinned(&run, 210));
+    run.advance_to(1.5).unwrap();
+    assert!((run.position(210) - place).norm() > 0.01);
+    run.set_swinging(true);
+    assert_eq!(run.toggle_pin(211), Ok(true));
+    let (before, corner) = (run.position(211), run.position(0));
+    run.advance_to(2.0).unwrap();
+    assert_relative_eq!(
+        run.position(211) - before,
+        run.position(0) - corner,
+        epsilon = 1e-9
+    );
+    assert!(run.toggle_pin(400).is_err());
+    run.reset();
+    assert!(!pinned(&run, 211));
+    assert_eq!(simulation("simple", "rk4", 0.1).toggle_pin(0), Ok(false));
+}
+
+#[test]
+fn a_rewound_run_repeats_itself() {
+    for method in ["trapezoid", "verlet", "dop853"] {
+        let setting = if method == "dop853" { 1e-8 } else { 0.007_812_5 };
+        let mut run = simulation("cloth", method, setting);
+        run.set_swinging(true);
+        run.advance_to(0.5).unwrap();
+        let (steps, then) = (run.steps(), run.state().to_vec());
+        run.advance_to(1.0).unwrap();
+        let end = run.state().to_vec();
+        run.rewind(0.5, steps, &then).unwrap();
+        assert_eq!(
+            (run.time(), run.steps(), run.state()),
+            (0.5, steps, &then[..])
+        );
+        run.advance_to(1.0).unwrap();
+        let worst = run.state().iter().zip(&end).map(|(a, b)| (a - b).abs());
+        // An adaptive method chooses its steps anew.
+        let bound = if method == "dop853" { 1e-5 } else { 0.0 };
+        assert!(worst.fold(0.0, f64::max) <= bound, "{method}");
+    }
+}
+
+/// Whatever the hands did since: pins are where they were, and stay there.
+#[test]
+fn rewinding_puts_pins_back_where_they_were_and_ends_a_blow_up() {
+    let mut run = simulation("cloth", "trapezoid", 0.01);
+    run.advance_to(0.2).unwrap();
+    let (corner, then) = (run.position(0), run.state().to_vec());
+    run.grab(0).unwrap();
+    run.pull(corner + Vector3::new(0.3, 0.2, 0.0));
+    run.advance_to(0.4).unwrap();
+    run.rewind(0.2, 20, &then).unwrap();
+    assert_eq!((run.grabbed(), run.position(0)), (None, corner));
+    run.advance_to(0.5).unwrap();
+    assert_eq!(run.position(0), corner);
+
+    let mut run = simulation("mit", "rk4", 0.05);
+    let start = run.state().to_vec();
+    while run.take_steps(1).is_ok() {}
+    run.rewind(0.0, 0, &start).unwrap();
+    assert!(run.blow_up().is_none() && run.take_steps(1).is_ok());
+    assert!(run.rewind(0.0, 0, &start[1..]).is_err());
+    assert!(run.rewind(f64::NAN, 0, &start).is_err());
+    let mut broken = start.clone();
+    broken[7] = f64::INFINITY;
+    assert!(run.rewind(0.0, 0, &broken).is_err());
+}

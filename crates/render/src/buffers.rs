@@ -4,7 +4,7 @@ use bytemuck::Pod;
 use wgpu::BufferUsages;
 
 use crate::gpu::Gpu;
-use crate::shapes::sphere;
+use crate::shapes::{rounded_box, sphere};
 
 /// Triangles that are drawn many times.
 pub(crate) struct Shape {
@@ -22,19 +22,19 @@ pub(crate) struct Instances {
 impl Shape {
     pub(crate) fn sphere(gpu: &Gpu, rings: u16) -> Self {
         let (corners, triangles) = sphere(rings);
+        Self::new(gpu, "sphere", &corners, &triangles)
+    }
+
+    pub(crate) fn rounded_box(gpu: &Gpu, bands: u16) -> Self {
+        let (corners, triangles) = rounded_box(bands);
+        Self::new(gpu, "rounded box", &corners, &triangles)
+    }
+
+    fn new<T: Pod>(gpu: &Gpu, label: &str, corners: &[T], triangles: &[u16]) -> Self {
+        let filled = |usage, bytes| filled(gpu, label, usage, bytes);
         Self {
-            corners: filled(
-                gpu,
-                "sphere",
-                BufferUsages::VERTEX,
-                bytemuck::cast_slice(&corners),
-            ),
-            triangles: filled(
-                gpu,
-                "sphere",
-                BufferUsages::INDEX,
-                bytemuck::cast_slice(&triangles),
-            ),
+            corners: filled(BufferUsages::VERTEX, bytemuck::cast_slice(corners)),
+            triangles: filled(BufferUsages::INDEX, bytemuck::cast_slice(triangles)),
             indices: triangles.len() as u32,
         }
     }

@@ -4,6 +4,10 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::camera::Camera;
 
+/// How many looks a surface can have: cloth in four colours, and then jelly in four.
+/// The shader has their colours.
+pub const LOOKS: usize = 8;
+
 /// How a surface is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
@@ -32,6 +36,20 @@ pub struct Ball {
     pub center: [f32; 3],
     /// In m.
     pub radius: f32,
+    /// Linear red, green, blue, and 1.
+    pub color: [f32; 4],
+}
+
+/// A shaded box with round edges. Without rounding it is a box, without half extents a ball, with one a capsule.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Solid {
+    /// In m.
+    pub center: [f32; 3],
+    /// Of its edges (m); beyond the half extents.
+    pub radius: f32,
+    /// Along each side a unit vector, across the others, and half the extent (m).
+    pub axes: [[f32; 4]; 3],
     /// Linear red, green, blue, and 1.
     pub color: [f32; 4],
 }
@@ -75,10 +93,12 @@ pub struct Picture<'a> {
     pub style: Style,
     /// Pixels per point: 1 on a screen of ordinary density, 2 on a dense one.
     pub scale: f32,
-    /// Positions of the particles (m); the fourth number is not used.
+    /// Positions of the particles (m), and which of the [`LOOKS`](crate::LOOKS) their surface has.
     pub points: &'a [[f32; 4]],
     /// Balls: particles of small systems, pins, obstacles.
     pub balls: &'a [Ball],
+    /// Boxes and capsules.
+    pub solids: &'a [Solid],
     /// Lines: trails, highlighted springs.
     pub lines: &'a [Line],
     /// Height of the floor (m), if there is one.

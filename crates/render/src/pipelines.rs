@@ -2,7 +2,7 @@
 
 use wgpu::{CompareFunction, PrimitiveTopology, ShaderStages, StencilOperation, VertexStepMode};
 
-use crate::picture::{Ball, Line};
+use crate::picture::{Ball, Line, Solid};
 use crate::targets::DEPTH;
 
 /// The shaders.
@@ -14,8 +14,10 @@ pub(crate) struct Pipelines {
     pub(crate) floor: wgpu::RenderPipeline,
     pub(crate) mesh_shadow: wgpu::RenderPipeline,
     pub(crate) ball_shadow: wgpu::RenderPipeline,
+    pub(crate) solid_shadow: wgpu::RenderPipeline,
     pub(crate) mesh: wgpu::RenderPipeline,
     pub(crate) ball: wgpu::RenderPipeline,
+    pub(crate) solid: wgpu::RenderPipeline,
     pub(crate) wire: wgpu::RenderPipeline,
     pub(crate) line: wgpu::RenderPipeline,
 }
@@ -114,6 +116,10 @@ impl Pipelines {
         };
         let unit = wgpu::vertex_attr_array![0 => Float32x3];
         let ball = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4];
+        let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+        let solid = wgpu::vertex_attr_array![
+            2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4
+        ];
         let ends = wgpu::vertex_attr_array![0 => Uint32x2];
         let line = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
         let stream = |step_mode, attributes, stride: usize| {
@@ -126,6 +132,10 @@ impl Pipelines {
         let balls = [
             stream(VertexStepMode::Vertex, &unit, size_of::<[f32; 3]>()),
             stream(VertexStepMode::Instance, &ball, size_of::<Ball>()),
+        ];
+        let solids = [
+            stream(VertexStepMode::Vertex, &corner, size_of::<[[f32; 3]; 2]>()),
+            stream(VertexStepMode::Instance, &solid, size_of::<Solid>()),
         ];
         let wires = [stream(
             VertexStepMode::Instance,
@@ -142,8 +152,10 @@ impl Pipelines {
             floor: pipeline("floor", "floor", strip, Layer::Solid, &[]),
             mesh_shadow: pipeline("mesh_shadow", "shadow", list, Layer::Shadow, &[]),
             ball_shadow: pipeline("ball_shadow", "shadow", list, Layer::Shadow, &balls),
+            solid_shadow: pipeline("solid_shadow", "shadow", list, Layer::Shadow, &solids),
             mesh: pipeline("mesh", "mesh", list, Layer::Solid, &[]),
             ball: pipeline("ball", "ball", list, Layer::Solid, &balls),
+            solid: pipeline("solid", "ball", list, Layer::Solid, &solids),
             wire: pipeline("wire", "line", strip, Layer::Over, &wires),
             line: pipeline("line", "line", strip, Layer::Over, &lines),
         }

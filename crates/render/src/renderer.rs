@@ -1,19 +1,22 @@
 //! What pictures of one topology share, and the order in which their parts are drawn.
 
+use std::ops::Range;
+
 use wgpu::BufferUsages;
 
-use crate::buffers::{Shape, filled};
+use crate::buffers::{Instances, Shape, filled};
 use crate::gpu::Gpu;
 use crate::picture::{Picture, Tile, Topology};
 use crate::pipelines::{Pipelines, SOURCE, layout};
 use crate::view::View;
 
-/// Draws [`Picture`]s of one topology.
+/// Draws [`Picture`]s of one scene.
 pub struct Renderer {
     pipelines: Pipelines,
     layout: wgpu::BindGroupLayout,
-    small_sphere: Shape,
-    large_sphere: Shape,
+    /// With few, more and many triangles.
+    spheres: [Shape; 3],
+    rounded_box: Shape,
     mesh: Mesh,
     /// As many as were ever drawn at once.
     views: Vec<View>,
@@ -21,7 +24,8 @@ pub struct Renderer {
     prepared: usize,
 }
 
-/// The buffers of a topology.
+/// The buffers of a topology. Clones share them.
+#[derive(Clone)]
 pub(crate) struct Mesh {
     pub(crate) first: wgpu::Buffer,
     pub(crate) around: wgpu::Buffer,
@@ -49,8 +53,8 @@ impl Renderer {
         let layout = layout(&gpu.device);
         Self {
             pipelines: Pipelines::new(&gpu.device, source, &layout, color, samples),
-            small_sphere: Shape::sphere(gpu, 8),
-            large_sphere: Shape::sphere(gpu, 40),
+            spheres: [4, 8, 40].map(|rings| Shape::sphere(gpu, rings)),
+            rounded_box: Shape::rounded_box(gpu, 10),
             mesh: Mesh::new(gpu, topology),
             views: vec![],
             prepared: 0,
@@ -63,6 +67,18 @@ impl Renderer {
         self.mesh = Mesh::new(gpu, topology);
         self.views.clear();
         self.prepared = 0;
+    }
+
+    /// Goes on with another topology of the same particles in picture k alone: of cloth that is torn there.
+    ///
+    /// # Panics
+    /// It has another number of particles.
+    pub fn set_topology_of(&mut self, gpu: &Gpu, k: usize, topology: &Topology) {
+        assert_eq!(topology.points, self.mesh.points, "particles of a scene");
+        while self.views.len() <= k {
+            self.views.push(View::new(gpu, &self.layout, &self.mesh));
+        }
+        self.views[k] = View::new(gpu, &self.layout, &Mesh::new(gpu, topology));
     }
 
     /// Sends pictures to the GPU, each for its own part of the target.
@@ -79,7 +95,7 @@ impl Renderer {
                 self.mesh.points,
                 "particles of the picture and of the topology"
             );
-            view.prepare(gpu, picture, *tile, &self.mesh);
+            view.prepare(gpu, picture, *tile);
         }
         self.prepared = pictures.len();
     }
@@ -96,7 +112,7 @@ impl Renderer {
     }
 
     fn draw_view(&self, pass: &mut wgpu::RenderPass, view: &View) {
-        let (p, mesh, frame) = (&self.pipelines, &self.mesh, view.frame);
+        let (p, mesh, frame) = (&self.pipelines, &view.mesh, view.frame);
         pass.set_bind_group(0, &view.bind, &[]);
         // What hides comes first, so that no pixel is shaded twice; then what is blended over it.
         if frame.mesh {
@@ -105,6 +121,8 @@ impl Renderer {
         }
         pass.set_pipeline(&p.ball);
         self.draw_balls(pass, view);
+        pass.set_pipeline(&p.solid);
+        self.draw_solids(pass, view);
         if frame.floor {
             pass.set_pipeline(&p.floor);
             pass.draw(0..4, 0..1);
@@ -121,6 +139,8 @@ impl Renderer {
             }
             pass.set_pipeline(&p.ball_shadow);
             self.draw_balls(pass, view);
+            pass.set_pipeline(&p.solid_shadow);
+            self.draw_solids(pass, view);
         }
         if !frame.mesh {
             pass.set_pipeline(&p.wire);
@@ -135,17 +155,26 @@ impl Renderer {
     }
 
     fn draw_balls(&self, pass: &mut wgpu::RenderPass, view: &View) {
-        let (small, all) = (view.frame.small_balls, view.frame.balls);
-        for (shape, range) in [
-            (&self.small_sphere, 0..small),
-            (&self.large_sphere, small..all),
-        ] {
-            if !range.is_empty() {
-                pass.set_vertex_buffer(0, shape.corners.slice(..));
-                pass.set_vertex_buffer(1, view.balls.buffer.slice(..));
-                pass.set_index_buffer(shape.triangles.slice(..), wgpu::IndexFormat::Uint16);
-                pass.draw_indexed(0..shape.indices, 0, range);
-            }
+        let mut start = 0;
+        for (shape, end) in self.spheres.iter().zip(view.frame.balls) {
+            shape.draw(pass, &view.balls, start..end);
+            start = end;
+        }
+    }
+
+    fn draw_solids(&self, pass: &mut wgpu::RenderPass, view: &View) {
+        self.rounded_box
+            .draw(pass, &view.solids, 0..view.frame.solids);
+    }
+}
+
+impl Shape {
+    fn draw(&self, pass: &mut wgpu::RenderPass, instances: &Instances, range: Range<u32>) {
+        if !range.is_empty() {
+            pass.set_vertex_buffer(0, self.corners.slice(..));
+            pass.set_vertex_buffer(1, instances.buffer.slice(..));
+            pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint16);
+            pass.draw_indexed(0..self.indices, 0, range);
         }
     }
 }
@@ -250,6 +279,7 @@ mod tests {
             scale: 1.0,
             points: &points,
             balls: &[],
+            solids: &[],
             lines: &[],
             floor: None,
             transparent: false,

@@ -23,8 +23,16 @@ struct Globals {
 const PAPER = vec3(0.86, 0.855, 0.835);
 const SHADE = vec3(0.56, 0.60, 0.655);
 const INK = vec3(0.035, 0.05, 0.09);
-const CLOTH = vec3(0.62, 0.045, 0.06);
-const LINING = vec3(0.50, 0.17, 0.05);
+
+// The looks of surfaces, outside and inside: cloth in red, teal, amber and violet, jelly in green, orange, berry and blue.
+const OUTSIDE = array(
+    vec3(0.62, 0.045, 0.06), vec3(0.01, 0.30, 0.34), vec3(0.72, 0.30, 0.02), vec3(0.24, 0.09, 0.46),
+    vec3(0.05, 0.42, 0.16), vec3(0.82, 0.22, 0.02), vec3(0.50, 0.03, 0.22), vec3(0.03, 0.20, 0.55),
+);
+const INSIDE = array(
+    vec3(0.50, 0.17, 0.05), vec3(0.10, 0.36, 0.22), vec3(0.58, 0.42, 0.12), vec3(0.40, 0.14, 0.36),
+    vec3(0.12, 0.50, 0.24), vec3(0.90, 0.36, 0.08), vec3(0.62, 0.10, 0.32), vec3(0.10, 0.32, 0.66),
+);
 
 // ---- Background: paper, darker towards the corners. Drawn where nothing else is.
 
@@ -121,7 +129,12 @@ fn lit(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>, gloss: f32, sheen: f32)
 // ---- Mesh: smooth, two-sided. The normal of a point is the sum over its triangles of the cross product of two
 // sides, which has twice the triangle's area for its length: area weighting comes for free.
 
-struct Mesh { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32>, @location(1) normal: vec3<f32> };
+struct Mesh {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) @interpolate(flat) look: u32,
+};
 
 @vertex fn mesh_vertex(@builtin(vertex_index) i: u32) -> Mesh {
     let p = points[i].xyz;
@@ -133,13 +146,28 @@ struct Mesh { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32>,
     out.clip = globals.view_proj * vec4(p, 1.0);
     out.world = p;
     out.normal = n;
+    out.look = u32(points[i].w);
     return out;
+}
+
+// Light that went in on the other side comes out: brighter where it is thin, along the outline, and where the lamp shines
+// against the eye.
+fn jelly(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
+    let eye = normalize(globals.eye.xyz - world);
+    let lamp = globals.light.xyz;
+    let thin = pow(1.0 - max(dot(n, eye), 0.0), 2.0);
+    let through = 0.30 + 0.45 * thin + 0.35 * max(dot(-lamp, eye), 0.0) + 0.2 * max(-dot(n, lamp), 0.0);
+    return lit(0.75 * color, n, world, 0.55, 0.5) + through * color;
 }
 
 @fragment fn mesh_fragment(in: Mesh, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     // A squashed cell can have no normal: any will do, but not NaN.
     let n = in.normal / max(length(in.normal), 1e-20) * select(-1.0, 1.0, front);
-    return vec4(lit(select(LINING, CLOTH, front), n, in.world, 0.07, 0.35), 1.0);
+    var outside = OUTSIDE;
+    var inside = INSIDE;
+    let color = select(inside[in.look], outside[in.look], front);
+    if in.look >= 4u { return vec4(jelly(color, n, in.world), 1.0); }
+    return vec4(lit(color, n, in.world, 0.07, 0.35), 1.0);
 }
 
 // ---- Balls: particles, pins, and the sphere in the way.
@@ -164,6 +192,42 @@ struct Ball {
 
 @fragment fn ball_fragment(in: Ball) -> @location(0) vec4<f32> {
     return vec4(lit(in.color, normalize(in.normal), in.world, 0.5, 0.25), 1.0);
+}
+
+// ---- Solids: boxes with round edges. The pieces of a ball, moved apart.
+
+struct Solid {
+    @location(0) unit: vec3<f32>,
+    // As -1 or 1 along each axis.
+    @location(1) piece: vec3<f32>,
+    @location(2) center: vec4<f32>,
+    // Directions and half extents.
+    @location(3) x: vec4<f32>,
+    @location(4) y: vec4<f32>,
+    @location(5) z: vec4<f32>,
+    @location(6) color: vec4<f32>,
+};
+
+fn solid_normal(in: Solid) -> vec3<f32> {
+    return mat3x3(in.x.xyz, in.y.xyz, in.z.xyz) * in.unit;
+}
+
+fn solid_place(in: Solid) -> vec3<f32> {
+    let middle = mat3x3(in.x.xyz, in.y.xyz, in.z.xyz) * (in.piece * vec3(in.x.w, in.y.w, in.z.w));
+    return in.center.xyz + middle + in.center.w * solid_normal(in);
+}
+
+@vertex fn solid_vertex(in: Solid) -> Ball {
+    var out: Ball;
+    out.world = solid_place(in);
+    out.clip = globals.view_proj * vec4(out.world, 1.0);
+    out.normal = solid_normal(in);
+    out.color = in.color.rgb;
+    return out;
+}
+
+@vertex fn solid_shadow_vertex(in: Solid) -> Shadow {
+    return shadow(solid_place(in));
 }
 
 // ---- Lines: a quad around each, as wide as asked for on the screen, with edges that fade over a pixel.

@@ -1,4 +1,4 @@
-//! The sphere that every ball is an instance of.
+//! The sphere that every ball is an instance of, and the rounded box that every other solid is.
 
 /// Corners and triangles of a unit sphere in `rings` bands of latitude.
 pub(crate) fn sphere(rings: u16) -> (Vec<[f32; 3]>, Vec<u16>) {
@@ -20,4 +20,78 @@ pub(crate) fn sphere(rings: u16) -> (Vec<[f32; 3]>, Vec<u16>) {
         }
     }
     (corners, triangles)
+}
+
+/// Corners and triangles of a unit sphere that was cut along the planes of its axes, so that its eight pieces can be moved
+/// apart: a corner is its place and, as -1 or 1 along each axis, its piece. `bands` of latitude and longitude a piece.
+pub(crate) fn rounded_box(bands: u16) -> (Vec<[[f32; 3]; 2]>, Vec<u16>) {
+    // Each border twice: as the end of one piece and as the beginning of the next.
+    let places = |quarters: u16| -> Vec<(f32, u16)> {
+        let place = |q, k| {
+            (
+                std::f32::consts::FRAC_PI_2 * (f32::from(q) + f32::from(k) / f32::from(bands)),
+                q,
+            )
+        };
+        (0..quarters)
+            .flat_map(|q| (0..=bands).map(move |k| place(q, k)))
+            .collect()
+    };
+    let (latitudes, longitudes) = (places(2), places(4));
+    let mut corners = vec![];
+    for (theta, half) in &latitudes {
+        for (phi, quarter) in &longitudes {
+            let (sin, cos) = theta.sin_cos();
+            let (s, c) = phi.sin_cos();
+            let sign = |positive: bool| if positive { 1.0 } else { -1.0 };
+            let piece = [
+                sign(*quarter < 2),
+                sign(*half == 0),
+                sign(matches!(quarter, 0 | 3)),
+            ];
+            corners.push([[sin * s, cos, sin * c], piece]);
+        }
+    }
+    let (rows, columns) = (latitudes.len() as u16, longitudes.len() as u16);
+    let mut triangles = vec![];
+    for i in 0..rows - 1 {
+        for j in 0..columns {
+            let next = (j + 1) % columns;
+            let (a, b) = (i * columns, (i + 1) * columns);
+            triangles.extend([a + j, b + j, a + next, a + next, b + j, b + next]);
+        }
+    }
+    // The faces over the poles.
+    for row in [0, (rows - 1) * columns] {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|quarter| row + quarter * (bands + 1));
+        triangles.extend([a, b, c, a, c, d]);
+    }
+    (corners, triangles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Moved apart it is closed: each edge of a triangle with an area belongs to two of them.
+    #[test]
+    fn a_rounded_box_has_no_holes() {
+        let (corners, triangles) = rounded_box(3);
+        let key = |k: u16| {
+            let [unit, piece] = corners[usize::from(k)];
+            [0, 1, 2].map(|axis| ((2.0 * piece[axis] + unit[axis]) * 1e3).round() as i32)
+        };
+        let mut edges = std::collections::BTreeMap::new();
+        for corners in triangles.chunks(3) {
+            let [a, b, c] = [0, 1, 2].map(|k| key(corners[k]));
+            if a == b || b == c || c == a {
+                continue;
+            }
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                *edges.entry((from.min(to), from.max(to))).or_insert(0) += 1;
+            }
+        }
+        assert!(edges.len() > 100);
+        assert!(edges.values().all(|count| *count == 2), "{edges:?}");
+    }
 }

@@ -12,8 +12,8 @@ use crate::renderer::Mesh;
 const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
 /// How far the floor is seen (m), at least, and in distances of the eye from what it looks at.
 const FLOOR_REACH: (f32, f32) = (14.0, 1.4);
-/// Balls from this radius on (m) are drawn with more triangles.
-const LARGE: f32 = 0.25;
+/// Balls from these radii on (m) are drawn with more triangles.
+const LARGER: [f32; 2] = [0.03, 0.25];
 
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -32,7 +32,9 @@ pub(crate) struct View {
     points: wgpu::Buffer,
     pub(crate) bind: wgpu::BindGroup,
     pub(crate) balls: Instances,
+    pub(crate) solids: Instances,
     pub(crate) lines: Instances,
+    pub(crate) mesh: Mesh,
     pub(crate) frame: Frame,
 }
 
@@ -43,8 +45,9 @@ pub(crate) struct Frame {
     pub(crate) floor: bool,
     pub(crate) background: bool,
     pub(crate) mesh: bool,
-    pub(crate) small_balls: u32,
-    pub(crate) balls: u32,
+    /// Where the smallest, the middling and the large ones end.
+    pub(crate) balls: [u32; 3],
+    pub(crate) solids: u32,
     pub(crate) lines: u32,
 }
 
@@ -73,22 +76,26 @@ impl View {
                 entries: &entries,
             }),
             balls: Instances::new(device, "balls"),
+            solids: Instances::new(device, "solids"),
             lines: Instances::new(device, "lines"),
             frame: Frame::default(),
+            mesh: mesh.clone(),
             globals,
             points,
         }
     }
 
     /// Sends a picture to the GPU: positions once, and what changes from frame to frame beside them.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, picture: &Picture, tile: Tile, mesh: &Mesh) {
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, picture: &Picture, tile: Tile) {
         let queue = &gpu.queue;
         queue.write_buffer(&self.points, 0, bytemuck::cast_slice(picture.points));
         let mut balls = picture.balls.to_vec();
         balls.sort_by(|a, b| a.radius.total_cmp(&b.radius));
         self.balls.write(gpu, &balls);
+        self.solids.write(gpu, picture.solids);
         self.lines.write(gpu, picture.lines);
         let globals = globals(picture, tile);
+        let below = |radius: f32| balls.partition_point(|ball| ball.radius < radius) as u32;
         queue.write_buffer(&self.globals, 0, bytemuck::bytes_of(&globals));
         self.frame = Frame {
             tile,
@@ -98,9 +105,9 @@ impl View {
                     .floor
                     .is_some_and(|height| picture.camera.eye().y > height),
             background: !picture.transparent,
-            mesh: picture.style == Style::Shaded && mesh.indices > 0,
-            small_balls: balls.iter().filter(|ball| ball.radius < LARGE).count() as u32,
-            balls: balls.len() as u32,
+            mesh: picture.style == Style::Shaded && self.mesh.indices > 0,
+            balls: [below(LARGER[0]), below(LARGER[1]), balls.len() as u32],
+            solids: picture.solids.len() as u32,
             lines: picture.lines.len() as u32,
         };
     }

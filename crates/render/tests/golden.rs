@@ -204,3 +204,67 @@ fn transparent_pictures_show_the_same_things() {
         assert!((0..3).all(|c| off(c) < 12), "{pixel:?}");
     }
 }
+
+/// A solid without extents is a ball; with them it is as long as it should be, turned or not, and its faces are lit flat.
+#[test]
+fn solids_have_the_shape_asked_for() {
+    let Some(gpu) = gpu() else { return };
+    let mut sheet = Sheet::new();
+    sheet.topology = a3_render::Topology::default();
+    sheet.points.clear();
+    sheet.lines.clear();
+    sheet.camera = a3_render::Camera::look_at([0.0, 1.0, 6.0], [0.0, 1.0, 0.0]);
+    let ball = a3_render::Ball {
+        center: [0.0, 1.0, 0.0],
+        radius: 0.5,
+        color: [0.3, 0.36, 0.44, 1.0],
+    };
+    let solid = |radius, [x, y, z]: [f32; 3], turn: f32| {
+        let (s, c) = turn.sin_cos();
+        let axes = [[c, s, 0.0, x], [-s, c, 0.0, y], [0.0, 0.0, 1.0, z]];
+        a3_render::Solid {
+            center: ball.center,
+            radius,
+            axes,
+            color: ball.color,
+        }
+    };
+    let draw = |balls: &[a3_render::Ball], solids: &[a3_render::Solid]| {
+        let samples = gpu.samples(OFFSCREEN_FORMAT);
+        let mut renderer = Renderer::new(&gpu, OFFSCREEN_FORMAT, samples, &sheet.topology);
+        let picture = a3_render::Picture {
+            balls,
+            solids,
+            ..sheet.picture(Style::Shaded)
+        };
+        let offscreen = Offscreen::new(&gpu, SIZE).unwrap();
+        let pixels = offscreen.render(&gpu, &mut renderer, &picture).unwrap();
+        RgbaImage::from_raw(SIZE.0, SIZE.1, pixels).unwrap()
+    };
+    let round = draw(&[ball], &[]);
+    assert!(same(&round, &draw(&[], &[solid(0.5, [0.0; 3], 0.7)])));
+    // Upright a capsule covers what it covers lying down, turned by a right angle.
+    let turn = std::f32::consts::FRAC_PI_2;
+    let capsule = draw(&[], &[solid(0.3, [0.0, 0.4, 0.0], 0.0)]);
+    assert!(same(
+        &capsule,
+        &draw(&[], &[solid(0.3, [0.4, 0.0, 0.0], turn)])
+    ));
+    let empty = draw(&[], &[]);
+    let covered = |picture: &RgbaImage, y: u32| {
+        (0..SIZE.0)
+            .filter(|x| picture.get_pixel(*x, y) != empty.get_pixel(*x, y))
+            .count()
+    };
+    // A box of 1.2 m by 0.8 m by 0.4 m from 6 m: its front is 5.8 m away.
+    let cuboid = draw(&[], &[solid(0.0, [0.6, 0.4, 0.2], 0.0)]);
+    let widest = covered(&cuboid, SIZE.1 / 2) as f32;
+    let expected = covered(&round, SIZE.1 / 2) as f32 * 1.2 * (36.0f32 - 0.25).sqrt() / 5.8 / 1.0;
+    assert!((widest - expected).abs() < 3.0, "{widest} {expected}");
+    let pixel = |x: u32, y: u32| cuboid.get_pixel(x, y).0;
+    let (a, b) = (pixel(SIZE.0 / 2 - 15, 80), pixel(SIZE.0 / 2 + 15, 100));
+    assert!(
+        a.iter().zip(b).all(|(a, b)| a.abs_diff(b) < 16),
+        "{a:?} {b:?}"
+    );
+}

@@ -29,6 +29,8 @@ pub struct Graphics {
     format: wgpu::TextureFormat,
     renderer: Renderer,
     targets: Targets,
+    /// Springs that had broken when each pane's topology was made.
+    tears: Vec<usize>,
     text: Text,
     egui_winit: egui_winit::State,
     /// The surface no longer has the size of the window.
@@ -64,6 +66,7 @@ impl Graphics {
         Ok(Self {
             renderer: Renderer::new(&gpu, format, samples, &show::topology(session.first())),
             targets: Targets::new(&gpu, size, format, samples),
+            tears: vec![],
             text,
             egui_winit,
             surface,
@@ -111,6 +114,20 @@ impl Graphics {
     pub fn set_scene(&mut self, session: &Session) {
         self.renderer
             .set_topology(&self.gpu, &show::topology(session.first()));
+        self.tears.clear();
+    }
+
+    /// Leaves out what has torn.
+    fn tear(&mut self, session: &Session) {
+        self.tears.resize(session.panes.len(), 0);
+        for (k, (pane, tears)) in session.panes.iter().zip(&mut self.tears).enumerate() {
+            let now = pane.simulation.tears();
+            if *tears != now {
+                *tears = now;
+                let topology = show::topology(&pane.simulation);
+                self.renderer.set_topology_of(&self.gpu, k, &topology);
+            }
+        }
     }
 
     /// Breaks the device, to see what happens.
@@ -163,6 +180,7 @@ impl Graphics {
                 return Err(GpuError::Lost);
             }
         };
+        self.tear(session);
         for pane in &mut session.panes {
             pane.show.compose(&pane.simulation);
         }

@@ -1,14 +1,17 @@
 //! What is written over the picture: egui, without winit and wgpu, so that a test can read it.
 
 mod panes;
+mod timeline;
 
 pub use panes::digits;
 
 use a3_core::{BlowUp, Cause, Simulation, integrators};
 use egui::{Align2, Area, Color32, Context, Frame, Id, Margin, RichText, Ui};
 
+use super::history::Place;
 use super::keys::{KEYS, MOUSE};
 use super::pane::Pane;
+use crate::show;
 
 /// What the text says beside the runs themselves.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +31,10 @@ pub struct Readings {
     pub in_window: bool,
     /// Why the panes' errors are not known, if they are not.
     pub no_error: Option<&'static str>,
+    /// Simulated time goes by at 1 / 2^this of real time.
+    pub slowness: i32,
+    /// Where in the kept time one is, after going back.
+    pub place: Option<Place>,
 }
 
 const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
@@ -36,6 +43,8 @@ const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
 const SAFE: Color32 = Color32::from_rgb(12, 106, 52);
 const WARNING: Color32 = Color32::from_rgb(158, 84, 0);
 const ALARM: Color32 = Color32::from_rgb(170, 22, 30);
+/// So many springs are listed at most.
+const LISTED: usize = 12;
 /// From the edge of the window (points).
 const MARGIN: f32 = 12.0;
 
@@ -52,7 +61,7 @@ fn column(
         .interactable(false)
         .show(ctx, |ui| {
             ui.spacing_mut().item_spacing = egui::vec2(8.0, 6.0);
-            ui.set_max_width((ctx.content_rect().width() - 2.0 * MARGIN).clamp(60.0, 460.0));
+            ui.set_max_width((ctx.content_rect().width() - 2.0 * MARGIN).clamp(60.0, 760.0));
             contents(ui);
         });
 }
@@ -91,11 +100,14 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
         column(ctx, "help", Align2::CENTER_CENTER, [0.0, 0.0], |ui| {
             sheet(ui, |ui| help(ui, panes.len() > 1));
         });
+    } else if let Some(place) = &readings.place {
+        timeline::show(ctx, place);
     }
 }
 
 fn show_one(ctx: &Context, pane: &Pane, readings: &Readings) {
     column(ctx, "run", Align2::LEFT_TOP, [MARGIN, MARGIN], |ui| {
+        ui.set_max_width(ui.available_width().min(460.0));
         sheet(ui, |ui| run(ui, pane, readings));
         if let Some(lost) = pane.simulation.blow_up() {
             sheet(ui, |ui| {
@@ -108,8 +120,11 @@ fn show_one(ctx: &Context, pane: &Pane, readings: &Readings) {
                 ui.label(text(message));
             });
         }
+        if let Some(i) = pane.show.springs_of {
+            sheet(ui, |ui| springs(ui, &pane.simulation, i));
+        }
     });
-    if ctx.content_rect().height() > 400.0 {
+    if ctx.content_rect().height() > 400.0 && readings.place.is_none() {
         column(ctx, "hint", Align2::LEFT_BOTTOM, [MARGIN, -MARGIN], |ui| {
             sheet(ui, |ui| {
                 ui.label(faint("h  help"));
@@ -133,6 +148,9 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             };
             row("time", text(time(simulation)));
             row("speed", text(speed(readings)));
+            if let Some(slow) = slow_motion(readings) {
+                row("slow", text(slow));
+            }
             if let Some(steps) = steps(simulation) {
                 row("steps", text(steps));
             }
@@ -148,6 +166,37 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             row("each", text(each(readings)));
         });
     ui.label(states(simulation, readings));
+}
+
+/// The springs of a particle, and how far they are stretched now.
+fn springs(ui: &mut Ui, simulation: &Simulation, i: usize) {
+    let springs = show::springs_of(simulation, i);
+    ui.label(title(format!("particle {i}: {} springs", springs.len())).size(14.0));
+    egui::Grid::new("springs")
+        .num_columns(5)
+        .spacing([12.0, 1.0])
+        .show(ui, |ui| {
+            for name in ["kind", "to", "N/m", "rest, m", "stretch"] {
+                ui.label(faint(name));
+            }
+            ui.end_row();
+            for s in springs.iter().take(LISTED) {
+                let other = s.i + s.j - i;
+                let length = (simulation.position(i) - simulation.position(other)).norm();
+                ui.label(text(show::kind(s.kind)));
+                ui.label(text(other.to_string()));
+                ui.label(text(panes::digits(s.law.stiffness)));
+                ui.label(text(panes::digits(s.law.rest_length)));
+                ui.label(match s.law.rest_length {
+                    0.0 => text("-"),
+                    rest => text(format!("{:.3}", length / rest)),
+                });
+                ui.end_row();
+            }
+        });
+    if springs.len() > LISTED {
+        ui.label(faint(format!("and {} more", springs.len() - LISTED)));
+    }
 }
 
 /// Its name, and its grid if it has one.
@@ -238,7 +287,10 @@ fn states(simulation: &Simulation, readings: &Readings) -> RichText {
         (readings.paused, "paused"),
         (simulation.windy(), "wind"),
         (simulation.swinging(), "swing"),
-        (simulation.grabbed().is_some(), "pulling"),
+        (
+            simulation.grabbed().is_some() || simulation.grabbed_sphere().is_some(),
+            "pulling",
+        ),
     ];
     let on: Vec<_> = states
         .iter()
@@ -260,6 +312,12 @@ fn speed(readings: &Readings) -> String {
         slow if slow < 0.01 => format!("{slow:.1e} × real time"),
         factor => format!("{factor:.2} × real time"),
     }
+}
+
+/// What is asked for, if not real time.
+fn slow_motion(readings: &Readings) -> Option<String> {
+    let slowness = Some(readings.slowness).filter(|slowness| *slowness > 0)?;
+    Some(format!("1/{} of real time", 1 << slowness))
 }
 
 /// What was lost, which limit was passed, and which step would have held.
@@ -324,9 +382,11 @@ fn help(ui: &mut Ui, several: bool) {
         .iter()
         .map(|(what, does)| ((*what).to_owned(), *does))
         .collect();
+    let (first, second) = keys.split_at(keys.len().div_ceil(2));
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 28.0;
-        rows(ui, "Keys", &keys);
+        rows(ui, "Keys", first);
+        rows(ui, "More keys", second);
         ui.vertical(|ui| {
             let heading = if several {
                 "Solvers, under the pointer"
@@ -473,9 +533,50 @@ pub mod tests {
             assert!(words.contains(method.title));
         }
         assert!(
-            sheets[0].height() < 460.0 && sheets[0].width() < 640.0,
+            sheets[0].height() < 460.0 && sheets[0].width() < 780.0,
             "{sheets:?}"
         );
+    }
+
+    #[test]
+    fn slow_motion_and_the_place_in_time_are_said() {
+        let place = Place {
+            share: 0.25,
+            back: 1.5,
+            span: 2.0,
+        };
+        let readings = Readings {
+            factor: 0.12,
+            slowness: 3,
+            place: Some(place),
+            ..Readings::default()
+        };
+        for size in [[1280.0, 720.0], [500.0, 400.0], [260.0, 860.0]] {
+            let (words, sheets) = read(&[pane("chain", "r", 0.01)], &readings, size);
+            for said in [
+                "0.12 × real time",
+                "1/8 of real time",
+                "1.50 s back",
+                "2.0 s kept",
+            ] {
+                assert!(words.contains(said), "{said} in {words}");
+            }
+            assert!(!sheets[0].intersects(sheets[1]), "{sheets:?}");
+        }
+    }
+
+    #[test]
+    fn the_springs_of_a_particle_are_listed() {
+        let mut pane = pane("cloth", "t", 0.01);
+        pane.show.springs_of = Some(210);
+        let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+        let springs: usize = words
+            .split_once("particle 210: ")
+            .and_then(|(_, rest)| rest.split_once(' ')?.0.parse().ok())
+            .unwrap();
+        assert_eq!(springs, 12);
+        assert_eq!(words.matches("structural").count(), 4, "{words}");
+        assert!(words.contains("shear\n") && words.contains("230\n") && !words.contains("more"));
     }
 
     #[test]

@@ -16,6 +16,10 @@ pub enum Action {
     Solver(usize),
     LongerStep,
     ShorterStep,
+    Slower,
+    Faster,
+    /// So many kept frames on, or back.
+    Scrub(isize),
     Camera,
     Picture,
     Help,
@@ -41,7 +45,12 @@ pub static KEYS: &[Binding] = &[
     bind(&["w"], Action::Wireframe, "wireframe or surface"),
     bind(&["d"], Action::Wind, "wind"),
     bind(&["Space"], Action::Pause, "pause"),
-    bind(&["."], Action::Step, "one step"),
+    bind(&["."], Action::Step, "one step, one frame on"),
+    bind(&[","], Action::Scrub(-1), "one frame back"),
+    bind(&["<"], Action::Scrub(-10), "ten frames back"),
+    bind(&[">"], Action::Scrub(10), "ten frames on"),
+    bind(&["["], Action::Slower, "slow motion"),
+    bind(&["]"], Action::Faster, "faster again"),
     bind(&["+", "="], Action::LongerStep, "longer step"),
     bind(&["-"], Action::ShorterStep, "shorter step"),
     bind(&["c"], Action::Camera, "camera home"),
@@ -55,6 +64,8 @@ pub static MOUSE: &[(&str, &str)] = &[
     ("left, on the scene", "pull"),
     ("left, elsewhere", "turn"),
     ("right or middle", "move"),
+    ("right click", "pin, or let go"),
+    ("double click", "list springs"),
     ("wheel", "zoom"),
 ];
 

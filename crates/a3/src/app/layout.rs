@@ -54,6 +54,18 @@ pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
         .collect()
 }
 
+/// The sheet of the timeline in a window of this size: left, top, width and height (points).
+pub fn timeline([width, height]: [f32; 2]) -> [f32; 4] {
+    let wide = (width - 24.0).clamp(40.0, 560.0);
+    let high = 42.0;
+    [0.5 * (width - wide), height - 12.0 - high, wide, high]
+}
+
+/// Where its track begins and ends (points from the left).
+pub fn track(left: f32, width: f32) -> (f32, f32) {
+    (left + 18.0, left + width - 18.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

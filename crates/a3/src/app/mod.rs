@@ -1,6 +1,7 @@
 //! The window: events in, frames out.
 
 mod graphics;
+mod history;
 pub mod hud;
 mod keys;
 pub mod layout;
@@ -29,7 +30,7 @@ use winit::window::{Window, WindowId};
 use crate::{Failure, cli, headless, show};
 use graphics::{Graphics, Outcome};
 use keys::Action;
-use pick::Grip;
+use pick::{Grip, Target};
 use status::Status;
 use watch::Watch;
 
@@ -42,6 +43,10 @@ pub use text::Text;
 const RETRY: Duration = Duration::from_millis(50);
 /// Points around the pointer in which a particle is hit.
 const REACH: f32 = 18.0;
+/// Points that a click may move.
+const CLICK: f32 = 4.0;
+/// Between the two of a double click.
+const DOUBLE: Duration = Duration::from_millis(400);
 /// Radians per height of the picture.
 const TURN: f32 = 4.0;
 
@@ -73,6 +78,7 @@ pub fn open(mut session: Session, status: bool, watch: Option<Watch>) -> Result<
         pointer: [0.0; 2],
         hand: Hand::Empty,
         button: None,
+        pressed: ([f32::INFINITY; 2], Instant::now(), false),
         devices: 0,
         visible: true,
         held: 0,
@@ -117,6 +123,8 @@ enum Hand {
     Pull(Grip),
     Orbit,
     Pan,
+    /// On the timeline.
+    Scrub,
 }
 
 struct App {
@@ -133,6 +141,8 @@ struct App {
     held: usize,
     /// The button that holds it.
     button: Option<MouseButton>,
+    /// Where and when that was pressed, and whether the pointer has stayed there.
+    pressed: ([f32; 2], Instant, bool),
     visible: bool,
     /// Devices opened so far.
     devices: u32,
@@ -245,18 +255,28 @@ impl App {
             self.pointed(),
             self.graphics.as_ref().map_or(1.0, Graphics::scale),
         );
-        let tile = self.tile(held);
-        let (place, reach) = (tile.place(self.pointer), REACH * scale / tile.height as f32);
+        let (last, when, still) = self.pressed;
+        self.pressed = (self.pointer, Instant::now(), true);
+        let again = still && when.elapsed() < DOUBLE && near(last, self.pointer, CLICK * scale);
+        let share = self.timeline_share(CLICK);
+        let hit = self.hit(held, scale);
         let session = &mut self.session;
         self.hand = match button {
+            MouseButton::Left if share.is_some() => {
+                session.scrub_to(share.unwrap_or(1.0));
+                Hand::Scrub
+            }
             MouseButton::Left => {
-                let pane = &session.panes[held];
-                // A lost run does not move, whoever pulls.
-                let hit = Some(&pane.simulation)
-                    .filter(|_| pane.alive())
-                    .and_then(|run| pick::pick(run, &session.camera, place, tile.aspect(), reach));
+                let particle = hit.and_then(|(target, _)| match target {
+                    Target::Particle(i) => Some(i),
+                    Target::Sphere(_) => None,
+                });
+                if again {
+                    session.show_springs_of(particle);
+                }
                 match hit {
-                    Some((i, grip)) if session.grab(i) => Hand::Pull(grip),
+                    Some((Target::Particle(i), grip)) if session.grab(i) => Hand::Pull(grip),
+                    Some((Target::Sphere(k), grip)) if session.grab_sphere(k) => Hand::Pull(grip),
                     _ => Hand::Orbit,
                 }
             }
@@ -267,6 +287,38 @@ impl App {
         self.button = Some(button);
     }
 
+    /// What is under the pointer in pane `held`. A lost run does not move, whoever pulls.
+    fn hit(&self, held: usize, scale: f32) -> Option<(Target, Grip)> {
+        let (tile, pane) = (self.tile(held), &self.session.panes[held]);
+        let (place, reach) = (tile.place(self.pointer), REACH * scale / tile.height as f32);
+        let run = Some(&pane.simulation).filter(|_| pane.alive())?;
+        pick::pick(run, &self.session.camera, place, tile.aspect(), reach)
+    }
+
+    /// Where on the timeline the pointer is, if that is shown and the pointer no farther from it than `margin` (points).
+    fn timeline_share(&self, margin: f32) -> Option<f32> {
+        let graphics = self.graphics.as_ref()?;
+        self.session.readings.place?;
+        let (scale, size) = (graphics.scale(), graphics.size());
+        let size = [size.0, size.1].map(|side| side as f32 / scale);
+        let [x, y] = self.pointer.map(|px| px / scale);
+        let [left, top, width, height] = layout::timeline(size);
+        let (from, to) = layout::track(left, width);
+        let inside = x > left - margin
+            && x < left + width + margin
+            && y > top - margin
+            && y < top + height + margin;
+        inside.then_some(((x - from) / (to - from)).clamp(0.0, 1.0))
+    }
+
+    /// A right click pins what is under it.
+    fn click(&mut self) {
+        let scale = self.graphics.as_ref().map_or(1.0, Graphics::scale);
+        if let Some((Target::Particle(i), _)) = self.hit(self.held, scale) {
+            self.session.toggle_pin(i);
+        }
+    }
+
     fn let_go(&mut self) {
         self.session.release();
         self.hand = Hand::Empty;
@@ -275,13 +327,24 @@ impl App {
 
     fn move_to(&mut self, position: PhysicalPosition<f64>) {
         let pointer = [position.x as f32, position.y as f32];
+        let scale = self.graphics.as_ref().map_or(1.0, Graphics::scale);
         let tile = self.tile(self.held);
+        // A click is no drag, until it has gone too far.
+        self.pressed.2 &= near(self.pressed.0, pointer, CLICK * scale);
+        if self.pressed.2 && self.hand == Hand::Pan {
+            return;
+        }
         let ([x, y], [was_x, was_y]) = (tile.place(pointer), tile.place(self.pointer));
         let (dx, dy, aspect) = (x - was_x, y - was_y, tile.aspect());
         self.pointer = pointer;
         match self.hand {
             Hand::Orbit => self.session.camera.orbit(-TURN * dx * aspect, TURN * dy),
             Hand::Pan => self.session.camera.pan(-dx * aspect, dy),
+            Hand::Scrub => {
+                if let Some(share) = self.timeline_share(f32::INFINITY) {
+                    self.session.scrub_to(share);
+                }
+            }
             Hand::Pull(_) | Hand::Empty => return,
         }
         self.redraw();
@@ -361,6 +424,11 @@ impl App {
     }
 }
 
+/// Whether two places of the window are no farther apart than `reach` (px).
+fn near(a: [f32; 2], b: [f32; 2], reach: f32) -> bool {
+    (a[0] - b[0]).hypot(a[1] - b[1]) <= reach
+}
+
 impl ApplicationHandler for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         if self.window.is_some() {
@@ -418,7 +486,7 @@ impl ApplicationHandler for App {
                 };
                 let repeats = matches!(
                     action,
-                    Action::Step | Action::LongerStep | Action::ShorterStep
+                    Action::Step | Action::LongerStep | Action::ShorterStep | Action::Scrub(_)
                 );
                 if !event.repeat || repeats {
                     self.act(event_loop, action);
@@ -437,6 +505,9 @@ impl ApplicationHandler for App {
                 button,
                 ..
             } if self.button == Some(button) => {
+                if button == MouseButton::Right && self.pressed.2 {
+                    self.click();
+                }
                 self.let_go();
                 self.redraw();
             }

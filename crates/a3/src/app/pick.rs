@@ -1,9 +1,18 @@
 //! From a place in the picture to a particle, and back to a place in the world.
 
-use a3_core::Simulation;
+use a3_core::{Simulation, Vector3};
 use a3_render::Camera;
 
-/// A particle in the hand: what keeps it under the pointer.
+use crate::show;
+
+/// What a hand takes hold of, by its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    Particle(usize),
+    Sphere(usize),
+}
+
+/// A particle or a sphere in the hand: what keeps it under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
     /// Its distance from the eye along the view (m).
@@ -20,16 +29,17 @@ impl Grip {
     }
 }
 
-/// The particle under the pointer: of the nearest triangle of a cloth that it hits the closest corner, else the
-/// particle that is nearest on the screen within `reach`, as a share of the picture's height.
+/// The particle or the sphere under the pointer, whichever is nearer to the eye. The particle: of the nearest triangle of
+/// a cloth that it hits the closest corner, else the one that is nearest on the screen within `reach`, as a share of
+/// the picture's height.
 pub fn pick(
     simulation: &Simulation,
     camera: &Camera,
     pointer: [f32; 2],
     aspect: f32,
     reach: f32,
-) -> Option<(usize, Grip)> {
-    simulation.model().network()?;
+) -> Option<(Target, Grip)> {
+    let network = simulation.model().network()?;
     let project = |i: usize| {
         let p = simulation.position(i);
         camera.project([p.x as f32, p.y as f32, p.z as f32], aspect)
@@ -38,8 +48,7 @@ pub fn pick(
     // On the screen, in units of its height.
     let gap = |at: [f32; 2]| ((at[0] - pointer[0]) * aspect).hypot(at[1] - pointer[1]);
     let on_surface = {
-        let triangles = simulation.scene().surface.triangles.iter();
-        triangles
+        show::whole_triangles(simulation)
             .filter_map(|corners| {
                 let corners = corners.map(|i| i as usize);
                 let [a, b, c] = corners.map(|i| places[i]);
@@ -48,11 +57,12 @@ pub fn pick(
                 Some((u * a.1 + v * b.1 + w * c.1, corners))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0))
-            .and_then(|(_, corners)| {
+            .and_then(|(depth, corners)| {
                 let near = |i: &usize| places[*i].map_or(f32::INFINITY, |(at, _)| gap(at));
                 corners
                     .into_iter()
                     .min_by(|a, b| near(a).total_cmp(&near(b)))
+                    .map(|i| (i, depth))
             })
     };
     let nearest = || {
@@ -64,17 +74,47 @@ pub fn pick(
             .filter_map(near)
             .filter(|(_, gap)| *gap < reach)
             .min_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(i, _)| i)
+            .and_then(|(i, _)| Some((i, places[i]?.1)))
     };
-    let i = on_surface.or_else(nearest)?;
-    let (at, distance) = places[i]?;
-    Some((
-        i,
-        Grip {
-            distance,
-            offset: [at[0] - pointer[0], at[1] - pointer[1]],
-        },
-    ))
+    let particle = on_surface.or_else(nearest).and_then(|(i, depth)| {
+        let (at, distance) = places[i]?;
+        Some((depth, Target::Particle(i), at, distance))
+    });
+    let spheres = network.spheres().iter().enumerate();
+    let sphere = spheres.filter_map(|(k, sphere)| {
+        let c = sphere.path.at(simulation.time()).position;
+        let c = [c.x as f32, c.y as f32, c.z as f32];
+        let (at, distance) = camera.project(c, aspect)?;
+        let surface = ball_hit(
+            camera,
+            pointer,
+            aspect,
+            c,
+            show::SHOWN * sphere.radius as f32,
+        )?;
+        let (_, depth) = camera.project(surface, aspect)?;
+        Some((depth, Target::Sphere(k), at, distance))
+    });
+    let (_, target, at, distance) = sphere.chain(particle).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let offset = [at[0] - pointer[0], at[1] - pointer[1]];
+    Some((target, Grip { distance, offset }))
+}
+
+/// Where the line of sight through the pointer meets a ball first.
+fn ball_hit(
+    camera: &Camera,
+    pointer: [f32; 2],
+    aspect: f32,
+    center: [f32; 3],
+    radius: f32,
+) -> Option<[f32; 3]> {
+    let [near, far] = [0.0, 1.0].map(|d| Vector3::from(camera.unproject(pointer, d, aspect)));
+    let (way, from) = ((far - near).normalize(), near - Vector3::from(center));
+    let b = from.dot(&way);
+    let root = (b * b - from.norm_squared() + radius * radius).sqrt();
+    // Outside NaN, and behind the eye below 0.
+    let share = Some(-b - root).filter(|share| *share > 0.0)?;
+    Some((near + share * way).into())
 }
 
 /// Barycentric coordinates of p in the triangle abc, if it is inside.
@@ -94,7 +134,7 @@ fn weights(p: [f32; 2], a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> Option<[f32; 3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use a3_core::{Simulation, integrators, scenes};
+    use a3_core::{Model, integrators, scenes};
 
     fn cloth() -> Simulation {
         let scene = scenes::find("cloth").unwrap().build(None).unwrap();
@@ -111,7 +151,7 @@ mod tests {
             let (at, _) = camera.project(p, 1.6).unwrap();
             let pointer = [at[0] + 0.002, at[1] - 0.002];
             let (picked, grip) = pick(&simulation, &camera, pointer, 1.6, 0.03).unwrap();
-            assert_eq!(picked, i);
+            assert_eq!(picked, Target::Particle(i));
             let target = grip.target(&camera, pointer, 1.6);
             assert!(
                 p.iter().zip(target).all(|(a, b)| (a - b).abs() < 1e-3),
@@ -139,8 +179,52 @@ mod tests {
                 ];
                 assert!(tile.contains(pointer));
                 let hit = pick(&simulation, &camera, tile.place(pointer), aspect, 0.03);
-                assert_eq!(hit.map(|(i, _)| i), Some(210), "{tile:?}");
+                let hit = hit.map(|(target, _)| target);
+                assert_eq!(hit, Some(Target::Particle(210)), "{tile:?}");
             }
         }
+    }
+
+    /// The nearer one is hit: the sphere beside the cloth and below it, the cloth in front of the sphere.
+    #[test]
+    fn a_sphere_is_picked_unless_cloth_is_in_front() {
+        let scene = scenes::find("mit-sphere").unwrap().build(None).unwrap();
+        let run = Simulation::new(scene, integrators::find("t").unwrap(), 0.001).unwrap();
+        let hit = |eye: [f32; 3]| {
+            let camera = Camera::look_at(eye, [1.0, -4.0, 0.0]);
+            pick(&run, &camera, [0.5, 0.5], 1.6, 0.03)
+        };
+        let (target, grip) = hit([1.0, -4.0, 8.0]).unwrap();
+        assert_eq!(target, Target::Sphere(0));
+        assert_eq!(grip.offset.map(|o| (1e4 * o).round() as i32), [0, 0]);
+        assert!((grip.distance - 8.0).abs() < 1e-3);
+        // Through the cloth, which lies at a height of 0.
+        let above = hit([1.0, 6.0, 2.0]).unwrap().0;
+        assert!(matches!(above, Target::Particle(_)), "{above:?}");
+    }
+
+    #[test]
+    fn a_hole_is_not_hit() {
+        let run = cloth();
+        let camera = Camera::look_at([0.0, 3.0, 9.0], [0.0, 2.5, 0.0]);
+        let corners = show::whole_triangles(&run).nth(300).unwrap();
+        let middle = corners
+            .map(|i| run.position(i as usize))
+            .iter()
+            .sum::<Vector3<f64>>()
+            / 3.0;
+        let (place, _) = camera
+            .project([middle.x as f32, middle.y as f32, middle.z as f32], 1.6)
+            .unwrap();
+        let hit = |run: &Simulation| pick(run, &camera, place, 1.6, 0.0).is_some();
+        assert!(hit(&run));
+        let mut scene = run.scene().clone();
+        if let Model::Network(network) = &mut scene.model {
+            network.set_tear(Some(1.5)).unwrap();
+            let wide: Vec<_> = scene.state[..1200].iter().map(|x| 10.0 * x).collect();
+            assert!(network.tear(&wide) > 0);
+        }
+        let torn = Simulation::new(scene, run.method(), 0.01).unwrap();
+        assert!(!hit(&torn));
     }
 }

@@ -63,6 +63,11 @@ impl Reference {
         Some(&mut self.simulation).filter(|_| self.stopped.is_none())
     }
 
+    /// The run, stopped or not, to look at.
+    pub fn any(&self) -> &Simulation {
+        &self.simulation
+    }
+
     /// The run, stopped or not.
     pub fn any_run(&mut self) -> &mut Simulation {
         &mut self.simulation

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use a3_core::{Method, Simulation, Vector3, scenes};
 use a3_render::Camera;
 
+use super::history::History;
 use super::hud::Readings;
 use super::pane::Pane;
 use super::reference::Reference;
@@ -39,6 +40,7 @@ pub struct Session {
     reference: Option<Reference>,
     /// Simulated time that the panes have been brought to (s): each is less than a step behind.
     clock: f64,
+    history: History,
     message_ends: Option<Instant>,
     /// At how many steps, and when, the states were last read.
     read: Option<(u64, Instant)>,
@@ -94,6 +96,7 @@ impl Session {
                 .unwrap_or(0),
             reference: Reference::new(&panes)?,
             clock: 0.0,
+            history: History::default(),
             message_ends: None,
             read: None,
             meter: Meter::new(),
@@ -117,7 +120,8 @@ impl Session {
             let real = real.min(MOST_OWED);
             let (least, share) = REFERENCE_BUDGET;
             let reference_budget = least.max(Duration::from_secs_f64(share * real));
-            self.advance(self.clock + real, BUDGET, reference_budget);
+            let simulated = real * 0.5f64.powi(self.readings.slowness);
+            self.advance(self.clock + simulated, BUDGET, reference_budget);
         } else {
             self.settle();
         }
@@ -126,6 +130,7 @@ impl Session {
     /// Brings all panes to a simulated time (s), together: in slices, so that none runs ahead when the budget of real
     /// time is over before.
     fn advance(&mut self, until: f64, budget: Duration, reference_budget: Duration) {
+        self.keep(false);
         let (begun, start) = (Instant::now(), self.clock);
         let steps = self.panes.iter().map(Pane::pace);
         let mut slice = steps.fold(f64::INFINITY, f64::min);
@@ -147,6 +152,59 @@ impl Session {
         for pane in &mut self.panes {
             pane.follow();
         }
+        self.keep(false);
+    }
+
+    /// Keeps the states as they are, to come back to; `now`, also if others were kept just before.
+    fn keep(&mut self, now: bool) {
+        if self.readings.in_window {
+            let panes = self.panes.iter().map(|pane| &pane.simulation);
+            let reference = self.reference.as_ref().map(Reference::any);
+            self.history.keep(self.clock, now, panes.chain(reference));
+        }
+        self.readings.place = self.history.place();
+    }
+
+    /// Goes so many kept moments on or back, and pauses. What is done next, goes on from there.
+    pub fn scrub(&mut self, by: isize) {
+        self.pause_to_scrub();
+        if self.history.go(by) {
+            self.show_moment();
+        } else if by < 0 {
+            self.say("Nothing older is kept.");
+        }
+    }
+
+    /// Goes to a place in the kept time: from 0, the oldest moment, to 1, the newest.
+    pub fn scrub_to(&mut self, share: f32) {
+        self.pause_to_scrub();
+        if self.history.go_to(share) {
+            self.show_moment();
+        }
+    }
+
+    fn pause_to_scrub(&mut self) {
+        self.readings.paused = true;
+        if self.readings.place.is_none() {
+            self.settle();
+            self.keep(true);
+        }
+    }
+
+    fn show_moment(&mut self) {
+        let panes = self.panes.iter_mut().map(|pane| &mut pane.simulation);
+        let reference = self.reference.as_mut().map(Reference::any_run);
+        self.history.show(panes.chain(reference));
+        for pane in &mut self.panes {
+            pane.error = None;
+            pane.count();
+        }
+        if let Some(reference) = &mut self.reference {
+            reference.follow(&mut self.panes, Duration::ZERO);
+        }
+        self.readings.place = self.history.place();
+        self.hand_off();
+        self.stand();
     }
 
     /// Owes nothing: the time is that of the pane that is farthest.
@@ -212,17 +270,67 @@ impl Session {
             .fold(false, |held, run| held | run.grab(i).is_ok())
     }
 
-    /// Pulls it to the same place (m) in every run.
+    /// Takes hold of sphere k in every run. Whether there is something to hold.
+    pub fn grab_sphere(&mut self, k: usize) -> bool {
+        self.align();
+        self.runs()
+            .fold(false, |held, run| held | run.grab_sphere(k).is_ok())
+    }
+
+    /// Pulls what is held to the same place (m) in every run.
     pub fn pull(&mut self, target: Vector3<f64>) {
-        self.runs().for_each(|run| run.pull(target));
+        self.runs().for_each(|run| {
+            run.pull(target);
+            run.pull_sphere(target);
+        });
+        for pane in &mut self.panes {
+            pane.show.hand = Some(target);
+        }
     }
 
     /// Lets go of it.
     pub fn release(&mut self) {
-        if self.runs().any(|run| run.grabbed().is_some()) {
+        let held = |run: &Simulation| run.grabbed().is_some() || run.grabbed_sphere().is_some();
+        if self.runs().any(|run| held(run)) {
             self.align();
         }
-        self.do_to_all(Simulation::release);
+        self.do_to_all(|run| {
+            run.release();
+            run.release_sphere();
+        });
+        self.hand_off();
+    }
+
+    fn hand_off(&mut self) {
+        for pane in &mut self.panes {
+            pane.show.hand = None;
+        }
+    }
+
+    /// Pins particle i where it is in every run, or lets it go.
+    pub fn toggle_pin(&mut self, i: usize) {
+        self.align();
+        // All alike, those too that were pinned in one of them only.
+        let pinned = self
+            .first()
+            .model()
+            .network()
+            .is_some_and(|n| n.is_pinned(i));
+        self.do_to_all(|run| {
+            if run.model().network().is_some_and(|n| n.is_pinned(i)) == pinned {
+                // It was picked: it is there.
+                let _ = run.toggle_pin(i);
+            }
+        });
+        let now = if pinned { "free" } else { "pinned" };
+        self.say(format!("particle {i} is {now} now"));
+    }
+
+    /// Highlights and lists the springs of a particle, or of none.
+    pub fn show_springs_of(&mut self, particle: Option<usize>) {
+        for pane in &mut self.panes {
+            pane.show.springs_of = particle;
+        }
     }
 
     /// The states as they are now: ten times a second while they move, and when they stand still.
@@ -264,6 +372,13 @@ impl Session {
         self.settle();
         self.read = None;
         self.meter = Meter::new();
+    }
+
+    /// Forgets what was: it is of another run.
+    fn forget(&mut self) {
+        self.history.clear();
+        self.readings.place = None;
+        self.hand_off();
     }
 
     /// Says something for a few seconds.
@@ -382,6 +497,102 @@ pub mod tests {
     fn times(session: &Session) -> Vec<f64> {
         let times = session.panes.iter().map(|pane| pane.simulation.time());
         times.collect()
+    }
+
+    #[test]
+    fn slow_motion_is_slow_and_its_steps_are_the_same() {
+        let mut session = session(&["t", "0.001", "--scene", "chain"]);
+        for _ in 0..2 {
+            session.act(Action::Slower, 0);
+        }
+        frames(&mut session, 2.0);
+        let run = session.first();
+        assert!((run.time() - 0.5).abs() < 2e-3, "{}", run.time());
+        assert!((run.time() - 1e-3 * run.steps() as f64).abs() < 1e-9);
+        for _ in 0..9 {
+            session.act(Action::Slower, 0);
+        }
+        assert_eq!(session.readings.slowness, 6);
+        for _ in 0..9 {
+            session.act(Action::Faster, 0);
+        }
+        frames(&mut session, 1.0);
+        assert!((session.first().time() - 1.5).abs() < 3e-3);
+    }
+
+    /// Back, on again to where it was, and from the middle a second time: the same to the bit.
+    #[test]
+    fn what_was_comes_back_to_the_bit_and_goes_on_from_there() {
+        let mut session = session(&["t", "0.01", "--scene", "cloth"]);
+        session.readings.in_window = true;
+        frames(&mut session, 1.0);
+        let newest = (session.first().time(), session.first().state().to_vec());
+        session.act(Action::Scrub(-10), 0);
+        let place = session.readings.place.unwrap();
+        assert!(
+            session.readings.paused && (place.back - 1.0 / 6.0).abs() < 0.02,
+            "{place:?}"
+        );
+        let (time, steps) = (session.first().time(), session.first().steps());
+        assert!(time < newest.0 && (time - 0.01 * steps as f64).abs() < 1e-9);
+        let then = session.first().state().to_vec();
+        // Nothing goes on by itself.
+        session.tick(0.1);
+        assert_eq!(session.first().state(), then);
+        session.act(Action::Step, 0);
+        session.act(Action::Scrub(10), 0);
+        assert_eq!(session.readings.place, None);
+        assert_eq!(
+            (session.first().time(), session.first().state()),
+            (newest.0, &newest.1[..])
+        );
+        session.act(Action::Scrub(-10), 0);
+        assert_eq!(session.first().state(), then);
+        session.act(Action::Pause, 0);
+        while session.first().time() < newest.0 - 1e-9 {
+            session.tick(0.01);
+        }
+        assert_eq!(
+            (session.first().state(), session.readings.place),
+            (&newest.1[..], None)
+        );
+        session.act(Action::Reset, 0);
+        session.act(Action::Scrub(-1), 0);
+        assert_eq!(
+            (session.first().time(), session.readings.place),
+            (0.0, None)
+        );
+    }
+
+    #[test]
+    fn going_back_undoes_a_blow_up() {
+        let mut session = session(&["r", "0.05", "--scene", "mit"]);
+        session.readings.in_window = true;
+        while session.panes[0].alive() {
+            session.tick(1.0 / 60.0);
+        }
+        session.act(Action::Scrub(-10), 0);
+        assert!(session.panes[0].alive() && session.readings.place.is_some());
+    }
+
+    #[test]
+    fn a_pin_is_set_in_every_run_at_the_same_time() {
+        let mut session = compared(&["r:0.013", "r:0.005", "--scene", "cloth"], 0.3);
+        session.toggle_pin(210);
+        let times = times(&session);
+        assert_eq!(times[0], times[1]);
+        let pinned = |session: &Session| {
+            let networks = session
+                .panes
+                .iter()
+                .map(|p| p.simulation.model().network().unwrap());
+            networks.map(|n| n.is_pinned(210)).collect::<Vec<_>>()
+        };
+        assert_eq!(pinned(&session), [true, true]);
+        frames(&mut session, 0.3);
+        assert!(session.panes.iter().all(|pane| pane.error.unwrap() < 2e-3));
+        session.toggle_pin(210);
+        assert_eq!(pinned(&session), [false, false]);
     }
 
     #[test]

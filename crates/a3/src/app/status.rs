@@ -42,7 +42,7 @@ impl Status {
         };
         let state = format!(
             "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} blown={} grabbed={grabbed} \
-             size={}x{} visible={} devices={}",
+             slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
             run.setting(),
@@ -52,6 +52,13 @@ impl Status {
             readings.paused,
             readings.help,
             run.blow_up().is_some(),
+            readings.slowness,
+            readings.place.is_some(),
+            run.model().network().map_or(0, |n| n.pins().count()),
+            panes[0]
+                .show
+                .springs_of
+                .map_or("-".into(), |i| i.to_string()),
             graphics.size().0,
             graphics.size().1,
             visible,

@@ -134,8 +134,8 @@ fn place(file: &str, why: &str) -> String {
 fn unknown(typed: &str) -> String {
     let names = || scenes::SCENES.iter().map(|entry| entry.name);
     let near = names()
-        .map(|name| (strsim::jaro_winkler(typed, name), name))
-        .filter(|(likeness, _)| *likeness > 0.7)
+        .map(|name| (strsim::normalized_damerau_levenshtein(typed, name), name))
+        .filter(|(likeness, _)| *likeness > 0.55)
         .max_by(|a, b| a.0.total_cmp(&b.0));
     let hint = near.map_or(String::new(), |(_, name)| format!("did you mean {name}? "));
     let names: Vec<_> = names().collect();

@@ -88,6 +88,7 @@ impl Sheet {
             scale: 1.0,
             points: &self.points,
             balls: &self.balls,
+            solids: &[],
             lines: &self.lines,
             floor: Some(0.0),
             transparent: false,

@@ -83,6 +83,9 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                 if readings.rate > 0.0 || readings.paused {
                     say(text(speed(readings)));
                 }
+                if let Some(slow) = super::slow_motion(readings) {
+                    say(faint(format!("slow  {slow}")));
+                }
                 if readings.rate > 0.0 && width > 900.0 {
                     say(text(format!("{},  {}", frames(readings), each(readings))));
                 }

@@ -10,6 +10,9 @@ use super::{KEY_BUDGET, Session};
 use crate::scene_file::Source;
 use crate::{cli, show};
 
+/// Slow motion is 1 / 2^6 of real time at least.
+const SLOWEST: i32 = 6;
+
 /// Steps of the keys + and -, in each decade.
 const LADDER: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
 
@@ -24,6 +27,7 @@ impl Session {
             }
             Action::Reset => {
                 self.panes.iter_mut().for_each(Pane::reset);
+                self.forget();
                 if let Some(reference) = &mut self.reference {
                     reference.reset();
                     self.readings.no_error = None;
@@ -58,6 +62,10 @@ impl Session {
                 self.readings.paused = !self.readings.paused;
                 self.stand();
             }
+            Action::Step if self.readings.place.is_some() => self.scrub(1),
+            Action::Scrub(by) => self.scrub(by),
+            Action::Slower => self.readings.slowness = (self.readings.slowness + 1).min(SLOWEST),
+            Action::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
             Action::Step => {
                 self.readings.paused = true;
                 self.settle();
@@ -206,6 +214,7 @@ impl Session {
                 }
                 // What builds a pane builds the reference.
                 self.reference = Reference::new(&self.panes).ok().flatten();
+                self.forget();
                 self.readings.no_error = None;
                 self.stand();
             }

@@ -141,10 +141,12 @@ fn explain(message: &str) -> String {
         } else {
             "there is no"
         };
+        // Slips of two neighbouring letters count as one.
+        let likeness = |name: &str| strsim::normalized_damerau_levenshtein(unknown, name);
         let nearest = known
             .iter()
-            .map(|name| (strsim::jaro_winkler(unknown, name), *name))
-            .filter(|(likeness, _)| *likeness > 0.7)
+            .map(|name| (likeness(name), *name))
+            .filter(|(likeness, _)| *likeness > 0.55)
             .max_by(|a, b| a.0.total_cmp(&b.0));
         let hint = nearest.map_or(String::new(), |(_, name)| {
             format!("did you mean `{name}`? ")

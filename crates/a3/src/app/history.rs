@@ -1,0 +1,172 @@
+//! The last seconds of all runs, to go back to.
+
+use std::collections::VecDeque;
+
+use a3_core::Simulation;
+
+/// Simulated time between two moments (s), and over all of them.
+const INTERVAL: f64 = 1.0 / 60.0;
+const SPAN: f64 = 20.0;
+/// All of them together may take so much (bytes).
+const MEMORY: usize = 64 << 20;
+
+/// Moments, the oldest first.
+#[derive(Default)]
+pub struct History {
+    moments: VecDeque<Moment>,
+    /// The one that is shown, unless it is the newest.
+    shown: Option<usize>,
+}
+
+struct Moment {
+    clock: f64,
+    /// Of each run.
+    states: Vec<State>,
+}
+
+struct State {
+    time: f64,
+    steps: u64,
+    /// What was lost has no such moment.
+    alive: bool,
+    y: Vec<f64>,
+}
+
+/// Where in the kept time one is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// 0 at the oldest moment, 1 at the newest.
+    pub share: f32,
+    /// How long before the newest moment (s).
+    pub back: f64,
+    /// From the oldest to the newest (s).
+    pub span: f64,
+}
+
+impl History {
+    pub fn clear(&mut self) {
+        self.moments.clear();
+        self.shown = None;
+    }
+
+    /// Keeps the states at `clock` (s), if the last ones are old enough, or at once with `now`. What came after the
+    /// moment that is shown did not happen.
+    pub fn keep<'r>(&mut self, clock: f64, now: bool, runs: impl Iterator<Item = &'r Simulation>) {
+        if let Some(k) = self.shown.take() {
+            self.moments.truncate(k + 1);
+        }
+        let last = self.moments.back().map(|moment| moment.clock);
+        let due = INTERVAL * (1.0 - 1e-6);
+        if last.is_some_and(|last| clock <= last || (!now && clock < last + due)) {
+            return;
+        }
+        let room = |moment: &Moment| moment.states.iter().map(|state| 8 * state.y.len()).sum();
+        let size: usize = self.moments.front().map_or(0, room);
+        let old = |moment: &Moment| moment.clock < clock - SPAN;
+        let full = self.moments.len() > 1 && (self.moments.len() + 1) * size > MEMORY;
+        // The oldest one's place, if there is no other.
+        let spare = if full || self.moments.front().is_some_and(old) {
+            self.moments.pop_front()
+        } else {
+            None
+        };
+        let mut places = spare.map_or(vec![], |moment| moment.states).into_iter();
+        let state = |run: &Simulation| {
+            let mut y = places.next().map_or(vec![], |state| state.y);
+            y.clear();
+            y.extend_from_slice(run.state());
+            State {
+                time: run.time(),
+                steps: run.steps(),
+                alive: run.blow_up().is_none(),
+                y,
+            }
+        };
+        let states = runs.map(state).collect();
+        self.moments.push_back(Moment { clock, states });
+    }
+
+    /// Goes `by` moments on, or back. Whether another one is shown then.
+    pub fn go(&mut self, by: isize) -> bool {
+        let newest = self.moments.len().saturating_sub(1);
+        let from = self.shown.unwrap_or(newest);
+        let to = from.saturating_add_signed(by).min(newest);
+        self.shown = Some(to).filter(|k| *k < newest);
+        to != from
+    }
+
+    /// Goes to a place from 0, the oldest moment, to 1, the newest.
+    pub fn go_to(&mut self, share: f32) -> bool {
+        let newest = self.moments.len().saturating_sub(1);
+        let to = (share.clamp(0.0, 1.0) * newest as f32).round() as isize;
+        self.go(to - self.shown.unwrap_or(newest) as isize)
+    }
+
+    /// Gives the runs the states of the moment that is shown.
+    pub fn show<'r>(&self, runs: impl Iterator<Item = &'r mut Simulation>) {
+        let newest = self.moments.len().saturating_sub(1);
+        let Some(moment) = self.moments.get(self.shown.unwrap_or(newest)) else {
+            return;
+        };
+        for (run, state) in runs.zip(&moment.states).filter(|(_, state)| state.alive) {
+            // It is of this run, and in shape.
+            let _ = run.rewind(state.time, state.steps, &state.y);
+        }
+    }
+
+    /// Where that is, unless it is the newest moment.
+    pub fn place(&self) -> Option<Place> {
+        let (k, newest) = (self.shown?, self.moments.len() - 1);
+        let clock = |k: usize| self.moments[k].clock;
+        Some(Place {
+            share: k as f32 / newest as f32,
+            back: clock(newest) - clock(k),
+            span: clock(newest) - clock(0),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use a3_core::{integrators, scenes};
+
+    fn run(rows: usize) -> Simulation {
+        let entry = scenes::find("cloth").unwrap();
+        let grid = a3_core::Grid::new(rows, rows).unwrap();
+        let scene = entry.build(Some(grid)).unwrap();
+        Simulation::new(scene, integrators::find("t").unwrap(), 0.01).unwrap()
+    }
+
+    #[test]
+    fn it_keeps_twenty_seconds_and_no_more_than_its_memory() {
+        let (small, large) = (run(3), run(200));
+        let mut history = History::default();
+        for k in 0..3000 {
+            history.keep(f64::from(k) / 120.0, false, [&small].into_iter());
+        }
+        // Every other one is kept.
+        assert!(history.moments.len().abs_diff(1201) <= 1);
+        history.clear();
+        for k in 0..50 {
+            history.keep(f64::from(k), false, [&large, &large].into_iter());
+        }
+        let size = 2 * 8 * large.state().len();
+        assert_eq!(history.moments.len(), (MEMORY / size).min(21));
+    }
+
+    #[test]
+    fn it_stops_at_both_ends() {
+        let mut history = History::default();
+        assert!(!history.go(-1) && !history.go_to(0.0) && history.place().is_none());
+        for k in 0..5 {
+            history.keep(f64::from(k), false, [&run(3)].into_iter());
+        }
+        assert!(history.go(-3) && history.go(-3) && !history.go(-1));
+        let place = history.place().unwrap();
+        assert_eq!((place.share, place.back, place.span), (0.0, 4.0, 4.0));
+        assert!(history.go_to(0.5));
+        assert_eq!(history.place().unwrap().back, 2.0);
+        assert!(history.go(10) && history.place().is_none());
+    }
+}

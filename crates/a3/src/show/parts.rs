@@ -1,0 +1,164 @@
+//! What of a scene is drawn as a surface, in which look, and what spring by spring.
+
+use std::sync::Arc;
+
+use a3_core::{Network, Simulation, Spring, SpringKind, Surface};
+use a3_render::{LOOKS, Topology};
+
+/// What changes only with the scene, or when something tears.
+#[derive(Default)]
+pub struct Parts {
+    surface: Arc<Surface>,
+    /// Springs that had broken, once it was looked.
+    tears: Option<usize>,
+    /// Of each body.
+    looks: Vec<f32>,
+    loose: Vec<Spring>,
+}
+
+impl Parts {
+    /// Looks again if it has to.
+    pub fn look_at(&mut self, simulation: &Simulation) {
+        let (surface, tears) = (&simulation.scene().surface, Some(simulation.tears()));
+        let known = Arc::ptr_eq(surface, &self.surface);
+        if known && tears == self.tears {
+            return;
+        }
+        if !known || self.tears.is_none() {
+            self.looks = looks(surface);
+        }
+        (self.surface, self.tears) = (surface.clone(), tears);
+        let springs = springs(simulation);
+        self.loose = springs.filter(|s| body(surface, s).is_none()).collect();
+    }
+
+    /// Springs of particles without a surface, and those between bodies.
+    pub fn loose(&self) -> &[Spring] {
+        &self.loose
+    }
+
+    /// Gives each particle of a body its look.
+    pub fn paint(&self, points: &mut [[f32; 4]]) {
+        let mut start = 0;
+        for (look, &end) in self.looks.iter().zip(&self.surface.bodies) {
+            for point in &mut points[start..end] {
+                point[3] = *look;
+            }
+            start = end;
+        }
+    }
+}
+
+/// Cloth in the first half of the looks, jelly, which is closed, in the second.
+fn looks(surface: &Surface) -> Vec<f32> {
+    let mut edges: Vec<_> = surface
+        .triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
+        .map(|(a, b)| (a.min(b), a.max(b)))
+        .collect();
+    edges.sort_unstable();
+    let borders: Vec<_> = edges
+        .chunk_by(|a, b| a == b)
+        .filter(|triangles| triangles.len() == 1)
+        .map(|border| border[0].0 as usize)
+        .collect();
+    let (mut start, half) = (0, LOOKS / 2);
+    let look = |(k, &end): (usize, &usize)| {
+        let from = borders.partition_point(|i| *i < start);
+        let closed = borders.get(from).is_none_or(|i| *i >= end);
+        start = end;
+        (k % half + if closed { half } else { 0 }) as f32
+    };
+    surface.bodies.iter().enumerate().map(look).collect()
+}
+
+/// The body in whose surface both ends are.
+fn body(surface: &Surface, spring: &Spring) -> Option<usize> {
+    let [a, b] = [spring.i, spring.j].map(|i| surface.bodies.partition_point(|end| *end <= i));
+    (a == b && a < surface.bodies.len()).then_some(a)
+}
+
+fn springs(simulation: &Simulation) -> impl Iterator<Item = Spring> {
+    let network = simulation.model().network();
+    network.into_iter().flat_map(Network::springs)
+}
+
+/// What stays the same from frame to frame until something tears. What has no surface is drawn by balls and coils instead.
+pub fn topology(simulation: &Simulation) -> Topology {
+    let surface = &simulation.scene().surface;
+    Topology {
+        points: simulation.particles(),
+        triangles: whole_triangles(simulation).collect(),
+        wires: springs(simulation)
+            .filter(|s| s.kind == SpringKind::Structural && body(surface, s).is_some())
+            .map(|s| [s.i as u32, s.j as u32])
+            .collect(),
+    }
+}
+
+/// The triangles of the surface that are not torn.
+pub fn whole_triangles(simulation: &Simulation) -> impl Iterator<Item = [u32; 3]> {
+    let torn = simulation.model().network().filter(|n| n.tears() > 0);
+    let triangles = simulation.scene().surface.triangles.iter().copied();
+    triangles.filter(move |corners| {
+        torn.is_none_or(|network| network.is_whole(corners.map(|i| i as usize)))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use a3_core::{integrators, scenes};
+
+    fn run(scene: &str) -> Simulation {
+        let scene = scenes::find(scene).unwrap().build(None).unwrap();
+        Simulation::new(scene, integrators::find("t").unwrap(), 0.01).unwrap()
+    }
+
+    #[test]
+    fn cloth_is_red_and_jelly_is_green() {
+        for (scene, look, loose) in [("cloth", 0.0, 0), ("jelly", 4.0, 0), ("chain", 0.0, 3)] {
+            let (simulation, mut parts) = (run(scene), Parts::default());
+            parts.look_at(&simulation);
+            let mut points = vec![[0.0; 4]; simulation.particles()];
+            parts.paint(&mut points);
+            assert!(points.iter().all(|p| p[3] == look), "{scene}");
+            assert_eq!(parts.loose().len(), loose, "{scene}");
+        }
+    }
+
+    /// Two squares of two triangles beside a tetrahedron, and a particle that belongs to none.
+    #[test]
+    fn every_body_has_its_look() {
+        let triangles = vec![
+            [0, 1, 2],
+            [2, 1, 3],
+            [4, 5, 6],
+            [4, 6, 7],
+            [4, 7, 5],
+            [5, 7, 6],
+            [8, 9, 10],
+            [10, 9, 11],
+        ];
+        let surface = Surface {
+            triangles,
+            bodies: vec![4, 8, 12],
+        };
+        assert_eq!(looks(&surface), [0.0, 5.0, 2.0]);
+        let spring = |i, j| Spring {
+            i,
+            j,
+            ..run("chain")
+                .model()
+                .network()
+                .unwrap()
+                .springs()
+                .next()
+                .unwrap()
+        };
+        let bodies = [(0, 3), (3, 4), (4, 7), (11, 12), (8, 11)];
+        let found = bodies.map(|(i, j)| body(&surface, &spring(i, j)));
+        assert_eq!(found, [Some(0), None, Some(1), None, Some(2)]);
+    }
+}
