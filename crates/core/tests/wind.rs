@@ -299,6 +299,7 @@ fn without_triangles_there_is_nothing_to_blow_on() {
     let (x, v) = scene.state.split_at(3 * n);
     let (mut calm_f, mut f) = (vec![0.0; 3 * n], vec![0.0; 3 * n]);
     network.forces(0.0, x, v, &mut calm_f);
+    network.set_triangles([]).unwrap();
     network.set_wind(Some(calm(DRAG, LIFT)));
     network.forces(0.0, x, v, &mut f);
     assert!(f.iter().zip(&calm_f).all(|(a, b)| (a - b).abs() < 1e-12));
