@@ -1,6 +1,7 @@
 //! What a run looks like: from particles, springs and obstacles to balls, lines and triangles.
 
 mod parts;
+mod wires;
 
 use std::collections::VecDeque;
 
@@ -208,6 +209,11 @@ impl Show {
                     .windows(2)
                     .map(|ends| Line::new(ends[0], ends[1], 2.4, STEEL)),
             );
+        }
+        if let Some(network) = network {
+            let points = &self.points;
+            let at = |i: usize| [points[i][0], points[i][1], points[i][2]];
+            self.lines.extend(wires::lines(network, at, STEEL));
         }
         for i in covered..simulation.particles() {
             let pinned = network.is_some_and(|n| n.is_pinned(i)) && simulation.grabbed() != Some(i);

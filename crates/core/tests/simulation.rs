@@ -438,7 +438,11 @@ fn a_particle_is_pinned_and_let_go() {
 #[test]
 fn a_rewound_run_repeats_itself() {
     for method in ["trapezoid", "verlet", "dop853"] {
-        let setting = if method == "dop853" { 1e-8 } else { 0.007_812_5 };
+        let setting = if method == "dop853" {
+            1e-8
+        } else {
+            0.007_812_5
+        };
         let mut run = simulation("cloth", method, setting);
         run.set_swinging(true);
         run.advance_to(0.5).unwrap();

@@ -1,0 +1,88 @@
+//! Constraints as lines: rods, and the wires that particles slide on.
+
+use a3_core::{Constraint, Network, Vector3};
+use a3_render::Line;
+
+/// Pieces of a circle.
+const PIECES: usize = 96;
+/// A straight wire is drawn this far to both sides of its point (m).
+const REACH: f64 = 20.0;
+
+/// Lines of the network's constraints. `at` is where a particle is drawn.
+pub fn lines(
+    network: &Network,
+    at: impl Fn(usize) -> [f32; 3],
+    color: [f32; 4],
+) -> impl Iterator<Item = Line> {
+    let faint = [color[0], color[1], color[2], 0.45];
+    network
+        .constraints()
+        .iter()
+        .flat_map(move |constraint| match *constraint {
+            Constraint::Rod { i, j, .. } => vec![Line::new(at(i), at(j), 4.0, color)],
+            Constraint::Line {
+                point, direction, ..
+            } => {
+                let ends = [point - direction * REACH, point + direction * REACH];
+                let [a, b] = ends.map(super::to_f32);
+                vec![Line::new(a, b, 1.6, faint)]
+            }
+            Constraint::Circle {
+                center,
+                normal,
+                radius,
+                ..
+            } => circle(center, normal, radius, faint),
+            Constraint::Sphere { center, radius, .. } => {
+                let normals = [Vector3::x(), Vector3::y(), Vector3::z()];
+                let circles = normals.map(|normal| circle(center, normal, radius, faint));
+                circles.concat()
+            }
+            Constraint::Point { .. } => vec![],
+        })
+}
+
+fn circle(center: Vector3<f64>, normal: Vector3<f64>, radius: f64, color: [f32; 4]) -> Vec<Line> {
+    let side = super::a_side(normal);
+    let other = normal.cross(&side);
+    let place = |k: usize| {
+        let (sin, cos) = (std::f64::consts::TAU * k as f64 / PIECES as f64).sin_cos();
+        super::to_f32(center + (side * cos + other * sin) * radius)
+    };
+    (0..PIECES)
+        .map(|k| Line::new(place(k), place(k + 1), 1.6, color))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rods_join_their_particles_and_wires_lie_where_they_are() {
+        let mut network = Network::new(vec![1.0; 2]).unwrap();
+        let rod = Constraint::Rod {
+            i: 0,
+            j: 1,
+            length: 1.0,
+        };
+        let (center, normal, radius) = (Vector3::new(1.0, 2.0, 3.0), Vector3::z(), 0.5);
+        let circle = Constraint::Circle {
+            particle: 0,
+            center,
+            normal,
+            radius,
+        };
+        for constraint in [rod, circle] {
+            network.add_constraint(constraint).unwrap();
+        }
+        let at = |i: usize| [i as f32, 0.0, 0.0];
+        let lines: Vec<_> = lines(&network, at, [0.0; 4]).collect();
+        assert_eq!((lines[0].from, lines[0].to), (at(0), at(1)));
+        assert_eq!(lines.len(), 1 + PIECES);
+        for line in &lines[1..] {
+            let [x, y, z] = line.from;
+            assert!(((x - 1.0).hypot(y - 2.0) - 0.5).abs() < 1e-6 && (z - 3.0).abs() < 1e-6);
+        }
+    }
+}
