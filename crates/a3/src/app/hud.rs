@@ -385,8 +385,14 @@ fn help(ui: &mut Ui, several: bool) {
     let (first, second) = keys.split_at(keys.len().div_ceil(2));
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 28.0;
-        rows(ui, "Keys", first);
-        rows(ui, "More keys", second);
+        ui.vertical(|ui| {
+            ui.horizontal_top(|ui| {
+                rows(ui, "Keys", first);
+                rows(ui, "More keys", second);
+            });
+            ui.add_space(10.0);
+            rows(ui, "Mouse", &mouse);
+        });
         ui.vertical(|ui| {
             let heading = if several {
                 "Solvers, under the pointer"
@@ -394,8 +400,6 @@ fn help(ui: &mut Ui, several: bool) {
                 "Solvers"
             };
             rows(ui, heading, &solvers);
-            ui.add_space(10.0);
-            rows(ui, "Mouse", &mouse);
         });
     });
 }
