@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod app;
+mod caught;
 mod chart;
 mod choose;
 mod cli;

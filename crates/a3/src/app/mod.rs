@@ -14,7 +14,6 @@ mod status;
 mod text;
 mod watch;
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -27,6 +26,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHan
 use winit::keyboard::{Key, NamedKey};
 use winit::window::{Window, WindowId};
 
+use crate::caught::caught;
 use crate::{Failure, cli, headless, show};
 use graphics::{Graphics, Outcome};
 use keys::Action;
@@ -100,16 +100,12 @@ pub fn open(mut session: Session, status: bool, watch: Option<Watch>) -> Result<
 
 /// Without a display an error; without a library that winit cannot do without, a panic of its own, caught here.
 fn event_loop() -> Result<EventLoop<()>, String> {
-    let hook = std::panic::take_hook();
-    std::panic::set_hook(Box::new(|_| {}));
-    let result = catch_unwind(AssertUnwindSafe(EventLoop::new));
-    std::panic::set_hook(hook);
-    match result {
-        Ok(Ok(event_loop)) => Ok(event_loop),
-        Ok(Err(_)) => {
+    match caught(EventLoop::new) {
+        Some(Ok(event_loop)) => Ok(event_loop),
+        Some(Err(_)) => {
             Err("no display (DISPLAY and WAYLAND_DISPLAY are unset or lead nowhere)".into())
         }
-        Err(_) => Err(
+        None => Err(
             "no window (a library is missing: `apt install libxkbcommon-x11-0 libxcursor1 libxi6`)"
                 .into(),
         ),

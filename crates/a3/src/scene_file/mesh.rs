@@ -7,6 +7,8 @@ use a3_core::MAX_PARTICLES;
 use a3_core::scenes::Mesh;
 use base64::Engine;
 
+use crate::caught::caught;
+
 /// The longest file of a mesh, or of what belongs to one (bytes).
 const LONGEST: u64 = 128 << 20;
 
@@ -27,7 +29,9 @@ pub fn read(path: &Path) -> Result<Mesh, String> {
         }
     };
     let bytes = super::read(path, LONGEST).map_err(named)?;
-    let mesh = parse(&bytes, path).map_err(named)?;
+    // Both readers do sums with what a file says before they look at it.
+    let parsed = caught(|| parse(&bytes, path)).unwrap_or(Err("it is damaged".into()));
+    let mesh = parsed.map_err(named)?;
     check(&mesh).map_err(named)?;
     Ok(mesh)
 }
