@@ -16,7 +16,7 @@ const PULL_TIME: f64 = 1.0 / 30.0;
 const PULL_SPEED: f64 = 10.0;
 
 impl Simulation {
-    fn network_mut(&mut self) -> Option<&mut Network> {
+    pub(super) fn network_mut(&mut self) -> Option<&mut Network> {
         self.look_again();
         match &mut self.model {
             Model::FirstOrder(_) => None,
@@ -71,7 +71,7 @@ impl Simulation {
     }
 
     /// Pins particle i where it is, or swings it from there.
-    fn leave_pin(&mut self, i: usize) {
+    pub(super) fn leave_pin(&mut self, i: usize) {
         let swing = self.scene.swing.filter(|_| self.swinging);
         self.pin(
             i,

@@ -157,7 +157,10 @@ fn path(
     match (sine, shift) {
         (None, None) => Ok(Path::Still(from)),
         (Some(sine), None) => Ok(Path::Sine {
-            center: from,
+            center: match sine.center {
+                None => from,
+                Some(center) => finite(center).map_err(|why| ("sine.center", why))?,
+            },
             amplitude: finite(sine.amplitude).map_err(|why| ("sine.amplitude", why))?,
             rate: number(sine.rate).map_err(|why| ("sine.rate", why))?,
             phase: number(sine.phase).map_err(|why| ("sine.phase", why))?,
@@ -317,6 +320,11 @@ impl Description {
             });
         }
         scene.wind = self.wind(scene.model.network())?;
+        if let Model::Network(network) = &mut scene.model
+            && self.wind.as_ref().is_some_and(|wind| wind.on)
+        {
+            network.set_wind(scene.wind);
+        }
         self.how_it_runs(&mut scene)?;
         Ok(scene)
     }
@@ -393,7 +401,11 @@ impl Description {
         let n = assembly.masses.len();
         let between = springs(&self.springs, n).map_err(|why| Fault::new("springs", why))?;
         assembly.springs.extend(between);
-        let more = pins("", &self.pin, &assembly.positions, |_| None)?;
+        let given = self.state.as_ref().map(|state| &state.positions);
+        let given = given.filter(|positions| positions.len() == n);
+        let given = given.map(|all| all.iter().map(|p| Vector3::from(*p)).collect::<Vec<_>>());
+        let places = given.as_ref().unwrap_or(&assembly.positions);
+        let more = pins("", &self.pin, places, |_| None)?;
         assembly.pins.extend(more);
         let state = column_major(&assembly.positions)
             .chain(column_major(&assembly.velocities))
@@ -485,7 +497,8 @@ impl Description {
             }
         };
         let force = finite(force).map_err(|why| Fault::new(key, why))?;
-        Ok(Some(Wind::new(wind.seed, force * scale)))
+        let ahead = number(wind.ahead).map_err(|why| Fault::new("wind.ahead", why))?;
+        Ok(Some(Wind::new(wind.seed, force * scale).ahead(ahead)))
     }
 }
 

@@ -5,6 +5,7 @@ mod build;
 mod fault;
 mod lattice;
 mod mesh;
+mod snapshot;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -69,7 +70,8 @@ pub struct Description {
     /// Springs between any particles: [i, j, stiffness (N/m), rest length (m), damping (N s/m)].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,
-    /// Pins of any particles, by number. They come after those of the bodies, and instead of them.
+    /// Pins of any particles, by number. They come after those of the bodies, and instead of them. Where there is a
+    /// `state`, they are where that has them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
     /// Spheres in the way.
@@ -102,6 +104,12 @@ pub struct WindSpec {
     pub force: Option<Triple>,
     /// The same over the (mean) mass of a particle (m/s2), instead.
     pub force_per_mass: Option<Triple>,
+    /// The gusts are those of so much later (s).
+    #[serde(skip_serializing_if = "is_default")]
+    pub ahead: f64,
+    /// Whether it blows from the beginning.
+    #[serde(skip_serializing_if = "is_default")]
+    pub on: bool,
 }
 
 /// To and fro by `amplitude` (m), at `rate` (rad/s).
@@ -148,7 +156,7 @@ pub struct Pin {
     pub shift: Option<Shift>,
 }
 
-/// `amplitude sin(rate t + phase)` from where it is.
+/// `amplitude sin(rate t + phase)` from where it is, or from `center`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sine {
@@ -159,6 +167,9 @@ pub struct Sine {
     /// In rad.
     #[serde(default)]
     pub phase: f64,
+    /// In m.
+    #[serde(default)]
+    pub center: Option<Triple>,
 }
 
 /// By so much in a straight line between two times.
@@ -188,6 +199,10 @@ pub struct SphereSpec {
     /// Once, from here to there.
     #[serde(default)]
     pub shift: Option<Shift>,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// A state, a line for each particle.
