@@ -321,7 +321,10 @@ impl What {
             }
             e => Failure::usage(e),
         })?;
-        simulation.set_wind(self.wind);
+        // Some scenes begin with wind.
+        if self.wind {
+            simulation.set_wind(true);
+        }
         simulation.set_swinging(self.swing);
         Ok(simulation)
     }

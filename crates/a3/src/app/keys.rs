@@ -18,6 +18,8 @@ pub enum Action {
     ShorterStep,
     Camera,
     Picture,
+    Panel,
+    WriteScene,
     Help,
     Quit,
 }
@@ -46,6 +48,8 @@ pub static KEYS: &[Binding] = &[
     bind(&["-"], Action::ShorterStep, "shorter step"),
     bind(&["c"], Action::Camera, "camera home"),
     bind(&["p"], Action::Picture, "save a picture"),
+    bind(&["Tab"], Action::Panel, "tune and plot"),
+    bind(&["f"], Action::WriteScene, "write a scene file"),
     bind(&["h", "?"], Action::Help, "this help"),
     bind(&["Esc"], Action::Quit, "quit"),
 ];
@@ -63,6 +67,7 @@ pub fn action(key: &Key) -> Option<Action> {
     let name = match key {
         Key::Named(NamedKey::Space) => "Space".to_owned(),
         Key::Named(NamedKey::Escape) => "Esc".to_owned(),
+        Key::Named(NamedKey::Tab) => "Tab".to_owned(),
         Key::Character(text) if text == " " => "Space".to_owned(),
         Key::Character(text) => text.to_lowercase(),
         _ => return None,
@@ -90,6 +95,7 @@ mod tests {
                 let typed = match key {
                     "Space" => Key::Named(NamedKey::Space),
                     "Esc" => Key::Named(NamedKey::Escape),
+                    "Tab" => Key::Named(NamedKey::Tab),
                     key => Key::Character(key.into()),
                 };
                 assert_eq!(action(&typed), Some(binding.action));

@@ -6,6 +6,7 @@ mod keys;
 pub mod layout;
 mod limit;
 mod pane;
+mod panel;
 mod pick;
 mod reference;
 mod session;
@@ -158,7 +159,7 @@ impl App {
         let tiles = self
             .graphics
             .as_ref()
-            .map(|graphics| graphics.tiles(self.session.panes.len()));
+            .map(|graphics| graphics.tiles(&self.session));
         tiles.map_or(Tile::whole((1, 1)), |tiles| tiles[k])
     }
 
@@ -275,6 +276,13 @@ impl App {
 
     fn move_to(&mut self, position: PhysicalPosition<f64>) {
         let pointer = [position.x as f32, position.y as f32];
+        if self.session.panel.open {
+            let panes = 0..self.session.panes.len();
+            let under = panes.into_iter().find(|k| self.tile(*k).contains(pointer));
+            self.session.panel.pane = under.unwrap_or(self.session.panel.pane);
+            // What is under the pointer there looks so.
+            self.redraw();
+        }
         let tile = self.tile(self.held);
         let ([x, y], [was_x, was_y]) = (tile.place(pointer), tile.place(self.pointer));
         let (dx, dy, aspect) = (x - was_x, y - was_y, tile.aspect());
@@ -390,7 +398,12 @@ impl ApplicationHandler for App {
         let Some(graphics) = &mut self.graphics else {
             return;
         };
-        let taken = graphics.on_event(&event);
+        // Keys are for the table of keys: the text takes none.
+        let shift = graphics.shift();
+        let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
+        let taken = !is_key && graphics.on_event(&event)
+            || panel::leaves(&self.session, graphics.size(), graphics.scale()).0 as f32
+                <= self.pointer[0];
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
@@ -406,12 +419,14 @@ impl ApplicationHandler for App {
                 self.redraw();
             }
             WindowEvent::Focused(false) => self.let_go(),
-            WindowEvent::KeyboardInput { event, .. }
-                if event.state == ElementState::Pressed && !taken =>
-            {
+            WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
                 if self.status.is_some() && event.logical_key == Key::Named(NamedKey::F12) {
                     graphics.lose_device();
                     self.redraw();
+                }
+                if self.session.press_in_panel(&event.logical_key, shift) {
+                    self.redraw();
+                    return;
                 }
                 let Some(action) = keys::action(&event.logical_key) else {
                     return;
@@ -449,6 +464,7 @@ impl ApplicationHandler for App {
                 self.session.camera.zoom(0.9f32.powf(notches));
                 self.redraw();
             }
+            WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. } => self.redraw(),
             WindowEvent::RedrawRequested if self.visible => self.frame(event_loop),
             _ => {}
         }
