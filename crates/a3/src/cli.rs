@@ -367,6 +367,7 @@ impl What {
             )));
         }
         let mut simulation = Simulation::new(scene, solver, step).map_err(Failure::usage)?;
+        // Some scenes begin with wind.
         if self.wind {
             simulation.set_wind(true);
         }

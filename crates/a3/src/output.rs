@@ -63,10 +63,19 @@ pub fn say(text: &str) -> Result<(), Failure> {
 
 /// The first of a3-SCENE-1.png, a3-SCENE-2.png, ... that is not there yet.
 pub fn free_picture_name(scene: &str) -> Result<String, Failure> {
+    free_name("".as_ref(), scene, "png").map(|path| path.to_string_lossy().into_owned())
+}
+
+/// The first of a3-SCENE-1, a3-SCENE-2, ... with that extension that is not in the folder yet.
+pub fn free_name(folder: &Path, scene: &str, extension: &str) -> Result<PathBuf, Failure> {
     (1..=9999)
-        .map(|k| format!("a3-{scene}-{k}.png"))
-        .find(|name| !Path::new(name).exists())
-        .ok_or_else(|| Failure::run("there are 9999 pictures here already"))
+        .map(|k| folder.join(format!("a3-{scene}-{k}.{extension}")))
+        .find(|path| !path.exists())
+        .ok_or_else(|| {
+            Failure::run(format!(
+                "there are 9999 files a3-{scene}-*.{extension} already"
+            ))
+        })
 }
 
 /// Writes `bytes` to `path`.

@@ -419,6 +419,17 @@ impl Network {
         Ok(())
     }
 
+    /// Makes sphere k as large as that (m).
+    ///
+    /// # Errors
+    /// There is no such sphere, or the radius is not a finite number above 0.
+    pub fn resize_sphere(&mut self, k: usize, radius: f64) -> Result<(), Error> {
+        self.check_sphere(k)?;
+        positive("a sphere's radius", radius)?;
+        self.spheres[k].radius = radius;
+        Ok(())
+    }
+
     /// # Errors
     /// There is no sphere k.
     pub fn check_sphere(&self, k: usize) -> Result<(), Error> {
@@ -459,6 +470,11 @@ impl Network {
         self.floor = Some(floor);
     }
 
+    /// Takes the floor away, if there is one.
+    pub fn remove_floor(&mut self) {
+        self.floor = None;
+    }
+
     /// The floor, if there is one.
     #[must_use]
     pub fn floor(&self) -> Option<Floor> {
@@ -491,19 +507,46 @@ impl Network {
     /// # Errors
     /// The factor is not a finite number above 0.
     pub fn scale_stiffness(&mut self, factor: f64) -> Result<(), Error> {
-        positive("the factor of the stiffness", factor)?;
+        self.scale_springs(factor, factor.sqrt())
+    }
+
+    /// Makes every spring so many times as stiff, and so many times as damped.
+    ///
+    /// # Errors
+    /// The factor of the stiffness is not a finite number above 0, or that of the damping not one of at least 0.
+    pub fn scale_springs(&mut self, stiffness: f64, damping: f64) -> Result<(), Error> {
+        positive("the factor of the stiffness", stiffness)?;
+        at_least(0.0, "the factor of the damping", damping)?;
         let sheet = self.sheet.iter_mut().flat_map(Sheet::laws_mut);
         let list = self.list.iter_mut().map(|spring| &mut spring.law);
         for law in sheet.chain(list) {
-            law.stiffness *= factor;
-            law.damping *= factor.sqrt();
+            law.stiffness *= stiffness;
+            law.damping *= damping;
         }
         for Strip { of, .. } in &mut self.strips {
-            of.bending *= factor;
-            of.compression *= factor;
-            of.tension *= factor;
-            of.damping *= factor.sqrt();
+            of.bending *= stiffness;
+            of.compression *= stiffness;
+            of.tension *= stiffness;
+            of.damping *= damping;
         }
+        Ok(())
+    }
+
+    /// Takes over the springs of another network of the same particles. Those that have broken here stay broken.
+    ///
+    /// # Errors
+    /// The other has not as many particles.
+    pub fn copy_springs(&mut self, other: &Self) -> Result<(), Error> {
+        let (n, others) = (self.particles(), other.particles());
+        if n != others {
+            return Err(Error::Invalid(format!(
+                "springs of {others} particles are none for {n}"
+            )));
+        }
+        self.sheet = other.sheet;
+        self.list.clone_from(&other.list);
+        self.strips.clone_from(&other.strips);
+        self.leave_out_torn();
         Ok(())
     }
 

@@ -10,6 +10,7 @@ use winit::window::Window;
 
 use super::hud::{self, Readings};
 use super::layout;
+use super::panel::{self, Wish};
 use super::session::Session;
 use super::text::Text;
 use crate::{Failure, output, render, show};
@@ -83,9 +84,15 @@ impl Graphics {
         (self.config.width, self.config.height)
     }
 
-    /// Where this many panes are.
-    pub fn tiles(&self, panes: usize) -> Vec<Tile> {
-        layout::tiles(panes, self.size(), self.scale())
+    /// Where the panes are.
+    pub fn tiles(&self, session: &Session) -> Vec<Tile> {
+        let size = panel::leaves(session, self.size(), self.scale());
+        layout::tiles(session.panes.len(), size, self.scale())
+    }
+
+    /// Whether that key is held.
+    pub fn shift(&self) -> bool {
+        self.text.context.input(|input| input.modifiers.shift)
     }
 
     /// Pixels per point.
@@ -188,7 +195,7 @@ impl Graphics {
             .panes
             .iter()
             .map(|pane| pane.show.picture(session.camera, self.scale()))
-            .zip(self.tiles(session.panes.len()))
+            .zip(self.tiles(session))
             .collect();
         self.renderer.prepare(&self.gpu, &pictures);
         let mut encoder = self
@@ -206,26 +213,38 @@ impl Graphics {
         let text_view = frame
             .texture
             .create_view(&wgpu::TextureViewDescriptor::default());
-        let (before, again) = self.write_text(&mut encoder, &text_view, session);
+        let (before, again, wish) = self.write_text(&mut encoder, &text_view, session);
         self.gpu
             .queue
             .submit(before.into_iter().chain([encoder.finish()]));
         self.window.pre_present_notify();
         self.gpu.queue.present(frame);
         self.gpu.check()?;
+        if let Some(wish) = wish {
+            session.grant(wish);
+            return Ok(Outcome::Drawn(Some(Duration::ZERO)));
+        }
         Ok(Outcome::Drawn(again))
     }
 
-    /// The text, in a second pass over the picture: what to submit before it, and when it wants to be drawn again.
+    /// The text, in a second pass over the picture: what to submit before it, when it wants to be drawn again, and what a
+    /// hand in the panel wants.
     fn write_text(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,
         session: &Session,
-    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>) {
-        let input = self.egui_winit.take_egui_input(&self.window);
+    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Wish>) {
+        let mut input = self.egui_winit.take_egui_input(&self.window);
+        let right = panel::inset(session, self.size(), self.scale());
+        input.safe_area_insets = Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {
+            right,
+            ..Default::default()
+        }));
+        let mut wish = None;
         let mut output = self.text.lay_out(&self.gpu, input, |ctx| {
             hud::show(ctx, &session.panes, &session.readings);
+            wish = panel::show(ctx, session).or(wish);
         });
         self.egui_winit
             .handle_platform_output(&self.window, std::mem::take(&mut output.platform_output));
@@ -236,7 +255,7 @@ impl Graphics {
         let again = again.filter(|delay| *delay < Duration::from_mins(1));
         let size = (self.config.width, self.config.height);
         let before = self.text.paint(&self.gpu, encoder, view, size, output);
-        (before, again)
+        (before, again, wish)
     }
 
     /// Saves what is seen under the first free name: one pane without the text, several with what tells them apart.

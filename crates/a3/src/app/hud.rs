@@ -37,8 +37,8 @@ pub struct Readings {
     pub place: Option<Place>,
 }
 
-const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
-const FAINT: Color32 = Color32::from_rgb(92, 98, 114);
+pub const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
+pub const FAINT: Color32 = Color32::from_rgb(92, 98, 114);
 const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
 const SAFE: Color32 = Color32::from_rgb(12, 106, 52);
 const WARNING: Color32 = Color32::from_rgb(158, 84, 0);

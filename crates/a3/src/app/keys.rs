@@ -22,6 +22,8 @@ pub enum Action {
     Scrub(isize),
     Camera,
     Picture,
+    Panel,
+    WriteScene,
     Help,
     Quit,
 }
@@ -55,6 +57,8 @@ pub static KEYS: &[Binding] = &[
     bind(&["-"], Action::ShorterStep, "shorter step"),
     bind(&["c"], Action::Camera, "camera home"),
     bind(&["p"], Action::Picture, "save a picture"),
+    bind(&["Tab"], Action::Panel, "tune and plot"),
+    bind(&["f"], Action::WriteScene, "write a scene file"),
     bind(&["h", "?"], Action::Help, "this help"),
     bind(&["Esc"], Action::Quit, "quit"),
 ];
@@ -74,6 +78,7 @@ pub fn action(key: &Key) -> Option<Action> {
     let name = match key {
         Key::Named(NamedKey::Space) => "Space".to_owned(),
         Key::Named(NamedKey::Escape) => "Esc".to_owned(),
+        Key::Named(NamedKey::Tab) => "Tab".to_owned(),
         Key::Character(text) if text == " " => "Space".to_owned(),
         Key::Character(text) => text.to_lowercase(),
         _ => return None,
@@ -101,6 +106,7 @@ mod tests {
                 let typed = match key {
                     "Space" => Key::Named(NamedKey::Space),
                     "Esc" => Key::Named(NamedKey::Escape),
+                    "Tab" => Key::Named(NamedKey::Tab),
                     key => Key::Character(key.into()),
                 };
                 assert_eq!(action(&typed), Some(binding.action));

@@ -69,6 +69,11 @@ impl LimitWatch {
         self.next = Some(after + INTERVAL.max(IDLE * after.duration_since(begun)));
     }
 
+    /// Looks as soon as it is asked to: the scene is another one.
+    pub fn hurry(&mut self) {
+        self.next = None;
+    }
+
     /// The limit of another method, for the motion that was seen last.
     pub fn ask(&mut self, method: &Method) {
         let modes = self.mode.as_slice();

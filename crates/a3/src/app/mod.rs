@@ -7,6 +7,7 @@ mod keys;
 pub mod layout;
 mod limit;
 mod pane;
+mod panel;
 mod pick;
 mod reference;
 mod session;
@@ -164,7 +165,7 @@ impl App {
         let tiles = self
             .graphics
             .as_ref()
-            .map(|graphics| graphics.tiles(self.session.panes.len()));
+            .map(|graphics| graphics.tiles(&self.session));
         tiles.map_or(Tile::whole((1, 1)), |tiles| tiles[k])
     }
 
@@ -324,6 +325,13 @@ impl App {
     fn move_to(&mut self, position: PhysicalPosition<f64>) {
         let pointer = [position.x as f32, position.y as f32];
         let scale = self.graphics.as_ref().map_or(1.0, Graphics::scale);
+        if self.session.panel.open {
+            let panes = 0..self.session.panes.len();
+            let under = panes.into_iter().find(|k| self.tile(*k).contains(pointer));
+            self.session.panel.pane = under.unwrap_or(self.session.panel.pane);
+            // What is under the pointer there looks so.
+            self.redraw();
+        }
         let tile = self.tile(self.held);
         // A click is no drag, until it has gone too far.
         self.pressed.2 &= near(self.pressed.0, pointer, CLICK * scale);
@@ -454,7 +462,12 @@ impl ApplicationHandler for App {
         let Some(graphics) = &mut self.graphics else {
             return;
         };
-        let taken = graphics.on_event(&event);
+        // Keys are for the table of keys: the text takes none.
+        let shift = graphics.shift();
+        let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
+        let taken = !is_key && graphics.on_event(&event)
+            || panel::leaves(&self.session, graphics.size(), graphics.scale()).0 as f32
+                <= self.pointer[0];
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
@@ -470,12 +483,14 @@ impl ApplicationHandler for App {
                 self.redraw();
             }
             WindowEvent::Focused(false) => self.let_go(),
-            WindowEvent::KeyboardInput { event, .. }
-                if event.state == ElementState::Pressed && !taken =>
-            {
+            WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
                 if self.status.is_some() && event.logical_key == Key::Named(NamedKey::F12) {
                     graphics.lose_device();
                     self.redraw();
+                }
+                if self.session.press_in_panel(&event.logical_key, shift) {
+                    self.redraw();
+                    return;
                 }
                 let Some(action) = keys::action(&event.logical_key) else {
                     return;
@@ -516,6 +531,7 @@ impl ApplicationHandler for App {
                 self.session.camera.zoom(0.9f32.powf(notches));
                 self.redraw();
             }
+            WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. } => self.redraw(),
             WindowEvent::RedrawRequested if self.visible => self.frame(event_loop),
             _ => {}
         }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use a3_core::{Method, Simulation};
 
 use super::limit::LimitWatch;
+use super::panel::history::History;
 use crate::progress;
 use crate::show::Show;
 
@@ -27,6 +28,8 @@ pub struct Pane {
     pub error: Option<f64>,
     /// What it costs, once it is known.
     pub cost: Option<Cost>,
+    /// What the plots show.
+    pub history: History,
     /// Real time spent on steps.
     computing: Duration,
     /// Time (s), evaluations and computing when the cost was last taken.
@@ -52,6 +55,7 @@ impl Pane {
             stretch: None,
             error: None,
             cost: None,
+            history: History::default(),
             computing: Duration::ZERO,
             counted: (simulation.time(), simulation.work().total(), Duration::ZERO),
             simulation,
@@ -111,8 +115,12 @@ impl Pane {
 
     /// Energy and stretch of the state as it is now.
     pub fn read_state(&mut self) {
-        self.energy = self.simulation.energy().map(|energy| energy.total());
+        let energy = self.simulation.energy();
+        self.energy = energy.map(|energy| energy.total());
         self.stretch = self.simulation.largest_stretch();
+        let computing = self.computing.as_secs_f64();
+        self.history
+            .take(&self.simulation, energy, self.stretch, computing);
         self.watch.look(&self.simulation);
     }
 
@@ -138,6 +146,12 @@ impl Pane {
         self.counted = (self.simulation.time(), evaluations, self.computing);
     }
 
+    /// The scene's forces are other ones.
+    pub fn changed(&mut self) {
+        self.watch.hurry();
+        self.count();
+    }
+
     /// Back to the beginning.
     pub fn reset(&mut self) {
         self.simulation.reset();
@@ -150,6 +164,7 @@ impl Pane {
     pub fn set_simulation(&mut self, simulation: Simulation) {
         self.simulation = simulation;
         self.show.clear_trail();
+        self.history.clear();
         self.show.springs_of = None;
         (self.error, self.cost) = (None, None);
         self.watch = LimitWatch::default();

@@ -1,18 +1,21 @@
 //! Runs that keep up with real time. Knows no window.
 
 mod acts;
+mod save;
 
 use std::time::{Duration, Instant};
 
-use a3_core::{Method, Simulation, Vector3, scenes};
+use a3_core::{Grid, Method, Network, Simulation, Vector3, scenes};
 use a3_render::Camera;
 
 use super::history::History;
 use super::hud::Readings;
 use super::pane::Pane;
+use super::panel::{Panel, Tuning};
 use super::reference::Reference;
 use crate::Failure;
 use crate::cli;
+use crate::scene_file::Source;
 use crate::show::{self, Show};
 
 /// Real time a frame may spend on steps. What does not fit is not caught up: all runs are slower than real time then.
@@ -32,8 +35,12 @@ pub struct Session {
     pub panes: Vec<Pane>,
     pub camera: Camera,
     pub readings: Readings,
+    pub panel: Panel,
+    pub tuning: Tuning,
     /// The scene and grid asked for, to come back to.
     asked: cli::What,
+    /// The scene shown, and the grid that it was built with if not its own.
+    shown: (Source, Option<Grid>),
     /// Which of the scenes is shown: that of the user, if it is a file, and those of the table.
     at: usize,
     /// Where there are several panes.
@@ -89,6 +96,9 @@ impl Session {
                 paused: look.paused,
                 ..Readings::default()
             },
+            panel: Panel::default(),
+            tuning: Tuning::of(panes[0].simulation.scene()),
+            shown: (what.scene.clone(), what.grid),
             asked: what.clone(),
             at: scenes::SCENES
                 .iter()
@@ -107,6 +117,11 @@ impl Session {
     /// The first run: what is the same in all of them is asked of it.
     pub fn first(&self) -> &Simulation {
         &self.panes[0].simulation
+    }
+
+    /// Where the scene shown is from.
+    pub fn shown(&self) -> &Source {
+        &self.shown.0
     }
 
     /// Whether the next frame will look different by itself.
@@ -241,6 +256,21 @@ impl Session {
         if let Some(reference) = &mut self.reference {
             hand(reference.any_run());
         }
+    }
+
+    /// Changes something in every run, at the same time.
+    pub fn change_all(&mut self, change: impl FnMut(&mut Simulation)) {
+        self.align();
+        self.do_to_all(change);
+        for pane in &mut self.panes {
+            pane.changed();
+        }
+        self.read = None;
+    }
+
+    /// Changes the model of every run: a reset keeps that.
+    pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
+        self.change_all(|run| run.adjust(&change));
     }
 
     /// Brings several panes to the same time exactly, by a shorter step where need be: what a hand does from then on, it

@@ -33,7 +33,7 @@ impl Status {
         };
         let hands: Vec<_> = panes
             .iter()
-            .zip(graphics.tiles(panes.len()))
+            .zip(graphics.tiles(session))
             .map(|(pane, tile)| place(pane, tile).unwrap_or("-".into()))
             .collect();
         let each = |value: &dyn Fn(&Pane) -> String| {
@@ -41,7 +41,7 @@ impl Status {
             values.join(",")
         };
         let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} blown={} grabbed={grabbed} \
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} blown={} grabbed={grabbed} \
              slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
@@ -51,6 +51,7 @@ impl Status {
             run.swinging(),
             readings.paused,
             readings.help,
+            session.panel.open,
             run.blow_up().is_some(),
             readings.slowness,
             readings.place.is_some(),

@@ -1,6 +1,6 @@
 //! Charts for a paper, as SVG and PNG: lines of text and numbers in, a picture out. Knows nothing of simulation.
 
-mod axis;
+pub mod axis;
 mod contour;
 pub mod figure;
 mod layout;

@@ -69,6 +69,31 @@ impl Wind {
         }
     }
 
+    /// The same gusts, so many times as strong.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            breeze: self.breeze * factor,
+            waves: self.waves.map(|wave| Wave {
+                amplitude: wave.amplitude * factor,
+                ..wave
+            }),
+            ..*self
+        }
+    }
+
+    /// The wind whose time 0 is this one's time t (s).
+    #[must_use]
+    pub fn ahead(&self, t: f64) -> Self {
+        Self {
+            waves: self.waves.map(|wave| Wave {
+                phase: wave.phase - wave.rate * t,
+                ..wave
+            }),
+            ..*self
+        }
+    }
+
     /// What blows on triangles, if it does.
     #[must_use]
     pub fn air(&self) -> Option<Air> {

@@ -46,6 +46,23 @@ impl Network {
         !(self.is_torn(a, b) || self.is_torn(b, c) || self.is_torn(c, a))
     }
 
+    /// Leaves out springs between particles where one has broken.
+    pub(super) fn leave_out_torn(&mut self) {
+        if self.torn.is_empty() {
+            return;
+        }
+        let mut springs: Vec<Spring> = self.springs().collect();
+        if self.sheet.take().is_some() {
+            springs.sort_by_key(|s| ends(s.i, s.j));
+        }
+        springs.retain(|s| !self.is_torn(s.i, s.j));
+        self.list = springs;
+        let torn = std::mem::take(&mut self.torn);
+        self.strips
+            .retain(|strip| torn.binary_search(&ends(strip.of.i, strip.of.j)).is_err());
+        self.torn = torn;
+    }
+
     /// Breaks the springs that are too long at x (m), and those that go with them. How many they are.
     pub fn tear(&mut self, x: &[f64]) -> usize {
         let Some(limit) = self.tear else { return 0 };

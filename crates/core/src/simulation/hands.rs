@@ -22,7 +22,7 @@ const PULL_REACH: f64 = 0.05;
 const ROD: (f64, f64) = (0.95, 1.05);
 
 impl Simulation {
-    fn network_mut(&mut self) -> Option<&mut Network> {
+    pub(super) fn network_mut(&mut self) -> Option<&mut Network> {
         self.look_again();
         match &mut self.model {
             Model::FirstOrder(_) => None,
@@ -77,7 +77,7 @@ impl Simulation {
     }
 
     /// Pins particle i where it is, or swings it from there.
-    fn leave_pin(&mut self, i: usize) {
+    pub(super) fn leave_pin(&mut self, i: usize) {
         let swing = self.scene.swing.filter(|_| self.swinging);
         self.pin(
             i,

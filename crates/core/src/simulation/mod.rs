@@ -1,6 +1,7 @@
 //! Scene x method x time.
 
 mod hands;
+mod tuning;
 
 use std::ops::Range;
 
@@ -37,6 +38,8 @@ pub struct Simulation {
     /// The grabbed particle, and whether it was pinned before.
     grabbed: Option<(usize, bool)>,
     grabbed_sphere: Option<usize>,
+    /// Whether the scene's pins hold nothing.
+    unpinned: bool,
     blow_up: Option<BlowUp>,
     good: Good,
     middle: Vector3<f64>,
@@ -148,6 +151,7 @@ impl Simulation {
             swing_phase: 0.0,
             grabbed: None,
             grabbed_sphere: None,
+            unpinned: false,
             blow_up: None,
             good,
             middle,
@@ -495,7 +499,8 @@ impl Simulation {
             .map(|k| Cause::NotFinite { particle: k % n })
     }
 
-    /// Back to the beginning, with what was torn mended. Wind and swing stay on if they are; the hand lets go.
+    /// Back to the beginning, with what was torn mended. Wind and swing stay on if they are, and pins free;
+    /// the hand lets go.
     pub fn reset(&mut self) {
         let (windy, swinging) = (self.windy(), self.swinging);
         self.model = self.scene.model.clone();
@@ -508,6 +513,9 @@ impl Simulation {
             self.stepper = stepper;
         }
         (self.swinging, self.swing_phase) = (false, 0.0);
+        if std::mem::take(&mut self.unpinned) {
+            self.set_pinned(false);
+        }
         self.set_wind(windy);
         self.set_swinging(swinging);
     }

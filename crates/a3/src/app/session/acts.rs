@@ -5,6 +5,7 @@ use a3_render::Style;
 
 use super::super::keys::Action;
 use super::super::pane::{PORTION, Pane};
+use super::super::panel::Tuning;
 use super::super::reference::Reference;
 use super::{KEY_BUDGET, Session};
 use crate::scene_file::Source;
@@ -82,6 +83,11 @@ impl Session {
             Action::LongerStep => self.set_steps(true),
             Action::ShorterStep => self.set_steps(false),
             Action::Camera => self.camera = show::camera(self.first()),
+            Action::Panel => self.panel.open = !self.panel.open,
+            Action::WriteScene => match self.write_scene(at) {
+                Ok(name) => self.say(format!("wrote {name}")),
+                Err(why) => self.say(why),
+            },
             Action::Help => self.readings.help = !self.readings.help,
             Action::Picture | Action::Quit => {}
         }
@@ -122,6 +128,15 @@ impl Session {
         self.adapt();
     }
 
+    /// The step (s) or the tolerance of one pane.
+    pub fn set_step_of(&mut self, at: usize, setting: f64) {
+        match self.panes[at].simulation.set_setting(setting) {
+            Ok(()) => self.panes[at].count(),
+            Err(why) => self.say(why.to_string()),
+        }
+        self.adapt();
+    }
+
     fn adapt(&mut self) {
         if let Some(reference) = &mut self.reference {
             reference.adapt(&self.panes);
@@ -143,9 +158,10 @@ impl Session {
         } else {
             Source::find(name)
         };
-        let scene = source.and_then(|source| source.build(grid));
+        let scene = source.and_then(|source| Ok((source.build(grid)?, source)));
         match scene {
-            Ok(scene) => {
+            Ok((scene, source)) => {
+                self.shown = (source, grid);
                 self.camera = show::camera_of(&scene);
                 self.set_scene(&scene);
                 self.at = next;
@@ -174,6 +190,7 @@ impl Session {
             .then_some(scene.solver)
             .flatten();
         self.say(format!("loaded {} again", source.typed));
+        self.shown = (source.clone(), self.asked.grid);
         self.asked.scene = source;
         self.at = 0;
         let (windy, swinging) = (self.first().windy(), self.first().swinging());
@@ -209,6 +226,7 @@ impl Session {
         let simulations: Result<Vec<_>, Error> = self.panes.iter().map(&mut start).collect();
         match simulations {
             Ok(simulations) => {
+                self.tuning = Tuning::of(scene);
                 for (pane, simulation) in self.panes.iter_mut().zip(simulations) {
                     pane.set_simulation(simulation);
                 }

@@ -169,7 +169,10 @@ fn path(
     match (sine, shift) {
         (None, None) => Ok(Path::Still(from)),
         (Some(sine), None) => Ok(Path::Sine {
-            center: from,
+            center: match sine.center {
+                None => from,
+                Some(center) => finite(center).map_err(|why| ("sine.center", why))?,
+            },
             amplitude: finite(sine.amplitude).map_err(|why| ("sine.amplitude", why))?,
             rate: number(sine.rate).map_err(|why| ("sine.rate", why))?,
             phase: number(sine.phase).map_err(|why| ("sine.phase", why))?,
@@ -329,10 +332,9 @@ impl Description {
             });
         }
         scene.wind = self.wind(scene.model.network())?;
-        if let (true, Model::Network(network)) = (
-            self.wind.as_ref().is_some_and(|wind| wind.on),
-            &mut scene.model,
-        ) {
+        if let Model::Network(network) = &mut scene.model
+            && self.wind.as_ref().is_some_and(|wind| wind.on)
+        {
             network.set_wind(scene.wind);
         }
         self.how_it_runs(&mut scene)?;
@@ -405,7 +407,11 @@ impl Description {
         let n = assembly.masses.len();
         let between = springs(&self.springs, n).map_err(|why| Fault::new("springs", why))?;
         assembly.springs.extend(between);
-        let more = pins("", &self.pin, &assembly.positions, |_| None)?;
+        let given = self.state.as_ref().map(|state| &state.positions);
+        let given = given.filter(|positions| positions.len() == n);
+        let given = given.map(|all| all.iter().map(|p| Vector3::from(*p)).collect::<Vec<_>>());
+        let places = given.as_ref().unwrap_or(&assembly.positions);
+        let more = pins("", &self.pin, places, |_| None)?;
         assembly.pins.extend(more);
         let state: Vec<_> = column_major(&assembly.positions)
             .chain(column_major(&assembly.velocities))
@@ -587,6 +593,7 @@ impl Description {
                 "give one of the keys `force`, `force_per_mass` and `velocity`",
             ));
         };
+        let ahead = number(wind.ahead).map_err(|why| Fault::new("wind.ahead", why))?;
         let blow = finite(blow).map_err(|why| Fault::new(key, why))?;
         let air = [
             ("wind.density", wind.density, 1.2),
@@ -602,14 +609,14 @@ impl Description {
             } else {
                 mean(network.masses())
             };
-            return Ok(Some(Wind::new(wind.seed, blow * of_particles)));
+            return Ok(Some(Wind::new(wind.seed, blow * of_particles).ahead(ahead)));
         }
         for (key, given, usual) in air {
             at_least(0.0, "it", given.unwrap_or(usual)).map_err(|e| Fault::new(key, e))?;
         }
         let [density, drag, lift] = air.map(|(_, given, usual)| given.unwrap_or(usual));
         let air = Air::new(density, drag, lift).map_err(|e| Fault::new("wind", e))?;
-        Ok(Some(Wind::on_triangles(wind.seed, blow, air)))
+        Ok(Some(Wind::on_triangles(wind.seed, blow, air).ahead(ahead)))
     }
 }
 

@@ -5,6 +5,7 @@ mod build;
 mod fault;
 mod lattice;
 mod mesh;
+mod snapshot;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -74,7 +75,8 @@ pub struct Description {
     pub constraint: Vec<ConstraintSpec>,
     /// How fast what is off its constraint comes back (1/s); 10 if not given.
     pub feedback: Option<f64>,
-    /// Pins of any particles, by number. They come after those of the bodies, and instead of them.
+    /// Pins of any particles, by number. They come after those of the bodies, and instead of them. Where there is a
+    /// `state`, they are where that has them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
     /// Springs break when they are stretched to this many times their rest length. Without it, they do not.
@@ -111,7 +113,7 @@ pub struct Camera {
 #[serde(default, deny_unknown_fields)]
 pub struct WindSpec {
     /// Whether it blows from the beginning.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[serde(skip_serializing_if = "is_default")]
     pub on: bool,
     /// Another number, other gusts.
     pub seed: u64,
@@ -127,6 +129,9 @@ pub struct WindSpec {
     pub drag: Option<f64>,
     /// Its lift coefficient; 0.6 if not given.
     pub lift: Option<f64>,
+    /// The gusts are those of so much later (s).
+    #[serde(skip_serializing_if = "is_default")]
+    pub ahead: f64,
 }
 
 /// To and fro by `amplitude` (m), at `rate` (rad/s).
@@ -226,7 +231,7 @@ pub struct BallSpec {
     pub radius: f64,
 }
 
-/// `amplitude sin(rate t + phase)` from where it is.
+/// `amplitude sin(rate t + phase)` from where it is, or from `center`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sine {
@@ -237,6 +242,9 @@ pub struct Sine {
     /// In rad.
     #[serde(default)]
     pub phase: f64,
+    /// In m.
+    #[serde(default)]
+    pub center: Option<Triple>,
 }
 
 /// By so much in a straight line between two times.
@@ -313,6 +321,10 @@ pub struct BucklingSpec {
     pub bending: f64,
     /// Its stiffness while it is pressed and still straight (N/m).
     pub compression: f64,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// A state, a line for each particle.

@@ -1,0 +1,213 @@
+//! The panel beside the picture: knobs, and plots of what they do. Key Tab.
+
+pub mod history;
+mod knobs;
+mod plots;
+mod row;
+
+use egui::{Align2, Area, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
+use winit::keyboard::{Key, NamedKey};
+
+use super::hud::{FAINT, TEXT};
+use super::keys::Action;
+use super::session::Session;
+use knobs::{Dial, KNOBS, Knob, Turn};
+
+pub use knobs::Tuning;
+
+/// In points.
+const WIDTH: f32 = 304.0;
+/// The panel takes no more of a window's width than this share.
+const MOST: f32 = 0.6;
+const MARGIN: f32 = 14.0;
+const HEAD: f32 = 36.0;
+const FOOT: f32 = 46.0;
+/// Between groups of rows.
+const GAP: f32 = 7.0;
+
+/// What of the panel is no setting of a run.
+#[derive(Default)]
+pub struct Panel {
+    pub open: bool,
+    /// The row that keys turn, in the table.
+    row: usize,
+    /// The pane that it is about: the last that the pointer was over.
+    pub pane: usize,
+}
+
+/// What a hand in the panel wants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wish {
+    Choose(usize),
+    Turn(usize, Turn),
+    Write,
+}
+
+/// Whether the panel is seen: the help stands alone.
+fn is_shown(session: &Session) -> bool {
+    session.panel.open && !session.readings.help
+}
+
+/// Width of the panel in a window of that width (points).
+fn width(window: f32) -> f32 {
+    WIDTH.min((MOST * window).round())
+}
+
+/// What it leaves of a window of `size` (px), `scale` pixels per point.
+pub fn leaves(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
+    if !is_shown(session) {
+        return size;
+    }
+    let taken = (width(size.0 as f32 / scale) * scale).round() as u32;
+    (size.0.saturating_sub(taken).max(1), size.1)
+}
+
+/// What text has to keep clear of, on the right (points).
+pub fn inset(session: &Session, size: (u32, u32), scale: f32) -> f32 {
+    (size.0 - leaves(session, size, scale).0) as f32 / scale
+}
+
+/// The rows that mean something, by their numbers in the table.
+fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
+    let at = session.panel.pane.min(session.panes.len() - 1);
+    let rows = KNOBS.iter().enumerate();
+    rows.filter_map(|(k, knob)| Some((k, knob, (knob.read)(session, at)?)))
+        .collect()
+}
+
+impl Session {
+    /// Does what a key means while the panel is seen. Whether it means something there.
+    pub fn press_in_panel(&mut self, key: &Key, shift: bool) -> bool {
+        let Key::Named(name) = key else { return false };
+        if !is_shown(self) {
+            return false;
+        }
+        let rows: Vec<_> = rows(self).iter().map(|(k, ..)| *k).collect();
+        // In another scene the row may be gone: the next one above.
+        let at = rows.iter().rposition(|k| *k <= self.panel.row).unwrap_or(0);
+        let turn = match name {
+            NamedKey::ArrowUp | NamedKey::ArrowDown => {
+                let next = if *name == NamedKey::ArrowUp {
+                    at + rows.len() - 1
+                } else {
+                    at + 1
+                };
+                self.panel.row = rows[next % rows.len()];
+                return true;
+            }
+            NamedKey::ArrowLeft | NamedKey::ArrowRight => Turn::By {
+                up: *name == NamedKey::ArrowRight,
+                other: shift,
+            },
+            NamedKey::Enter => Turn::Toggle,
+            _ => return false,
+        };
+        self.grant(Wish::Turn(rows[at], turn));
+        true
+    }
+
+    /// Does what a hand in the panel wants.
+    pub fn grant(&mut self, wish: Wish) {
+        let at = self.panel.pane.min(self.panes.len() - 1);
+        match wish {
+            Wish::Choose(row) => self.panel.row = row,
+            Wish::Turn(row, turn) => {
+                self.panel.row = row;
+                KNOBS[row].turn(self, at, turn);
+            }
+            Wish::Write => {
+                self.act(Action::WriteScene, at);
+            }
+        }
+    }
+}
+
+/// Shows the panel, if it is open. What a hand in it wants.
+pub fn show(ctx: &Context, session: &Session) -> Option<Wish> {
+    if !is_shown(session) {
+        return None;
+    }
+    let window = ctx.viewport_rect();
+    let rect = Rect::from_min_max(
+        pos2(window.right() - width(window.width()), window.top()),
+        window.right_bottom(),
+    );
+    let mut wish = None;
+    Area::new(Id::unique("panel"))
+        .fixed_pos(rect.min)
+        .constrain_to(window)
+        .fade_in(false)
+        .show(ctx, |ui| {
+            ui.allocate_rect(rect, Sense::click());
+            ui.painter().rect_filled(rect, 0.0, row::SHEET);
+            ui.painter()
+                .vline(rect.left(), rect.y_range(), Stroke::new(1.0, row::EDGE));
+            let inner = rect.shrink2(vec2(MARGIN, 0.0));
+            head(ui, inner, session);
+            let rows = rows(session);
+            let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
+            let chosen = chosen.unwrap_or(0);
+            // In a low window as many as fit, the chosen one among them.
+            let room = inner.bottom() - FOOT - (inner.top() + HEAD);
+            let fit = ((room / row::HEIGHT) as usize).max(1);
+            let gap = if fit > rows.len() { GAP } else { 0.0 };
+            let first = (chosen + 1).saturating_sub(fit);
+            let mut top = inner.top() + HEAD;
+            for (n, (k, knob, dial)) in rows.iter().enumerate().skip(first).take(fit) {
+                if knob.apart && n > first {
+                    top += gap;
+                }
+                let place =
+                    Rect::from_min_size(pos2(inner.left(), top), vec2(inner.width(), row::HEIGHT));
+                wish = row::show(ui, place, *k, knob.name, dial, n == chosen).or(wish);
+                top += row::HEIGHT;
+            }
+            wish = foot(ui, inner).or(wish);
+            let room = Rect::from_min_max(
+                pos2(inner.left(), top + 12.0),
+                pos2(inner.right(), inner.bottom() - FOOT),
+            );
+            let pane = &session.panes[session.panel.pane.min(session.panes.len() - 1)];
+            plots::draw(ui.painter(), room, &pane.history);
+        });
+    wish
+}
+
+fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
+    let painter = ui.painter();
+    let line = inner.top() + 19.0;
+    let words = match session.panes.len() {
+        1 => "Tuning".into(),
+        count => format!(
+            "Tuning  pane {} of {count}",
+            session.panel.pane.min(count - 1) + 1
+        ),
+    };
+    let at = pos2(inner.left(), line);
+    painter.text(
+        at,
+        Align2::LEFT_CENTER,
+        words,
+        FontId::proportional(17.0),
+        TEXT,
+    );
+    let at = pos2(inner.right(), line);
+    painter.text(
+        at,
+        Align2::RIGHT_CENTER,
+        "Tab",
+        FontId::proportional(12.5),
+        FAINT,
+    );
+}
+
+/// The button.
+fn foot(ui: &egui::Ui, inner: Rect) -> Option<Wish> {
+    let rect = Rect::from_min_max(
+        pos2(inner.left(), inner.bottom() - FOOT + 8.0),
+        pos2(inner.right(), inner.bottom() - 10.0),
+    );
+    let response = ui.interact(rect, Id::unique("write scene"), Sense::click());
+    row::button(ui, rect, &response, "write scene", "f");
+    response.clicked().then_some(Wish::Write)
+}

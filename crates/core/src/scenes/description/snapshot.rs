@@ -1,0 +1,155 @@
+//! A description of a run as it is now, so that another goes on from there. Its clock begins at 0 again: what depends on
+//! time is shifted.
+
+use super::{Description, Pin, Shift, Sine, SpringSpec, State, Triple};
+use crate::network::Network;
+use crate::path::Path;
+use crate::scenes::Model;
+
+impl Description {
+    /// Makes the springs of every body so many times as stiff, and so many times as damped.
+    pub fn scale_springs(&mut self, stiffness: f64, damping: f64) {
+        // Damping over stiffness, and damping over the critical one, which grows with the root of the stiffness.
+        let (time, ratio) = (damping / stiffness, damping / stiffness.sqrt());
+        let scale = |number: &mut Option<f64>, factor: f64| {
+            *number = number.map(|number| number * factor);
+        };
+        let scale_list = |springs: &mut Vec<SpringSpec>| {
+            for (_, _, k, _, c) in springs {
+                *k *= stiffness;
+                *c *= damping;
+            }
+        };
+        for cloth in &mut self.cloth {
+            cloth.stiffness = cloth.stiffness.map(|k| k * stiffness);
+            scale(&mut cloth.damping, time);
+            scale(&mut cloth.damping_ratio, ratio);
+        }
+        for jelly in &mut self.jelly {
+            jelly.stiffness = jelly.stiffness.map(|k| k * stiffness);
+            scale(&mut jelly.damping, time);
+            scale(&mut jelly.damping_ratio, ratio);
+        }
+        for mesh in &mut self.mesh {
+            mesh.stiffness = mesh.stiffness.map(|k| k * stiffness);
+            scale(&mut mesh.damping, time);
+            scale(&mut mesh.damping_ratio, ratio);
+        }
+        for chain in &mut self.chain {
+            chain.stiffness *= stiffness;
+            chain.damping *= damping;
+        }
+        if let Some(particles) = &mut self.particles {
+            scale_list(&mut particles.springs);
+        }
+        scale_list(&mut self.springs);
+    }
+
+    /// Blows so many times as strongly, if there is wind.
+    pub fn scale_wind(&mut self, factor: f64) {
+        if let Some(wind) = &mut self.wind {
+            for force in [&mut wind.force, &mut wind.force_per_mass] {
+                *force = force.map(|force| force.map(|f| f * factor));
+            }
+        }
+    }
+
+    /// Begins with the state y at time t (s), and with what pulls and stands in the way there: pins, spheres, floor, wind,
+    /// gravity and drag. Springs stay as they are described, torn ones too.
+    pub fn begin_with(&mut self, model: &Model, t: f64, y: &[f64]) {
+        let n = model.particles();
+        let rows = |part: &[f64]| {
+            (0..n)
+                .map(|i| [part[i], part[n + i], part[2 * n + i]])
+                .collect()
+        };
+        let mut parts = y.chunks_exact(3 * n);
+        self.state = Some(State {
+            positions: parts.next().map(rows).unwrap_or_default(),
+            velocities: parts.next().map(rows).unwrap_or_default(),
+        });
+        let Some(network) = model.network() else {
+            return;
+        };
+        self.gravity = network.gravity().map(Into::into);
+        (self.drag, self.drag_per_mass) = (network.drag(), None);
+        self.floor = network.floor().map(|floor| floor.height);
+        if let Some(wind) = &mut self.wind {
+            wind.on = network.wind().is_some();
+            wind.ahead += t;
+        }
+        for (described, sphere) in self.sphere.iter_mut().zip(network.spheres()) {
+            described.center = sphere.path.at(t).position.into();
+            described.radius = sphere.radius;
+            (described.sine, described.shift) = motion(&sphere.path, t);
+        }
+        for pins in self.body_pins() {
+            pins.clear();
+        }
+        self.pin = pins(network, t);
+    }
+
+    fn body_pins(&mut self) -> impl Iterator<Item = &mut Vec<Pin>> {
+        let cloths = self.cloth.iter_mut().map(|body| &mut body.pin);
+        let jellies = self.jelly.iter_mut().map(|body| &mut body.pin);
+        let meshes = self.mesh.iter_mut().map(|body| &mut body.pin);
+        let chains = self.chain.iter_mut().map(|body| &mut body.pin);
+        let particles = self.particles.iter_mut().map(|body| &mut body.pin);
+        cloths
+            .chain(jellies)
+            .chain(meshes)
+            .chain(chains)
+            .chain(particles)
+    }
+}
+
+/// The pins as they go on from time t (s): those that move alike together.
+fn pins(network: &Network, t: f64) -> Vec<Pin> {
+    let mut pins: Vec<Pin> = vec![];
+    for (i, path) in network.pins() {
+        let (sine, shift) = motion(&path, t);
+        match pins
+            .iter_mut()
+            .find(|pin| pin.sine == sine && pin.shift == shift)
+        {
+            Some(pin) => pin.particles.push(i),
+            None => pins.push(Pin {
+                particles: vec![i],
+                sine,
+                shift,
+                ..Pin::default()
+            }),
+        }
+    }
+    pins
+}
+
+/// How a path goes on from where it is at time t (s), which is 0 from then on.
+fn motion(path: &Path, t: f64) -> (Option<Sine>, Option<Shift>) {
+    match *path {
+        Path::Sine {
+            center,
+            amplitude,
+            rate,
+            phase,
+        } => {
+            let sine = Sine {
+                amplitude: amplitude.into(),
+                rate,
+                phase: rate * t + phase,
+                center: Some(center.into()),
+            };
+            (Some(sine), None)
+        }
+        Path::Line { to, start, end, .. } if t < end => {
+            let by: Triple = (to - path.at(t).position).into();
+            let shift = Shift {
+                by,
+                start: (start - t).max(0.0),
+                end: end - t,
+            };
+            (None, Some(shift))
+        }
+        Path::Still(_) | Path::Line { .. } => (None, None),
+    }
+}
