@@ -18,6 +18,19 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
+/// In the order of key t, after the cloth.
+const SCENES: [&str; 9] = [
+    "simple",
+    "pendulum",
+    "chain",
+    "mit",
+    "mit-sphere",
+    "double-pendulum",
+    "flag",
+    "jelly",
+    "cloth",
+];
+
 const PATIENCE: Duration = Duration::from_secs(30);
 
 fn quiet(program: &str) -> Command {
@@ -440,7 +453,7 @@ fn keys() {
     let picture = image::open(&picture).unwrap();
     assert_eq!((picture.width(), picture.height()), (1280, 720));
 
-    for scene in ["simple", "pendulum", "chain", "mit", "mit-sphere", "cloth"] {
+    for scene in SCENES {
         app.press_for("t", "scene", scene);
     }
     until("some time", || (app.number("time")? > 1.0).then_some(()));
@@ -813,7 +826,7 @@ fn comparing() {
     }
 
     // The next scene is there in both panes, and a pull in the right one is a pull in both.
-    for scene in ["pendulum", "chain", "mit", "mit-sphere", "cloth"] {
+    for scene in &SCENES[1..] {
         app.press_for("t", "scene", scene);
     }
     for _ in 0..12 {
