@@ -90,11 +90,6 @@ impl Graphics {
         layout::tiles(session.panes.len(), size, self.scale())
     }
 
-    /// Whether that key is held.
-    pub fn shift(&self) -> bool {
-        self.text.context.input(|input| input.modifiers.shift)
-    }
-
     /// Pixels per point.
     pub fn scale(&self) -> f32 {
         self.window.scale_factor() as f32

@@ -77,6 +77,7 @@ pub fn open(mut session: Session, status: bool, watch: Option<Watch>) -> Result<
         window: None,
         last: Instant::now(),
         pointer: [0.0; 2],
+        shift: false,
         hand: Hand::Empty,
         button: None,
         pressed: ([f32::INFINITY; 2], Instant::now(), false),
@@ -133,6 +134,8 @@ struct App {
     last: Instant,
     /// In px from the left and from the top.
     pointer: [f32; 2],
+    /// Whether that key is held.
+    shift: bool,
     hand: Hand,
     /// The pane in which it began.
     held: usize,
@@ -463,7 +466,6 @@ impl ApplicationHandler for App {
             return;
         };
         // Keys are for the table of keys: the text takes none.
-        let shift = graphics.shift();
         let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
         let taken = !is_key && graphics.on_event(&event)
             || panel::leaves(&self.session, graphics.size(), graphics.scale()).0 as f32
@@ -482,13 +484,14 @@ impl ApplicationHandler for App {
                 self.say_status();
                 self.redraw();
             }
+            WindowEvent::ModifiersChanged(held) => self.shift = held.state().shift_key(),
             WindowEvent::Focused(false) => self.let_go(),
             WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
                 if self.status.is_some() && event.logical_key == Key::Named(NamedKey::F12) {
                     graphics.lose_device();
                     self.redraw();
                 }
-                if self.session.press_in_panel(&event.logical_key, shift) {
+                if self.session.press_in_panel(&event.logical_key, self.shift) {
                     self.redraw();
                     return;
                 }

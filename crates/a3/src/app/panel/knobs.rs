@@ -270,24 +270,23 @@ impl Scale {
 
     /// The next value up or down: one of those that are a step apart.
     fn next(&self, value: f64, up: bool, other: bool) -> f64 {
-        // A hair, so that what is on a rung but for rounding is on it.
-        let rung = |x: f64| {
+        // What is on a rung but for rounding is on it.
+        let rung = |x: f64, hair: f64| {
             if up {
-                (x + 1e-3).floor() + 1.0
+                (x + hair).floor() + 1.0
             } else {
-                (x - 1e-3).ceil() - 1.0
+                (x - hair).ceil() - 1.0
             }
         };
         match self {
             Self::Linear { from, to, step } => {
                 let step = if other { 0.1 * step } else { *step };
-                short((rung(value / step) * step).clamp(*from, *to), 6)
+                short((rung(value / step, 1e-3) * step).clamp(*from, *to), 6)
             }
             Self::Log { from, to } => {
-                let rungs = if other { 100.0 } else { 10.0 };
-                // Three digits are less than a hundredth of a decade.
-                let near = (value.log10() * rungs * 10.0).round() / 10.0;
-                let next = 10_f64.powf(rung(near) / rungs);
+                // Three digits are off by up to a fifth of a hundredth of a decade.
+                let (rungs, hair) = if other { (100.0, 0.25) } else { (10.0, 0.025) };
+                let next = 10_f64.powf(rung(value.log10() * rungs, hair) / rungs);
                 short(next, 3).clamp(*from, *to)
             }
             Self::Whole { from, to } => {
@@ -481,7 +480,7 @@ fn sphere(session: &Session, _: usize) -> Option<Dial> {
         scale: Scale::Linear {
             from: 0.1 * own,
             to: 2.0 * own,
-            step: 0.02 * round_up(own),
+            step: 0.05 * round_up(own),
         },
         words: format!("{} m", short(value, 3)),
     })

@@ -211,3 +211,6 @@ fn foot(ui: &egui::Ui, inner: Rect) -> Option<Wish> {
     row::button(ui, rect, &response, "write scene", "f");
     response.clicked().then_some(Wish::Write)
 }
+
+#[cfg(test)]
+mod tests;

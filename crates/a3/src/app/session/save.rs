@@ -99,3 +99,136 @@ impl Session {
         description
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::keys::Action;
+    use super::super::tests::session;
+    use super::*;
+    use a3_core::{Network, Simulation, Vector3, scenes};
+
+    use crate::scene_file::Source;
+
+    fn forces(run: &Simulation) -> Vec<f64> {
+        let mut f = vec![0.0; run.state().len()];
+        run.model().system().eval_f(run.time(), run.state(), &mut f);
+        f
+    }
+
+    /// What was written, read again: the same state to the last digit, and the same forces.
+    fn check(session: &Session, path: &Path) {
+        let source = Source::find(path.to_str().unwrap()).unwrap();
+        let run = session.first();
+        let scene = source.build(None).unwrap();
+        let name = &run.scene().name;
+        assert_eq!(&scene.name, name);
+        assert_eq!(
+            scene.solver.map(|solver| solver.name),
+            Some(run.method().name)
+        );
+        assert_eq!(scene.step, Some(run.setting()));
+        let again = Simulation::new(scene, run.method(), run.setting()).unwrap();
+        assert_eq!(again.state(), run.state(), "{name}");
+        for (a, b) in forces(run).into_iter().zip(forces(&again)) {
+            assert!((a - b).abs() <= 1e-12 * a.abs().max(1.0), "{name}: {a} {b}");
+        }
+        let eye = crate::show::camera_of(again.scene()).eye();
+        assert!((eye - session.camera.eye()).norm() < 1e-4);
+        let pins = |run: &Simulation| {
+            let network = run.model().network();
+            let pins = network.into_iter().flat_map(Network::pins);
+            let free = pins.filter(|(i, _)| run.grabbed() != Some(*i));
+            free.map(|(i, _)| i).collect::<Vec<_>>()
+        };
+        assert_eq!(pins(&again), pins(run), "{name}");
+    }
+
+    /// Runs for a second of simulated time, in frames.
+    fn run_on(session: &mut Session) {
+        for _ in 0..60 {
+            session.tick(1.0 / 60.0);
+        }
+    }
+
+    fn written(session: &Session, folder: &Path) -> PathBuf {
+        let path = folder.join("scene.toml");
+        std::fs::write(&path, session.scene_text(0).unwrap()).unwrap();
+        path
+    }
+
+    #[test]
+    fn every_scene_goes_on_where_it_was_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut session = session(&["r", "0.005"]);
+        for entry in scenes::SCENES {
+            assert_eq!(session.first().scene().name, entry.name);
+            session.tuning.stiffness = 1.5;
+            session.tuning.gusts = 2.0;
+            session.adjust(|network| {
+                network.scale_springs(1.5, 1.0).unwrap();
+                network.set_gravity(Vector3::new(0.0, -5.0, 0.0));
+                network.set_drag(0.03).unwrap();
+                network.remove_floor();
+                for k in 0..network.spheres().len() {
+                    network.resize_sphere(k, 1.25).unwrap();
+                }
+            });
+            session.change_all(|run| {
+                if let Some(wind) = run.scene().wind {
+                    run.change_wind(wind.scaled(2.0));
+                }
+            });
+            session.act(Action::Wind, 0);
+            session.act(Action::Swing, 0);
+            session.camera.orbit(0.4, 0.2);
+            run_on(&mut session);
+            check(&session, &written(&session, folder.path()));
+            // In the hand, of which the file knows nothing: what is free stays free.
+            let last = session.first().particles() - 1;
+            session.grab(last);
+            session.pull(Vector3::new(0.3, 0.1, 0.2));
+            session.tick(0.01);
+            let text = std::fs::read_to_string(written(&session, folder.path())).unwrap();
+            assert!(text.starts_with(&format!("# The scene {} as it was at t = ", entry.name)));
+            let source = Source::find(folder.path().join("scene.toml").to_str().unwrap()).unwrap();
+            let scene = source.build(None).unwrap();
+            let network = scene.model.network();
+            assert!(network.is_none_or(|network| !network.is_pinned(last)));
+            session.release();
+            session.act(Action::NextScene, 0);
+        }
+    }
+
+    #[test]
+    fn a_grid_of_ones_own_is_written_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut session = session(&["r", "0.002", "--grid", "12x9"]);
+        session.tick(0.1);
+        check(&session, &written(&session, folder.path()));
+    }
+
+    #[test]
+    fn it_is_written_beside_its_scene_and_finds_the_mesh() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(
+            folder.path().join("leaf.obj"),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n",
+        )
+        .unwrap();
+        let path = folder.path().join("leaf.toml");
+        std::fs::write(
+            &path,
+            "gravity = [0, -9.81, 0]\n[[mesh]]\nfile = 'leaf.obj'\ndensity = 0.3\nstiffness = [40, 10]\n\
+             damping_ratio = 0.1\npin = [{ at = ['top'] }]\n",
+        )
+        .unwrap();
+        let mut session = session(&["r", "0.005", "--scene", path.to_str().unwrap()]);
+        session.tick(0.1);
+        for k in 1..=2 {
+            let name = session.write_scene(0).unwrap();
+            let expected = folder.path().join(format!("a3-leaf-{k}.toml"));
+            assert_eq!(name, expected.to_str().unwrap());
+            check(&session, &expected);
+        }
+    }
+}
