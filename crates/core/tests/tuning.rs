@@ -229,3 +229,39 @@ fn paths_go_on_from_where_they_are() {
         }
     }
 }
+
+/// Boxes and capsules that move are where they were, and go on as they did; buckling strips are as stiff as they were.
+#[test]
+fn obstacles_and_strips_go_on_too() {
+    let text = "\
+box = [{ center = [0, -5, 0], size = [1, 2, 3], sine = { amplitude = [1, 0, 0], rate = 2 } }]
+capsule = [{ from = [0, -9, 0], to = [1, -9, 0], radius = 0.1, shift = { by = [1, 2, 3], end = 4 } }]
+
+[[cloth]]
+grid = [4, 5]
+spacing = 0.1
+mass = 0.01
+stiffness = [10, 5, 2]
+buckling = { bending = 0.0001, compression = 10 }
+";
+    let no_files = &mut |_: &str| Err(String::new());
+    let mut description = Description::parse(text).unwrap();
+    let mut run = start(description.build(None, no_files).unwrap(), "rk4", 0.01);
+    run.adjust(|network| network.scale_springs(3.0, 1.0).unwrap());
+    run.advance_to(1.5).unwrap();
+    description.scale_springs(3.0, 1.0);
+    description.begin_with(run.model(), run.time(), run.state());
+    let again = start(description.build(None, no_files).unwrap(), "rk4", 0.01);
+    let (now, then) = (network(&run), network(&again));
+    for later in [0.0, 0.7, 9.0] {
+        let paths = |network: &Network, t: f64| {
+            let capsule = network.capsules()[0];
+            let ends = capsule.ends.map(|end| end + capsule.path.at(t).position);
+            [network.boxes()[0].path.at(t).position, ends[0], ends[1]]
+        };
+        for (a, b) in paths(now, 1.5 + later).iter().zip(paths(then, later)) {
+            assert!((a - b).norm() < 1e-12, "{later}: {a} {b}");
+        }
+    }
+    assert!(now.buckling().eq(then.buckling()));
+}

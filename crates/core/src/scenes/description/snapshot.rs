@@ -1,7 +1,7 @@
 //! A description of a run as it is now, so that another goes on from there. Its clock begins at 0 again: what depends on
 //! time is shifted.
 
-use super::{Description, Pin, Shift, Sine, SpringSpec, State, Triple};
+use super::{BucklingSpec, Description, Pin, Shift, Sine, SpringSpec, State, Triple};
 use crate::network::Network;
 use crate::path::Path;
 use crate::scenes::Model;
@@ -14,6 +14,16 @@ impl Description {
         let scale = |number: &mut Option<f64>, factor: f64| {
             *number = number.map(|number| number * factor);
         };
+        let scale_strips = |buckling: &mut Option<BucklingSpec>| {
+            if let Some(BucklingSpec {
+                bending,
+                compression,
+            }) = buckling
+            {
+                *bending *= stiffness;
+                *compression *= stiffness;
+            }
+        };
         let scale_list = |springs: &mut Vec<SpringSpec>| {
             for (_, _, k, _, c) in springs {
                 *k *= stiffness;
@@ -22,6 +32,7 @@ impl Description {
         };
         for cloth in &mut self.cloth {
             cloth.stiffness = cloth.stiffness.map(|k| k * stiffness);
+            scale_strips(&mut cloth.buckling);
             scale(&mut cloth.damping, time);
             scale(&mut cloth.damping_ratio, ratio);
         }
@@ -36,6 +47,7 @@ impl Description {
             scale(&mut mesh.damping_ratio, ratio);
         }
         for chain in &mut self.chain {
+            scale_strips(&mut chain.buckling);
             chain.stiffness *= stiffness;
             chain.damping *= damping;
         }
@@ -48,8 +60,12 @@ impl Description {
     /// Blows so many times as strongly, if there is wind.
     pub fn scale_wind(&mut self, factor: f64) {
         if let Some(wind) = &mut self.wind {
-            for force in [&mut wind.force, &mut wind.force_per_mass] {
-                *force = force.map(|force| force.map(|f| f * factor));
+            for blow in [
+                &mut wind.force,
+                &mut wind.force_per_mass,
+                &mut wind.velocity,
+            ] {
+                *blow = blow.map(|blow| blow.map(|x| x * factor));
             }
         }
     }
@@ -82,6 +98,16 @@ impl Description {
             described.center = sphere.path.at(t).position.into();
             described.radius = sphere.radius;
             (described.sine, described.shift) = motion(&sphere.path, t);
+        }
+        for (described, cuboid) in self.boxes.iter_mut().zip(network.boxes()) {
+            described.center = cuboid.path.at(t).position.into();
+            (described.sine, described.shift) = motion(&cuboid.path, t);
+        }
+        for (described, capsule) in self.capsule.iter_mut().zip(network.capsules()) {
+            let here = capsule.path.at(t).position;
+            described.from = (here + capsule.ends[0]).into();
+            described.to = (here + capsule.ends[1]).into();
+            (described.sine, described.shift) = motion(&capsule.path, t);
         }
         for pins in self.body_pins() {
             pins.clear();
