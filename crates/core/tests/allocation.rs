@@ -117,3 +117,20 @@ fn no_step_that_tears_nothing_allocates() {
         }
     }
 }
+
+/// What a method has made room for is made anew when the scene is adjusted, not while it steps.
+#[test]
+fn no_step_after_an_adjustment_allocates() {
+    for method in integrators::METHODS {
+        let mut scene = scenes::find("cloth").unwrap().build(None).unwrap();
+        let own = scene.model.network().unwrap().clone();
+        if let Model::Network(network) = &mut scene.model {
+            network.scale_springs(1.0, 0.0).unwrap();
+        }
+        let mut run = Simulation::new(scene, method, method.default_setting).unwrap();
+        run.take_steps(1).unwrap();
+        run.adjust(|network| network.copy_springs(&own).unwrap());
+        let count = allocations(|| run.take_steps(20).unwrap());
+        assert_eq!(count, 0, "{}", method.name);
+    }
+}

@@ -196,6 +196,19 @@ fn a_run_goes_on_from_its_description() {
     }
 }
 
+#[test]
+fn what_was_freed_is_described_as_free() {
+    let mut run = start(scene("cloth"), "rk4", 0.01);
+    run.set_pinned(false);
+    run.advance_to(0.1).unwrap();
+    let mut description = scenes::find("cloth").unwrap().description().unwrap();
+    description.begin_with(run.model(), run.time(), run.state());
+    let scene = description
+        .build(None, &mut |_| Err("none".into()))
+        .unwrap();
+    assert_eq!(scene.model.network().unwrap().pins().count(), 0);
+}
+
 /// A path in a straight line is gone on with too, before it, on it and after it; and so is that of a sphere.
 #[test]
 fn paths_go_on_from_where_they_are() {

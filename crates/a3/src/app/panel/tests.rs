@@ -275,6 +275,25 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
 }
 
 #[test]
+fn another_scene_is_not_tuned() {
+    let mut session = opened(&["r", "0.005"]);
+    for k in 2..=5 {
+        session.grant(Wish::Turn(
+            k,
+            Turn::By {
+                up: true,
+                other: false,
+            },
+        ));
+    }
+    session.act(Action::NextScene, 0);
+    session.act(Action::NextScene, 0);
+    for (_, knob, dial) in rows(&session).iter().skip(2) {
+        assert_eq!(dial.value, dial.own, "{}", knob.name);
+    }
+}
+
+#[test]
 fn the_limit_follows_the_stiffness() {
     let mut session = opened(&["r", "0.005", "--scene", "mit", "--paused"]);
     session.read_state();
