@@ -51,13 +51,14 @@ fn on_the_circle_the_error_is_the_known_one() {
     }
 }
 
-/// Obstacles that are hit and air that comes from the other side: the motion has kinks, which no order sees through.
-const KINKED: [&str; 3] = ["mit-sphere", "flag", "jelly"];
+/// Obstacles that are hit: the motion has kinks, which no order sees through.
+const KINKED: [&str; 2] = ["mit-sphere", "jelly"];
 
 /// The floor is what three independent runs disagree by, and no smaller than the error of the reference itself.
 #[test]
 fn references_agree_with_themselves() {
-    for entry in scenes::SCENES {
+    // That of the flag takes three million evaluations.
+    for entry in scenes::SCENES.iter().filter(|entry| entry.name != "flag") {
         let scene = entry.build(None).unwrap();
         let horizon = horizon(&scene, GO_ON).unwrap().unwrap();
         let reference = reference(&scene, horizon.until);
