@@ -7,9 +7,9 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use crate::Failure;
 use crate::app::Session;
 use crate::scene_file::Source;
+use crate::{Failure, output};
 
 /// Physical simulation of mass-spring systems: pull at cloth, and see which integrator holds.
 #[derive(Parser)]
@@ -577,7 +577,7 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     ) {
-        return error.print().map_err(Failure::run);
+        return output::said(error.print());
     }
     let text = error.render().to_string();
     // The first paragraph says it; usage and hints follow.

@@ -11,15 +11,15 @@ use crate::interrupt::Temporary;
 
 /// `Ok` if the path ends as it should and its folder is there: said before the work, not after.
 pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
-    let ends_in = |extension: &&str| {
-        path.extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case(extension))
-    };
-    if !extensions.iter().any(ends_in) {
+    if !extensions.iter().any(|extension| ends_in(path, extension)) {
+        let (last, others) = extensions.split_last().unwrap_or((&"", &[]));
+        let others = match others {
+            [] => String::new(),
+            others => format!("{} or .", others.join(", .")),
+        };
         return Err(Failure::usage(format!(
-            "{}: the file to write ends in .{}",
+            "{}: the file to write ends in .{others}{last}",
             path.display(),
-            extensions.join(" or .")
         )));
     }
     if path.is_dir() {
@@ -40,6 +40,12 @@ pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     }
 }
 
+/// Whether that is its extension, in capitals or not.
+pub fn ends_in(path: &Path, extension: &str) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case(extension))
+}
+
 fn folder(path: &Path) -> PathBuf {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.into(),
@@ -50,10 +56,16 @@ fn folder(path: &Path) -> PathBuf {
 /// Writes to standard output. A reader that has seen enough, such as `head`, is no failure.
 pub fn say(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
-    match stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-    {
+    said(
+        stdout
+            .write_all(text.as_bytes())
+            .and_then(|()| stdout.flush()),
+    )
+}
+
+/// What became of a write to standard output.
+pub fn said(written: io::Result<()>) -> Result<(), Failure> {
+    match written {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::run(format!("standard output: not written: {e}")))
         }

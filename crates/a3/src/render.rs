@@ -40,6 +40,8 @@ pub struct Painter {
     gpu: Gpu,
     offscreen: Offscreen,
     renderer: Renderer,
+    /// Springs that had broken when the topology was made.
+    tears: usize,
     camera: Camera,
 }
 
@@ -52,6 +54,7 @@ impl Painter {
         let topology = show::topology(simulation);
         Ok(Self {
             renderer: Renderer::new(&gpu, OFFSCREEN_FORMAT, samples, &topology),
+            tears: simulation.tears(),
             camera: show::camera(simulation),
             offscreen,
             gpu,
@@ -60,6 +63,11 @@ impl Painter {
 
     /// The run as it is now: rows from the top, four bytes a pixel.
     pub fn draw(&mut self, show: &mut Show, simulation: &Simulation) -> Result<Vec<u8>, Failure> {
+        if simulation.tears() != self.tears {
+            self.tears = simulation.tears();
+            let topology = show::topology(simulation);
+            self.renderer.set_topology_of(&self.gpu, 0, &topology);
+        }
         show.compose(simulation);
         let picture = show.picture(self.camera, scale(self.offscreen.size()));
         self.offscreen

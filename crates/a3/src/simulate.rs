@@ -25,6 +25,8 @@ struct Summary {
     energy: Option<Energy>,
     /// Length over rest length; none without springs.
     largest_stretch: Option<f64>,
+    /// Springs that broke.
+    torn: usize,
     /// Real time (s).
     wall_time: f64,
 }
@@ -107,6 +109,14 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     }
     bar.clear();
     export.finish()?;
+    let one_mesh = ["pc2", "glb"].map(|ending| output::ends_in(&options.output, ending));
+    if simulation.tears() > 0 && one_mesh.contains(&true) {
+        eprintln!(
+            "{} springs broke, but {} has one mesh for all its frames: frames as .obj, such as torn-####.obj, have the holes",
+            simulation.tears(),
+            options.output.display()
+        );
+    }
     let (Some(path), Some(watch)) = (&options.summary, watch) else {
         return Ok(());
     };
@@ -119,6 +129,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         evaluations: simulation.work().evaluations,
         energy: watch.energy,
         largest_stretch: watch.stretch,
+        torn: simulation.tears(),
         wall_time: begun.elapsed().as_secs_f64(),
     };
     let text = serde_json::to_string_pretty(&summary).map_err(Failure::run)? + "\n";

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use a3_core::stability::{
-    Growth, Limit, Mode, Observation, largest_step, modes_in_motion, observe_at_rest,
+    Growth, Limit, Mode, Observation, Truth, largest_step, modes_in_motion, observe_at_rest,
     observe_from_start, rest, spectrum,
 };
 use a3_core::{Method, Scene};
@@ -28,7 +28,7 @@ struct Row {
 /// A limit as it was predicted, and as it was seen.
 struct Pair {
     predicted: Option<Limit>,
-    observed: Observation,
+    observed: Option<Observation>,
 }
 
 pub fn run(options: &Stability) -> Result<(), Failure> {
@@ -42,27 +42,28 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     output::check(&path, &["svg", "png"])?;
     let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
     let in_motion = modes_in_motion(&scene).map_err(Failure::run)?;
+    let truth = Truth::of(&scene).map_err(Failure::run)?;
     let hanging = rest(&scene).map_err(Failure::run)?;
     let bar = Bar::new(2.0 * methods.len() as f64);
     let mut rows = vec![];
     for method in methods {
-        if !interrupt::go_on() {
-            break;
-        }
         bar.say(format!("{:<10} ", method.name));
         let start = largest_step(method, &at_start).map_err(Failure::run)?;
         let motion = pair(method, &in_motion, |limit| {
             let guess = limit.map_or(1.0, |limit| limit.step);
-            observe_from_start(&scene, method, guess)
+            observe_from_start(&scene, &truth, method, guess, interrupt::go_on)
         })?;
         bar.advance(1.0);
         let rest = match &hanging {
             Some(rest) => Some(pair(method, &rest.modes, |limit| {
-                observe_at_rest(&scene, rest, method, limit)
+                observe_at_rest(rest, method, limit, interrupt::go_on)
             })?),
             None => None,
         };
         bar.advance(1.0);
+        if !interrupt::go_on() {
+            break;
+        }
         rows.push(Row {
             method,
             start,
@@ -105,7 +106,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
 fn pair(
     method: &'static Method,
     modes: &[Mode],
-    observe: impl FnOnce(Option<&Limit>) -> Result<Observation, a3_core::Error>,
+    observe: impl FnOnce(Option<&Limit>) -> Result<Option<Observation>, a3_core::Error>,
 ) -> Result<Pair, Failure> {
     let predicted = largest_step(method, modes).map_err(Failure::run)?;
     let observed = observe(predicted.as_ref()).map_err(Failure::run)?;
@@ -134,10 +135,14 @@ fn prediction(limit: Option<Limit>) -> String {
     })
 }
 
+fn observation(seen: Option<Observation>) -> String {
+    seen.map_or("-".into(), |seen| step(seen.step))
+}
+
 fn ratio(pair: &Pair) -> String {
-    match pair.predicted {
-        Some(limit) if limit.step.is_finite() && pair.observed.step.is_finite() => {
-            format!("{:.3}", pair.observed.step / limit.step)
+    match (pair.predicted, pair.observed) {
+        (Some(limit), Some(seen)) if limit.step.is_finite() && seen.step.is_finite() => {
+            format!("{:.3}", seen.step / limit.step)
         }
         _ => "-".into(),
     }
@@ -160,7 +165,7 @@ fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> S
             row.method.name.to_owned(),
             prediction(row.start),
             prediction(row.motion.predicted),
-            step(row.motion.observed.step),
+            observation(row.motion.observed),
             ratio(&row.motion),
         ];
         line.extend(
@@ -169,7 +174,7 @@ fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> S
                 .map_or(["-", "-", "-"].map(String::from), |pair| {
                     [
                         prediction(pair.predicted),
-                        step(pair.observed.step),
+                        observation(pair.observed),
                         ratio(pair),
                     ]
                 }),
@@ -224,9 +229,12 @@ fn panel(row: &Row, modes: &[Mode], h: f64) -> Panel {
     let method = row.method;
     let subtitle = if limit.is_finite() {
         format!(
-            "stable up to {}\u{a0}ms, observed {}\u{a0}ms",
+            "stable up to {}\u{a0}ms, {}",
             prediction(row.motion.predicted),
-            step(row.motion.observed.step)
+            match row.motion.observed {
+                Some(seen) => format!("observed {}\u{a0}ms", step(seen.step)),
+                None => "not observed".into(),
+            }
         )
     } else {
         "stable at any step".to_owned()

@@ -373,6 +373,8 @@ fn a_closed_or_full_output_is_no_panic() {
         &["scenes"][..],
         &["t", "0.01", "--scene", "pendulum"],
         &["solvers"],
+        &["--help"],
+        &["chart", "--help"],
     ] {
         let mut child = command(folder.path(), words)
             .stdout(Stdio::piped())

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::Path;
 
 use a3_core::{Simulation, integrators, scenes};
-use common::{a3, asked, command, complaint, is_missing, text};
+use common::{TEARING, a3, asked, command, complaint, is_missing, text};
 use serde_json::Value;
 
 /// Frames a second of what is compared, and how many: the last at 0.2 s, before the end.
@@ -160,6 +160,57 @@ fn obj_sequences_have_surfaces_with_smooth_normals() {
     write(folder.path(), "cloth", "last.obj", &[]);
     let last = fs::read_to_string(folder.path().join("last.obj")).unwrap();
     assert!(last.contains("t = 0.21 s"));
+}
+
+/// No face of an OBJ spans a tear; formats that have one mesh for all frames say that theirs does.
+#[test]
+fn what_is_torn_is_no_face() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("tearing.toml"), TEARING).unwrap();
+    let write = |output: &str, more: &[&str]| {
+        let words = ["simulate", "--scene", "tearing.toml", "--until", "0.8"];
+        let output = a3(
+            folder.path(),
+            &[&words[..], &["--output", output], more].concat(),
+        );
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stderr).to_owned()
+    };
+    assert_eq!(
+        write("f-#.obj", &["--fps", "10", "--summary", "s.json"]),
+        ""
+    );
+    let faces = |k: usize| {
+        let file = folder.path().join(format!("f-{k}.obj"));
+        let (models, _) = tobj::load_obj(file, &tobj::LoadOptions::default()).unwrap();
+        let mesh = &models[0].mesh;
+        let corner = |i: u32| {
+            let i = 3 * i as usize;
+            [0, 1, 2].map(|k| mesh.positions[i + k])
+        };
+        let corners = mesh.indices.chunks_exact(3);
+        let longest = corners.map(|f| {
+            let [a, b, c] = [0, 1, 2].map(|k| corner(f[k]));
+            let side = |a, b: [f32; 3]| distance(a, b.map(f64::from));
+            side(a, b).max(side(b, c)).max(side(c, a))
+        });
+        let longest: Vec<_> = longest.collect();
+        (longest.len(), longest.into_iter().fold(0.0, f64::max))
+    };
+    assert_eq!(faces(1).0, 50);
+    let (left, longest) = faces(9);
+    assert!((20..50).contains(&left), "{left} faces are left");
+    // Diagonals are of springs or across a square of four.
+    assert!(longest < 1.4 * 2.0 * 0.2, "{longest} m");
+    let summary = fs::read(folder.path().join("s.json")).unwrap();
+    let summary: Value = serde_json::from_slice(&summary).unwrap();
+    let torn = summary["torn"].as_u64().unwrap();
+    assert!(torn > 5, "{torn}");
+    for name in ["f.pc2", "f.glb"] {
+        let said = write(name, &["--fps", "10"]);
+        let right = format!("{torn} springs broke, but {name} has one mesh for all its frames");
+        assert!(said.starts_with(&right), "{said}");
+    }
 }
 
 /// The words of the lines of an OBJ that begin with this one.
@@ -426,10 +477,7 @@ fn exports_that_cannot_be_are_refused_before_the_work() {
         [&run[..], more].concat()
     };
     for (words, says) in [
-        (
-            long("5x5", "x.txt", &[]),
-            ".json or .csv or .obj or .pc2 or .glb",
-        ),
+        (long("5x5", "x.txt", &[]), ".json, .csv, .obj, .pc2 or .glb"),
         (long("5x5", "-", &["--fps", "25"]), "final state"),
         (long("5x5", "-", &["--summary", "-"]), "not both"),
         (long("5x5", "x.json", &["--summary", "s.txt"]), ".json"),

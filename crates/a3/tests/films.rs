@@ -9,7 +9,7 @@ use std::io::BufReader;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use common::{a3, asked, command, complaint, gpu_is_missing, is_missing, text};
+use common::{TEARING, a3, asked, command, complaint, gpu_is_missing, is_missing, text};
 use image::codecs::gif::GifDecoder;
 use image::{AnimationDecoder, Frame, RgbaImage};
 
@@ -174,6 +174,54 @@ fn trails_and_highlighted_springs_are_filmed_too() {
     assert!(most > 100);
 }
 
+/// There is no cloth between the pins and what they have let go.
+#[test]
+fn what_has_torn_is_not_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("tearing.toml"), TEARING).unwrap();
+    let words = [
+        "render",
+        "--scene",
+        "tearing.toml",
+        "--until",
+        "0.8",
+        "--size",
+        "320x120",
+        "--fps",
+        "10",
+        "--output",
+        "f-#.png",
+    ];
+    if !made(folder.path(), &words) {
+        return;
+    }
+    let last = [
+        "render",
+        "--scene",
+        "tearing.toml",
+        "--until",
+        "0.8",
+        "--size",
+        "320x120",
+    ];
+    assert!(made(
+        folder.path(),
+        &[&last[..], &["--output", "last.png"]].concat()
+    ));
+    for name in ["f-1.png", "f-9.png", "last.png"] {
+        let picture = picture(folder.path(), name);
+        let is_red = |x: u32, y: u32| {
+            let [r, g, b, _] = picture.get_pixel(x, y).0;
+            r > 100 && g < 90 && b < 90
+        };
+        let red: Vec<_> = (0..320)
+            .filter(|x| (0..120).any(|y| is_red(*x, y)))
+            .collect();
+        // The pins are 2.8 m apart, which are 83 px; the cloth that they let go is 1 m wide at most.
+        assert!((15..35).contains(&red.len()), "{name}: {red:?}");
+    }
+}
+
 #[test]
 fn transparent_films_have_nothing_behind_the_cloth() {
     let folder = tempfile::tempdir().unwrap();
@@ -284,7 +332,7 @@ fn films_that_cannot_be_are_refused_before_the_work() {
         .concat()
     };
     for (words, says) in [
-        (long("x.mov", &[]), ".png or .gif or .mp4"),
+        (long("x.mov", &[]), ".png, .gif or .mp4"),
         (long("x.png", &["--fps", "25"]), "film-####.png"),
         (long("x.png", &["--from", "1"]), "film-####.png"),
         (long("x.gif", &["--fps", "0"]), "such as 30"),

@@ -409,6 +409,17 @@ impl Network {
         &self.spheres
     }
 
+    /// Whether pins or obstacles are on their way, now or at some time.
+    #[must_use]
+    pub fn moves_by_itself(&self) -> bool {
+        let pins = self.pins.iter().map(|pin| pin.path);
+        let spheres = self.spheres.iter().map(|sphere| sphere.path);
+        let boxes = self.boxes.iter().map(|cuboid| cuboid.path);
+        let capsules = self.capsules.iter().map(|capsule| capsule.path);
+        let mut paths = pins.chain(spheres).chain(boxes).chain(capsules);
+        paths.any(|path| !matches!(path, Path::Still(_)))
+    }
+
     /// Leads sphere k along `path` from now on.
     ///
     /// # Errors

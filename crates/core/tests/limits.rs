@@ -2,9 +2,10 @@
 
 mod common;
 
+use a3_core::scenes::Description;
 use a3_core::stability::{
-    Growth, LargestMode, Mode, largest_step, modes_in_motion, observe_at_rest, observe_from_start,
-    rest, spectrum,
+    Growth, LargestMode, Mode, Truth, largest_step, modes_in_motion, observe_at_rest,
+    observe_from_start, rest, spectrum,
 };
 use a3_core::{
     Grid, Mechanics, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3, integrators,
@@ -247,11 +248,16 @@ fn limits_are_seen_on_the_cloth() {
     let cloth = scene_with_grid("cloth", 8, 8);
     let rest = rest(&cloth).unwrap().unwrap();
     let moving = modes_in_motion(&cloth).unwrap();
+    let truth = Truth::of(&cloth).unwrap();
     for m in integrators::METHODS {
         let predicted = largest_step(m, &rest.modes).unwrap().unwrap();
-        let seen = observe_at_rest(&cloth, &rest, m, Some(&predicted)).unwrap();
+        let seen = observe_at_rest(&rest, m, Some(&predicted), || true)
+            .unwrap()
+            .unwrap();
         let in_motion = largest_step(m, &moving).unwrap().unwrap().step;
-        let seen_in_motion = observe_from_start(&cloth, m, in_motion).unwrap();
+        let seen_in_motion = observe_from_start(&cloth, &truth, m, in_motion, || true)
+            .unwrap()
+            .unwrap();
         if m.implicit {
             assert!(predicted.step.is_infinite() && seen.step.is_infinite());
             continue;
@@ -271,4 +277,32 @@ fn limits_are_seen_on_the_cloth() {
         let ratio = seen_in_motion.step / in_motion;
         assert!((0.95..slow).contains(&ratio), "{} falling: {ratio}", m.name);
     }
+}
+
+/// What is on its way comes to no rest, and what would tear on the way is brought to rest whole.
+#[test]
+fn rest_is_without_tears_and_not_of_what_moves() {
+    let cloth = "
+        gravity = [0, -9.81, 0]
+        drag = 0.1
+        tear = TEAR
+        [[cloth]]
+        grid = [4, 4]
+        width = 1
+        mass = 0.1
+        stiffness = [40, 20, 5]
+        pin = [{ at = [\"top\"] MOVES }]
+    ";
+    let build = |tear: &str, moves: &str| {
+        let text = cloth.replace("TEAR", tear).replace("MOVES", moves);
+        Description::parse(&text)
+            .and_then(|d| d.build(None, &mut |_| Err("no mesh".into())))
+            .unwrap()
+    };
+    let [whole, torn] = ["100", "1.2"].map(|tear| rest(&build(tear, "")).unwrap().unwrap());
+    assert_eq!(whole.scene.state, torn.scene.state);
+    assert_eq!(whole.modes, torn.modes);
+    assert!(torn.scene.model.network().unwrap().tear_limit().is_none());
+    let moves = ", shift = { by = [0, 0, 1], start = 0.1, end = 0.2 }";
+    assert!(rest(&build("100", moves)).unwrap().is_none());
 }

@@ -108,7 +108,7 @@ impl Data {
             return Err(wrong("no file, or a huge one".into()));
         }
         let text = fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
-        if is_json(path) {
+        if output::ends_in(path, "json") {
             data.records = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
         } else {
             let mut reader = csv::Reader::from_reader(text.as_bytes());
@@ -137,7 +137,7 @@ impl Data {
         let Some(path) = &self.path else {
             return Ok(());
         };
-        let bytes = if is_json(path) {
+        let bytes = if output::ends_in(path, "json") {
             let mut text = serde_json::to_string_pretty(&self.records).map_err(Failure::run)?;
             text.push('\n');
             text.into_bytes()
@@ -153,8 +153,3 @@ impl Data {
 }
 
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
-
-fn is_json(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("json"))
-}

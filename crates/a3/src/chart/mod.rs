@@ -93,10 +93,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
 
 /// Writes an SVG, or a PNG of it.
 pub fn write_picture(path: &std::path::Path, svg: &str) -> Result<(), Failure> {
-    let is_png = path
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("png"));
-    if is_png {
+    if output::ends_in(path, "png") {
         output::write(path, &plot::figure::png(svg, 1.0)?)
     } else {
         output::write(path, svg.as_bytes())

@@ -1,5 +1,5 @@
 //! glTF 2.0 in one binary file (Khronos, *glTF 2.0 Specification*): the first frame as a mesh, every other one as a morph
-//! target, and an animation that goes from one to the next.
+//! target, and an animation that goes from one to the next. The mesh stays whole when something tears.
 
 use std::fs::File;
 use std::io::{self, Seek, Write};
@@ -89,7 +89,7 @@ impl Glb {
     }
 
     fn has_surface(&self) -> bool {
-        !self.shape.triangles().is_empty()
+        !self.shape.triangles.is_empty()
     }
 
     fn write_frame(&mut self, simulation: &Simulation) -> io::Result<()> {
@@ -116,7 +116,7 @@ impl Glb {
     /// What is drawn: of the surface triangles, of the rest lines and points.
     fn primitives(&mut self) -> io::Result<Vec<Value>> {
         let parts = [
-            (TRIANGLES, self.shape.triangles().as_flattened()),
+            (TRIANGLES, self.shape.triangles.as_flattened()),
             (LINES, self.shape.lines.as_flattened()),
             (POINTS, &self.shape.points[..]),
         ];

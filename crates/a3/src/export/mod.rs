@@ -68,8 +68,7 @@ pub fn begin(
         (Some("obj"), Some(sequence)) => {
             sequence.check(several.count)?;
             let frames = check(obj::size(simulation) * several.count as f64, LARGEST.0)?;
-            let name = obj::Name::Many(sequence, 0);
-            (frames, Box::new(obj::Obj::new(simulation, name)))
+            (frames, Box::new(obj::Obj::Many(sequence, 0)))
         }
         (Some("obj"), None) => {
             if options.fps.is_some() {
@@ -77,8 +76,7 @@ pub fn begin(
                     "an .obj has one frame: --fps is for as many as cloth-####.obj",
                 ));
             }
-            let name = obj::Name::One(path.into());
-            (last, Box::new(obj::Obj::new(simulation, name)))
+            (last, Box::new(obj::Obj::One(path.into())))
         }
         _ if options.fps.is_some() => {
             let frames = check(json::ROW * particles * several.count as f64, LARGEST.0)?;

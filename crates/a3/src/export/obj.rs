@@ -10,39 +10,24 @@ use super::shape::{Shape, positions};
 use crate::frames::Sequence;
 use crate::{Failure, output};
 
-/// A file a frame.
-pub struct Obj {
-    shape: Shape,
-    name: Name,
-}
-
-/// What the files are called.
-pub enum Name {
+/// A file a frame, or the last one only.
+pub enum Obj {
     /// The only one.
     One(PathBuf),
     /// Those that are still to be written, and how many are.
     Many(Sequence, usize),
 }
 
-impl Obj {
-    pub fn new(simulation: &Simulation, name: Name) -> Self {
-        Self {
-            shape: Shape::of(simulation),
-            name,
-        }
-    }
-}
-
 impl Export for Obj {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        let path = match &mut self.name {
-            Name::One(path) => path.clone(),
-            Name::Many(sequence, count) => {
+        let path = match self {
+            Self::One(path) => path.clone(),
+            Self::Many(sequence, count) => {
                 *count += 1;
                 sequence.file(*count - 1)
             }
         };
-        output::write_with(&path, |file| write(file, &self.shape, simulation))
+        output::write_with(&path, |file| write(file, simulation))
     }
 
     fn finish(self: Box<Self>) -> Result<(), Failure> {
@@ -53,23 +38,24 @@ impl Export for Obj {
 /// About how many bytes a file has.
 pub fn size(simulation: &Simulation) -> f64 {
     let shape = Shape::of(simulation);
-    let (vertices, normals) = (simulation.particles(), shape.covered());
-    let (faces, lines) = (shape.triangles().len(), shape.lines.len());
+    let (vertices, normals) = (simulation.particles(), shape.covered);
+    let (faces, lines) = (shape.triangles.len(), shape.lines.len());
     36.0 * vertices as f64 + 37.0 * normals as f64 + 42.0 * faces as f64 + 16.0 * lines as f64
 }
 
-/// The state as it is now: `v`, and `vn` and `f` of what has a surface, `l` and `p` of what has none.
-pub fn write(file: &mut dyn Write, shape: &Shape, simulation: &Simulation) -> io::Result<()> {
+/// The state as it is now: `v`, and `vn` and `f` of what has a surface that is not torn, `l` and `p` of what has none.
+pub fn write(file: &mut dyn Write, simulation: &Simulation) -> io::Result<()> {
+    let shape = Shape::of(simulation);
     let positions = positions(simulation);
     writeln!(file, "# a3: t = {} s, in m, y is up", simulation.time())?;
     writeln!(file, "o {}", simulation.scene().name)?;
     for [x, y, z] in &positions {
         writeln!(file, "v {x} {y} {z}")?;
     }
-    for [x, y, z] in &shape.normals(&positions)[..shape.covered()] {
+    for [x, y, z] in &shape.normals(&positions)[..shape.covered] {
         writeln!(file, "vn {x} {y} {z}")?;
     }
-    for triangle in shape.triangles() {
+    for triangle in &shape.triangles {
         let [a, b, c] = triangle.map(|i| i + 1);
         writeln!(file, "f {a}//{a} {b}//{b} {c}//{c}")?;
     }

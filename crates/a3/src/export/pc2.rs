@@ -1,5 +1,5 @@
 //! `PointCache2`: positions of every particle and frame, as Blender, 3ds Max and Maya read them onto a mesh that has as many
-//! points. That mesh is written beside, as OBJ.
+//! points. That mesh is written beside, as OBJ, and stays whole when something tears.
 //!
 //! A header of 32 bytes, all little endian: "POINTCACHE2\0", version 1 (i32), points (i32), first frame (f32), frames a
 //! sample (f32), samples (i32). Then x, y, z (f32) of every point of every sample.
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use a3_core::Simulation;
 
 use super::Export;
-use super::shape::{Shape, positions};
+use super::shape::positions;
 use super::{obj, rows};
 use crate::output::{self, Draft};
 use crate::{Failure, frames::Frames};
@@ -18,8 +18,8 @@ use crate::{Failure, frames::Frames};
 pub struct Pc2 {
     draft: Draft,
     mesh: Draft,
-    /// Not yet written to it.
-    shape: Option<Shape>,
+    /// The mesh is still to be written.
+    first: bool,
     names: (PathBuf, PathBuf),
 }
 
@@ -37,7 +37,7 @@ impl Pc2 {
         Ok(Self {
             draft,
             mesh: Draft::new(&mesh)?,
-            shape: Some(Shape::of(simulation)),
+            first: true,
             names: (path.into(), mesh),
         })
     }
@@ -54,8 +54,8 @@ fn header(file: &mut dyn Write, points: usize, samples: usize) -> io::Result<()>
 
 impl Export for Pc2 {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        if let Some(shape) = self.shape.take() {
-            obj::write(&mut self.mesh, &shape, simulation).map_err(|e| self.mesh.failure(&e))?;
+        if std::mem::take(&mut self.first) {
+            obj::write(&mut self.mesh, simulation).map_err(|e| self.mesh.failure(&e))?;
         }
         let written = rows(&mut self.draft, &positions(simulation));
         written.map_err(|e| self.draft.failure(&e))

@@ -1,12 +1,15 @@
 //! What others are given of a scene: a surface with normals, and lines and points for what has none.
 
-use std::sync::Arc;
+use a3_core::{Network, Simulation};
 
-use a3_core::{Network, Simulation, Surface};
+use crate::show::whole_triangles;
 
-/// How particles hang together: what stays the same from frame to frame.
+/// How particles hang together: what stays the same from frame to frame until something tears.
 pub struct Shape {
-    surface: Arc<Surface>,
+    /// Corners, wound against the clock as seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// How many particles, the first ones, have a surface.
+    pub covered: usize,
     /// Springs of particles that have no surface.
     pub lines: Vec<[u32; 2]>,
     /// These particles.
@@ -15,8 +18,7 @@ pub struct Shape {
 
 impl Shape {
     pub fn of(simulation: &Simulation) -> Self {
-        let surface = simulation.scene().surface.clone();
-        let covered = surface.particles();
+        let covered = simulation.scene().surface.particles();
         let network = simulation.model().network();
         let springs = network.into_iter().flat_map(Network::springs);
         Self {
@@ -25,25 +27,16 @@ impl Shape {
                 .map(|spring| [spring.i as u32, spring.j as u32])
                 .collect(),
             points: (covered as u32..simulation.particles() as u32).collect(),
-            surface,
+            triangles: whole_triangles(simulation).collect(),
+            covered,
         }
-    }
-
-    /// Corners, wound against the clock as seen from outside.
-    pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.surface.triangles
-    }
-
-    /// How many particles, the first ones, have a surface.
-    pub fn covered(&self) -> usize {
-        self.surface.particles()
     }
 
     /// Of length 1 at each particle: the sum over its triangles of the cross product of two sides, so that large ones
     /// count for more. Upwards where there is none.
     pub fn normals(&self, positions: &[[f32; 3]]) -> Vec<[f32; 3]> {
         let mut sums = vec![[0.0f64; 3]; positions.len()];
-        for triangle in self.triangles() {
+        for triangle in &self.triangles {
             let [a, b, c] = triangle.map(|i| positions[i as usize].map(f64::from));
             let (u, v) = (minus(b, a), minus(c, a));
             let cross = [0, 1, 2].map(|k| {

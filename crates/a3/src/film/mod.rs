@@ -55,10 +55,7 @@ pub fn begin(options: &Render) -> Result<Option<Plan>, Failure> {
     let until = options.run.end()?;
     let frames = |rate| Frames::new(options.from.unwrap_or(0.0), until, rate);
     let rate = options.fps.unwrap_or(RATE.1);
-    let ends_in = |ending: &str| {
-        path.extension()
-            .is_some_and(|e| e.eq_ignore_ascii_case(ending))
-    };
+    let ends_in = |ending| output::ends_in(path, ending);
     if ends_in("gif") {
         let asked = options.fps.unwrap_or(RATE.0);
         let delay = gif::delay(asked);

@@ -6,6 +6,30 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+/// A cloth whose left and right edges are pulled apart until it tears in between.
+pub const TEARING: &str = r#"
+solver = "r"
+step = 0.002
+tear = 1.4
+drag_per_mass = 1
+
+[camera]
+eye = [0, 0, 5]
+target = [0, 0, 0]
+
+[[cloth]]
+grid = [6, 6]
+width = 1
+mass = 0.01
+stiffness = [20, 10, 5]
+damping_ratio = 0.1
+at = [0, 0.5, 0]
+pin = [
+    { at = ["left"], shift = { by = [-0.9, 0, 0], start = 0.1, end = 0.7 } },
+    { at = ["right"], shift = { by = [0.9, 0, 0], start = 0.1, end = 0.7 } },
+]
+"#;
+
 /// Without a display.
 pub fn command(folder: &Path, words: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_a3"));

@@ -18,7 +18,9 @@ use crate::integrators::{Integrator, Method};
 use crate::path::Place;
 use crate::system::{Coupling, Mechanics};
 
-pub use observed::{Observation, Rest, modes_in_motion, observe_at_rest, observe_from_start, rest};
+pub use observed::{
+    Observation, Rest, Truth, modes_in_motion, observe_at_rest, observe_from_start, rest,
+};
 pub use spectrum::{LargestMode, spectrum};
 
 /// A run is stable if no mode grows more than [`GROWTH`] times in this time (s), or in [`STEPS`] if they take longer.

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::integrators::{Method, find};
 use crate::network::Network;
 use crate::random::SplitMix;
-use crate::scenes::Scene;
+use crate::scenes::{Model, Scene};
 use crate::simulation::Simulation;
 use crate::system::Mechanics;
 
@@ -16,6 +16,8 @@ const PRECISION: f64 = 0.005;
 const LONGEST: f64 = 1.0;
 /// ... and where a limit is predicted, none longer than so many times that.
 const BEYOND: f64 = 4.0;
+/// No run is longer than so many steps times particles: some seconds.
+const MOST: f64 = 2e8;
 /// Looks at a run that holds.
 const LOOKS: u64 = 200;
 /// The speed of the disturbance of a scene at rest (m/s, root of the sum of squares weighted with the masses in kg).
@@ -41,9 +43,7 @@ const MOMENTS: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
 /// # Errors
 /// The scene cannot be run.
 pub fn modes_in_motion(scene: &Scene) -> Result<Vec<Mode>, Error> {
-    let accurate = find("dop853")
-        .ok_or_else(|| Error::Invalid("no accurate method is in the table".into()))?;
-    let mut run = Simulation::new(scene.clone(), accurate, 1e-6)?;
+    let mut run = Simulation::new(scene.clone(), accurate()?, 1e-6)?;
     let mut modes = vec![];
     for share in MOMENTS {
         if run.advance_to(share * HORIZON).is_err() {
@@ -54,6 +54,10 @@ pub fn modes_in_motion(scene: &Scene) -> Result<Vec<Mode>, Error> {
     // The fastest first: they set most limits.
     modes.sort_by(|a, b| b.stiffness.total_cmp(&a.stiffness));
     Ok(modes)
+}
+
+fn accurate() -> Result<&'static Method, Error> {
+    find("dop853").ok_or_else(|| Error::Invalid("no accurate method is in the table".into()))
 }
 
 /// What bisection found.
@@ -67,17 +71,18 @@ pub struct Observation {
 }
 
 /// A scene at rest.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Rest {
-    /// The state.
-    pub state: Vec<f64>,
+    /// In that state, and nothing in it tears.
+    pub scene: Scene,
     /// The modes around it, fastest first: every one, of a system of less than about 1200 numbers in x.
     pub modes: Vec<Mode>,
     shapes: Vec<Vec<f64>>,
 }
 
-/// The state in which the scene comes to rest, wind and swing off: found by implicit Euler in growing steps. `None` for
-/// a scene that this method does not serve or that is first order, and for one that does not settle.
+/// The state in which the scene comes to rest, wind and swing off and nothing torn: found by implicit Euler in growing
+/// steps. `None` for a scene that this method does not serve or that is first order, for one in which pins or obstacles are
+/// on their way, and for one that does not settle.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -85,8 +90,12 @@ pub fn rest(scene: &Scene) -> Result<Option<Rest>, Error> {
     let Some((implicit, network)) = find("implicit").zip(scene.model.network()) else {
         return Ok(None);
     };
-    if implicit.check(network).is_err() {
+    if implicit.check(network).is_err() || network.moves_by_itself() {
         return Ok(None);
+    }
+    let mut scene = scene.clone();
+    if let Model::Network(network) = &mut scene.model {
+        network.set_tear(None)?;
     }
     let mut run = Simulation::new(scene.clone(), implicit, 0.05)?;
     let mut random = SplitMix(4);
@@ -127,30 +136,31 @@ pub fn rest(scene: &Scene) -> Result<Option<Rest>, Error> {
         return Ok(None);
     }
     let (modes, shapes) = shapes(network, 0.0, &y[..half]).into_iter().unzip();
+    scene.state = y;
     Ok(Some(Rest {
-        state: y,
+        scene,
         modes,
         shapes,
     }))
 }
 
 /// The largest step with which the scene, started from `rest` with the mode nudged that limits the method and every other
-/// a little, keeps the nudge from growing [`GROWTH`] times in [`HORIZON`]. Bisection begins at the limit.
+/// a little, keeps the nudge from growing [`GROWTH`] times in [`HORIZON`]. Bisection begins at the limit. `None`
+/// where there is none, where it would take too long, and soon after `go_on` says no.
 ///
 /// # Errors
 /// The method does not serve the scene.
 pub fn observe_at_rest(
-    scene: &Scene,
     rest: &Rest,
     method: &'static Method,
     limit: Option<&Limit>,
-) -> Result<Observation, Error> {
-    let mut still = scene.clone();
-    still.state.clone_from(&rest.state);
+    go_on: impl Fn() -> bool,
+) -> Result<Option<Observation>, Error> {
+    let still = &rest.scene;
     let mut nudged = still.clone();
-    let half = rest.state.len() / 2;
-    let (Some(network), Some(limit)) = (scene.model.network(), limit) else {
-        return Ok(Observation { step: 0.0, runs: 0 });
+    let half = still.state.len() / 2;
+    let (Some(network), Some(limit)) = (still.model.network(), limit) else {
+        return Ok(None);
     };
     let guess = limit.step;
     let mut random = SplitMix(5);
@@ -165,7 +175,7 @@ pub fn observe_at_rest(
     }
     let size = Size {
         network,
-        rest: &rest.state[..half],
+        rest: &still.state[..half],
     };
     let zero = vec![0.0; half];
     let nudge = size.of(&zero, &nudged.state[half..]);
@@ -176,14 +186,15 @@ pub fn observe_at_rest(
         let mut run = Simulation::with_fixed_steps(nudged.clone(), method, h)?;
         let mut beside = Simulation::with_fixed_steps(still.clone(), method, h)?;
         Ok(step_and_look(h, least, |count| {
-            let held = run.take_steps(count).is_ok() && beside.take_steps(count).is_ok();
+            let held = go_on() && run.take_steps(count).is_ok() && beside.take_steps(count).is_ok();
             let both = run.state().iter().zip(beside.state());
             let apart: Vec<_> = both.map(|(a, b)| a - b).collect();
             let (dx, dv) = apart.split_at(half);
             held && size.of(dx, dv) < GROWTH * nudge
         }))
     };
-    bisect(guess, holds)
+    let seen = bisect(guess, still.model.particles(), holds)?;
+    Ok(seen.filter(|_| go_on()))
 }
 
 /// The size of a disturbance: the root of twice its energy.
@@ -217,70 +228,77 @@ fn least(guess: f64) -> f64 {
 /// The largest step with which the scene runs from its start for [`HORIZON`] without gaining energy: never more beyond
 /// what it has in truth than half of what its motion has at most. A first-order scene holds if it does not grow
 /// [`GROWTH`] times; a method for which no limit is predicted, as long as the run is not lost: with such steps it makes
-/// errors of any size that do not grow. Bisection begins at `guess` (s).
+/// errors of any size that do not grow. Bisection begins at `guess` (s). `None`
+/// where it would take too long, and soon after `go_on` says no.
 ///
 /// # Errors
 /// The method does not serve the scene.
 pub fn observe_from_start(
     scene: &Scene,
+    truth: &Truth,
     method: &'static Method,
     guess: f64,
-) -> Result<Observation, Error> {
-    let truth = match scene.model.network() {
-        Some(_) if guess.is_finite() => Some(energies(scene, find("dop853").unwrap_or(method))?),
-        _ => None,
-    };
+    go_on: impl Fn() -> bool,
+) -> Result<Option<Observation>, Error> {
     let unlimited = guess.is_infinite() && scene.model.network().is_some();
     let least = least(guess);
     let holds = |h: f64| {
         let mut run = Simulation::with_fixed_steps(scene.clone(), method, h)?;
         Ok(step_and_look(h, least, |count| {
-            run.take_steps(count).is_ok()
-                && match (&truth, run.energy()) {
-                    (Some(truth), Some(energy)) => energy.total() < truth.at(run.time()),
+            go_on()
+                && run.take_steps(count).is_ok()
+                && match (truth.at(run.time()), run.energy()) {
                     _ if unlimited => true,
+                    (Some(most), Some(energy)) => energy.total() < most,
                     _ => norm(run.state()) < GROWTH * norm(&scene.state),
                 }
         }))
     };
-    bisect(guess, holds)
+    let seen = bisect(guess, scene.model.particles(), holds)?;
+    Ok(seen.filter(|_| go_on()))
 }
 
-/// The energy that a run has in truth, and how much more is too much (J).
-struct Energies {
-    /// At equal times from the start to [`HORIZON`]: the larger of both ends of each part.
+/// The energy that a scene's run has in truth, and how much more is too much (J).
+#[derive(Clone, Debug, Default)]
+pub struct Truth {
+    /// At equal times from the start to [`HORIZON`]: the larger of both ends of each part. None of a first-order scene.
     total: Vec<f64>,
+    /// Half of the most energy that its motion has.
     slack: f64,
 }
 
-impl Energies {
-    fn at(&self, time: f64) -> f64 {
-        let part = (time / HORIZON * LOOKS as f64) as usize;
-        self.total[part.min(self.total.len() - 1)] + self.slack
-    }
-}
-
-/// Of an accurate run. The slack is half of the most energy that its motion has.
-fn energies(scene: &Scene, accurate: &'static Method) -> Result<Energies, Error> {
-    let mut run = Simulation::new(scene.clone(), accurate, 1e-6)?;
-    let energy = |run: &Simulation| run.energy().unwrap_or_default();
-    let mut last = energy(&run);
-    let (mut total, mut motion) = (vec![], last.kinetic);
-    for look in 1..=LOOKS {
-        if run
-            .advance_to(HORIZON * look as f64 / LOOKS as f64)
-            .is_err()
-        {
-            break;
+impl Truth {
+    /// Of an accurate run.
+    ///
+    /// # Errors
+    /// The scene cannot be run.
+    pub fn of(scene: &Scene) -> Result<Self, Error> {
+        let mut run = Simulation::new(scene.clone(), accurate()?, 1e-6)?;
+        let Some(mut last) = run.energy() else {
+            return Ok(Self::default());
+        };
+        let (mut total, mut motion) = (vec![], last.kinetic);
+        for look in 1..=LOOKS {
+            let time = HORIZON * look as f64 / LOOKS as f64;
+            if run.advance_to(time).is_err() {
+                break;
+            }
+            let next = run.energy().unwrap_or(last);
+            total.push(last.total().max(next.total()));
+            motion = motion.max(next.kinetic);
+            last = next;
         }
-        let next = energy(&run);
-        total.push(last.total().max(next.total()));
-        motion = motion.max(next.kinetic);
-        last = next;
+        total.push(last.total());
+        let slack = 0.5 * motion;
+        Ok(Self { total, slack })
     }
-    total.push(last.total());
-    let slack = 0.5 * motion;
-    Ok(Energies { total, slack })
+
+    /// The most that a run may have then.
+    fn at(&self, time: f64) -> Option<f64> {
+        let part = (time / HORIZON * LOOKS as f64) as usize;
+        let total = self.total.get(part).or(self.total.last())?;
+        Some(total + self.slack)
+    }
 }
 
 fn norm(y: &[f64]) -> f64 {
@@ -302,15 +320,23 @@ fn step_and_look(h: f64, least: f64, mut look: impl FnMut(u64) -> bool) -> bool 
 }
 
 /// The largest step below which `holds` does, by bisection of its logarithm.
-fn bisect(guess: f64, holds: impl Fn(f64) -> Result<bool, Error>) -> Result<Observation, Error> {
+fn bisect(
+    guess: f64,
+    particles: usize,
+    holds: impl Fn(f64) -> Result<bool, Error>,
+) -> Result<Option<Observation>, Error> {
     let mut runs = 0;
     let mut holds = |h: f64| {
         runs += 1;
         holds(h)
     };
+    let shortest = (HORIZON * particles as f64 / MOST).max(1e-6);
     let limited = guess.is_finite();
     let longest = if limited { BEYOND * guess } else { LONGEST };
-    let guess = guess.clamp(1e-6, longest);
+    let guess = guess.min(longest);
+    if guess < shortest {
+        return Ok(None);
+    }
     let (mut low, mut high);
     if holds(guess)? {
         (low, high) = (guess, guess * 1.1);
@@ -319,13 +345,16 @@ fn bisect(guess: f64, holds: impl Fn(f64) -> Result<bool, Error>) -> Result<Obse
         }
         if high >= longest && holds(longest)? {
             let step = f64::INFINITY;
-            return Ok(Observation { step, runs });
+            return Ok(Some(Observation { step, runs }));
         }
         high = high.min(longest);
     } else {
         (low, high) = (guess / 1.1, guess);
-        while low > 1e-6 && !holds(low)? {
+        while !holds(low)? {
             (low, high) = (low / 1.4, low);
+            if low < shortest {
+                return Ok(None);
+            }
         }
     }
     let precision = if limited { PRECISION } else { 10.0 * PRECISION };
@@ -337,5 +366,5 @@ fn bisect(guess: f64, holds: impl Fn(f64) -> Result<bool, Error>) -> Result<Obse
             high = middle;
         }
     }
-    Ok(Observation { step: low, runs })
+    Ok(Some(Observation { step: low, runs }))
 }
