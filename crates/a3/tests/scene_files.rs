@@ -8,6 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use a3_core::scenes::Description;
 use common::{a3, complaint, text};
 use serde_json::Value;
 
@@ -276,4 +277,31 @@ fn a_chart_knows_which_scene_it_has() {
     let first = chart("5");
     assert_eq!(chart("5"), first);
     assert!(chart("500") > first);
+}
+
+/// The scenes that come with the documents last as long as they say, and what their text shows can be read.
+#[test]
+fn documented_scenes_are_scenes() {
+    let docs = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs"));
+    let files = fs::read_dir(docs.join("scenes")).unwrap();
+    let files = files.map(|entry| entry.unwrap().path());
+    let scenes: Vec<_> = files
+        .filter(|file| file.extension().is_some_and(|e| e == "toml"))
+        .collect();
+    assert_eq!(scenes.len(), 4);
+    for file in scenes {
+        let text = fs::read_to_string(&file).unwrap();
+        let description = Description::parse(&text).unwrap();
+        let run = simulate(docs, &["--scene", file.to_str().unwrap()]);
+        assert_eq!(run["time"].as_f64(), description.duration, "{file:?}");
+    }
+    let guide = fs::read_to_string(docs.join("scenes.md")).unwrap();
+    let examples: Vec<_> = guide.split("```toml\n").skip(1).collect();
+    assert!(examples.len() >= 9, "{}", examples.len());
+    for example in examples {
+        let text = example.split("```").next().unwrap();
+        if let Err(fault) = Description::parse(text) {
+            panic!("{fault}\n{text}");
+        }
+    }
 }
