@@ -825,6 +825,17 @@ fn blowing_up() {
     assert!(app.exit().success());
 }
 
+/// Where the hands are in the left and in the right pane (px).
+fn hands(app: &App) -> Option<((i32, i32), (i32, i32))> {
+    let hands = app.get("hands");
+    let place = |hand: &str| {
+        let (x, y) = hand.split_once(',')?;
+        Some((x.parse().ok()?, y.parse().ok()?))
+    };
+    let (a, b) = hands.split_once(';')?;
+    Some((place(a)?, place(b)?))
+}
+
 /// Several methods at the same time: each in its pane, with its own error; keys and hands for all.
 #[test]
 fn comparing() {
@@ -896,15 +907,7 @@ fn comparing() {
     };
     go(x, y);
     display.xdotool(&["mousedown", "1"]);
-    let hands = || {
-        let hands = app.get("hands");
-        let place = |hand: &str| {
-            let (x, y) = hand.split_once(',')?;
-            Some((x.parse::<i32>().ok()?, y.parse::<i32>().ok()?))
-        };
-        let (a, b) = hands.split_once(';')?;
-        Some((place(a)?, place(b)?))
-    };
+    let hands = || hands(&app);
     let (_, near) = until("a hand in each pane", hands);
     assert!(
         near.0.abs_diff(x) < 40 && near.1.abs_diff(y) < 40,
