@@ -164,6 +164,11 @@ const WRONG: &[(&str, &str, &str)] = &[
     ("gravity = [0, -9.81, 0]", "tear = 0.5", "line 1: tear: "),
     (
         "gravity = [0, -9.81, 0]",
+        "torn = [[0, 1], [0, 700]]",
+        "line 1: torn: there is no spring between particles 0 and 700",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
         "trail = 12",
         "line 1: trail: there is no particle 12",
     ),

@@ -34,6 +34,39 @@ impl Network {
         self.torn.len()
     }
 
+    /// Between which particles, the lower number first, in order.
+    #[must_use]
+    pub fn torn(&self) -> &[[usize; 2]] {
+        &self.torn
+    }
+
+    /// Breaks the springs between these particles.
+    ///
+    /// # Errors
+    /// There is none between two of them.
+    pub fn break_springs(&mut self, pairs: &[[usize; 2]]) -> Result<(), Error> {
+        if pairs.is_empty() {
+            return Ok(());
+        }
+        let straight = self.strips.iter().map(Strip::straight);
+        let springs = self.springs().chain(straight);
+        let mut there: Vec<_> = springs.map(|s| ends(s.i, s.j)).collect();
+        there.sort_unstable();
+        for &[i, j] in pairs {
+            if there.binary_search(&ends(i, j)).is_err() {
+                return Err(Error::Invalid(format!(
+                    "there is no spring between particles {i} and {j}"
+                )));
+            }
+        }
+        self.torn.extend(pairs.iter().map(|&[i, j]| ends(i, j)));
+        self.torn.sort_unstable();
+        self.torn.dedup();
+        self.leave_out_torn();
+        self.leave_out_holes();
+        Ok(())
+    }
+
     /// Whether a spring between particles i and j has broken.
     #[must_use]
     pub fn is_torn(&self, i: usize, j: usize) -> bool {
@@ -61,6 +94,12 @@ impl Network {
         self.strips
             .retain(|strip| torn.binary_search(&ends(strip.of.i, strip.of.j)).is_err());
         self.torn = torn;
+    }
+
+    /// Leaves out triangles that have lost a side.
+    fn leave_out_holes(&mut self) {
+        let whole = |corners: &&[u32; 3]| self.is_whole(corners.map(|i| i as usize));
+        self.triangles = self.triangles.iter().filter(whole).copied().collect();
     }
 
     /// Breaks the springs that are too long at x (m), and those that go with them. How many they are.
@@ -102,8 +141,7 @@ impl Network {
         });
         self.list = springs;
         self.torn.sort_unstable();
-        let whole = |corners: &&[u32; 3]| self.is_whole(corners.map(|i| i as usize));
-        self.triangles = self.triangles.iter().filter(whole).copied().collect();
+        self.leave_out_holes();
         self.torn.len() - already
     }
 }

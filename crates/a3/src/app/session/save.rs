@@ -208,6 +208,27 @@ mod tests {
     }
 
     #[test]
+    fn what_has_broken_stays_broken() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rag.toml");
+        let rag = "tear = 1.3\n\
+             [wind]\nvelocity = [3, 0, 1]\n\
+             [[cloth]]\ngrid = [6, 5]\nwidth = 1\nmass = 0.01\nstiffness = [20, 10, 5]\ndamping_ratio = 0.1\n\
+             pin = [{ at = ['left'] }, { at = ['right'], shift = { by = [0.9, 0, 0], start = 0.1, end = 0.7 } }]\n";
+        std::fs::write(&path, rag).unwrap();
+        let mut session = session(&["r", "0.002", "--scene", path.to_str().unwrap()]);
+        session.act(Action::Wind, 0);
+        run_on(&mut session);
+        let torn = session.first().model().network().unwrap().torn().to_vec();
+        assert!(torn.len() > 5, "{torn:?}");
+        let path = written(&session, folder.path());
+        check(&session, &path);
+        let again = Source::find(path.to_str().unwrap()).unwrap();
+        let again = again.build(None).unwrap();
+        assert_eq!(again.model.network().unwrap().torn(), torn);
+    }
+
+    #[test]
     fn it_is_written_beside_its_scene_and_finds_the_mesh() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(

@@ -526,6 +526,9 @@ impl Description {
         network
             .set_tear(self.tear)
             .map_err(|e| Fault::new("tear", e))?;
+        network
+            .break_springs(&self.torn)
+            .map_err(|e| Fault::new("torn", e))?;
         self.add_obstacles(network)
     }
 

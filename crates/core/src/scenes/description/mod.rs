@@ -81,6 +81,9 @@ pub struct Description {
     pub pin: Vec<Pin>,
     /// Springs break when they are stretched to this many times their rest length. Without it, they do not.
     pub tear: Option<f64>,
+    /// Springs that are broken from the beginning: those between two particles each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub torn: Vec<[usize; 2]>,
     /// Boxes in the way.
     #[serde(rename = "box", skip_serializing_if = "Vec::is_empty")]
     pub boxes: Vec<BoxSpec>,

@@ -71,7 +71,7 @@ impl Description {
     }
 
     /// Begins with the state y at time t (s), and with what pulls and stands in the way there: pins, spheres, floor, wind,
-    /// gravity and drag. Springs stay as they are described, torn ones too.
+    /// gravity and drag. Springs stay as they are described, but for those that have broken.
     pub fn begin_with(&mut self, model: &Model, t: f64, y: &[f64]) {
         let n = model.particles();
         let rows = |part: &[f64]| {
@@ -90,6 +90,7 @@ impl Description {
         self.gravity = network.gravity().map(Into::into);
         (self.drag, self.drag_per_mass) = (network.drag(), None);
         self.floor = network.floor().map(|floor| floor.height);
+        self.torn = network.torn().to_vec();
         if let Some(wind) = &mut self.wind {
             wind.on = network.wind().is_some();
             wind.ahead += t;
