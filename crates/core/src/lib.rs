@@ -82,6 +82,6 @@ pub use network::{Energy, Network};
 pub use path::{Path, Place};
 pub use scenes::{Model, Scene, SceneEntry, Surface, Swing, View};
 pub use sheet::Sheet;
-pub use simulation::Simulation;
+pub use simulation::{Moment, Simulation};
 pub use spring::{Spring, SpringKind, SpringLaw};
 pub use system::{Coupling, Matrix, Mechanics, ParticleSystem};

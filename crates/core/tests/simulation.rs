@@ -5,7 +5,9 @@ mod common;
 use std::sync::Arc;
 
 use a3_core::colliders::Sphere;
-use a3_core::{Cause, Error, Model, Network, ParticleSystem, Path, Scene, Simulation, Vector3};
+use a3_core::{
+    Cause, Error, Model, Moment, Network, ParticleSystem, Path, Scene, Simulation, Vector3,
+};
 use approx::assert_relative_eq;
 use common::{method, scene, simulation};
 
@@ -435,6 +437,14 @@ fn a_particle_is_pinned_and_let_go() {
     assert_eq!(simulation("simple", "rk4", 0.1).toggle_pin(0), Ok(false));
 }
 
+fn moment(run: &Simulation) -> Moment {
+    let mut moment = Moment::default();
+    run.record(&mut moment);
+    assert_eq!((moment.time, moment.steps), (run.time(), run.steps()));
+    assert_eq!(moment.y, run.state());
+    moment
+}
+
 #[test]
 fn a_rewound_run_repeats_itself() {
     for method in ["trapezoid", "verlet", "dop853"] {
@@ -446,14 +456,11 @@ fn a_rewound_run_repeats_itself() {
         let mut run = simulation("cloth", method, setting);
         run.set_swinging(true);
         run.advance_to(0.5).unwrap();
-        let (steps, then) = (run.steps(), run.state().to_vec());
+        let then = moment(&run);
         run.advance_to(1.0).unwrap();
         let end = run.state().to_vec();
-        run.rewind(0.5, steps, &then).unwrap();
-        assert_eq!(
-            (run.time(), run.steps(), run.state()),
-            (0.5, steps, &then[..])
-        );
+        run.rewind(&then).unwrap();
+        assert_eq!(moment(&run), then);
         run.advance_to(1.0).unwrap();
         let worst = run.state().iter().zip(&end).map(|(a, b)| (a - b).abs());
         // An adaptive method chooses its steps anew.
@@ -467,23 +474,25 @@ fn a_rewound_run_repeats_itself() {
 fn rewinding_puts_pins_back_where_they_were_and_ends_a_blow_up() {
     let mut run = simulation("cloth", "trapezoid", 0.01);
     run.advance_to(0.2).unwrap();
-    let (corner, then) = (run.position(0), run.state().to_vec());
+    let (corner, then) = (run.position(0), moment(&run));
     run.grab(0).unwrap();
     run.pull(corner + Vector3::new(0.3, 0.2, 0.0));
     run.advance_to(0.4).unwrap();
-    run.rewind(0.2, 20, &then).unwrap();
+    run.rewind(&then).unwrap();
     assert_eq!((run.grabbed(), run.position(0)), (None, corner));
     run.advance_to(0.5).unwrap();
     assert_eq!(run.position(0), corner);
 
     let mut run = simulation("mit", "rk4", 0.05);
-    let start = run.state().to_vec();
+    let start = moment(&run);
     while run.take_steps(1).is_ok() {}
-    run.rewind(0.0, 0, &start).unwrap();
+    run.rewind(&start).unwrap();
     assert!(run.blow_up().is_none() && run.take_steps(1).is_ok());
-    assert!(run.rewind(0.0, 0, &start[1..]).is_err());
-    assert!(run.rewind(f64::NAN, 0, &start).is_err());
     let mut broken = start.clone();
-    broken[7] = f64::INFINITY;
-    assert!(run.rewind(0.0, 0, &broken).is_err());
+    broken.y[7] = f64::INFINITY;
+    assert!(run.rewind(&broken).is_err());
+    broken.y.pop();
+    assert!(run.rewind(&broken).is_err());
+    let time = f64::NAN;
+    assert!(run.rewind(&Moment { time, ..start }).is_err());
 }

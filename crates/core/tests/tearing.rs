@@ -3,9 +3,10 @@
 mod common;
 
 use a3_core::forces::{Air, Buckling, Wind};
+use a3_core::scenes::Description;
 use a3_core::{
-    Mechanics, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
-    integrators,
+    Mechanics, Model, Moment, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
+    Vector3, integrators,
 };
 use approx::assert_relative_eq;
 use common::{method, scene, scene_with_grid};
@@ -338,5 +339,58 @@ fn every_method_tears_alike() {
         assert!(late.abs() < 6e-4, "{}: {late}", m.name);
         run.take_steps(20).unwrap();
         assert_eq!(run.tears(), 1, "{}", m.name);
+    }
+}
+
+/// Back before something tore it is whole, and tears again as it did; between tears it has those that there were.
+#[test]
+fn what_tore_after_a_moment_is_mended_there() {
+    let scene = Description::parse(
+        "tear = 1.3
+        torn = [[0, 1]]
+        [wind]
+        on = true
+        velocity = [3, 0, 1]
+        [[sphere]]
+        center = [0.5, -0.5, 0.4]
+        radius = 0.1
+        sine = { amplitude = [0, 0, 0.3], rate = 5 }
+        [[cloth]]
+        grid = [6, 5]
+        width = 1
+        mass = 0.01
+        stiffness = [20, 10, 5]
+        damping_ratio = 0.1
+        pin = [{ at = ['left'] }, { at = ['right'], shift = { by = [0.9, 0, 0], start = 0.1, end = 0.7 } }]",
+    )
+    .and_then(|d| d.build(None, &mut |_| Err("no mesh".into())))
+    .unwrap();
+    let mut run = Simulation::new(scene, method("rk4"), 1.0 / 512.0).unwrap();
+    let mut moments = vec![];
+    for k in 0..=20 {
+        run.advance_to(f64::from(k) / 16.0).unwrap();
+        let mut moment = Moment::default();
+        run.record(&mut moment);
+        moments.push((moment, network_of(&run).clone()));
+    }
+    let tears: Vec<_> = moments
+        .iter()
+        .map(|(moment, _)| moment.torn.len())
+        .collect();
+    assert!(
+        tears[0] == 1 && tears[20] > 10 && tears.windows(2).filter(|t| t[0] < t[1]).count() > 2
+    );
+    for k in [12, 0, 9, 20, 3] {
+        let (moment, network) = &moments[k];
+        run.grab_sphere(0).unwrap();
+        run.pull_sphere(Vector3::new(3.0, 3.0, 3.0));
+        run.rewind(moment).unwrap();
+        let mut again = Moment::default();
+        run.record(&mut again);
+        assert_eq!(&again, moment);
+        assert!(network_of(&run).springs().eq(network.springs()));
+        run.advance_to(1.25).unwrap();
+        assert_eq!(run.state(), moments[20].0.y, "{k}");
+        assert_eq!(network_of(&run).torn(), moments[20].0.torn, "{k}");
     }
 }

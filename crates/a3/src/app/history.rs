@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use a3_core::Simulation;
+use a3_core::{Moment, Simulation};
 
 /// Simulated time between two moments (s), and over all of them.
 const INTERVAL: f64 = 1.0 / 60.0;
@@ -13,23 +13,21 @@ const MEMORY: usize = 64 << 20;
 /// Moments, the oldest first.
 #[derive(Default)]
 pub struct History {
-    moments: VecDeque<Moment>,
+    moments: VecDeque<Entry>,
     /// The one that is shown, unless it is the newest.
     shown: Option<usize>,
 }
 
-struct Moment {
+struct Entry {
     clock: f64,
-    /// Of each run.
-    states: Vec<State>,
+    /// Of each run: none of what was lost then.
+    moments: Vec<Option<Moment>>,
 }
 
-struct State {
-    time: f64,
-    steps: u64,
-    /// What was lost has no such moment.
-    alive: bool,
-    y: Vec<f64>,
+impl Entry {
+    fn size(&self) -> usize {
+        self.moments.iter().flatten().map(Moment::size).sum()
+    }
 }
 
 /// Where in the kept time one is.
@@ -60,30 +58,24 @@ impl History {
         if last.is_some_and(|last| clock <= last || (!now && clock < last + due)) {
             return;
         }
-        let room = |moment: &Moment| moment.states.iter().map(|state| 8 * state.y.len()).sum();
-        let size: usize = self.moments.front().map_or(0, room);
-        let old = |moment: &Moment| moment.clock < clock - SPAN;
-        let full = self.moments.len() > 1 && (self.moments.len() + 1) * size > MEMORY;
+        let size: usize = self.moments.iter().map(Entry::size).sum();
+        let next = self.moments.back().map_or(0, Entry::size);
+        let old = |entry: &Entry| entry.clock < clock - SPAN;
+        let full = self.moments.len() > 1 && size + next > MEMORY;
         // The oldest one's place, if there is no other.
         let spare = if full || self.moments.front().is_some_and(old) {
             self.moments.pop_front()
         } else {
             None
         };
-        let mut places = spare.map_or(vec![], |moment| moment.states).into_iter();
-        let state = |run: &Simulation| {
-            let mut y = places.next().map_or(vec![], |state| state.y);
-            y.clear();
-            y.extend_from_slice(run.state());
-            State {
-                time: run.time(),
-                steps: run.steps(),
-                alive: run.blow_up().is_none(),
-                y,
-            }
-        };
-        let states = runs.map(state).collect();
-        self.moments.push_back(Moment { clock, states });
+        let mut places = spare.map_or(vec![], |entry| entry.moments).into_iter();
+        let moments = runs.map(|run| {
+            let mut moment = places.next().flatten().unwrap_or_default();
+            run.record(&mut moment);
+            Some(moment).filter(|_| run.blow_up().is_none())
+        });
+        let moments = moments.collect();
+        self.moments.push_back(Entry { clock, moments });
     }
 
     /// Goes `by` moments on, or back. Whether another one is shown then.
@@ -105,12 +97,12 @@ impl History {
     /// Gives the runs the states of the moment that is shown.
     pub fn show<'r>(&self, runs: impl Iterator<Item = &'r mut Simulation>) {
         let newest = self.moments.len().saturating_sub(1);
-        let Some(moment) = self.moments.get(self.shown.unwrap_or(newest)) else {
+        let Some(entry) = self.moments.get(self.shown.unwrap_or(newest)) else {
             return;
         };
-        for (run, state) in runs.zip(&moment.states).filter(|(_, state)| state.alive) {
+        for (run, moment) in runs.zip(&entry.moments) {
             // It is of this run, and in shape.
-            let _ = run.rewind(state.time, state.steps, &state.y);
+            let _ = moment.as_ref().map(|moment| run.rewind(moment));
         }
     }
 

@@ -67,6 +67,18 @@ impl Network {
         Ok(())
     }
 
+    /// Takes over the springs and triangles of the same network as it began, but for those between these particles.
+    ///
+    /// # Errors
+    /// It has not as many particles, or no such springs.
+    pub fn mend(&mut self, whole: &Self, torn: &[[usize; 2]]) -> Result<(), Error> {
+        self.torn.clone_from(&whole.torn);
+        self.copy_springs(whole)?;
+        self.triangles.clone_from(&whole.triangles);
+        let more = torn.iter().filter(|[i, j]| !whole.is_torn(*i, *j));
+        self.break_springs(&more.copied().collect::<Vec<_>>())
+    }
+
     /// Whether a spring between particles i and j has broken.
     #[must_use]
     pub fn is_torn(&self, i: usize, j: usize) -> bool {

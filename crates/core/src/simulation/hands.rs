@@ -218,45 +218,6 @@ impl Simulation {
         Ok(!pinned)
     }
 
-    /// Back to a state that the run had at `time` (s), after so many steps: hands let go, and it goes on from there, also
-    /// after a blow-up. Pins whose path does not lead there stay where they are in that state, or swing from there. Method,
-    /// wind, spheres and which particles are pinned stay as they are now, and torn springs stay torn.
-    ///
-    /// # Errors
-    /// The state has not the length of the model's, or a number is not finite.
-    pub fn rewind(&mut self, time: f64, steps: u64, y: &[f64]) -> Result<(), Error> {
-        if y.len() != self.y.len() {
-            return Err(Error::Dimension {
-                expected: self.y.len(),
-                found: y.len(),
-            });
-        }
-        if !time.is_finite() || y.iter().any(|y| !y.is_finite()) {
-            return Err(Error::Invalid(
-                "a state to go back to has finite numbers, and so has its time".into(),
-            ));
-        }
-        self.release();
-        self.release_sphere();
-        self.y.copy_from_slice(y);
-        (self.since, self.taken, self.steps) = (time, 0, steps);
-        self.good.y.copy_from_slice(y);
-        (self.good.time, self.good.steps) = (time, steps);
-        self.blow_up = None;
-        self.look_again();
-        let pins = self.model.network().into_iter().flat_map(Network::pins);
-        // Not for a rounding error: a scene's own path is kept.
-        let far = 1e-9 * self.radius;
-        let elsewhere: Vec<_> = pins
-            .filter(|(i, path)| (path.at(time).position - self.position(*i)).norm() > far)
-            .map(|(i, _)| i)
-            .collect();
-        for i in elsewhere {
-            self.leave_pin(i);
-        }
-        Ok(())
-    }
-
     /// The grabbed sphere.
     #[must_use]
     pub fn grabbed_sphere(&self) -> Option<usize> {

@@ -1,7 +1,10 @@
 //! Scene x method x time.
 
 mod hands;
+mod moment;
 mod tuning;
+
+pub use moment::Moment;
 
 use std::ops::Range;
 
