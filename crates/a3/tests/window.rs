@@ -696,6 +696,21 @@ fn clicks_slow_motion_and_going_back() {
     until("the same time", || {
         (app.number("time")? == now).then_some(())
     });
+    // Along the bar.
+    app.press_for("comma", "scrubbed", "true");
+    let go = |x: &str| display.xdotool(&["mousemove", "--window", &app.window, x, "682"]);
+    go("800");
+    display.xdotool(&["mousedown", "1"]);
+    go("420");
+    until("long before", || {
+        (app.number("time")? < 0.4 * now).then_some(())
+    });
+    go("1200");
+    app.expect("scrubbed", "false");
+    display.xdotool(&["mouseup", "1"]);
+    until("the same time", || {
+        (app.number("time")? == now).then_some(())
+    });
 
     let (x, y) = display.screen().middle(is_red);
     let (left, top) = app.corner();
@@ -711,6 +726,11 @@ fn clicks_slow_motion_and_going_back() {
     app.expect("pins", "20");
     click(&["click", "--repeat", "2", "--delay", "60", "1"]);
     until("springs", || (app.get("springs_of") != "-").then_some(()));
+    // Two clicks far apart are not one of two.
+    let beside = |x: &'static str| ["mousemove", "--window", &app.window, x, "600", "click", "1"];
+    display.xdotool(&[beside("1100"), beside("1200")].concat());
+    app.frames_go_on();
+    assert_ne!(app.get("springs_of"), "-");
     let before = app.settled();
     click(&[
         "mousedown",

@@ -255,9 +255,9 @@ impl App {
             self.pointed(),
             self.graphics.as_ref().map_or(1.0, Graphics::scale),
         );
-        let (last, when, still) = self.pressed;
+        let (_, when, still) = self.pressed;
         self.pressed = (self.pointer, Instant::now(), true);
-        let again = still && when.elapsed() < DOUBLE && near(last, self.pointer, CLICK * scale);
+        let again = still && when.elapsed() < DOUBLE;
         let share = self.timeline_share(CLICK);
         let hit = self.hit(held, scale);
         let session = &mut self.session;
