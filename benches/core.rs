@@ -8,7 +8,10 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use a3_core::{Grid, Mechanics, Model, Network, Scene, Sheet, Spring, integrators, scenes};
+use a3_core::scenes::Description;
+use a3_core::{
+    Grid, Mechanics, Model, Network, Scene, Sheet, Simulation, Spring, integrators, scenes,
+};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 
 const SIDES: [usize; 7] = [8, 16, 32, 64, 128, 256, 512];
@@ -142,6 +145,37 @@ fn evaluation(c: &mut Criterion) {
     group.finish();
 }
 
+/// One evaluation of chains of rods on their way: constraints. Throughput is in rods.
+fn rods(c: &mut Criterion) {
+    let mut group = c.benchmark_group("evaluation/rods");
+    for rods in [1u32, 10, 100] {
+        let text = format!(
+            "gravity = [0, -9.81, 0]
+            [[chain]]
+            particles = {}
+            from = [0, 0, 0]
+            to = [{}, 0, 0]
+            mass = 0.2
+            rigid = true
+            pin = [{{ at = ['first'] }}]",
+            rods + 1,
+            0.5 * f64::from(rods)
+        );
+        let scene = Description::parse(&text)
+            .and_then(|description| description.build(None, &mut |_| Err("no mesh".into())))
+            .unwrap();
+        let mut run = Simulation::new(scene, integrators::find("rk4").unwrap(), 1e-3).unwrap();
+        run.advance_to(0.5).unwrap();
+        let system = run.model().system();
+        let mut dydt = vec![0.0; system.dim()];
+        group.throughput(Throughput::Elements(u64::from(rods)));
+        group.bench_function(BenchmarkId::from_parameter(rods), |b| {
+            b.iter(|| system.eval_f(0.5, black_box(run.state()), &mut dydt));
+        });
+    }
+    group.finish();
+}
+
 /// A step of every method on every scene that it serves.
 fn steps(c: &mut Criterion) {
     for entry in scenes::SCENES {
@@ -199,7 +233,7 @@ criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20).warm_up_time(std::time::Duration::from_millis(300))
         .measurement_time(std::time::Duration::from_secs(1));
-    targets = forces, forces_of_a_list, evaluation, steps, steps_by_size
+    targets = forces, forces_of_a_list, evaluation, rods, steps, steps_by_size
 }
 
 fn main() {

@@ -670,22 +670,3 @@ fn a_sheet_hangs_from_points_as_from_pins() {
         assert!(error(&pointed, &a) < 1e-12, "{name}");
     }
 }
-
-/// What an evaluation costs: `cargo test --release --test constraints -- --ignored --nocapture`.
-#[test]
-#[ignore = "a measurement"]
-fn cost_of_an_evaluation() {
-    for rods in [1, 10, 100, 400] {
-        let (network, start) = chain(rods);
-        // Away from the line, where every rod pulls.
-        let y = integrate(&network, method("rk4"), &start, 1e-3, 500);
-        let mut out = vec![0.0; y.len()];
-        let times = 2000 / rods + 1;
-        let begun = std::time::Instant::now();
-        for _ in 0..times {
-            network.eval_f(0.0, std::hint::black_box(&y), &mut out);
-        }
-        let each = begun.elapsed().as_secs_f64() / times as f64;
-        println!("{rods} rods: {:.2} us", 1e6 * each);
-    }
-}
