@@ -148,6 +148,30 @@ mod tests {
     }
 
     #[test]
+    fn what_came_after_the_moment_shown_did_not_happen() {
+        let (run, mut history) = (run(3), History::default());
+        for k in 0..5 {
+            history.keep(f64::from(k), false, [&run].into_iter());
+        }
+        assert!(history.go(-3));
+        history.keep(1.5, false, [&run].into_iter());
+        let clocks: Vec<_> = history.moments.iter().map(|entry| entry.clock).collect();
+        assert_eq!(clocks, [0.0, 1.0, 1.5]);
+    }
+
+    #[test]
+    fn what_is_lost_has_no_moment() {
+        let scene = scenes::find("mit").unwrap().build(None).unwrap();
+        let mut run = Simulation::new(scene, integrators::find("e").unwrap(), 0.05).unwrap();
+        let mut history = History::default();
+        history.keep(0.0, false, [&run].into_iter());
+        while run.take_steps(1).is_ok() {}
+        history.keep(1.0, false, [&run].into_iter());
+        let kept = history.moments.iter().map(|e| e.moments[0].is_some());
+        assert_eq!(kept.collect::<Vec<_>>(), [true, false]);
+    }
+
+    #[test]
     fn it_stops_at_both_ends() {
         let mut history = History::default();
         assert!(!history.go(-1) && !history.go_to(0.0) && history.place().is_none());

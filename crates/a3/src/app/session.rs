@@ -608,6 +608,27 @@ pub mod tests {
     }
 
     #[test]
+    fn a_sphere_is_let_go_of_where_it_was_pushed() {
+        let mut session = session(&["r", "0.005", "--scene", "mit-sphere"]);
+        let place = |session: &Session| {
+            let run = session.first();
+            let sphere = run.model().network().unwrap().spheres()[0];
+            sphere.path.at(run.time()).position
+        };
+        let before = place(&session);
+        assert!(session.grab_sphere(0));
+        session.pull(before + Vector3::new(0.2, 0.0, 0.0));
+        frames(&mut session, 1.0);
+        session.release();
+        assert_eq!(session.first().grabbed_sphere(), None);
+        let pushed = place(&session);
+        assert!((pushed - before).norm() > 0.1);
+        session.pull(before);
+        frames(&mut session, 1.0);
+        assert_eq!(place(&session), pushed);
+    }
+
+    #[test]
     fn a_pin_is_set_in_every_run_at_the_same_time() {
         let mut session = compared(&["r:0.013", "r:0.005", "--scene", "cloth"], 0.3);
         session.toggle_pin(210);
