@@ -109,8 +109,8 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     }
     bar.clear();
     export.finish()?;
-    let one_mesh = ["pc2", "glb"].map(|ending| output::ends_in(&options.output, ending));
-    if simulation.tears() > 0 && one_mesh.contains(&true) {
+    let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
+    if simulation.tears() > 0 && ["pc2", "glb"].iter().any(one_mesh) {
         eprintln!(
             "{} springs broke, but {} has one mesh for all its frames: frames as .obj, such as torn-####.obj, have the holes",
             simulation.tears(),

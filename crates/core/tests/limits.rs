@@ -2,7 +2,6 @@
 
 mod common;
 
-use a3_core::scenes::Description;
 use a3_core::stability::{
     Growth, LargestMode, Mode, Truth, largest_step, modes_in_motion, observe_at_rest,
     observe_from_start, rest, spectrum,
@@ -11,7 +10,7 @@ use a3_core::{
     Grid, Mechanics, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3, integrators,
 };
 use approx::assert_relative_eq;
-use common::{method, scene, scene_with_grid};
+use common::{described, method, scene, scene_with_grid};
 
 fn undamped(frequency: f64) -> Mode {
     Mode {
@@ -295,9 +294,7 @@ fn rest_is_without_tears_and_not_of_what_moves() {
     ";
     let build = |tear: &str, moves: &str| {
         let text = cloth.replace("TEAR", tear).replace("MOVES", moves);
-        Description::parse(&text)
-            .and_then(|d| d.build(None, &mut |_| Err("no mesh".into())))
-            .unwrap()
+        described(&text)
     };
     let [whole, torn] = ["100", "1.2"].map(|tear| rest(&build(tear, "")).unwrap().unwrap());
     assert_eq!(whole.scene.state, torn.scene.state);

@@ -15,6 +15,13 @@ pub fn scene(name: &str) -> Scene {
     scenes::find(name).unwrap().build(None).unwrap()
 }
 
+/// That of a scene file's text.
+pub fn described(text: &str) -> Scene {
+    scenes::Description::parse(text)
+        .and_then(|d| d.build(None, &mut |_| Err("no mesh".into())))
+        .unwrap()
+}
+
 pub fn scene_with_grid(name: &str, rows: usize, cols: usize) -> Scene {
     scenes::find(name)
         .unwrap()
