@@ -12,12 +12,12 @@ use nalgebra::Vector3;
 
 use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
 use crate::constraints::Constraints;
+use crate::elements::Sheet;
+use crate::elements::air::OnTriangles;
+use crate::elements::buckling::{Buckling, Strip};
+use crate::elements::{ending::Ending, gravity, springs, wind::Wind};
 use crate::error::{Error, at_least, positive};
-use crate::forces::air::OnTriangles;
-use crate::forces::buckling::{Buckling, Strip};
-use crate::forces::{ending::Ending, gravity, springs, wind::Wind};
 use crate::path::Path;
-use crate::sheet::Sheet;
 use crate::spring::{Spring, SpringKind, SpringLaw};
 
 /// A particle led along a path.

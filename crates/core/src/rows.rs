@@ -4,7 +4,7 @@
 use std::array;
 use std::ops::Range;
 
-use crate::forces::sheet;
+use crate::elements::sheet::kernel as sheet;
 
 /// How far springs reach, in rows.
 pub(crate) const REACH: usize = 2;

@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use a3_core::forces::{Air, Wind};
+use a3_core::elements::{Air, Wind};
 use a3_core::{Constraint, Model, Network, Path, Scene, Simulation, Vector3, integrators, scenes};
 
 /// The system's allocator, which counts this thread's allocations.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use a3_core::forces::Buckling;
+use a3_core::elements::Buckling;
 use a3_core::{
     Mechanics, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
 };

@@ -2,7 +2,7 @@
 
 mod common;
 
-use a3_core::forces::{Air, Buckling, Wind};
+use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{
     Grid, Mechanics, Model, Network, ParticleSystem, Sheet, Simulation, Spring, SpringKind,
     SpringLaw, Vector3, scenes,

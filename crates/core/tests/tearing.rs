@@ -2,7 +2,7 @@
 
 mod common;
 
-use a3_core::forces::{Air, Buckling, Wind};
+use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{
     Mechanics, Model, Moment, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
     Vector3, integrators,

@@ -2,7 +2,7 @@
 
 mod common;
 
-use a3_core::forces::{Air, Wind};
+use a3_core::elements::{Air, Wind};
 use a3_core::{
     Mechanics, Model, Network, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
     integrators, scenes,

@@ -5,8 +5,8 @@ mod horizon;
 mod ladder;
 mod reference;
 
+use crate::elements::springs;
 use crate::error::{BlowUp, Error};
-use crate::forces::springs;
 use crate::integrators::{Method, Work};
 use crate::network::Network;
 use crate::scenes::Scene;

@@ -4,7 +4,7 @@
 use std::array;
 
 use super::tangent::Tangent;
-use crate::forces::columns;
+use crate::elements::columns;
 use crate::system::Mechanics;
 
 /// Scratch for a system of one size.

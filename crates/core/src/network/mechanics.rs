@@ -5,13 +5,13 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::Network;
-use crate::forces::buckling;
-use crate::forces::flow::{self, Flow};
-use crate::forces::sheet::Of;
-use crate::forces::{columns_mut, drag, ending::Ending, sheet, springs};
+use crate::elements::Sheet;
+use crate::elements::buckling;
+use crate::elements::flow::{self, Flow};
+use crate::elements::sheet::kernel::{self as sheet, Of};
+use crate::elements::{columns_mut, drag, ending::Ending, springs};
 use crate::path::Place;
 use crate::rows::{Part, Registers, Rows, Stage, Sweep};
-use crate::sheet::Sheet;
 use crate::system::{Coupling, Matrix, Mechanics, place_pins};
 
 impl Network {

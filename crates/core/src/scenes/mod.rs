@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use crate::elements::Wind;
 use crate::error::Error;
-use crate::forces::Wind;
 use crate::grid::Grid;
 use crate::integrators::Method;
 use crate::network::Network;

@@ -1,7 +1,7 @@
 //! What is changed while it runs, and stays changed when it begins again: settings, not state.
 
 use super::{Simulation, Stepper};
-use crate::forces::Wind;
+use crate::elements::Wind;
 use crate::network::Network;
 use crate::scenes::Model;
 

@@ -11,9 +11,9 @@ use std::array;
 
 use nalgebra::Vector3;
 
+use crate::elements::flow::Flow;
+use crate::elements::{columns_mut, drag};
 use crate::error::Error;
-use crate::forces::flow::Flow;
-use crate::forces::{columns_mut, drag};
 use crate::integrators::{Integrator, Method};
 use crate::path::Place;
 use crate::system::{Coupling, Mechanics};

@@ -8,10 +8,10 @@ use super::build::{Assembly, Sizes};
 use super::lattice::Lattice;
 use super::{BucklingSpec, Fault, Mesh, Pin, Spot, SpringSpec, Triple};
 use crate::constraints::Constraint;
+use crate::elements::Buckling;
+use crate::elements::Sheet;
 use crate::error::{Error, at_least, positive};
-use crate::forces::Buckling;
 use crate::grid::Grid;
-use crate::sheet::Sheet;
 use crate::spring::{Spring, SpringKind, SpringLaw};
 
 /// One particle of first order, whose velocity is its position turned by a right angle.

@@ -8,14 +8,14 @@ use super::bodies::{Body, Woven, in_body};
 use super::{ConstraintSpec, Description, Fault, Mesh, Pin, Shift, Sine, SpringSpec, Triple};
 use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
 use crate::constraints::Constraint;
+use crate::elements::Sheet;
+use crate::elements::{Air, Buckling, Wind};
 use crate::error::{at_least, positive};
-use crate::forces::{Air, Buckling, Wind};
 use crate::grid::{Grid, MAX_PARTICLES};
 use crate::integrators;
 use crate::network::Network;
 use crate::path::Path;
 use crate::scenes::{Circling, Model, Scene, Surface, Swing, View, bounds};
-use crate::sheet::Sheet;
 use crate::spring::{Spring, SpringKind, SpringLaw};
 
 /// The most springs that are in no grid.

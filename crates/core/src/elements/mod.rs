@@ -13,6 +13,7 @@ pub(crate) mod wind;
 
 pub use air::Air;
 pub use buckling::Buckling;
+pub use sheet::Sheet;
 pub use wind::Wind;
 
 use std::ops::Range;

@@ -1,5 +1,7 @@
 //! The springs of a grid: one law for each of the six ways that they go.
 
+pub(crate) mod kernel;
+
 use crate::error::{Error, positive};
 use crate::grid::Grid;
 use crate::spring::{Spring, SpringKind, SpringLaw};

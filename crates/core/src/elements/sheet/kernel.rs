@@ -15,12 +15,12 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::ending::Ending;
-use super::flow::Flow;
-use super::inverse_root::inverse_root;
-use super::{columns, columns_mut};
+use super::super::ending::Ending;
+use super::super::flow::Flow;
+use super::super::inverse_root::inverse_root;
+use super::super::{columns, columns_mut};
+use super::{Sheet, WAYS};
 use crate::rows::{PAD, Part, REACH, Registers, Stage, Sweep, stride};
-use crate::sheet::{Sheet, WAYS};
 use crate::threads::{fork, threads};
 
 /// How many times as fast this is as the same springs one by one, on the grids that people look at.
