@@ -16,7 +16,6 @@ mod interrupt;
 mod list;
 mod manual;
 mod output;
-mod plot;
 mod progress;
 mod render;
 mod scene_file;

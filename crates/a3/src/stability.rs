@@ -8,10 +8,10 @@ use a3_core::stability::{
     observe_from_start, rest, spectrum,
 };
 use a3_core::{Method, Scene};
+use a3_plot::{Region, StabilityRegions};
 
-use crate::chart::{describe, methods, write_picture};
+use crate::chart::{describe, methods, style, write_picture};
 use crate::cli::Stability;
-use crate::plot::regions::{Chart, Panel};
 use crate::progress::Bar;
 use crate::{Failure, interrupt, list, output};
 
@@ -92,7 +92,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     let figure = chart(title, &rows, &at_start, h)
         .draw(f64::from(options.size.0), f64::from(options.size.1))
         .map_err(Failure::usage)?;
-    write_picture(&path, &figure.svg())?;
+    write_picture(&path, &figure)?;
     output::say(&format!("chart: {}\n", path.display()))?;
     if interrupt::go_on() {
         Ok(())
@@ -210,18 +210,18 @@ fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> S
     text
 }
 
-fn chart(title: String, rows: &[Row], modes: &[Mode], h: f64) -> Chart {
-    Chart {
+fn chart(title: String, rows: &[Row], modes: &[Mode], h: f64) -> StabilityRegions {
+    StabilityRegions {
         title,
         subtitle: format!(
             "Where the eigenvalues of the scene as it starts, times a step of {}\u{a0}ms, lie in each solver's stable region",
             step(h)
         ),
-        panels: rows.iter().map(|row| panel(row, modes, h)).collect(),
+        regions: rows.iter().map(|row| region(row, modes, h)).collect(),
     }
 }
 
-fn panel(row: &Row, modes: &[Mode], h: f64) -> Panel {
+fn region(row: &Row, modes: &[Mode], h: f64) -> Region {
     let limit = row
         .motion
         .predicted
@@ -253,8 +253,8 @@ fn panel(row: &Row, modes: &[Mode], h: f64) -> Panel {
         };
         Growth::new(method, mode).map_or(f64::INFINITY, |mut growth| growth.of_step(1.0))
     };
-    Panel {
-        letter: method.letter,
+    Region {
+        style: style::of(method.letter),
         title: method.title.to_owned(),
         subtitle,
         radius: Box::new(radius),

@@ -1,27 +1,35 @@
-//! Axes: from numbers to places, and where the ticks are.
+//! Axes: the map from numbers to the sheet, and the ticks.
 
-use super::figure::{Figure, stroke};
-use super::rect::{Point, Rect};
-use super::text::{Anchor, Text, width};
+use crate::figure::{Figure, stroke};
+use crate::geometry::{Point, Rect};
+use crate::label::{Anchor, Label, width};
 
-/// One direction of a chart, linear or logarithmic.
+/// One direction of a chart, linear or logarithmic: a map from numbers to the sheet.
+///
+/// ```
+/// let axis = a3_plot::Axis::log(1e-3, 1.0).between(0.0, 300.0);
+/// assert!(axis.at(1e-2) < axis.at(1e-1));
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
     log: bool,
-    /// The ends, as numbers (their decimal logarithms where logarithmic).
+    /// The least and the greatest number, or their decimal logarithms.
     ends: [f64; 2],
-    /// The ends, on the sheet.
+    /// The ends on the sheet.
     places: [f64; 2],
 }
 
-/// A line of the grid, with a number or without.
+/// A line of the grid.
 #[derive(Debug, PartialEq)]
 pub struct Tick {
+    /// The number that it stands for.
     pub value: f64,
+    /// The number in words, such as `10^{−3}`; empty for a tick without a number.
     pub label: String,
 }
 
 impl Axis {
+    /// A linear axis between two numbers.
     pub fn linear(ends: [f64; 2]) -> Self {
         Self {
             log: false,
@@ -30,7 +38,7 @@ impl Axis {
         }
     }
 
-    /// Around positive numbers: ends are 1, 2 or 5 times a power of ten.
+    /// A logarithmic axis around two positive numbers, which ends at 1, 2 or 5 times powers of ten.
     pub fn log(low: f64, high: f64) -> Self {
         let marks = [0.0, 2_f64.log10(), 5_f64.log10(), 1.0];
         let [low, high] = [low, high].map(|end| end.max(f64::MIN_POSITIVE).log10());
@@ -52,6 +60,8 @@ impl Axis {
         }
     }
 
+    /// The axis with its ends at these coordinates of the sheet.
+    #[must_use]
     pub fn between(self, from: f64, to: f64) -> Self {
         Self {
             places: [from, to],
@@ -59,20 +69,20 @@ impl Axis {
         }
     }
 
-    /// Where a number is; one beyond the ends is at the end.
+    /// The coordinate of a number; that of the nearer end for a number beyond the ends.
     pub fn at(&self, value: f64) -> f64 {
         let value = if self.log { value.log10() } else { value };
         let part = (value - self.ends[0]) / (self.ends[1] - self.ends[0]);
         self.places[0] + part.clamp(0.0, 1.0) * (self.places[1] - self.places[0])
     }
 
-    /// Whether there is some of the axis on either side of a number.
+    /// Whether a number lies between the ends.
     pub fn is_inside(&self, value: f64) -> bool {
         let value = if self.log { value.log10() } else { value };
         self.ends[0] < value && value < self.ends[1]
     }
 
-    /// The grid: numbers at least `gap` apart on the sheet.
+    /// The ticks, whose labels are at least `gap` apart on the sheet.
     pub fn ticks(&self, gap: f64) -> Vec<Tick> {
         let span = self.ends[1] - self.ends[0];
         let unit = (self.places[1] - self.places[0]).abs() / span;
@@ -88,7 +98,7 @@ impl Axis {
             .into_iter()
             .find(|s| s * unit >= gap)
             .unwrap_or(20.0);
-        // 2 and 5 get their numbers too where there would be hardly any.
+        // 2 and 5 get their numbers too where there would be hardly any numbers otherwise.
         let rich = self.ends[1] - self.ends[0] < 2.5 && 0.3 * unit > 1.3 * gap;
         let mut ticks = vec![];
         let mut power = self.ends[0].floor();
@@ -142,7 +152,7 @@ fn power_of_ten(power: f64) -> String {
     format!("10^{{{power}}}").replace('-', "−")
 }
 
-/// The widest number of an axis.
+/// The width of the widest number of an axis.
 pub fn widest(axis: &Axis, size: f64) -> f64 {
     axis.ticks(1.6 * size)
         .iter()
@@ -150,7 +160,7 @@ pub fn widest(axis: &Axis, size: f64) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Draws grid, frame and numbers of a panel; `numbers` says whether those of x and of y.
+/// Draws grid, frame and numbers of a panel; `numbers` says whether those of x, and those of y.
 pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numbers: [bool; 2]) {
     let grid = |label: &str| {
         let (colour, width) = if label.is_empty() {
@@ -164,7 +174,7 @@ pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
         x.ticks(if x.log { 3.4 } else { 2.3 } * size),
         y.ticks(1.6 * size),
     );
-    // Those with numbers are drawn over those without.
+    // Ticks with numbers are drawn over those without.
     for named in [false, true] {
         for tick in xs.iter().filter(|tick| tick.label.is_empty() != named) {
             let at = x.at(tick.value);
@@ -179,17 +189,61 @@ pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
         area,
         &format!("fill=\"none\" {}", stroke("#8a8a8a", 0.07 * size)),
     );
-    let mut number = |at: Point, text: Text| {
-        if figure.free(text.room(at)) {
-            figure.text(at, text);
+    let mut number = |at: Point, label: Label| {
+        if figure.is_free(label.room(at)) {
+            figure.text(at, label);
         }
     };
     for tick in xs.iter().filter(|_| numbers[0]) {
-        let text = Text::new(&tick.label, size).anchor(Anchor::Middle);
-        number([x.at(tick.value), area.y1 + 1.15 * size], text);
+        let label = Label::new(&tick.label, size).anchor(Anchor::Middle);
+        number([x.at(tick.value), area.y1 + 1.15 * size], label);
     }
     for tick in ys.iter().filter(|_| numbers[1]) {
-        let text = Text::new(&tick.label, size).anchor(Anchor::End);
-        number([area.x0 - 0.4 * size, y.at(tick.value) + 0.34 * size], text);
+        let label = Label::new(&tick.label, size).anchor(Anchor::End);
+        number(
+            [area.x0 - 0.4 * size, y.at(tick.value) + 0.34 * size],
+            label,
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_apart() {
+        let linear = Axis::linear([-3.3, 1.2]).between(0.0, 300.0);
+        let labels: Vec<_> = linear
+            .ticks(40.0)
+            .into_iter()
+            .map(|tick| tick.label)
+            .collect();
+        assert_eq!(labels, ["−3", "−2", "−1", "0", "1"]);
+        let log = Axis::log(3e-4, 0.7).between(0.0, 400.0);
+        let ticks = log.ticks(40.0);
+        let labels: Vec<_> = ticks
+            .iter()
+            .filter(|tick| !tick.label.is_empty())
+            .map(|tick| &*tick.label)
+            .collect();
+        assert_eq!(labels, ["10^{−3}", "10^{−2}", "10^{−1}", "10^{0}"]);
+        assert!(ticks.len() > 25, "no minor ticks");
+        assert!((log.at(1e-2) - f64::midpoint(log.at(1e-3), log.at(1e-1))).abs() < 1e-9);
+        // The ends of what numbers can be.
+        let all = Axis::log(0.0, f64::MAX).between(0.0, 200.0);
+        assert!(
+            all.ticks(40.0)
+                .iter()
+                .all(|tick| all.at(tick.value).is_finite())
+        );
+        // Many decades in little room: fewer numbers.
+        let long = Axis::log(1e-12, 1.0).between(0.0, 200.0);
+        let labels = long
+            .ticks(40.0)
+            .into_iter()
+            .filter(|tick| !tick.label.is_empty())
+            .count();
+        assert!((3..=5).contains(&labels), "{labels}");
     }
 }

@@ -1,20 +1,22 @@
-//! Marching squares: the outlines of a region of the plane that is symmetric about the horizontal axis.
+//! Marching squares: the outlines of a region of the plane that is symmetric about the horizontal
+//! axis.
 
 use std::collections::BTreeMap;
 
-use super::rect::{Point, Rect};
+use crate::geometry::{Point, Rect};
 
-/// Closed outlines of where `inside` holds in the window, with the region on one side throughout; it ends at the window's edges.
-/// The window reaches as far below 0 as above. `columns` squares fit into its width.
+/// The closed outlines of the region where `inside` holds. The region is cut off at the edges of the
+/// window, lies on the same side of each outline throughout, and the window must reach as far below
+/// 0 as above. The width of the window is divided into `columns` squares.
 pub fn outlines(inside: impl Fn(Point) -> bool, window: Rect, columns: usize) -> Vec<Vec<Point>> {
     let step = window.width() / columns as f64;
-    // Above the axis; the same number is below it.
+    // Rows of squares above the axis; there are as many below it.
     let rows = (window.y1 / step).ceil() as usize;
     let inside = |[x, y]: Point| inside([x, y.abs()]);
     let at = |i: usize, j: usize| [window.x0 + i as f64 * step, (j as f64 - rows as f64) * step];
     let (nx, ny) = (columns + 1, 2 * rows + 1);
     let mut nodes = vec![false; nx * ny];
-    // What is on the edge counts as outside, so that every outline is closed.
+    // Nodes on the edge of the window count as outside, so that every outline is closed.
     for j in rows..ny - 1 {
         for i in 1..nx - 1 {
             let there = inside(at(i, j));
@@ -22,7 +24,7 @@ pub fn outlines(inside: impl Fn(Point) -> bool, window: Rect, columns: usize) ->
             nodes[(ny - 1 - j) * nx + i] = there;
         }
     }
-    // From the edge of a square where its outline comes in to the one where it goes out.
+    // For each edge where an outline enters a square, the edge where it leaves that square.
     let mut next = BTreeMap::new();
     for j in 0..ny - 1 {
         for i in 0..nx - 1 {
@@ -43,7 +45,7 @@ pub fn outlines(inside: impl Fn(Point) -> bool, window: Rect, columns: usize) ->
             }
         }
     }
-    // Where the edge is cut, by bisection.
+    // The point where the outline crosses an edge, by bisection.
     let cut = |(a, b): ([usize; 2], [usize; 2])| {
         let (mut there, mut not) = (at(a[0], a[1]), at(b[0], b[1]));
         if !nodes[a[1] * nx + a[0]] {

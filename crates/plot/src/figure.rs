@@ -1,4 +1,4 @@
-//! A sheet to draw on that remembers where its texts are: SVG, and PNG from it.
+//! Figures: sheets that remember where their labels are, as SVG and PNG.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -6,48 +6,53 @@ use std::sync::Arc;
 use epaint_default_fonts::UBUNTU_LIGHT;
 use resvg::{tiny_skia, usvg};
 
-use super::rect::{Point, Rect};
-use super::text::{Anchor, GREY, RAISED, Text, pieces};
-use crate::Failure;
+use crate::error::Error;
+use crate::geometry::{Point, Rect};
+use crate::label::{Anchor, GREY, Label, RAISED, pieces};
 
-/// The first is the font that texts are measured with.
+/// Fonts in order of preference. Labels are measured with the first.
 const FONTS: &str = "Ubuntu, 'Ubuntu Light', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif";
 
-/// A line's colour and width, as attributes of SVG.
+/// The colour and width of a line, as attributes of SVG.
 pub fn stroke(colour: &str, width: f64) -> String {
     format!("stroke=\"{colour}\" stroke-width=\"{width:.2}\"")
 }
 
-/// What is drawn, in order.
+/// A drawing on a sheet, whose units are the pixels of an SVG.
 #[derive(Debug)]
 pub struct Figure {
     size: Point,
+    /// The elements of the SVG so far.
     body: String,
-    texts: Vec<Rect>,
+    /// The rooms that labels take.
+    labels: Vec<Rect>,
+    /// The number of clip paths so far.
     clips: usize,
 }
 
 impl Figure {
-    pub fn new(size: Point) -> Self {
+    /// An empty sheet of this width and height.
+    pub(crate) fn new(size: Point) -> Self {
         Self {
             size,
             body: String::new(),
-            texts: vec![],
+            labels: vec![],
             clips: 0,
         }
     }
 
-    pub fn sheet(&self) -> Rect {
+    /// The whole sheet.
+    pub(crate) fn sheet(&self) -> Rect {
         Rect::new(0.0, 0.0, self.size[0], self.size[1])
     }
 
-    /// A line through points; `style` is attributes of SVG.
-    pub fn line(&mut self, points: &[Point], style: &str) {
+    /// Draws a line through points; `style` is attributes of SVG.
+    pub(crate) fn line(&mut self, points: &[Point], style: &str) {
         self.path(&[points], "", &format!("fill=\"none\" {style}"));
     }
 
-    /// The area inside outlines: holes are outlines inside outlines.
-    pub fn area(&mut self, outlines: &[impl AsRef<[Point]>], style: &str) {
+    /// Fills the area inside outlines. An outline inside another is that of a hole.
+    pub(crate) fn area(&mut self, outlines: &[impl AsRef<[Point]>], style: &str) {
         self.path(outlines, "Z", &format!("fill-rule=\"evenodd\" {style}"));
     }
 
@@ -62,12 +67,13 @@ impl Figure {
         let _ = writeln!(self.body, "\" {style}/>");
     }
 
-    pub fn rect(&mut self, r: Rect, style: &str) {
+    /// Fills a rectangle.
+    pub(crate) fn rect(&mut self, r: Rect, style: &str) {
         self.area(&[r.corners()], style);
     }
 
-    /// What `draw` draws is cut off at the edges of `window`.
-    pub fn clipped(&mut self, window: Rect, draw: impl FnOnce(&mut Self)) {
+    /// Lets `draw` draw, and cuts that off at the edges of `window`.
+    pub(crate) fn clipped(&mut self, window: Rect, draw: impl FnOnce(&mut Self)) {
         self.clips += 1;
         let _ = writeln!(
             self.body,
@@ -82,8 +88,8 @@ impl Figure {
         self.body.push_str("</g>\n");
     }
 
-    /// An arrow with its head at `to`.
-    pub fn arrow(&mut self, from: Point, to: Point, width: f64) {
+    /// Draws an arrow with its head at `to`.
+    pub(crate) fn arrow(&mut self, from: Point, to: Point, width: f64) {
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
         let length = dx.hypot(dy).max(1e-9);
         let (u, v) = (4.0 * width * dx / length, 4.0 * width * dy / length);
@@ -97,20 +103,22 @@ impl Figure {
         self.area(&[head], &format!("fill=\"{GREY}\""));
     }
 
-    pub fn text(&mut self, at: Point, text: Text) -> Rect {
-        let room = text.room(at);
-        if text.words.is_empty() {
+    /// Writes a label at a point, and returns the room that it takes.
+    pub(crate) fn text(&mut self, at: Point, label: Label) -> Rect {
+        let room = label.room(at);
+        if label.text.is_empty() {
             return room;
         }
         let [x, y] = at;
-        let Text { size, colour, .. } = text;
+        let Label { size, colour, .. } = label;
         let _ = write!(
             self.body,
             "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size:.2}\" fill=\"{colour}\""
         );
-        // Whatever font is there, the text keeps to its room. Superscripts are short, and stretched wrongly by some.
-        if !text.words.contains("^{") {
-            let length = if text.turned {
+        // The text keeps to its room with any font. Some programs stretch superscripts wrongly, and
+        // texts with superscripts are short.
+        if !label.text.contains("^{") {
+            let length = if label.turned {
                 room.height()
             } else {
                 room.width()
@@ -120,20 +128,20 @@ impl Figure {
                 " textLength=\"{length:.2}\" lengthAdjust=\"spacingAndGlyphs\""
             );
         }
-        match text.anchor {
+        match label.anchor {
             Anchor::Start => {}
             Anchor::Middle => self.body.push_str(" text-anchor=\"middle\""),
             Anchor::End => self.body.push_str(" text-anchor=\"end\""),
         }
-        if text.bold {
-            // The font has no bold: its outline, drawn.
+        if label.bold {
+            // The font has no bold face; its outlines are drawn instead.
             let _ = write!(self.body, " {}", stroke(colour, 0.035 * size));
         }
-        if text.turned {
+        if label.turned {
             let _ = write!(self.body, " transform=\"rotate(-90 {x:.2} {y:.2})\"");
         }
         self.body.push('>');
-        for (piece, raised) in pieces(text.words).filter(|(piece, _)| !piece.is_empty()) {
+        for (piece, raised) in pieces(label.text).filter(|(piece, _)| !piece.is_empty()) {
             if raised {
                 let (rise, small) = (0.33 * size, RAISED * size);
                 let _ = write!(
@@ -146,29 +154,30 @@ impl Figure {
             }
         }
         self.body.push_str("</text>\n");
-        self.texts.push(room);
+        self.labels.push(room);
         room
     }
 
-    /// Keeps texts out of this room.
-    pub fn reserve(&mut self, room: Rect) {
-        self.texts.push(room);
+    /// Keeps labels out of a room.
+    pub(crate) fn reserve(&mut self, room: Rect) {
+        self.labels.push(room);
     }
 
-    /// Whether no text is in this room yet, and the sheet has it.
-    pub fn free(&self, room: Rect) -> bool {
-        self.sheet().holds(room) && !self.texts.iter().any(|text| text.overlaps(room))
+    /// Whether a room is on the sheet and clear of labels.
+    pub(crate) fn is_free(&self, room: Rect) -> bool {
+        self.sheet().holds(room) && !self.labels.iter().any(|label| label.overlaps(room))
     }
 
-    /// Whether every text is on the sheet and clear of the others.
-    pub fn is_sound(&self) -> bool {
-        let free = |(k, text): (usize, &Rect)| {
-            self.sheet().holds(*text) && !self.texts[..k].iter().any(|other| other.overlaps(*text))
+    /// Whether every label is on the sheet and clear of the others.
+    pub(crate) fn is_sound(&self) -> bool {
+        let free = |(k, label): (usize, &Rect)| {
+            let others = &self.labels[..k];
+            self.sheet().holds(*label) && !others.iter().any(|other| other.overlaps(*label))
         };
-        self.texts.iter().enumerate().all(free)
+        self.labels.iter().enumerate().all(free)
     }
 
-    /// The whole picture.
+    /// The figure as an SVG file.
     pub fn svg(&self) -> String {
         let [w, h] = self.size;
         format!(
@@ -178,9 +187,31 @@ impl Figure {
             self.body
         )
     }
+
+    /// The figure as a PNG file, with `scale` pixels for each unit of the sheet.
+    ///
+    /// # Errors
+    /// [`Error::Pixels`] if the picture would be too large.
+    pub fn png(&self, scale: f64) -> Result<Vec<u8>, Error> {
+        let wrong = |why: &dyn std::fmt::Display| Error::Pixels(why.to_string());
+        let mut fonts = usvg::fontdb::Database::new();
+        fonts.load_font_source(usvg::fontdb::Source::Binary(Arc::new(UBUNTU_LIGHT)));
+        let options = usvg::Options {
+            fontdb: Arc::new(fonts),
+            ..usvg::Options::default()
+        };
+        let tree = usvg::Tree::from_str(&self.svg(), &options).map_err(|e| wrong(&e))?;
+        let [w, h] = self.size.map(|length| (length * scale).ceil() as u32);
+        let mut pixels = tiny_skia::Pixmap::new(w, h)
+            .ok_or_else(|| wrong(&format!("no picture can be {w} x {h} pixels")))?;
+        pixels.fill(tiny_skia::Color::WHITE);
+        let zoom = tiny_skia::Transform::from_scale(scale as f32, scale as f32);
+        resvg::render(&tree, zoom, &mut pixels.as_mut());
+        pixels.encode_png().map_err(|e| wrong(&e))
+    }
 }
 
-/// Text as XML has it. Control characters have no place there.
+/// Text as XML writes it, without control characters, which XML forbids.
 fn escape(text: &str) -> String {
     let clean: String = text.chars().filter(|c| !c.is_control()).collect();
     clean
@@ -189,24 +220,40 @@ fn escape(text: &str) -> String {
         .replace('>', "&gt;")
 }
 
-/// A picture as PNG, with `scale` pixels for each of its units.
-///
-/// # Errors
-/// It is no SVG, or too large for the memory.
-pub fn png(svg: &str, scale: f64) -> Result<Vec<u8>, Failure> {
-    let mut fonts = usvg::fontdb::Database::new();
-    fonts.load_font_source(usvg::fontdb::Source::Binary(Arc::new(UBUNTU_LIGHT)));
-    let options = usvg::Options {
-        fontdb: Arc::new(fonts),
-        ..usvg::Options::default()
-    };
-    let tree = usvg::Tree::from_str(svg, &options).map_err(Failure::run)?;
-    let pixels = |length: f32| (f64::from(length) * scale).ceil() as u32;
-    let size = (pixels(tree.size().width()), pixels(tree.size().height()));
-    let mut map = tiny_skia::Pixmap::new(size.0, size.1)
-        .ok_or_else(|| Failure::run(format!("no picture can be {} x {} pixels", size.0, size.1)))?;
-    map.fill(tiny_skia::Color::WHITE);
-    let zoom = tiny_skia::Transform::from_scale(scale as f32, scale as f32);
-    resvg::render(&tree, zoom, &mut map.as_mut());
-    crate::output::png(map.data(), size)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sheet_sees_texts_that_overlap() {
+        let mut figure = Figure::new([100.0, 50.0]);
+        figure.text([10.0, 20.0], Label::new("first", 10.0));
+        assert!(figure.is_sound());
+        figure.text([25.0, 25.0], Label::new("second", 10.0));
+        assert!(!figure.is_sound());
+        let mut figure = Figure::new([100.0, 50.0]);
+        figure.text([80.0, 20.0], Label::new("too long", 10.0));
+        assert!(!figure.is_sound());
+    }
+
+    #[test]
+    fn texts_are_measured_as_they_are_drawn() {
+        let mut figure = Figure::new([400.0, 100.0]);
+        let room = figure.text([20.0, 60.0], Label::new("Wäg & <λ> 10^{−3}", 40.0));
+        let picture = image::load_from_memory(&figure.png(1.0).unwrap())
+            .unwrap()
+            .to_luma8();
+        let dark = picture.enumerate_pixels().filter(|(_, _, p)| p.0[0] < 128);
+        let ink = dark.fold(Rect::new(400.0, 100.0, 0.0, 0.0), |r, (x, y, _)| {
+            let (x, y) = (f64::from(x), f64::from(y));
+            Rect::new(
+                r.x0.min(x),
+                r.y0.min(y),
+                r.x1.max(x + 1.0),
+                r.y1.max(y + 1.0),
+            )
+        });
+        assert!(room.holds(ink), "{ink:?} in {room:?}");
+        assert!(ink.width() > 0.93 * room.width(), "{ink:?} in {room:?}");
+    }
 }

@@ -1,6 +1,6 @@
-//! Places on the sheet.
+//! Points and rectangles on the sheet.
 
-/// Horizontal, then vertical; down is positive on the sheet.
+/// A horizontal and a vertical coordinate; the latter points down on the sheet.
 pub type Point = [f64; 2];
 
 /// An upright rectangle.
@@ -17,7 +17,7 @@ impl Rect {
         Self { x0, y0, x1, y1 }
     }
 
-    /// The square of half side `r` around a point.
+    /// The square around a point whose half side is `r`.
     pub fn around([x, y]: Point, r: f64) -> Self {
         Self::new(x - r, y - r, x + r, y + r)
     }
@@ -37,14 +37,17 @@ impl Rect {
         ]
     }
 
+    /// Whether both rectangles have an area in common.
     pub fn overlaps(self, other: Self) -> bool {
         self.x0 < other.x1 && other.x0 < self.x1 && self.y0 < other.y1 && other.y0 < self.y1
     }
 
+    /// Whether all of the other rectangle lies in this one.
     pub fn holds(self, other: Self) -> bool {
         self.x0 <= other.x0 && other.x1 <= self.x1 && self.y0 <= other.y0 && other.y1 <= self.y1
     }
 
+    /// The corners, around the rectangle.
     pub fn corners(self) -> [Point; 4] {
         [
             [self.x0, self.y0],
@@ -54,7 +57,7 @@ impl Rect {
         ]
     }
 
-    /// Whether the line from a to b passes through (Liang and Barsky).
+    /// Whether the line from a to b meets the rectangle (Liang and Barsky, 1984).
     pub fn meets(self, a: Point, b: Point) -> bool {
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
         for (start, end, lo, hi) in [

@@ -1,4 +1,4 @@
-//! Lines of text: how they look, and the room they take.
+//! Labels: lines of text, how they look, and the room they take.
 
 use std::sync::LazyLock;
 
@@ -6,14 +6,14 @@ use epaint_default_fonts::UBUNTU_LIGHT;
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, MetadataProvider};
 
-use super::rect::{Point, Rect};
+use crate::geometry::{Point, Rect};
 
-/// For what is to be read first.
+/// The colour of text that is to be read first.
 pub const INK: &str = "#1b1b1b";
-/// For what explains.
+/// The colour of text that explains.
 pub const GREY: &str = "#5a5a5a";
 
-/// Which part of a text is at its place.
+/// The part of a label that lies at the point where it is drawn.
 #[derive(Clone, Copy, Debug)]
 pub enum Anchor {
     Start,
@@ -21,21 +21,22 @@ pub enum Anchor {
     End,
 }
 
-/// A line of text; `10^{-3}` in it has a superscript.
+/// A line of text, in which `10^{-3}` has a superscript.
 #[derive(Clone, Copy, Debug)]
-pub struct Text<'a> {
-    pub words: &'a str,
+pub struct Label<'a> {
+    pub text: &'a str,
     pub size: f64,
     pub colour: &'a str,
     pub anchor: Anchor,
     pub bold: bool,
+    /// Whether it is read from below.
     pub turned: bool,
 }
 
-impl<'a> Text<'a> {
-    pub fn new(words: &'a str, size: f64) -> Self {
+impl<'a> Label<'a> {
+    pub fn new(text: &'a str, size: f64) -> Self {
         Self {
-            words,
+            text,
             size,
             colour: INK,
             anchor: Anchor::Start,
@@ -56,7 +57,7 @@ impl<'a> Text<'a> {
         Self { bold: true, ..self }
     }
 
-    /// Read from below.
+    /// The label, read from below.
     pub fn turned(self) -> Self {
         Self {
             turned: true,
@@ -64,9 +65,9 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// The room it takes with its anchor, on the base line, at `at`.
+    /// The room that the label takes with its anchor, on the base line, at a point.
     pub fn room(self, [x, y]: Point) -> Rect {
-        let length = width(self.words, self.size);
+        let length = width(self.text, self.size);
         let before = length
             * match self.anchor {
                 Anchor::Start => 0.0,
@@ -82,7 +83,7 @@ impl<'a> Text<'a> {
     }
 }
 
-/// The pieces of a text, and which of them are superscripts.
+/// The pieces of a text in order, each with whether it is a superscript.
 pub fn pieces(text: &str) -> impl Iterator<Item = (&str, bool)> {
     text.split("^{").enumerate().flat_map(|(k, part)| {
         let (raised, flat) = if k == 0 {
@@ -94,12 +95,12 @@ pub fn pieces(text: &str) -> impl Iterator<Item = (&str, bool)> {
     })
 }
 
-/// How large a superscript is.
+/// The size of a superscript over that of the text.
 pub const RAISED: f64 = 0.7;
-/// How high letters and superscripts reach.
+/// The height of letters and superscripts above the base line, over the size of the text.
 const UP: f64 = 0.84;
 
-/// How long a text of this size is.
+/// The length of a text of this size.
 pub fn width(text: &str, size: f64) -> f64 {
     static FONT: LazyLock<Option<FontRef<'static>>> =
         LazyLock::new(|| FontRef::new(UBUNTU_LIGHT).ok());

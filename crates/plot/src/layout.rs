@@ -1,24 +1,29 @@
-//! What all charts share: heads and foot, a legend, a grid of panels, and sizes of text that fit.
+//! Layout that all charts share: headings and foot, a legend, a grid of panels, and sizes of text
+//! that fit.
 
-use super::figure::Figure;
-use super::rect::{Point, Rect};
-use super::text::{Anchor, GREY, Text, width};
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::geometry::{Point, Rect};
+use crate::label::{Anchor, GREY, Label, width};
 
-/// Text is no smaller; notes have four fifths of it.
+/// The least size of text. Notes may have four fifths of it.
 const SMALLEST: f64 = 7.0;
 
-/// How a chart is drawn: the size of its text, and whether with all that explains.
+/// How much a chart says.
 #[derive(Clone, Copy, Debug)]
 pub struct Level {
+    /// The size of its text.
     pub size: f64,
+    /// Whether it has its subtitle and foot, and long titles of panels.
     pub full: bool,
 }
 
-/// The drawing with the largest text that fits; what explains is dropped last.
+/// The drawing with the largest text that fits. Explanations are left out only where no size of text
+/// fits otherwise.
 ///
 /// # Errors
-/// The size is too small for any.
-pub fn fit(size: Point, draw: impl Fn(Figure, Level) -> Option<Figure>) -> Result<Figure, String> {
+/// [`Error::Sheet`] or [`Error::TooSmall`] if no drawing fits.
+pub fn fit(size: Point, draw: impl Fn(Figure, Level) -> Option<Figure>) -> Result<Figure, Error> {
     let at = |size: Point| {
         let base = ((size[0] * size[1]).sqrt() / 75.0).max(9.0);
         let levels = [
@@ -38,24 +43,16 @@ pub fn fit(size: Point, draw: impl Fn(Figure, Level) -> Option<Figure>) -> Resul
         })
     };
     if !size.iter().all(|length| (1.0..=20_000.0).contains(length)) {
-        return Err(format!(
-            "{} x {}: a chart is 1 to 20000 units wide and high",
-            size[0], size[1]
-        ));
+        return Err(Error::Sheet(size));
     }
     at(size).ok_or_else(|| {
-        let larger = (1..40)
+        let mut larger = (1..40)
             .map(|k| 1.1_f64.powi(k))
             .map(|by| size.map(|length| (by * length).ceil()));
-        let enough = larger.into_iter().find(|size| at(*size).is_some());
-        let hint = enough.map_or_else(
-            || "fewer panels would do".to_owned(),
-            |[w, h]| format!("{w} x {h} would do"),
-        );
-        format!(
-            "{} x {}: too small for this chart; {hint}",
-            size[0], size[1]
-        )
+        Error::TooSmall {
+            sheet: size,
+            enough: larger.find(|size| at(*size).is_some()),
+        }
     })
 }
 
@@ -74,7 +71,8 @@ pub fn elide(text: &str, size: f64, room: f64) -> String {
     String::new()
 }
 
-/// The text in lines that fit into the room. A line break breaks, a no-break space does not.
+/// The text in lines that fit into the room. Lines break at spaces, other than no-break spaces, and
+/// at line breaks.
 pub fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = vec![];
     for paragraph in text.lines() {
@@ -92,8 +90,8 @@ pub fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
-/// Title, subtitle and foot, if any; what is left of the sheet.
-pub fn heads(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: Level) -> Rect {
+/// Writes title, subtitle and foot, unless they are empty, and returns the rest of the sheet.
+pub fn headings(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: Level) -> Rect {
     let sheet = figure.sheet();
     let margin = level.size;
     let mut left = Rect::new(
@@ -109,10 +107,14 @@ pub fn heads(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: Lev
     for (text, factor, bold) in parts {
         let size = factor * level.size;
         for line in wrap(text, size, left.width()) {
-            let text = Text::new(&line, size);
+            let label = Label::new(&line, size);
             figure.text(
                 [left.x0, left.y0 + 0.8 * size],
-                if bold { text.bold() } else { text.colour(GREY) },
+                if bold {
+                    label.bold()
+                } else {
+                    label.colour(GREY)
+                },
             );
             left.y0 += 1.25 * size;
         }
@@ -124,7 +126,7 @@ pub fn heads(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: Lev
     {
         figure.text(
             [left.x0, left.y1 - 0.3 * size],
-            Text::new(line, size).colour(GREY),
+            Label::new(line, size).colour(GREY),
         );
         left.y1 -= 1.25 * size;
     }
@@ -133,10 +135,10 @@ pub fn heads(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: Lev
     left
 }
 
-/// What draws the sign of an entry of a legend, around a point.
+/// A function that draws the sign of an entry of a legend, around a point.
 pub type Sign<'a> = Box<dyn Fn(&mut Figure, Point) + 'a>;
 
-/// Draws a legend in columns from the top of the area down, and takes its room away.
+/// Draws a legend in columns at the top of the area, and leaves in `area` what is below it.
 pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], size: f64) {
     let (sign, gap) = (4.0 * size, 1.6 * size);
     let longest = entries
@@ -146,7 +148,7 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
         .min(area.width() - sign - gap);
     let column = sign + longest + gap;
     let fitting = ((area.width() + gap) / column).floor().max(1.0) as usize;
-    // Rows of about the same length.
+    // Rows are about equally long.
     let rows = entries.len().div_ceil(fitting).max(1);
     let columns = entries.len().div_ceil(rows).max(1);
     for (k, (name, draw)) in entries.iter().enumerate() {
@@ -156,13 +158,14 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
         figure.reserve(Rect::new(x, y - 0.5 * size, x + 0.9 * sign, y + 0.5 * size));
         figure.text(
             [x + sign, y + 0.34 * size],
-            Text::new(&elide(name, size, longest + 0.01), size),
+            Label::new(&elide(name, size, longest + 0.01), size),
         );
     }
     area.y0 += (1.4 * rows as f64 + 0.7) * size;
 }
 
-/// Rooms for `n` panels, row by row, `gap` apart, and the number of columns: whichever makes a panel of these measures best.
+/// Rooms for `n` panels, row by row and `gap` apart, and the number of columns. That number makes the
+/// merit of a panel, a function of its width and height, the greatest.
 pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Vec<Rect>, usize) {
     let cell = |columns: usize| {
         let share = |length: f64, parts: usize| (length + gap) / parts as f64 - gap;
@@ -182,7 +185,8 @@ pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Ve
     ((0..n).map(room).collect(), columns)
 }
 
-/// The label below all panels, with an arrow of what is better towards the left, if any.
+/// Writes the label below all panels, with an arrow to the left where `better` is, unless that is
+/// empty.
 pub fn label_below(figure: &mut Figure, room: Rect, label: &str, better: &str, size: f64) {
     let y = room.y1 - 0.3 * size;
     let mut x0 = room.x0;
@@ -193,17 +197,18 @@ pub fn label_below(figure: &mut Figure, room: Rect, label: &str, better: &str, s
             0.1 * size,
         );
         x0 = figure
-            .text([x0 + 2.4 * size, y], Text::new(better, size).colour(GREY))
+            .text([x0 + 2.4 * size, y], Label::new(better, size).colour(GREY))
             .x1
             + 1.5 * size;
     }
     let label = elide(label, size, room.x1 - x0);
     let half = width(&label, size) / 2.0;
     let x = room.centre()[0].clamp(x0 + half, (room.x1 - half).max(x0 + half));
-    figure.text([x, y], Text::new(&label, size).anchor(Anchor::Middle));
+    figure.text([x, y], Label::new(&label, size).anchor(Anchor::Middle));
 }
 
-/// The label left of all panels, with an arrow of what is better downwards, if any.
+/// Writes the label left of all panels, with an arrow downwards where `better` is, unless that is
+/// empty.
 pub fn label_left(figure: &mut Figure, room: Rect, label: &str, better: &str, size: f64) {
     let x = room.x0 + 0.8 * size;
     let mut y1 = room.y1;
@@ -216,7 +221,7 @@ pub fn label_left(figure: &mut Figure, room: Rect, label: &str, better: &str, si
         y1 = figure
             .text(
                 [x, y1 - 2.4 * size],
-                Text::new(better, size).colour(GREY).turned(),
+                Label::new(better, size).colour(GREY).turned(),
             )
             .y0
             - 1.5 * size;
@@ -226,6 +231,30 @@ pub fn label_left(figure: &mut Figure, room: Rect, label: &str, better: &str, si
     let y = room.centre()[1].clamp(room.y0 + half, (y1 - half).max(room.y0 + half));
     figure.text(
         [x, y],
-        Text::new(&label, size).anchor(Anchor::Middle).turned(),
+        Label::new(&label, size).anchor(Anchor::Middle).turned(),
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_texts_are_wrapped_or_cut() {
+        assert_eq!(wrap("one two three", 10.0, 40.0), ["one two", "three"]);
+        assert!(elide("a very long name", 10.0, 40.0).ends_with('…'));
+        assert_eq!(elide("short", 10.0, 40.0), "short");
+    }
+
+    #[test]
+    fn panels_fill_the_sheet() {
+        let wide = Rect::new(0.0, 0.0, 1200.0, 600.0);
+        let columns = |n| {
+            let (rooms, columns) = grid(n, wide, 10.0, |[w, h]| (w / 1.2).min(h));
+            assert_eq!(rooms.len(), n);
+            assert!(rooms.iter().all(|room| wide.holds(*room)));
+            columns
+        };
+        assert_eq!([1, 2, 6, 8].map(columns), [1, 2, 3, 4]);
+    }
 }

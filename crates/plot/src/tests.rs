@@ -1,12 +1,11 @@
-//! Whole charts of made-up data at many sizes. With `A3_KEEP_CHARTS=folder` they are left there to be looked at.
+//! Whole charts of made-up data at many sizes. With `A3_KEEP_CHARTS=folder` they are kept there.
 
 use resvg::usvg::roxmltree;
 
-use super::axis::Axis;
-use super::figure::{Figure, png};
-use super::rect::Rect;
-use super::text::Text;
-use super::{layout, precision, regions};
+use crate::{
+    Curve, Error, Figure, Marker, Measurement, Problem, Region, StabilityRegions, Style,
+    WorkPrecision,
+};
 
 const SIZES: [[f64; 2]; 4] = [
     [480.0, 360.0],
@@ -15,7 +14,7 @@ const SIZES: [[f64; 2]; 4] = [
     [3000.0, 2000.0],
 ];
 
-/// Letter, name, and evaluations for the errors 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8 (0: never reached), for a cloth in one second.
+/// Methods: letter, name, and evaluations for the errors 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8 (0: never reached), for a cloth in one second.
 const METHODS: [(char, &str, [f64; 6]); 13] = [
     (
         'v',
@@ -80,9 +79,26 @@ const METHODS: [(char, &str, [f64; 6]); 13] = [
     ),
 ];
 
-fn curves(n: usize, slower: f64) -> Vec<precision::Curve> {
+/// A style that differs from method to method.
+fn style(letter: char) -> Style {
+    let k = letter as usize;
+    let colours = ["#d55e00", "#0072b2", "#882255", "#117733"];
+    let dashes: [&[f64]; 3] = [&[], &[7.0, 2.5], &[7.0, 2.0, 1.5, 2.0]];
+    let markers = [
+        Marker::Polygon(3 + k as u8 % 5, 0.0),
+        Marker::Star(4 + k as u8 % 3, 0.4),
+        Marker::Cross(0.125),
+    ];
+    Style {
+        colour: colours[k % 4],
+        dash: dashes[k % 3],
+        marker: markers[k / 4 % 3],
+    }
+}
+
+fn curves(n: usize, slower: f64) -> Vec<Curve> {
     let errors = [3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8];
-    let run = |error, work, lost| precision::Run {
+    let run = |error, work, lost| Measurement {
         error,
         work,
         lost,
@@ -102,8 +118,8 @@ fn curves(n: usize, slower: f64) -> Vec<precision::Curve> {
             .collect();
         let lost = works[0] * slower * 0.6;
         runs.extend([lost, lost / 2.0].map(|work| run(f64::NAN, work, true)));
-        precision::Curve {
-            letter,
+        Curve {
+            style: style(letter),
             name: name.to_owned(),
             runs,
         }
@@ -111,7 +127,7 @@ fn curves(n: usize, slower: f64) -> Vec<precision::Curve> {
     METHODS[..n].iter().map(curve).collect()
 }
 
-fn precision_chart(methods: usize, panels: usize) -> precision::Chart {
+fn precision_chart(methods: usize, panels: usize) -> WorkPrecision {
     let scenes = [
         "cloth 20 x 20, stiff",
         "elastic pendulum",
@@ -120,17 +136,17 @@ fn precision_chart(methods: usize, panels: usize) -> precision::Chart {
         "cloth with drag",
         "circle",
     ];
-    let panel = |(k, title): (usize, &&str)| precision::Panel {
+    let problem = |(k, title): (usize, &&str)| Problem {
         title: (*title).to_owned(),
         curves: curves(methods, 1.0 + 0.7 * k as f64),
         floor: [Some(8e-10), Some(3e-8), None][k % 3],
     };
-    precision::Chart {
+    WorkPrecision {
         title: "Speed against accuracy".to_owned(),
         subtitle: "One second of each scene; every point is a whole run at one step or tolerance. <made-up & only a test>".to_owned(),
         x_label: "largest RMS position error over the run (m)".to_owned(),
         y_label: "force evaluations".to_owned(),
-        panels: scenes[..panels].iter().enumerate().map(panel).collect(),
+        problems: scenes[..panels].iter().enumerate().map(problem).collect(),
         foot: "Reference: DOP853 at two tolerances and PEFRL with its step halved; the floor is their largest disagreement.".to_owned(),
     }
 }
@@ -151,7 +167,7 @@ fn taylor(order: i32, x: f64, y: f64) -> f64 {
     sum[0].hypot(sum[1])
 }
 
-fn region_chart(n: usize) -> regions::Chart {
+fn region_chart(n: usize) -> StabilityRegions {
     let radii: [Radius; 5] = [
         |x, y| taylor(1, x, y),
         |x, y| taylor(2, x, y),
@@ -166,7 +182,7 @@ fn region_chart(n: usize) -> regions::Chart {
         ('i', "implicit Euler", 3, 12.0),
         ('n', "implicit midpoint", 4, 10.0),
     ];
-    let panel = |k: usize| {
+    let region = |k: usize| {
         let (letter, name, radius, step) = methods[k % 5];
         // A damped cloth: frequencies up to 500 rad/s, decay like frequency squared.
         let eigenvalues = (1..=40).flat_map(|k| {
@@ -175,8 +191,8 @@ fn region_chart(n: usize) -> regions::Chart {
             [[re, im], [re, -im]].map(|z| z.map(|part| part * step * 1e-3))
         });
         let far = (letter == 'i').then_some([-50.0, 0.0]);
-        regions::Panel {
-            letter,
+        Region {
+            style: style(letter),
             title: format!("{name}, h\u{a0}=\u{a0}{step}\u{a0}ms"),
             subtitle: format!(
                 "largest stable step: predicted\u{a0}{:.2}\u{a0}ms, observed\u{a0}{:.1}\u{a0}ms",
@@ -187,14 +203,14 @@ fn region_chart(n: usize) -> regions::Chart {
             eigenvalues: eigenvalues.chain(far).collect(),
         }
     };
-    regions::Chart {
+    StabilityRegions {
         title: "Where each method is stable".to_owned(),
         subtitle: "Eigenvalues of the default cloth hanging at rest, times the step".to_owned(),
-        panels: (0..n).map(panel).collect(),
+        regions: (0..n).map(region).collect(),
     }
 }
 
-fn check(name: &str, chart: &dyn Fn(f64, f64) -> Result<Figure, String>) {
+fn check(name: &str, chart: &dyn Fn(f64, f64) -> Result<Figure, Error>) {
     for [w, h] in SIZES {
         let figure = chart(w, h).unwrap();
         assert!(
@@ -212,10 +228,7 @@ fn check(name: &str, chart: &dyn Fn(f64, f64) -> Result<Figure, String>) {
             let path = std::path::Path::new(&folder).join(format!("{name}-{w}x{h}"));
             std::fs::write(path.with_extension("svg"), &svg).unwrap();
             let scale = if w < 1000.0 { 2.0 } else { 1.0 };
-            let Ok(bytes) = png(&svg, scale) else {
-                panic!("no PNG of {name}")
-            };
-            std::fs::write(path.with_extension("png"), bytes).unwrap();
+            std::fs::write(path.with_extension("png"), figure.png(scale).unwrap()).unwrap();
         }
     }
 }
@@ -244,9 +257,9 @@ fn long_names_are_cut_and_change_nothing_else() {
     ] {
         text.clone_from(&long);
     }
-    for panel in &mut chart.panels {
-        panel.title.clone_from(&long);
-        for curve in &mut panel.curves {
+    for problem in &mut chart.problems {
+        problem.title.clone_from(&long);
+        for curve in &mut problem.curves {
             curve.name.clone_from(&long);
         }
     }
@@ -263,11 +276,11 @@ fn no_text_of_a_stability_chart_covers_another() {
 
 #[test]
 fn eigenvalues_outside_the_region_are_crosses() {
-    let chart = |radius: Radius, eigenvalues| regions::Chart {
+    let chart = |radius: Radius, eigenvalues| StabilityRegions {
         title: String::new(),
         subtitle: String::new(),
-        panels: vec![regions::Panel {
-            letter: 'e',
+        regions: vec![Region {
+            style: Style::default(),
             title: String::new(),
             subtitle: String::new(),
             radius: Box::new(radius),
@@ -295,7 +308,10 @@ fn eigenvalues_outside_the_region_are_crosses() {
 
 #[test]
 fn a_sheet_too_small_is_refused_with_one_that_is_not() {
-    let why = precision_chart(13, 6).draw(200.0, 100.0).unwrap_err();
+    let why = precision_chart(13, 6)
+        .draw(200.0, 100.0)
+        .unwrap_err()
+        .to_string();
     let enough = why
         .split("; ")
         .nth(1)
@@ -306,146 +322,11 @@ fn a_sheet_too_small_is_refused_with_one_that_is_not() {
     assert!(precision_chart(13, 6).draw(w, h).is_ok(), "{why}");
     assert!(precision_chart(1, 1).draw(f64::NAN, 100.0).is_err());
     assert!(
-        precision::Chart {
-            panels: vec![],
+        WorkPrecision {
+            problems: vec![],
             ..precision_chart(1, 1)
         }
         .draw(800.0, 600.0)
         .is_err()
     );
-}
-
-#[test]
-fn the_front_is_what_nothing_beats() {
-    let run = |error, work, lost| precision::Run {
-        error,
-        work,
-        lost,
-        label: None,
-    };
-    let curve = |letter, runs| precision::Curve {
-        letter,
-        name: String::new(),
-        runs,
-    };
-    let panel = precision::Panel {
-        title: String::new(),
-        // The fourth of a is below ten times the floor, its last was lost.
-        curves: vec![
-            curve(
-                'a',
-                vec![
-                    run(1e-2, 10.0, false),
-                    run(1e-3, 40.0, false),
-                    run(1e-4, 500.0, false),
-                    run(1e-9, 600.0, false),
-                    run(1e-5, 1.0, true),
-                ],
-            ),
-            curve(
-                'b',
-                vec![
-                    run(2e-2, 11.0, false),
-                    run(1e-3, 30.0, false),
-                    run(1e-5, 400.0, false),
-                    run(f64::NAN, 1.0, false),
-                ],
-            ),
-        ],
-        floor: Some(1e-9),
-    };
-    assert_eq!(panel.front(), [[1, 2], [1, 1], [0, 0]]);
-}
-
-#[test]
-fn ticks_are_round_and_apart() {
-    let linear = Axis::linear([-3.3, 1.2]).between(0.0, 300.0);
-    let labels: Vec<_> = linear
-        .ticks(40.0)
-        .into_iter()
-        .map(|tick| tick.label)
-        .collect();
-    assert_eq!(labels, ["−3", "−2", "−1", "0", "1"]);
-    let log = Axis::log(3e-4, 0.7).between(0.0, 400.0);
-    let ticks = log.ticks(40.0);
-    let labels: Vec<_> = ticks
-        .iter()
-        .filter(|tick| !tick.label.is_empty())
-        .map(|tick| &*tick.label)
-        .collect();
-    assert_eq!(labels, ["10^{−3}", "10^{−2}", "10^{−1}", "10^{0}"]);
-    assert!(ticks.len() > 25, "no minor ticks");
-    assert!((log.at(1e-2) - f64::midpoint(log.at(1e-3), log.at(1e-1))).abs() < 1e-9);
-    // The ends of what numbers can be.
-    let all = Axis::log(0.0, f64::MAX).between(0.0, 200.0);
-    assert!(
-        all.ticks(40.0)
-            .iter()
-            .all(|tick| all.at(tick.value).is_finite())
-    );
-    // Many decades in little room: fewer numbers.
-    let long = Axis::log(1e-12, 1.0).between(0.0, 200.0);
-    let labels = long
-        .ticks(40.0)
-        .into_iter()
-        .filter(|tick| !tick.label.is_empty())
-        .count();
-    assert!((3..=5).contains(&labels), "{labels}");
-}
-
-#[test]
-fn the_sheet_sees_texts_that_overlap() {
-    let mut figure = Figure::new([100.0, 50.0]);
-    figure.text([10.0, 20.0], Text::new("first", 10.0));
-    assert!(figure.is_sound());
-    figure.text([25.0, 25.0], Text::new("second", 10.0));
-    assert!(!figure.is_sound());
-    let mut figure = Figure::new([100.0, 50.0]);
-    figure.text([80.0, 20.0], Text::new("too long", 10.0));
-    assert!(!figure.is_sound());
-}
-
-#[test]
-fn texts_are_measured_as_they_are_drawn() {
-    let mut figure = Figure::new([400.0, 100.0]);
-    let room = figure.text([20.0, 60.0], Text::new("Wäg & <λ> 10^{−3}", 40.0));
-    let svg = figure.svg();
-    let Ok(bytes) = png(&svg, 1.0) else {
-        panic!("no PNG")
-    };
-    let picture = image::load_from_memory(&bytes).unwrap().to_luma8();
-    let dark = picture.enumerate_pixels().filter(|(_, _, p)| p.0[0] < 128);
-    let ink = dark.fold(Rect::new(400.0, 100.0, 0.0, 0.0), |r, (x, y, _)| {
-        let (x, y) = (f64::from(x), f64::from(y));
-        Rect::new(
-            r.x0.min(x),
-            r.y0.min(y),
-            r.x1.max(x + 1.0),
-            r.y1.max(y + 1.0),
-        )
-    });
-    assert!(room.holds(ink), "{ink:?} in {room:?}");
-    assert!(ink.width() > 0.93 * room.width(), "{ink:?} in {room:?}");
-}
-
-#[test]
-fn long_texts_are_wrapped_or_cut() {
-    assert_eq!(
-        layout::wrap("one two three", 10.0, 40.0),
-        ["one two", "three"]
-    );
-    assert!(layout::elide("a very long name", 10.0, 40.0).ends_with('…'));
-    assert_eq!(layout::elide("short", 10.0, 40.0), "short");
-}
-
-#[test]
-fn panels_fill_the_sheet() {
-    let wide = Rect::new(0.0, 0.0, 1200.0, 600.0);
-    let columns = |n| {
-        let (rooms, columns) = layout::grid(n, wide, 10.0, |[w, h]| (w / 1.2).min(h));
-        assert_eq!(rooms.len(), n);
-        assert!(rooms.iter().all(|room| wide.holds(*room)));
-        columns
-    };
-    assert_eq!([1, 2, 6, 8].map(columns), [1, 2, 3, 4]);
 }

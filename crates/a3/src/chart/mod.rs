@@ -3,16 +3,18 @@
 pub mod data;
 pub mod measure;
 mod picture;
+pub mod style;
 mod table;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use a3_core::accuracy::{Horizon, Metric, horizon};
 use a3_core::{Method, Scene, integrators};
+use a3_plot::Figure;
 
 use crate::cli::{Chart, Error, What, Work};
 use crate::progress::Bar;
-use crate::{Failure, interrupt, output, plot};
+use crate::{Failure, interrupt, output};
 use data::Data;
 use measure::{Study, stiffened};
 
@@ -80,7 +82,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     let figure = chart
         .draw(f64::from(options.size.0), f64::from(options.size.1))
         .map_err(Failure::usage)?;
-    write_picture(&path, &figure.svg())?;
+    write_picture(&path, &figure)?;
     output::say(&format!("chart: {}\n", path.display()))?;
     if complete {
         Ok(())
@@ -91,12 +93,12 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     }
 }
 
-/// Writes an SVG, or a PNG of it.
-pub fn write_picture(path: &std::path::Path, svg: &str) -> Result<(), Failure> {
+/// Writes a figure as SVG or PNG, by the extension of the path.
+pub fn write_picture(path: &Path, figure: &Figure) -> Result<(), Failure> {
     if output::ends_in(path, "png") {
-        output::write(path, &plot::figure::png(svg, 1.0)?)
+        output::write(path, &figure.png(1.0).map_err(Failure::run)?)
     } else {
-        output::write(path, svg.as_bytes())
+        output::write(path, figure.svg().as_bytes())
     }
 }
 

@@ -2,12 +2,12 @@
 
 use a3_core::Method;
 use a3_core::accuracy::Metric;
+use a3_plot::{Curve, Measurement, Problem, WorkPrecision};
 
 use super::data::{Data, Record};
 use super::measure::Study;
-use super::{describe, table};
+use super::{describe, style, table};
 use crate::cli::What;
-use crate::plot::precision::{Chart, Curve, Panel, Run};
 
 pub fn chart(
     studies: &[&Study],
@@ -16,19 +16,19 @@ pub fn chart(
     metric: Metric,
     timed: bool,
     what: &What,
-) -> Chart {
+) -> WorkPrecision {
     let until = studies[0].frames.until;
-    let panels = studies
+    let problems = studies
         .iter()
         .map(|study| {
-            let mut panel = panel(study, data, methods, metric, timed);
+            let mut problem = problem(study, data, methods, metric, timed);
             if studies.len() > 1 || study.stiffness() != 1.0 {
-                panel.title = format!("stiffness × {}", study.stiffness());
+                problem.title = format!("stiffness × {}", study.stiffness());
             }
-            panel
+            problem
         })
         .collect();
-    Chart {
+    WorkPrecision {
         title: format!("Speed against accuracy: {}", describe(what, &studies[0].scene)),
         subtitle: format!("{until} s of motion; each point is a run with another step or tolerance"),
         x_label: match metric {
@@ -43,20 +43,20 @@ pub fn chart(
             "force evaluations per simulated second"
         }
         .into(),
-        panels,
+        problems,
         foot: "Errors are true ones, against DOP853 at two tolerances and PEFRL extrapolated, whose disagreement is the \
                shaded floor."
             .into(),
     }
 }
 
-fn panel(
+fn problem(
     study: &Study,
     data: &Data,
     methods: &[&'static Method],
     metric: Metric,
     timed: bool,
-) -> Panel {
+) -> Problem {
     let curves = methods.iter().map(|method| {
         let mut records: Vec<_> = study
             .records(data)
@@ -75,7 +75,7 @@ fn panel(
             } else {
                 whole(r.work)
             };
-            Run {
+            Measurement {
                 error: r.error(metric),
                 work: work / r.until,
                 lost: r.lost_at.is_some(),
@@ -83,7 +83,7 @@ fn panel(
             }
         };
         Curve {
-            letter: method.letter,
+            style: style::of(method.letter),
             name: method.title.to_owned(),
             runs: records.iter().map(run).collect(),
         }
@@ -92,7 +92,7 @@ fn panel(
         .records(data)
         .map(|r| r.floor(metric))
         .reduce(f64::max);
-    Panel {
+    Problem {
         title: String::new(),
         curves: curves.collect(),
         floor,

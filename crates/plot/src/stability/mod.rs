@@ -1,44 +1,40 @@
-//! Regions of stability: a panel a method, in the plane of h λ, with the eigenvalues of a problem times the step.
+//! Stability regions in the plane of h λ, with the eigenvalues of a problem times the step: a panel
+//! a method.
 
-mod panel;
+mod region;
 
-use super::figure::Figure;
-use super::layout::{self, Level, Sign};
-use super::rect::{Point, Rect};
-use super::text::{GREY, Text};
-use panel::{Extent, beyond, dot, region_style};
+pub use region::Region;
 
-/// One method at one step.
-pub struct Panel {
-    pub letter: char,
-    /// The method, and its step. No-break spaces keep together what belongs together, here and below.
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::geometry::{Point, Rect};
+use crate::label::{GREY, Label};
+use crate::layout::{self, Level, Sign};
+use region::{Extent, beyond, dot, region_style};
+
+/// A chart of the stability regions of several methods.
+pub struct StabilityRegions {
+    /// The title.
     pub title: String,
-    /// Such as the largest stable step, predicted and observed.
+    /// A line below the title; left out where there is no room for it.
     pub subtitle: String,
-    /// The growth of the method's step at z = h λ: its spectral radius, from the real and the imaginary part of z. It is symmetric
-    /// in the latter.
-    pub radius: Box<dyn Fn(f64, f64) -> f64>,
-    /// h λ, real and imaginary parts, for each eigenvalue λ of the problem.
-    pub eigenvalues: Vec<Point>,
+    /// The regions, a panel each.
+    pub regions: Vec<Region>,
 }
 
-/// The whole chart.
-pub struct Chart {
-    pub title: String,
-    pub subtitle: String,
-    pub panels: Vec<Panel>,
-}
+/// The explanation below the panels.
+const FOOT: &str = "h in s, λ in 1/s, so h λ has no unit. Real parts are growth or decay, \
+    imaginary parts oscillation; what lies in the region does not grow.";
 
-const FOOT: &str = "h in s, λ in 1/s, so h λ has no unit. Real parts are growth or decay, imaginary parts oscillation; what lies in the region does not grow.";
-
-impl Chart {
-    /// Draws the chart on a sheet of this size.
+impl StabilityRegions {
+    /// The chart on a sheet of this width and height.
     ///
     /// # Errors
-    /// There is nothing to draw, or not the room for it.
-    pub fn draw(&self, width: f64, height: f64) -> Result<Figure, String> {
-        if self.panels.is_empty() {
-            return Err("no method to draw".to_owned());
+    /// [`Error::Empty`] if there is no region; [`Error::Sheet`] or [`Error::TooSmall`] if the chart
+    /// does not fit on the sheet.
+    pub fn draw(&self, width: f64, height: f64) -> Result<Figure, Error> {
+        if self.regions.is_empty() {
+            return Err(Error::Empty("no method to draw"));
         }
         let extents = self.extents();
         layout::fit([width, height], |figure, level| {
@@ -46,9 +42,10 @@ impl Chart {
         })
     }
 
-    /// One for as many panels as possible: those that need between two fifths of it and all. Whether it is shared by the most.
+    /// The extent of each panel, and whether it is the one that most panels share. Panels share an
+    /// extent if each needs between two fifths of it and all of it.
     fn extents(&self) -> Vec<(Extent, bool)> {
-        let own: Vec<_> = self.panels.iter().map(Panel::extent).collect();
+        let own: Vec<_> = self.regions.iter().map(Region::extent).collect();
         let mut sorted = own.clone();
         sorted.sort_by(|a, b| b.size().total_cmp(&a.size()));
         let mut groups: Vec<(Extent, f64, usize)> = vec![];
@@ -72,6 +69,7 @@ impl Chart {
         own.iter().map(group).collect()
     }
 
+    /// The chart at this level, or `None` if its panels would be too small.
     fn try_draw(
         &self,
         mut figure: Figure,
@@ -79,7 +77,7 @@ impl Chart {
         extents: &[(Extent, bool)],
     ) -> Option<Figure> {
         let size = level.size;
-        let mut left = layout::heads(&mut figure, [&self.title, &self.subtitle, FOOT], level);
+        let mut left = layout::headings(&mut figure, [&self.title, &self.subtitle, FOOT], level);
         layout::legend(&mut figure, &mut left, &self.entries(size, extents), size);
         let inner = Rect::new(left.x0 + 1.6 * size, left.y0, left.x1, left.y1 - 1.5 * size);
         let (below, beside) = (
@@ -101,14 +99,15 @@ impl Chart {
             let unit = |(extent, _): &(Extent, bool)| extent.unit(w, h);
             extents.iter().map(unit).fold(f64::INFINITY, f64::min)
         };
-        let (rooms, _) = layout::grid(self.panels.len(), inner, 1.2 * size, merit);
+        let (rooms, _) = layout::grid(self.regions.len(), inner, 1.2 * size, merit);
         let width = rooms[0].width();
-        // As many lines above each panel as the longest words need, so that panels of a row are alike.
-        let words = |panel: &Panel| {
-            [(&panel.title, size), (&panel.subtitle, small)]
+        // There are as many lines above each panel as the longest text needs, so that the panels of a
+        // row are alike.
+        let words = |region: &Region| {
+            [(&region.title, size), (&region.subtitle, small)]
                 .map(|(text, size)| layout::wrap(text, size, width))
         };
-        let mut words: Vec<_> = self.panels.iter().map(words).collect();
+        let mut words: Vec<_> = self.regions.iter().map(words).collect();
         if level.full && words.iter().flatten().any(|lines| lines.len() > 3) {
             return None;
         }
@@ -121,18 +120,18 @@ impl Chart {
         let depth = |k: usize| words.iter().map(|words| words[k].len()).max();
         let depth = [0, 1].map(|k| depth(k).unwrap_or(0) as f64);
         let above = 1.2 * size * depth[0] + 1.2 * small * depth[1] + 0.3 * size;
-        for (k, (panel, cell)) in self.panels.iter().zip(rooms).enumerate() {
+        for (k, (region, cell)) in self.regions.iter().zip(rooms).enumerate() {
             let (extent, is_common) = extents[k];
             let [title, subtitle] = &words[k];
             let mut y = cell.y0;
             for line in title {
-                figure.text([cell.x0, y + 0.8 * size], Text::new(line, size).bold());
+                figure.text([cell.x0, y + 0.8 * size], Label::new(line, size).bold());
                 y += 1.2 * size;
             }
             for line in subtitle {
                 figure.text(
                     [cell.x0, y + 0.8 * small],
-                    Text::new(line, small).colour(GREY),
+                    Label::new(line, small).colour(GREY),
                 );
                 y += 1.2 * small;
             }
@@ -145,39 +144,43 @@ impl Chart {
             if area.width() < 4.5 * size || area.height() < 4.5 * size {
                 return None;
             }
-            panel.draw(&mut figure, area, extent, small);
+            region.draw(&mut figure, area, extent, small);
             if !is_common {
-                let text = Text::new("own scale", small).colour(GREY);
+                let label = Label::new("own scale", small).colour(GREY);
                 let at = [area.x0 + 0.4 * small, area.y0 + small];
-                if area.holds(text.room(at)) {
-                    figure.text(at, text);
+                if area.holds(label.room(at)) {
+                    figure.text(at, label);
                 }
             }
         }
         Some(figure)
     }
 
+    /// The entries of the legend.
     fn entries(&self, size: f64, extents: &[(Extent, bool)]) -> Vec<(String, Sign<'_>)> {
-        let region: Sign = Box::new(move |figure, [x, y]| {
-            let sample = Rect::new(
+        let sample: Sign = Box::new(move |figure, [x, y]| {
+            let room = Rect::new(
                 x - 1.2 * size,
                 y - 0.45 * size,
                 x + 1.2 * size,
                 y + 0.45 * size,
             );
-            figure.rect(sample, &region_style(GREY, 0.1 * size));
+            figure.rect(room, &region_style(GREY, 0.1 * size));
         });
         let mark =
             |inside| -> Sign { Box::new(move |figure, at| dot(figure, at, 0.85 * size, inside)) };
         let mut entries = vec![
-            ("stable region".to_owned(), region),
+            ("stable region".to_owned(), sample),
             ("eigenvalue times step".to_owned(), mark(true)),
             ("the same, unstable".to_owned(), mark(false)),
         ];
-        let is_beyond = |(panel, (extent, _)): (&Panel, &(Extent, bool))| {
-            panel.eigenvalues.iter().any(|z| extent.with(*z) != *extent)
+        let is_beyond = |(region, (extent, _)): (&Region, &(Extent, bool))| {
+            region
+                .eigenvalues
+                .iter()
+                .any(|z| extent.with(*z) != *extent)
         };
-        if self.panels.iter().zip(extents).any(is_beyond) {
+        if self.regions.iter().zip(extents).any(is_beyond) {
             let wedge: Sign = Box::new(move |figure, [x, y]| {
                 beyond(figure, [x, y], [x - 1.0, y], 0.3 * size, GREY);
             });

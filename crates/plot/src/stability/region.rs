@@ -1,26 +1,46 @@
-//! One panel: how much of the plane it shows, and what is there.
+//! Panels: the region of a method, and the part of the plane that is shown.
 
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 
-use super::Panel;
-use crate::plot::axis::{self, Axis};
-use crate::plot::figure::{Figure, stroke};
-use crate::plot::rect::{Point, Rect};
-use crate::plot::{contour, look};
+use crate::axis::{self, Axis};
+use crate::contour;
+use crate::figure::{Figure, stroke};
+use crate::geometry::{Point, Rect};
+use crate::style::Style;
 
+/// The colour of eigenvalues in the region.
 const INSIDE: &str = "#222222";
+/// The colour of eigenvalues outside the region.
 const OUTSIDE: &str = "#d0021b";
 
-/// The part of the plane that a panel shows at least: ends on the real axis, and the end of the imaginary one.
+/// The stability region of a method, with the eigenvalues of a problem times a step: one panel.
+pub struct Region {
+    /// The style of the method, of which the colour is used.
+    pub style: Style,
+    /// The method and its step. Lines do not break at no-break spaces, here and below.
+    pub title: String,
+    /// A note, such as the largest stable step.
+    pub subtitle: String,
+    /// The growth of one step at z = h λ, from the real and the imaginary part of z: the spectral
+    /// radius. It must be symmetric in the imaginary part. Where it is at most 1, the method is
+    /// stable.
+    pub radius: Box<dyn Fn(f64, f64) -> f64>,
+    /// The real and the imaginary part of h λ for each eigenvalue λ of the problem.
+    pub eigenvalues: Vec<[f64; 2]>,
+}
+
+/// The part of the plane that a panel shows at least. It is symmetric about the real axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
+    /// The ends on the real axis.
     real: [f64; 2],
+    /// The greatest imaginary part.
     imaginary: f64,
 }
 
 impl Extent {
-    /// Around a point, and its mirror image, too.
+    /// The extent that has a point and its mirror image too.
     pub fn with(self, [re, im]: Point) -> Self {
         let [low, high] = self.real;
         Self {
@@ -29,30 +49,33 @@ impl Extent {
         }
     }
 
+    /// The extent that has all of another too.
     pub fn with_all(self, other: Self) -> Self {
         self.with([other.real[0], other.imaginary])
             .with([other.real[1], 0.0])
     }
 
-    /// How long 1 is on a panel that just shows this, with a margin.
+    /// The length of 1 on a panel of this width and height that shows the extent with a margin.
     pub fn unit(self, width: f64, height: f64) -> f64 {
         let [low, high] = self.real;
         (width / (high - low)).min(height / (2.0 * self.imaginary)) / 1.12
     }
 
-    /// Its longer side.
+    /// The longer side.
     pub fn size(self) -> f64 {
         (self.real[1] - self.real[0]).max(2.0 * self.imaginary)
     }
 }
 
-impl Panel {
+impl Region {
+    /// Whether the method is stable at h λ.
     fn is_stable(&self, [re, im]: Point) -> bool {
         (self.radius)(re, im) <= 1.0 + 1e-9
     }
 
-    /// Around the region's edge, where that has an end, and the eigenvalues, unless they are far off.
-    pub fn extent(&self) -> Extent {
+    /// The extent around the boundary of the region, as far as that is bounded, and around the
+    /// eigenvalues, unless they are far off.
+    pub(super) fn extent(&self) -> Extent {
         const FAR: f64 = 16.0;
         let start = Extent {
             real: [-0.5, 0.5],
@@ -68,7 +91,7 @@ impl Panel {
             .flatten()
             .copied()
             .fold(start, Extent::with);
-        // A region without end may be shown smaller: there is less to see at its edge.
+        // An unbounded region may be shown smaller, because there is less to see at its boundary.
         let far = if outlines.iter().all(|outline| ends(&outline)) {
             3.0
         } else {
@@ -83,21 +106,22 @@ impl Panel {
             .fold(edge, Extent::with)
     }
 
-    /// Grid, region and eigenvalues, with numbers of this size.
-    pub fn draw(&self, figure: &mut Figure, area: Rect, extent: Extent, size: f64) {
+    /// Draws grid, region and eigenvalues, with numbers of this size.
+    pub(super) fn draw(&self, figure: &mut Figure, area: Rect, extent: Extent, size: f64) {
         let middle = f64::midpoint(extent.real[0], extent.real[1]);
         let unit = extent.unit(area.width(), area.height());
         let (dx, dy) = (area.width() / unit / 2.0, area.height() / unit / 2.0);
         let x = Axis::linear([middle - dx, middle + dx]).between(area.x0, area.x1);
         let y = Axis::linear([-dy, dy]).between(area.y1, area.y0);
         axis::draw(figure, area, [&x, &y], size, [true, true]);
-        let place = |[re, im]: Point| {
+        let at = |[re, im]: Point| {
             [
                 area.centre()[0] + (re - middle) * unit,
                 area.centre()[1] - im * unit,
             ]
         };
-        // Sampled a little beyond the edges, so that the end of the sample is not drawn.
+        // The plane is sampled a little beyond the edges, so that the outline along the end of the
+        // sample is cut off.
         let window = Rect::new(
             middle - 1.04 * dx,
             -1.04 * dy,
@@ -106,18 +130,18 @@ impl Panel {
         );
         let outlines: Vec<Vec<_>> = contour::outlines(|z| self.is_stable(z), window, 240)
             .into_iter()
-            .map(|outline| outline.into_iter().map(place).collect())
+            .map(|outline| outline.into_iter().map(at).collect())
             .collect();
-        let colour = look::of(self.letter).colour;
+        let colour = self.style.colour;
         figure.clipped(area, |figure| {
             if !outlines.is_empty() {
                 figure.area(&outlines, &region_style(colour, 0.13 * size));
             }
-            let zero = place([0.0, 0.0]);
+            let zero = at([0.0, 0.0]);
             let style = stroke("#555555", 0.07 * size);
             figure.line(&[[area.x0, zero[1]], [area.x1, zero[1]]], &style);
             figure.line(&[[zero[0], area.y0], [zero[0], area.y1]], &style);
-            // The more there are, the smaller; thousands may share a place.
+            // Dots are smaller the more there are, and those that would coincide are drawn once.
             let small = size * (40.0 / self.eigenvalues.len().max(40) as f64).powf(0.25);
             let mut seen = HashSet::new();
             for z in self
@@ -125,18 +149,18 @@ impl Panel {
                 .iter()
                 .filter(|z| z.iter().all(|part| part.is_finite()))
             {
-                let [px, py] = place(*z);
+                let [px, py] = at(*z);
                 let inside = self.is_stable(*z);
                 if !seen.insert(((px * 4.0) as i64, (py * 4.0) as i64, inside)) {
                     continue;
                 }
                 let (edge, colour) = (0.5 * size, if inside { INSIDE } else { OUTSIDE });
-                let at = [
+                let edge_point = [
                     px.clamp(area.x0 + edge, area.x1 - edge),
                     py.clamp(area.y0 + edge, area.y1 - edge),
                 ];
-                if (px - at[0]).hypot(py - at[1]) > 1.5 * edge {
-                    beyond(figure, at, [px, py], 0.7 * edge, colour);
+                if (px - edge_point[0]).hypot(py - edge_point[1]) > 1.5 * edge {
+                    beyond(figure, edge_point, [px, py], 0.7 * edge, colour);
                 } else {
                     dot(figure, [px, py], small, inside);
                 }
@@ -145,7 +169,7 @@ impl Panel {
     }
 }
 
-/// A region in this colour, as attributes of SVG.
+/// The style of a region in this colour, as attributes of SVG.
 pub fn region_style(colour: &str, width: f64) -> String {
     format!(
         "fill=\"{colour}\" fill-opacity=\"0.2\" {}",
@@ -153,7 +177,7 @@ pub fn region_style(colour: &str, width: f64) -> String {
     )
 }
 
-/// A dot, or a cross where the method is unstable.
+/// Draws an eigenvalue: a dot in the region, a cross outside it.
 pub fn dot(figure: &mut Figure, [x, y]: Point, size: f64, inside: bool) {
     if inside {
         let corner = |k: u8| (f64::from(k) * TAU / 12.0).sin_cos();
@@ -170,7 +194,7 @@ pub fn dot(figure: &mut Figure, [x, y]: Point, size: f64, inside: bool) {
     }
 }
 
-/// A point outside the panel: a wedge at its edge.
+/// Draws a wedge at a point, which leads to another that is outside the panel.
 pub fn beyond(figure: &mut Figure, [x, y]: Point, to: Point, r: f64, colour: &str) {
     let (dx, dy) = (to[0] - x, to[1] - y);
     let length = dx.hypot(dy);

@@ -1,125 +1,61 @@
-//! Work against precision: a panel a problem, a curve a method, a point a run.
+//! Work-precision diagrams (Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I,
+//! section II.10): a panel a problem, a curve a method, a point a run.
 
 mod panel;
+mod problem;
 
-use super::axis::{self, Axis};
-use super::figure::{Figure, stroke};
-use super::layout::{self, Level, Sign};
-use super::look;
-use super::rect::Rect;
-use super::text::Text;
-use panel::Drawing;
+pub use problem::{Curve, Measurement, Problem};
 
-/// One run of a method.
+use crate::axis::{self, Axis};
+use crate::error::Error;
+use crate::figure::Figure;
+use crate::geometry::Rect;
+use crate::label::Label;
+use crate::layout::{self, Level, Sign};
+use panel::{Drawing, SHADE, front_style};
+
+/// A work-precision diagram. Accurate runs are on the left of it, and fast ones below.
 #[derive(Clone, Debug)]
-pub struct Run {
-    /// As the horizontal axis has it.
-    pub error: f64,
-    /// As the vertical axis has it.
-    pub work: f64,
-    /// It blew up or failed: drawn beside the chart at its work, whatever its error.
-    pub lost: bool,
-    /// Its step or tolerance.
-    pub label: Option<String>,
-}
-
-/// The runs of a method.
-#[derive(Clone, Debug)]
-pub struct Curve {
-    pub letter: char,
-    pub name: String,
-    pub runs: Vec<Run>,
-}
-
-/// One problem.
-#[derive(Clone, Debug)]
-pub struct Panel {
+pub struct WorkPrecision {
+    /// The title.
     pub title: String,
-    pub curves: Vec<Curve>,
-    /// How far the reference may itself be off: errors below ten times this are shaded.
-    pub floor: Option<f64>,
-}
-
-/// The whole chart.
-#[derive(Clone, Debug)]
-pub struct Chart {
-    pub title: String,
+    /// A line below the title; left out where there is no room for it, as the foot is.
     pub subtitle: String,
+    /// The error that the horizontal axis shows, with its unit.
     pub x_label: String,
+    /// The work that the vertical axis shows, with its unit.
     pub y_label: String,
-    pub panels: Vec<Panel>,
+    /// The problems, a panel each.
+    pub problems: Vec<Problem>,
+    /// An explanation below the panels.
     pub foot: String,
 }
 
-impl Run {
-    /// Has a place on the chart. An error of 0 has one at its left end.
-    fn is_drawn(&self) -> bool {
-        self.work.is_finite() && self.work > 0.0
-    }
-
-    fn is_lost(&self) -> bool {
-        self.lost || !self.error.is_finite() || self.error < 0.0
-    }
-}
-
-impl Panel {
-    /// Errors below this say nothing.
-    fn trusted(&self) -> f64 {
-        self.floor
-            .filter(|floor| floor.is_finite())
-            .map_or(0.0, |floor| 10.0 * floor)
-    }
-
-    /// Curve and run of those that no run beats in both error and work, from the smallest error up: of the errors that the
-    /// reference can tell, though it can tell that those below them are smaller.
-    pub fn front(&self) -> Vec<[usize; 2]> {
-        let mut runs: Vec<_> = (self.curves.iter().enumerate())
-            .flat_map(|(c, curve)| {
-                curve
-                    .runs
-                    .iter()
-                    .enumerate()
-                    .map(move |(r, run)| ([c, r], run))
-            })
-            .filter(|(_, run)| run.is_drawn() && !run.is_lost())
-            .collect();
-        runs.sort_by(|(_, a), (_, b)| a.error.total_cmp(&b.error).then(a.work.total_cmp(&b.work)));
-        let mut least = f64::INFINITY;
-        runs.retain(|(_, run)| {
-            let better = run.work < least;
-            least = least.min(run.work);
-            better && run.error > self.trusted()
-        });
-        runs.into_iter().map(|(place, _)| place).collect()
-    }
-}
-
-const FRONT: &str = "#f8dd86";
-const ROUND: &str = " stroke-linecap=\"round\"";
-const SHADE: &str = "fill=\"#e6eaf0\"";
-
-impl Chart {
-    /// Draws the chart on a sheet of this size.
+impl WorkPrecision {
+    /// The diagram on a sheet of this width and height.
     ///
     /// # Errors
-    /// There is nothing to draw, or not the room for it.
-    pub fn draw(&self, width: f64, height: f64) -> Result<Figure, String> {
+    /// [`Error::Empty`] if no run has a place on the axes; [`Error::Sheet`] or [`Error::TooSmall`] if
+    /// the diagram does not fit on the sheet.
+    pub fn draw(&self, width: f64, height: f64) -> Result<Figure, Error> {
         let Some(axes) = self.axes() else {
-            return Err("no run to draw: each blew up or has no work".to_owned());
+            let why = "no run to draw: each blew up or has no work";
+            return Err(Error::Empty(why));
         };
         layout::fit([width, height], |figure, level| {
             self.try_draw(figure, level, axes)
         })
     }
 
-    fn runs(&self) -> impl Iterator<Item = &Run> {
-        let curves = self.panels.iter().flat_map(|panel| &panel.curves);
+    /// All runs that have a place on the chart.
+    fn runs(&self) -> impl Iterator<Item = &Measurement> {
+        let curves = self.problems.iter().flat_map(|problem| &problem.curves);
         curves
             .flat_map(|curve| &curve.runs)
             .filter(|run| run.is_drawn())
     }
 
-    /// Around all runs of all panels.
+    /// The axes of error and of work, around all runs on all problems.
     fn axes(&self) -> Option<[Axis; 2]> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold(None, |range, value| {
@@ -133,11 +69,12 @@ impl Chart {
             .filter(|run| !run.is_lost() && run.error > 0.0)
             .map(|run| run.error);
         let (least, most) = range(errors)?;
-        // Runs far below what the reference can tell need no room; a limit just left of all runs is worth showing.
+        // Runs far below what the reference can tell need no room, whereas a limit just left of all
+        // runs is worth showing.
         let limits = || {
-            self.panels
+            self.problems
                 .iter()
-                .map(Panel::trusted)
+                .map(Problem::trusted)
                 .filter(|limit| *limit > 0.0)
         };
         let (lowest, _) = range(&mut limits()).unwrap_or((least, most));
@@ -150,9 +87,10 @@ impl Chart {
         Some([Axis::log(least, most.max(least)), Axis::log(low, high)])
     }
 
+    /// The diagram at this level, or `None` if its panels would be too small.
     fn try_draw(&self, mut figure: Figure, level: Level, [x, y]: [Axis; 2]) -> Option<Figure> {
         let size = level.size;
-        let mut left = layout::heads(
+        let mut left = layout::headings(
             &mut figure,
             [&self.title, &self.subtitle, &self.foot],
             level,
@@ -185,24 +123,25 @@ impl Chart {
             "faster",
             size,
         );
-        let strip = if self.runs().any(Run::is_lost) {
+        let strip = if self.runs().any(Measurement::is_lost) {
             3.4 * size
         } else {
             0.0
         };
         let merit = |[w, h]: [f64; 2]| ((w - strip) / 1.3).min(h - 1.5 * size);
-        let (rooms, columns) = layout::grid(self.panels.len(), inner, 1.6 * size, merit);
-        for (k, (panel, mut area)) in self.panels.iter().zip(rooms).enumerate() {
-            // Below the last panel of a column there are numbers, even where the last row ends before.
-            let is_last = k + columns >= self.panels.len();
-            if is_last && k / columns != (self.panels.len() - 1) / columns {
+        let (rooms, columns) = layout::grid(self.problems.len(), inner, 1.6 * size, merit);
+        for (k, (problem, mut area)) in self.problems.iter().zip(rooms).enumerate() {
+            // There are numbers below the last panel of each column, also where the last row has no
+            // panel in that column.
+            let is_last = k + columns >= self.problems.len();
+            if is_last && k / columns != (self.problems.len() - 1) / columns {
                 area.y1 -= 1.2 * size;
             }
-            if !panel.title.is_empty() {
-                let title = layout::elide(&panel.title, 1.1 * size, area.width());
+            if !problem.title.is_empty() {
+                let title = layout::elide(&problem.title, 1.1 * size, area.width());
                 figure.text(
                     [area.x0, area.y0 + 0.85 * size],
-                    Text::new(&title, 1.1 * size).bold(),
+                    Label::new(&title, 1.1 * size).bold(),
                 );
                 area.y0 += 1.5 * size;
             }
@@ -214,9 +153,9 @@ impl Chart {
                 return None;
             }
             let axes = [x.between(main.x0, main.x1), y.between(main.y1, main.y0)];
-            // Small panels have finer lines and markers.
+            // Lines and markers are finer in small panels.
             let fine = (main.width() / (22.0 * size)).clamp(0.6, 1.0) * size;
-            Drawing::new(panel, axes, main, size, fine).draw(
+            Drawing::new(problem, axes, main, size, fine).draw(
                 &mut figure,
                 strip,
                 [is_last, k % columns == 0],
@@ -225,31 +164,35 @@ impl Chart {
         Some(figure)
     }
 
-    /// The legend: each method once, the front, and what else needs a word.
+    /// The entries of the legend: each method once, the front, and the shade if there is any.
     fn entries(&self, size: f64, x: &Axis) -> Vec<(String, Sign<'_>)> {
         let mut seen = vec![];
         let mut entries: Vec<(String, Sign)> = vec![];
-        for curve in self.panels.iter().flat_map(|panel| &panel.curves) {
-            if seen.contains(&(curve.letter, &curve.name)) {
+        for curve in self.problems.iter().flat_map(|problem| &problem.curves) {
+            if seen.contains(&(curve.style, &curve.name)) {
                 continue;
             }
-            seen.push((curve.letter, &curve.name));
-            let look = look::of(curve.letter);
+            seen.push((curve.style, &curve.name));
+            let style = curve.style;
             let sign: Sign = Box::new(move |figure, [x, y]| {
                 figure.line(
                     &[[x - 1.7 * size, y], [x + 1.7 * size, y]],
-                    &look.stroke(0.13 * size),
+                    &style.stroke(0.13 * size),
                 );
-                look.marker(figure, [x, y], 0.4 * size, false);
+                style.draw_marker(figure, [x, y], 0.4 * size, false);
             });
             entries.push((curve.name.clone(), sign));
         }
         let front: Sign = Box::new(move |figure, [x, y]| {
             let line = [[x - 1.3 * size, y], [x + 1.3 * size, y]];
-            figure.line(&line, &(stroke(FRONT, 0.7 * size) + ROUND));
+            figure.line(&line, &front_style(0.7 * size));
         });
         entries.push(("fastest for its error".to_owned(), front));
-        if self.panels.iter().any(|panel| x.is_inside(panel.trusted())) {
+        if self
+            .problems
+            .iter()
+            .any(|problem| x.is_inside(problem.trusted()))
+        {
             let shade: Sign = Box::new(move |figure, [x, y]| {
                 let sample = Rect::new(
                     x - 1.6 * size,

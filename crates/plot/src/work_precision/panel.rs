@@ -1,32 +1,41 @@
-//! One panel: its shade, its curves, its front, and their names where there is room.
+//! Panels: the shade, the curves and the front of a problem, and their names where there is room.
 
 use std::cmp::Reverse;
 
-use super::{FRONT, Panel, ROUND, Run, SHADE};
-use crate::plot::axis::{self, Axis};
-use crate::plot::figure::{Figure, stroke};
-use crate::plot::look;
-use crate::plot::rect::{Point, Rect};
-use crate::plot::text::{Anchor, GREY, Text};
+use super::problem::{Measurement, Problem};
+use crate::axis::{self, Axis};
+use crate::figure::{Figure, stroke};
+use crate::geometry::{Point, Rect};
+use crate::label::{Anchor, GREY, Label};
+
+/// The style of errors that the reference cannot tell from 0, as attributes of SVG.
+pub const SHADE: &str = "fill=\"#e6eaf0\"";
+
+/// The style of the front, as attributes of SVG.
+pub fn front_style(width: f64) -> String {
+    stroke("#f8dd86", width) + " stroke-linecap=\"round\""
+}
 
 /// A panel while it is drawn.
 pub struct Drawing<'a> {
-    panel: &'a Panel,
+    problem: &'a Problem,
     axes: [Axis; 2],
+    /// The area between the axes.
     main: Rect,
-    /// Of text.
+    /// The size of text.
     size: f64,
-    /// Of lines and markers.
+    /// The size of lines and markers, as the size of text that they go with.
     fine: f64,
-    /// Where markers are.
+    /// The rooms that markers take.
     taken: Vec<Rect>,
+    /// The line segments that are drawn.
     lines: Vec<[Point; 2]>,
 }
 
 impl<'a> Drawing<'a> {
-    pub fn new(panel: &'a Panel, axes: [Axis; 2], main: Rect, size: f64, fine: f64) -> Self {
+    pub fn new(problem: &'a Problem, axes: [Axis; 2], main: Rect, size: f64, fine: f64) -> Self {
         Self {
-            panel,
+            problem,
             axes,
             main,
             size,
@@ -36,17 +45,19 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    fn at(&self, run: &Run) -> Point {
+    /// The point of a run.
+    fn at(&self, run: &Measurement) -> Point {
         [
             self.axes[0].at(run.error.max(f64::MIN_POSITIVE)),
             self.axes[1].at(run.work),
         ]
     }
 
-    /// With a strip of this width for runs that were lost, and numbers on x and y or not.
+    /// Draws the panel, with a strip of this width for runs that were lost; `numbers` says whether
+    /// the axes of x and y have numbers.
     pub fn draw(&mut self, figure: &mut Figure, strip: f64, numbers: [bool; 2]) {
         let (main, size) = (self.main, self.size);
-        let limit = self.panel.trusted();
+        let limit = self.problem.trusted();
         let shade = Rect {
             x1: if limit > 0.0 {
                 self.axes[0].at(limit)
@@ -64,18 +75,18 @@ impl<'a> Drawing<'a> {
         if strip.width() > 0.0 {
             figure.rect(strip, "fill=\"#fbefec\"");
             if numbers[0] {
-                let text = Text::new("blew up", size)
+                let label = Label::new("blew up", size)
                     .colour("#8c2d19")
                     .anchor(Anchor::Middle);
-                figure.text([strip.centre()[0], main.y1 + 1.15 * size], text);
+                figure.text([strip.centre()[0], main.y1 + 1.15 * size], label);
             }
         }
         axis::draw(figure, main, [&self.axes[0], &self.axes[1]], size, numbers);
-        let front: Vec<_> = (self.panel.front().into_iter())
-            .map(|[c, r]| (c, &self.panel.curves[c].runs[r]))
+        let front: Vec<_> = (self.problem.front().into_iter())
+            .map(|[c, r]| (c, &self.problem.curves[c].runs[r]))
             .collect();
         let line: Vec<_> = front.iter().map(|(_, run)| self.at(run)).collect();
-        figure.line(&line, &(stroke(FRONT, 0.9 * self.fine) + ROUND));
+        figure.line(&line, &front_style(0.9 * self.fine));
         self.lines
             .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
         self.curves(figure);
@@ -87,10 +98,11 @@ impl<'a> Drawing<'a> {
         self.name_steps(figure, &front);
     }
 
+    /// Draws the curves and their markers.
     fn curves(&mut self, figure: &mut Figure) {
         let radius = 0.38 * self.fine;
-        for curve in &self.panel.curves {
-            let look = look::of(curve.letter);
+        for curve in &self.problem.curves {
+            let style = curve.style;
             let mut runs: Vec<_> = curve
                 .runs
                 .iter()
@@ -98,22 +110,23 @@ impl<'a> Drawing<'a> {
                 .collect();
             runs.sort_by(|a, b| a.work.total_cmp(&b.work));
             let points: Vec<_> = runs.into_iter().map(|run| self.at(run)).collect();
-            figure.line(&points, &look.stroke(0.14 * self.fine));
+            figure.line(&points, &style.stroke(0.14 * self.fine));
             self.lines
                 .extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
             for point in points {
-                look.marker(figure, point, radius, false);
+                style.draw_marker(figure, point, radius, false);
                 self.taken.push(Rect::around(point, 1.2 * radius));
             }
         }
     }
 
-    /// Runs that were lost: open markers beside the chart, side by side where they would hide each other.
+    /// Draws runs that were lost, as open markers beside the chart, next to each other where one
+    /// would hide another.
     fn lost(&mut self, figure: &mut Figure, strip: Rect) {
         let radius = 0.36 * self.fine.min(0.9 * self.size);
         let mut taken: Vec<Rect> = vec![];
-        for curve in &self.panel.curves {
-            let look = look::of(curve.letter);
+        for curve in &self.problem.curves {
+            let style = curve.style;
             for run in curve
                 .runs
                 .iter()
@@ -125,38 +138,38 @@ impl<'a> Drawing<'a> {
                 let free = |point: &&Point| !taken.iter().any(|other| other.overlaps(room(point)));
                 let point = *aside.iter().find(free).unwrap_or(&aside[0]);
                 taken.push(room(&point));
-                look.marker(figure, point, radius, true);
+                style.draw_marker(figure, point, radius, true);
             }
         }
     }
 
-    /// Whether a text there would cover nothing.
+    /// Whether a label there would cover nothing.
     fn is_clear(&self, figure: &Figure, room: Rect) -> bool {
         self.main.holds(room)
-            && figure.free(room)
+            && figure.is_free(room)
             && !self.taken.iter().any(|other| other.overlaps(room))
             && !self.lines.iter().any(|[a, b]| room.meets(*a, *b))
     }
 
-    /// Writes the text at the first of the places where it is clear.
+    /// Writes the label at the first of the points where it covers nothing. Whether there is one.
     fn place(
         &self,
         figure: &mut Figure,
-        text: Text,
-        mut places: impl Iterator<Item = Point>,
+        label: Label,
+        mut points: impl Iterator<Item = Point>,
     ) -> bool {
-        let found = places.find(|at| self.is_clear(figure, text.room(*at)));
+        let found = points.find(|at| self.is_clear(figure, label.room(*at)));
         if let Some(at) = found {
-            figure.text(at, text);
+            figure.text(at, label);
         }
         found.is_some()
     }
 
-    /// Says what the shade is, read from below, if it is wide enough; the legend says it too.
+    /// Writes what the shade is, read from below, if it is wide enough. The legend says it too.
     fn explain_shade(&self, figure: &mut Figure, shade: Rect) {
         let size = 0.85 * self.size;
-        for words in ["finer than the reference can tell", "reference unsure"] {
-            let text = Text::new(words, size).colour(GREY).turned();
+        for text in ["finer than the reference can tell", "reference unsure"] {
+            let label = Label::new(text, size).colour(GREY).turned();
             let places = (0..240).map(|k| {
                 let (column, row) = (f64::from(k / 30), f64::from(k % 30));
                 [
@@ -164,15 +177,16 @@ impl<'a> Drawing<'a> {
                     shade.y1 - (0.6 + 0.6 * row) * size,
                 ]
             });
-            let fitting = places.filter(|at| shade.holds(text.room(*at)));
-            if self.place(figure, text, fitting) {
+            let fitting = places.filter(|at| shade.holds(label.room(*at)));
+            if self.place(figure, label, fitting) {
                 return;
             }
         }
     }
 
-    /// Names each method once where it leads the longest, on the side where no curve can be.
-    fn name_front(&self, figure: &mut Figure, front: &[(usize, &Run)]) {
+    /// Names each method once, where it has the most runs in a row on the front, on the side of the
+    /// front where no curve can be.
+    fn name_front(&self, figure: &mut Figure, front: &[(usize, &Measurement)]) {
         let size = self.size;
         let mut parts: Vec<_> = front.chunk_by(|a, b| a.0 == b.0).collect();
         parts.sort_by_key(|part| Reverse(part.len()));
@@ -182,14 +196,14 @@ impl<'a> Drawing<'a> {
                 continue;
             }
             named.push(part[0].0);
-            let curve = &self.panel.curves[part[0].0];
+            let curve = &self.problem.curves[part[0].0];
             let mut runs: Vec<_> = (0..part.len()).collect();
             runs.sort_by_key(|k| k.abs_diff(part.len() / 2));
-            let text = Text::new(&curve.name, size)
-                .colour(look::of(curve.letter).colour)
+            let label = Label::new(&curve.name, size)
+                .colour(curve.style.colour)
                 .bold();
-            let places = |text: Text| {
-                let room = text.room([0.0, 0.0]);
+            let places = |label: Label| {
+                let room = label.room([0.0, 0.0]);
                 let offsets = [
                     [-1.0, 1.1],
                     [-0.5, 1.5],
@@ -212,17 +226,17 @@ impl<'a> Drawing<'a> {
                 }
                 found.into_iter()
             };
-            self.place(figure, text, places(text));
+            self.place(figure, label, places(label));
         }
     }
 
-    /// The steps of the runs on the front, small, where they cover nothing.
-    fn name_steps(&self, figure: &mut Figure, front: &[(usize, &Run)]) {
+    /// Writes the labels of the runs on the front, where they cover nothing.
+    fn name_steps(&self, figure: &mut Figure, front: &[(usize, &Measurement)]) {
         let size = 0.8 * self.size;
         for (_, run) in front {
             let [x, y] = self.at(run);
-            let text = Text::new(run.label.as_deref().unwrap_or_default(), size).colour(GREY);
-            let length = text.room([0.0, 0.0]).width();
+            let label = Label::new(run.label.as_deref().unwrap_or_default(), size).colour(GREY);
+            let length = label.room([0.0, 0.0]).width();
             let places = [
                 [-0.7 * size - length, 1.0 * size],
                 [-length / 2.0, 1.5 * size],
@@ -230,7 +244,7 @@ impl<'a> Drawing<'a> {
             ];
             self.place(
                 figure,
-                text,
+                label,
                 places.into_iter().map(|[dx, dy]| [x + dx, y + dy]),
             );
         }

@@ -1,10 +1,10 @@
 //! Plots of the last seconds of a run.
 
+use a3_plot::Axis;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2};
 
 use super::super::hud::{FAINT, TEXT};
 use super::history::{History, SPAN, Sample};
-use crate::plot::axis::Axis;
 
 /// The least height of a plot (points).
 const LEAST: f32 = 56.0;

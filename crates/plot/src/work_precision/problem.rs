@@ -1,0 +1,124 @@
+//! The data of a work-precision diagram.
+
+use crate::style::Style;
+
+/// The error and the work of one run of a method.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// The error, on the horizontal axis.
+    pub error: f64,
+    /// The work, on the vertical axis. A run without positive work is not drawn.
+    pub work: f64,
+    /// Whether the run blew up or failed. It is drawn beside the chart then, at its work.
+    pub lost: bool,
+    /// The step or the tolerance of the run, in words.
+    pub label: Option<String>,
+}
+
+/// The runs of a method on a problem.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// The style of the curve. A method has the same style on all problems.
+    pub style: Style,
+    /// The name of the method.
+    pub name: String,
+    /// The runs, in any order.
+    pub runs: Vec<Measurement>,
+}
+
+/// A problem that methods were run on: one panel of the diagram.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// The title of the panel; none if it is empty.
+    pub title: String,
+    /// The methods, a curve each.
+    pub curves: Vec<Curve>,
+    /// The error of the reference itself. Errors below ten times this are shaded.
+    pub floor: Option<f64>,
+}
+
+impl Measurement {
+    /// Whether the run has a place on the chart. That of an error of 0 is at the left end.
+    pub(super) fn is_drawn(&self) -> bool {
+        self.work.is_finite() && self.work > 0.0
+    }
+
+    /// Whether the run is drawn beside the chart.
+    pub(super) fn is_lost(&self) -> bool {
+        self.lost || !self.error.is_finite() || self.error < 0.0
+    }
+}
+
+impl Problem {
+    /// The least error that the reference can tell from 0.
+    pub(super) fn trusted(&self) -> f64 {
+        self.floor
+            .filter(|floor| floor.is_finite())
+            .map_or(0.0, |floor| 10.0 * floor)
+    }
+
+    /// The runs on the Pareto front, as indices of curve and run, from the smallest error up: those
+    /// that no other run beats in both error and work. Runs with errors that the reference cannot
+    /// tell from 0 are left out, but beat others.
+    pub(super) fn front(&self) -> Vec<[usize; 2]> {
+        let mut runs: Vec<_> = (self.curves.iter().enumerate())
+            .flat_map(|(c, curve)| {
+                curve
+                    .runs
+                    .iter()
+                    .enumerate()
+                    .map(move |(r, run)| ([c, r], run))
+            })
+            .filter(|(_, run)| run.is_drawn() && !run.is_lost())
+            .collect();
+        runs.sort_by(|(_, a), (_, b)| a.error.total_cmp(&b.error).then(a.work.total_cmp(&b.work)));
+        let mut least = f64::INFINITY;
+        runs.retain(|(_, run)| {
+            let better = run.work < least;
+            least = least.min(run.work);
+            better && run.error > self.trusted()
+        });
+        runs.into_iter().map(|(place, _)| place).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front_is_what_nothing_beats() {
+        let run = |error, work, lost| Measurement {
+            error,
+            work,
+            lost,
+            label: None,
+        };
+        let curve = |runs| Curve {
+            style: Style::default(),
+            name: String::new(),
+            runs,
+        };
+        let problem = Problem {
+            title: String::new(),
+            // The fourth run of the first is below ten times the floor, and its last was lost.
+            curves: vec![
+                curve(vec![
+                    run(1e-2, 10.0, false),
+                    run(1e-3, 40.0, false),
+                    run(1e-4, 500.0, false),
+                    run(1e-9, 600.0, false),
+                    run(1e-5, 1.0, true),
+                ]),
+                curve(vec![
+                    run(2e-2, 11.0, false),
+                    run(1e-3, 30.0, false),
+                    run(1e-5, 400.0, false),
+                    run(f64::NAN, 1.0, false),
+                ]),
+            ],
+            floor: Some(1e-9),
+        };
+        assert_eq!(problem.front(), [[1, 2], [1, 1], [0, 0]]);
+    }
+}
