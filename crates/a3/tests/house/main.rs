@@ -1,0 +1,123 @@
+//! The rules of the house: no file of more than 400 lines, no circle of imports between the modules of a crate, and a map
+//! in ARCHITECTURE.md that names every room and none that is not there.
+
+#![allow(missing_docs, reason = "a test")]
+
+mod imports;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use imports::Crate;
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+const MOST_LINES: usize = 400;
+
+/// All files below a folder whose names end so, in order.
+fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut entries: Vec<_> = fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    entries.sort();
+    let mut found = vec![];
+    for path in entries {
+        if path.is_dir() {
+            found.extend(files(&path, ending));
+        } else if path.to_str().unwrap().ends_with(ending) {
+            found.push(path);
+        }
+    }
+    found
+}
+
+fn rust_files() -> Vec<PathBuf> {
+    ["crates", "benches"]
+        .iter()
+        .flat_map(|folder| files(&Path::new(ROOT).join(folder), ".rs"))
+        .collect()
+}
+
+/// The sources of each crate, by its folder.
+fn sources() -> Vec<PathBuf> {
+    let crates = fs::read_dir(Path::new(ROOT).join("crates")).unwrap();
+    crates
+        .map(|entry| entry.unwrap().path().join("src"))
+        .filter(|source| source.is_dir())
+        .collect()
+}
+
+#[test]
+fn no_file_is_longer_than_400_lines() {
+    let shaders = files(&Path::new(ROOT).join("crates"), ".wgsl");
+    let all = rust_files();
+    assert!(all.len() > 100, "the sources were not found");
+    let long: Vec<_> = all
+        .into_iter()
+        .chain(shaders)
+        .filter_map(|path| {
+            let lines = fs::read_to_string(&path).unwrap().lines().count();
+            (lines > MOST_LINES).then(|| format!("{lines} {}", path.display()))
+        })
+        .collect();
+    assert!(long.is_empty(), "{long:#?}");
+}
+
+#[test]
+fn no_module_imports_one_that_imports_it() {
+    let circles: Vec<_> = sources()
+        .iter()
+        .flat_map(|source| Crate::read(source, &files(source, ".rs")).circles())
+        .collect();
+    assert!(circles.is_empty(), "{circles:#?}");
+}
+
+/// The map's rows name a file or folder by its path from the root, and then others beside it by their names alone.
+#[test]
+fn the_map_of_the_architecture_is_the_territory() {
+    let text = fs::read_to_string(Path::new(ROOT).join("ARCHITECTURE.md")).unwrap();
+    let mut named = BTreeSet::new();
+    for row in text
+        .lines()
+        .filter(|line| line.starts_with("| `crates/") || line.starts_with("| `benches/"))
+    {
+        let cell = row.split('|').nth(1).unwrap();
+        let paths: Vec<_> = cell.split('`').skip(1).step_by(2).collect();
+        let beside = Path::new(paths[0]).parent().unwrap();
+        named.insert(PathBuf::from(paths[0]));
+        named.extend(paths[1..].iter().map(|name| beside.join(name)));
+    }
+    let root = Path::new(ROOT).canonicalize().unwrap();
+    let strangers: Vec<_> = named
+        .iter()
+        .filter(|path| !root.join(path).exists())
+        .collect();
+    assert!(
+        strangers.is_empty(),
+        "the map names what is not there: {strangers:#?}"
+    );
+    let mut rooms = BTreeSet::new();
+    for source in sources() {
+        let source = source.canonicalize().unwrap();
+        for path in files(&source, ".rs") {
+            let folder = path.parent().unwrap();
+            let room = if folder == source {
+                path.as_path()
+            } else {
+                folder
+            };
+            let name = room.file_name().unwrap();
+            if name != "lib.rs" {
+                rooms.insert(room.strip_prefix(&root).unwrap().to_owned());
+            }
+        }
+    }
+    // What is inside a folder that is named may go by that name.
+    let missing: Vec<_> = rooms.iter().filter(|room| !named.contains(*room)).collect();
+    assert!(
+        missing.is_empty(),
+        "rooms that the map leaves out: {missing:#?}"
+    );
+}
