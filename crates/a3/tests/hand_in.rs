@@ -62,10 +62,19 @@ fn the_archive_has_the_sources_the_program_and_the_readme() {
     asked(other.path(), "tar", &["-xzf", "mine.tar.gz"]);
     let unpacked = other.path().join("a3");
     let readme = fs::read_to_string(unpacked.join("README.txt")).unwrap();
-    assert_eq!(
-        readme,
-        fs::read_to_string(folder.path().join("README.md")).unwrap()
-    );
+    let parts = ["README.md", "docs/assignment.md"];
+    let parts = parts.map(|part| fs::read_to_string(folder.path().join(part)).unwrap());
+    assert_eq!(readme, parts.concat());
+    for question in [
+        "## How to build and run it",
+        "## Who collaborated",
+        "## References",
+        "## Known problems, their causes and fixes",
+        "## Extra credit and how to use it",
+        "## Comments",
+    ] {
+        assert!(readme.contains(question), "{question}");
+    }
     // Every file of the commit is there, as it is.
     let sources = asked(folder.path(), "git", &["ls-files"]);
     assert!(sources.lines().count() > 100 && sources.contains("crates/core/src/lib.rs"));
