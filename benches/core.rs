@@ -8,16 +8,14 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use a3_core::scenes::Description;
-use a3_core::{
-    Grid, Mechanics, Model, Network, Scene, Sheet, Simulation, Spring, integrators, scenes,
-};
+use a3_core::{Grid, Mechanics, Model, Network, Scene, Sheet, Simulation, Spring, integrators};
+use a3_scenes::Description;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 
 const SIDES: [usize; 7] = [8, 16, 32, 64, 128, 256, 512];
 
 fn cloth(name: &str, side: usize) -> Scene {
-    scenes::find(name)
+    a3_scenes::find(name)
         .unwrap()
         .build(Some(Grid::new(side, side).unwrap()))
         .unwrap()
@@ -134,7 +132,7 @@ fn forces_of_a_list(c: &mut Criterion) {
 /// One evaluation of all forces of every scene.
 fn evaluation(c: &mut Criterion) {
     let mut group = c.benchmark_group("evaluation");
-    for entry in scenes::SCENES {
+    for entry in a3_scenes::SCENES {
         let scene = entry.build(None).unwrap();
         let system = scene.model.system();
         let mut dydt = vec![0.0; system.dim()];
@@ -178,7 +176,7 @@ fn rods(c: &mut Criterion) {
 
 /// A step of every method on every scene that it serves.
 fn steps(c: &mut Criterion) {
-    for entry in scenes::SCENES {
+    for entry in a3_scenes::SCENES {
         let mut group = c.benchmark_group(format!("step/{}", entry.name));
         let scene = entry.build(None).unwrap();
         for method in integrators::METHODS {

@@ -7,7 +7,7 @@
 use std::hint::black_box;
 use std::process::{Command, ExitCode};
 
-use a3_core::{Grid, Integrator, Mechanics, Network, Scene, integrators, scenes};
+use a3_core::{Grid, Integrator, Mechanics, Network, Scene, integrators};
 
 /// What is counted: on a cloth of 32 x 32 particles, in thousands of instructions at most.
 const LIMITS: [(&str, u64); 9] = [
@@ -78,7 +78,7 @@ fn count(kernel: &str, times: u64) -> Option<u64> {
 
 fn cloth(name: &str) -> Scene {
     let grid = Grid::new(32, 32).expect("a grid");
-    let entry = scenes::find(name).expect("a scene");
+    let entry = a3_scenes::find(name).expect("a scene");
     entry.build(Some(grid)).expect("a cloth")
 }
 

@@ -1,7 +1,7 @@
 //! `a3 scenes` and `a3 solvers`: what there is.
 
-use a3_core::scenes::Description;
-use a3_core::{integrators, scenes};
+use a3_core::integrators;
+use a3_scenes::Description;
 
 use crate::cli::Scenes;
 use crate::{Failure, output};
@@ -53,7 +53,7 @@ pub fn scenes(options: &Scenes) -> Result<(), Failure> {
         "what it is",
     ];
     let mut rows = vec![heading.map(String::from).to_vec()];
-    for entry in scenes::SCENES {
+    for entry in a3_scenes::SCENES {
         let scene = entry.build(None).map_err(Failure::run)?;
         let network = scene.model.network();
         rows.push(vec![

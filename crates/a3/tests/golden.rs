@@ -11,7 +11,7 @@ use std::sync::Mutex;
 use std::thread;
 
 use a3_core::integrators::METHODS;
-use a3_core::scenes::SCENES;
+use a3_scenes::SCENES;
 use common::{command, text};
 
 const HASHES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/states.txt");

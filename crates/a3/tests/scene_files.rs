@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use a3_core::scenes::Description;
+use a3_scenes::Description;
 use common::{a3, complaint, text};
 use serde_json::Value;
 

@@ -4,19 +4,8 @@
 //!
 //! * [`ParticleSystem`] is a first-order system y' = f(t, y); [`Mechanics`] is one with forces and masses.
 //! * [`Integrator`]s step any [`ParticleSystem`]; [`integrators::METHODS`] lists them.
-//! * [`Network`] is particles and springs with the forces a scene asked for; [`scenes::SCENES`] lists the scenes.
+//! * [`Network`] is particles and springs with the forces a scene asked for.
 //! * [`Simulation`] is scene x method x time, with the hands that pull at it.
-//!
-//! ```
-//! use a3_core::{Simulation, integrators, scenes};
-//!
-//! let scene = scenes::find("chain").unwrap().build(None)?;
-//! let method = integrators::find("rk4").unwrap();
-//! let mut simulation = Simulation::new(scene, method, 0.01)?;
-//! simulation.advance_to(1.0)?;
-//! assert!(simulation.position(3).y < 0.0);
-//! # Ok::<(), a3_core::Error>(())
-//! ```
 //!
 //! Build a network, step it, and chart it: how far is each method off, and what does it cost?
 //!
@@ -65,11 +54,14 @@ mod network;
 mod path;
 mod random;
 mod rows;
-pub mod scenes;
+mod scene;
 mod simulation;
 mod spring;
 pub mod stability;
+mod surface;
 mod system;
+#[cfg(test)]
+mod testing;
 mod threads;
 
 pub use constraints::Constraint;
@@ -80,7 +72,8 @@ pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
 pub use network::{Energy, Network};
 pub use path::{Path, Place};
-pub use scenes::{Model, Scene, SceneEntry, Surface, Swing, View};
+pub use scene::{FirstOrder, Model, Scene, Swing, View};
 pub use simulation::{Moment, Simulation};
 pub use spring::{Spring, SpringKind, SpringLaw};
+pub use surface::Surface;
 pub use system::{Coupling, Matrix, Mechanics, ParticleSystem};

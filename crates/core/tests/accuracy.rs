@@ -3,7 +3,7 @@
 mod common;
 
 use a3_core::accuracy::{Frames, Metric, Reference, choose, horizon, ladder, measure};
-use a3_core::{Scene, integrators, scenes};
+use a3_core::{Scene, integrators};
 use common::{method, scene};
 
 const GO_ON: &dyn Fn() -> bool = &|| true;
@@ -58,7 +58,10 @@ const KINKED: [&str; 2] = ["mit-sphere", "jelly"];
 #[test]
 fn references_agree_with_themselves() {
     // That of the flag takes three million evaluations.
-    for entry in scenes::SCENES.iter().filter(|entry| entry.name != "flag") {
+    for entry in a3_scenes::SCENES
+        .iter()
+        .filter(|entry| entry.name != "flag")
+    {
         let scene = entry.build(None).unwrap();
         let horizon = horizon(&scene, GO_ON).unwrap().unwrap();
         let reference = reference(&scene, horizon.until);
@@ -154,7 +157,7 @@ fn a_run_can_be_stopped() {
 #[test]
 fn the_choice_is_the_best() {
     // A search of all methods on the jelly and in the air takes minutes.
-    let entries = scenes::SCENES.iter();
+    let entries = a3_scenes::SCENES.iter();
     for entry in entries.filter(|entry| !["flag", "jelly"].contains(&entry.name)) {
         let scene = entry.build(None).unwrap();
         let horizon = horizon(&scene, GO_ON).unwrap().unwrap();

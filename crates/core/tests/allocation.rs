@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use a3_core::elements::{Air, Wind};
-use a3_core::{Constraint, Model, Network, Path, Scene, Simulation, Vector3, integrators, scenes};
+use a3_core::{Constraint, Model, Network, Path, Scene, Simulation, Vector3, integrators};
 
 /// The system's allocator, which counts this thread's allocations.
 struct Counting;
@@ -41,7 +41,7 @@ fn the_counter_counts() {
 
 #[test]
 fn no_step_allocates() {
-    for entry in scenes::SCENES {
+    for entry in a3_scenes::SCENES {
         for method in integrators::METHODS {
             let Ok(mut run) =
                 Simulation::new(entry.build(None).unwrap(), method, method.default_setting)
@@ -65,7 +65,7 @@ fn no_step_allocates() {
 #[test]
 fn no_step_in_the_air_allocates_but_the_first() {
     for method in integrators::METHODS {
-        let mut scene = scenes::find("cloth").unwrap().build(None).unwrap();
+        let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
         if let Model::Network(network) = &mut scene.model {
             let grid = network.sheet().unwrap().grid();
             network.set_triangles(grid.triangles()).unwrap();
@@ -107,7 +107,7 @@ fn constraints_allocate_nothing() {
 fn no_step_that_tears_nothing_allocates() {
     for name in ["cloth", "chain"] {
         for method in integrators::METHODS {
-            let mut scene = scenes::find(name).unwrap().build(None).unwrap();
+            let mut scene = a3_scenes::find(name).unwrap().build(None).unwrap();
             if let Model::Network(network) = &mut scene.model {
                 network.set_tear(Some(1e3)).unwrap();
             }
@@ -122,7 +122,7 @@ fn no_step_that_tears_nothing_allocates() {
 #[test]
 fn no_step_after_an_adjustment_allocates() {
     for method in integrators::METHODS {
-        let mut scene = scenes::find("cloth").unwrap().build(None).unwrap();
+        let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
         let own = scene.model.network().unwrap().clone();
         if let Model::Network(network) = &mut scene.model {
             network.scale_springs(1.0, 0.0).unwrap();

@@ -2,8 +2,8 @@
 
 mod common;
 
-use a3_core::scenes::{Description, Fault, Mesh, SCENES};
 use a3_core::{Model, Path, Scene, SpringKind, Vector3};
+use a3_scenes::{Description, Fault, Mesh, SCENES};
 use common::scene;
 
 fn mesh(name: &str) -> Result<Mesh, String> {

@@ -5,7 +5,7 @@ mod common;
 use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{
     Grid, Mechanics, Model, Network, ParticleSystem, Sheet, Simulation, Spring, SpringKind,
-    SpringLaw, Vector3, scenes,
+    SpringLaw, Vector3,
 };
 use approx::assert_relative_eq;
 use common::{distance, integrate, method, scene, scene_with_grid, size};
@@ -25,7 +25,7 @@ fn shaken(state: &[f64], by: f64) -> Vec<f64> {
 }
 
 fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
-    let of_scenes = scenes::SCENES.iter().filter_map(|entry| {
+    let of_scenes = a3_scenes::SCENES.iter().filter_map(|entry| {
         let scene = entry.build(None).unwrap();
         let Model::Network(mut network) = scene.model else {
             return None;
@@ -76,7 +76,7 @@ fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
 
 #[test]
 fn evaluating_twice_gives_the_same_bits() {
-    for entry in scenes::SCENES {
+    for entry in a3_scenes::SCENES {
         let scene = entry.build(None).unwrap();
         let system = scene.model.system();
         let y = shaken(&scene.state, 0.1);

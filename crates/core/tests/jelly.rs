@@ -4,8 +4,8 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use a3_core::scenes::Description;
 use a3_core::{Scene, Simulation, SpringKind, Vector3};
+use a3_scenes::Description;
 use common::{method, scene, simulation};
 
 /// A jelly of that many particles along its edges, in a world without gravity.

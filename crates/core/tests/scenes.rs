@@ -2,7 +2,7 @@
 
 mod common;
 
-use a3_core::{Grid, MAX_PARTICLES, Simulation, SpringKind, integrators, scenes};
+use a3_core::{Grid, MAX_PARTICLES, Simulation, SpringKind, integrators};
 use common::{scene, scene_with_grid};
 
 #[test]
@@ -62,14 +62,14 @@ fn grids_that_make_no_sense_are_refused() {
         assert!(error.contains(&MAX_PARTICLES.to_string()), "{error}");
     }
     let grid = Grid::new(3, 3).unwrap();
-    assert!(scenes::find("chain").unwrap().build(Some(grid)).is_err());
+    assert!(a3_scenes::find("chain").unwrap().build(Some(grid)).is_err());
 }
 
 /// With its default step, each method holds on each scene that it serves, for ten seconds of wind and swing; where these take
 /// minutes, for two.
 #[test]
 fn default_settings_hold_everywhere() {
-    for entry in scenes::SCENES {
+    for entry in a3_scenes::SCENES {
         for method in integrators::METHODS {
             let scene = entry.build(None).unwrap();
             let serves = method.check(scene.model.system()).is_ok();

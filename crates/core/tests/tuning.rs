@@ -2,8 +2,8 @@
 
 mod common;
 
-use a3_core::scenes::{self, Description};
 use a3_core::{Network, Scene, Simulation, Vector3, integrators};
+use a3_scenes::Description;
 use common::scene;
 
 fn start(scene: Scene, method: &str, step: f64) -> Simulation {
@@ -151,7 +151,7 @@ fn pins_are_freed_and_hold_again_where_they_are() {
 /// Every scene after a second with all that can be changed: written, read, and gone on with.
 #[test]
 fn a_run_goes_on_from_its_description() {
-    for entry in scenes::SCENES {
+    for entry in a3_scenes::SCENES {
         let (stiffness, damping, gusts) = (1.7, 0.6, 1.3);
         let mut run = start(entry.build(None).unwrap(), "rk4", 0.005);
         run.adjust(|network| {
@@ -201,7 +201,7 @@ fn what_was_freed_is_described_as_free() {
     let mut run = start(scene("cloth"), "rk4", 0.01);
     run.set_pinned(false);
     run.advance_to(0.1).unwrap();
-    let mut description = scenes::find("cloth").unwrap().description().unwrap();
+    let mut description = a3_scenes::find("cloth").unwrap().description().unwrap();
     description.begin_with(run.model(), run.time(), run.state());
     let scene = description
         .build(None, &mut |_| Err("none".into()))

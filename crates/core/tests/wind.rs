@@ -5,7 +5,7 @@ mod common;
 use a3_core::elements::{Air, Wind};
 use a3_core::{
     Mechanics, Model, Network, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
-    integrators, scenes,
+    integrators,
 };
 use approx::assert_relative_eq;
 use common::{distance, integrate, method, scene_with_grid};
@@ -293,7 +293,7 @@ fn air_and_triangles_that_make_no_sense_are_refused() {
 
 #[test]
 fn without_triangles_there_is_nothing_to_blow_on() {
-    let scene = scenes::find("cloth").unwrap().build(None).unwrap();
+    let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
     let mut network = scene.model.network().unwrap().clone();
     let n = network.particles();
     let (x, v) = scene.state.split_at(3 * n);

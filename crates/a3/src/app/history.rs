@@ -121,10 +121,10 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use a3_core::{integrators, scenes};
+    use a3_core::integrators;
 
     fn run(rows: usize) -> Simulation {
-        let entry = scenes::find("cloth").unwrap();
+        let entry = a3_scenes::find("cloth").unwrap();
         let grid = a3_core::Grid::new(rows, rows).unwrap();
         let scene = entry.build(Some(grid)).unwrap();
         Simulation::new(scene, integrators::find("t").unwrap(), 0.01).unwrap()
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn what_is_lost_has_no_moment() {
-        let scene = scenes::find("mit").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("mit").unwrap().build(None).unwrap();
         let mut run = Simulation::new(scene, integrators::find("e").unwrap(), 0.05).unwrap();
         let mut history = History::default();
         history.keep(0.0, false, [&run].into_iter());

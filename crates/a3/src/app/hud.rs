@@ -408,7 +408,6 @@ fn help(ui: &mut Ui, several: bool) {
 pub mod tests {
     use super::*;
     use crate::show::Show;
-    use a3_core::scenes;
 
     /// All that is written, in a window of that size, and the rectangles of the sheets.
     pub fn read(panes: &[Pane], readings: &Readings, size: [f32; 2]) -> (String, Vec<egui::Rect>) {
@@ -455,7 +454,7 @@ pub mod tests {
     }
 
     pub fn pane(scene: &str, method: &str, step: f64) -> Pane {
-        let scene = scenes::find(scene).unwrap().build(None).unwrap();
+        let scene = a3_scenes::find(scene).unwrap().build(None).unwrap();
         let method = integrators::find(method).unwrap();
         let simulation = Simulation::new(scene, method, step).unwrap();
         Pane::new(simulation, Show::new(false, None))

@@ -117,7 +117,7 @@ fn rounded(most: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use a3_core::{integrators, scenes};
+    use a3_core::integrators;
 
     #[test]
     fn a_step_that_would_hold_is_short_and_within() {
@@ -130,7 +130,7 @@ mod tests {
             assert_eq!(rounded(most), expected);
         }
         // Euler's method is limited by slow motion without damping, of which the fastest motion knows nothing.
-        let scene = scenes::find("cloth").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
         let euler = integrators::find("euler").unwrap();
         let mut run = Simulation::new(scene.clone(), euler, 0.02).unwrap();
         assert!(run.advance_to(10.0).is_err());
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn the_limit_follows_the_method_and_the_cloth() {
-        let scene = scenes::find("mit").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("mit").unwrap().build(None).unwrap();
         let method = |name| integrators::find(name).unwrap();
         let mut run = Simulation::new(scene, method("rk4"), 0.01).unwrap();
         let mut watch = LimitWatch::default();

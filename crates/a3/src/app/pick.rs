@@ -134,10 +134,10 @@ fn weights(p: [f32; 2], a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> Option<[f32; 3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use a3_core::{Model, integrators, scenes};
+    use a3_core::{Model, integrators};
 
     fn cloth() -> Simulation {
-        let scene = scenes::find("cloth").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
         Simulation::new(scene, integrators::find("t").unwrap(), 0.01).unwrap()
     }
 
@@ -188,7 +188,7 @@ mod tests {
     /// The nearer one is hit: the sphere beside the cloth and below it, the cloth in front of the sphere.
     #[test]
     fn a_sphere_is_picked_unless_cloth_is_in_front() {
-        let scene = scenes::find("mit-sphere").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("mit-sphere").unwrap().build(None).unwrap();
         let run = Simulation::new(scene, integrators::find("t").unwrap(), 0.001).unwrap();
         let hit = |eye: [f32; 3]| {
             let camera = Camera::look_at(eye, [1.0, -4.0, 0.0]);

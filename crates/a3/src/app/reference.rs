@@ -155,11 +155,10 @@ fn distance(a: &Simulation, b: &Simulation) -> f64 {
 mod tests {
     use super::*;
     use crate::show::Show;
-    use a3_core::scenes;
 
     #[test]
     fn one_that_never_keeps_up_is_stopped_until_the_next_reset() {
-        let scene = scenes::find("chain").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("chain").unwrap().build(None).unwrap();
         let pane = |method: &str| {
             let method = integrators::find(method).unwrap();
             let simulation = Simulation::new(scene.clone(), method, 0.01).unwrap();

@@ -5,7 +5,7 @@ mod save;
 
 use std::time::{Duration, Instant};
 
-use a3_core::{Grid, Method, Network, Simulation, Vector3, scenes};
+use a3_core::{Grid, Method, Network, Simulation, Vector3};
 use a3_render::Camera;
 
 use super::history::History;
@@ -102,7 +102,7 @@ impl Session {
             tuning: Tuning::of(panes[0].simulation.scene()),
             shown: (what.scene.clone(), what.grid),
             asked: what.clone(),
-            at: scenes::SCENES
+            at: a3_scenes::SCENES
                 .iter()
                 .position(|entry| entry.name == what.scene.typed)
                 .unwrap_or(0),

@@ -1,6 +1,6 @@
 //! Scenes as JSON: particles and springs, one by one, with states that the motion is known to reach.
 
-use a3_core::scenes::{Description, Particles, Pin};
+use a3_scenes::{Description, Particles, Pin};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 

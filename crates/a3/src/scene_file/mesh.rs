@@ -4,7 +4,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 use a3_core::MAX_PARTICLES;
-use a3_core::scenes::Mesh;
+use a3_scenes::Mesh;
 use base64::Engine;
 
 use crate::caught::caught;

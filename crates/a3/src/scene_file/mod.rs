@@ -8,8 +8,8 @@ use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use a3_core::scenes::{self, Description};
 use a3_core::{Grid, Method, Scene, integrators};
+use a3_scenes::Description;
 
 /// The longest file of a scene (bytes).
 const LONGEST: u64 = 16 << 20;
@@ -30,7 +30,7 @@ pub struct Source {
 impl Source {
     /// The scene of that name, or in that file.
     pub fn find(typed: &str) -> Result<Self, String> {
-        if let Some(entry) = scenes::find(typed) {
+        if let Some(entry) = a3_scenes::find(typed) {
             return Ok(Self {
                 typed: typed.into(),
                 path: None,
@@ -132,7 +132,7 @@ fn place(file: &str, why: &str) -> String {
 }
 
 fn unknown(typed: &str) -> String {
-    let names = || scenes::SCENES.iter().map(|entry| entry.name);
+    let names = || a3_scenes::SCENES.iter().map(|entry| entry.name);
     let near = names()
         .map(|name| (strsim::normalized_damerau_levenshtein(typed, name), name))
         .filter(|(likeness, _)| *likeness > 0.55)

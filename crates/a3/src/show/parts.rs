@@ -109,10 +109,10 @@ pub fn whole_triangles(simulation: &Simulation) -> impl Iterator<Item = [u32; 3]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use a3_core::{integrators, scenes};
+    use a3_core::integrators;
 
     fn run(scene: &str) -> Simulation {
-        let scene = scenes::find(scene).unwrap().build(None).unwrap();
+        let scene = a3_scenes::find(scene).unwrap().build(None).unwrap();
         Simulation::new(scene, integrators::find("t").unwrap(), 0.01).unwrap()
     }
 

@@ -3,7 +3,7 @@
 use super::{GoOn, Metric, Outcome, Reference, ladder, measure};
 use crate::error::Error;
 use crate::integrators::{METHODS, Method};
-use crate::scenes::Scene;
+use crate::scene::Scene;
 
 /// A setting is searched until the next coarser one that fails is no farther than this factor in steps.
 const CLOSE: f64 = 1.08;

@@ -4,7 +4,7 @@ use super::GoOn;
 use crate::error::Error;
 use crate::integrators::find;
 use crate::random::SplitMix;
-use crate::scenes::Scene;
+use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::stability::spectrum;
 

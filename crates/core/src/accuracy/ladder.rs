@@ -3,7 +3,7 @@
 use super::Frames;
 use crate::error::Error;
 use crate::integrators::Method;
-use crate::scenes::Scene;
+use crate::scene::Scene;
 use crate::stability::{largest_step, spectrum};
 
 /// From one step to the next.

@@ -9,7 +9,7 @@ use crate::elements::springs;
 use crate::error::{BlowUp, Error};
 use crate::integrators::{Method, Work};
 use crate::network::Network;
-use crate::scenes::Scene;
+use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::spring::SpringKind;
 

@@ -4,7 +4,7 @@
 use super::{Errors, Frames, GoOn, Snapshot, run};
 use crate::error::Error;
 use crate::integrators::{Method, Work, find};
-use crate::scenes::Scene;
+use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::stability::{largest_step, spectrum};
 

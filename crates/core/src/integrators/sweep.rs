@@ -224,7 +224,8 @@ mod tests {
     use crate::integrators::runge_kutta::{EULER, RK4, RungeKutta, Table};
     use crate::integrators::splitting::Plan;
     use crate::integrators::{Integrator, pefrl, symplectic_euler, verlet};
-    use crate::{Grid, Scene, scenes};
+    use crate::testing::cloth;
+    use crate::{Grid, Scene};
 
     enum Of {
         Table(Table),
@@ -259,9 +260,8 @@ mod tests {
             .build()
             .unwrap();
         for (rows, cols) in [(2, 2), (3, 7), (20, 20), (9, 300), (70, 5)] {
-            for name in ["cloth", "mit"] {
-                let grid = Grid::new(rows, cols).unwrap();
-                let scene = scenes::find(name).unwrap().build(Some(grid)).unwrap();
+            for damping_time in [0.0, 5e-4] {
+                let scene = cloth(Grid::new(rows, cols).unwrap(), damping_time);
                 for (k, method) in [
                     Of::Table(EULER),
                     Of::Table(RK4),
@@ -277,7 +277,7 @@ mod tests {
                         let found = pool.install(|| after(&scene, method, Some(bands)));
                         assert!(
                             found == expected,
-                            "{name} {rows}x{cols}, {k}, {bands} bands"
+                            "{rows}x{cols}, damped {damping_time} s, {k}, {bands} bands"
                         );
                     }
                 }
@@ -289,7 +289,7 @@ mod tests {
     #[test]
     fn a_step_is_a_function_of_its_arguments() {
         let grid = Grid::new(11, 13).unwrap();
-        let scene = scenes::find("cloth").unwrap().build(Some(grid)).unwrap();
+        let scene = cloth(grid, 5e-4);
         let system = scene.model.system();
         let sweeper = || Some(Sweeper::with_bands(system.rows().unwrap(), RK4.len(), 2));
         let step = |method: &mut RungeKutta, mut y: Vec<f64>| {

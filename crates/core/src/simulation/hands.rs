@@ -6,7 +6,7 @@ use super::Simulation;
 use crate::error::Error;
 use crate::network::Network;
 use crate::path::Path;
-use crate::scenes::{Model, Swing};
+use crate::scene::{Model, Swing};
 use crate::system::place_pins;
 
 /// A pulled particle gets to where it is pulled in this time (s) ...

@@ -13,7 +13,7 @@ use nalgebra::{DMatrixView, Vector3};
 use crate::error::{BlowUp, Cause, Error, positive};
 use crate::integrators::{Adaptive, Integrator, Method, Tolerance, Work};
 use crate::network::{Energy, Network};
-use crate::scenes::{Model, Scene, bounds};
+use crate::scene::{Model, Scene, bounds};
 use crate::system::ParticleSystem;
 
 /// A particle this many times the scene's radius away from its middle is lost.

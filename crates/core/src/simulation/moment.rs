@@ -4,7 +4,7 @@ use super::Simulation;
 use crate::error::Error;
 use crate::network::Network;
 use crate::path::Path;
-use crate::scenes::Model;
+use crate::scene::Model;
 
 /// What changes in a run as time goes on, at one time.
 #[derive(Clone, Debug, Default, PartialEq)]

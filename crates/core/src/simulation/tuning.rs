@@ -3,7 +3,7 @@
 use super::{Simulation, Stepper};
 use crate::elements::Wind;
 use crate::network::Network;
-use crate::scenes::Model;
+use crate::scene::Model;
 
 impl Simulation {
     /// Changes the model as it is now, and the one that a reset goes back to. The state and the time stay. Does nothing in a

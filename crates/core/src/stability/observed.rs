@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::integrators::{Method, find};
 use crate::network::Network;
 use crate::random::SplitMix;
-use crate::scenes::{Model, Scene};
+use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
 use crate::system::Mechanics;
 

@@ -1,29 +1,29 @@
 //! What several tests need.
 #![allow(dead_code, missing_docs, reason = "each test file uses its part")]
 
+use a3_core::integrators;
 use a3_core::{
     Grid, Method, Network, ParticleSystem, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
     Vector3,
 };
-use a3_core::{integrators, scenes};
 
 pub fn method(name: &str) -> &'static Method {
     integrators::find(name).unwrap()
 }
 
 pub fn scene(name: &str) -> Scene {
-    scenes::find(name).unwrap().build(None).unwrap()
+    a3_scenes::find(name).unwrap().build(None).unwrap()
 }
 
 /// That of a scene file's text.
 pub fn described(text: &str) -> Scene {
-    scenes::Description::parse(text)
+    a3_scenes::Description::parse(text)
         .and_then(|d| d.build(None, &mut |_| Err("no mesh".into())))
         .unwrap()
 }
 
 pub fn scene_with_grid(name: &str, rows: usize, cols: usize) -> Scene {
-    scenes::find(name)
+    a3_scenes::find(name)
         .unwrap()
         .build(Some(Grid::new(rows, cols).unwrap()))
         .unwrap()

@@ -78,11 +78,11 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use a3_core::{integrators, scenes};
+    use a3_core::integrators;
 
     #[test]
     fn twenty_seconds_are_remembered_ten_times_a_second() {
-        let scene = scenes::find("pendulum").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("pendulum").unwrap().build(None).unwrap();
         let mut run = Simulation::new(scene, integrators::find("r").unwrap(), 0.01).unwrap();
         let mut history = History::default();
         let mut computing = 0.0;

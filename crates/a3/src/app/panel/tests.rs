@@ -3,7 +3,6 @@ use egui::{Event, PointerButton, Pos2, RawInput, Shape};
 use super::super::hud;
 use super::super::session::tests::session;
 use super::*;
-use a3_core::scenes;
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
 
@@ -15,7 +14,7 @@ fn opened(words: &[&str]) -> Session {
 
 /// Every scene of the table, in a window with its panel.
 fn every_scene() -> impl Iterator<Item = Session> {
-    let names = scenes::SCENES.iter().map(|entry| entry.name);
+    let names = a3_scenes::SCENES.iter().map(|entry| entry.name);
     names.map(|name| opened(&["r", "0.005", "--scene", name]))
 }
 

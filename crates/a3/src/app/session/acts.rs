@@ -1,6 +1,6 @@
 //! What the keys do to a session.
 
-use a3_core::{Error, Method, Scene, Simulation, integrators, scenes};
+use a3_core::{Error, Method, Scene, Simulation, integrators};
 use a3_render::Style;
 
 use super::super::keys::Action;
@@ -146,10 +146,10 @@ impl Session {
     /// The next scene of the table, or that of the user.
     fn next_scene(&mut self) {
         let own = usize::from(self.asked.scene.path.is_some());
-        let next = (self.at + 1) % (scenes::SCENES.len() + own);
+        let next = (self.at + 1) % (a3_scenes::SCENES.len() + own);
         let name = match next.checked_sub(own) {
             None => &self.asked.scene.typed,
-            Some(k) => scenes::SCENES[k].name,
+            Some(k) => a3_scenes::SCENES[k].name,
         };
         let asked = name == self.asked.scene.typed;
         let grid = self.asked.grid.filter(|_| asked);
@@ -279,14 +279,14 @@ mod tests {
     fn scenes_come_round_and_the_solver_comes_back() {
         let mut session = session(&["v", "0.005"]);
         let mut seen = vec![];
-        for _ in 0..scenes::SCENES.len() {
+        for _ in 0..a3_scenes::SCENES.len() {
             seen.push((
                 session.panes[0].simulation.scene().name.clone(),
                 session.panes[0].simulation.method().name,
             ));
             assert!(session.act(Action::NextScene, 0));
         }
-        let expected: Vec<_> = scenes::SCENES.iter().map(|entry| entry.name).collect();
+        let expected: Vec<_> = a3_scenes::SCENES.iter().map(|entry| entry.name).collect();
         assert_eq!(
             seen.iter()
                 .map(|(scene, _)| scene.as_str())
@@ -311,7 +311,7 @@ mod tests {
     #[test]
     fn the_grid_asked_for_comes_back() {
         let mut session = session(&["t", "0.005", "--grid", "30x25"]);
-        for _ in 0..scenes::SCENES.len() {
+        for _ in 0..a3_scenes::SCENES.len() {
             session.act(Action::NextScene, 0);
         }
         assert_eq!(session.panes[0].simulation.particles(), 750);

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use a3_core::scenes::{Camera, Description, State};
+use a3_scenes::{Camera, Description, State};
 
 use super::Session;
 use crate::{Failure, output};
@@ -105,7 +105,7 @@ mod tests {
     use super::super::super::keys::Action;
     use super::super::tests::session;
     use super::*;
-    use a3_core::{Network, Simulation, Vector3, scenes};
+    use a3_core::{Network, Simulation, Vector3};
 
     use crate::scene_file::Source;
 
@@ -160,7 +160,7 @@ mod tests {
     fn every_scene_goes_on_where_it_was_written() {
         let folder = tempfile::tempdir().unwrap();
         let mut session = session(&["r", "0.005"]);
-        for entry in scenes::SCENES {
+        for entry in a3_scenes::SCENES {
             assert_eq!(session.first().scene().name, entry.name);
             session.tuning.stiffness = 1.5;
             session.tuning.gusts = 2.0;

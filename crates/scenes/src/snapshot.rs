@@ -1,10 +1,9 @@
 //! A description of a run as it is now, so that another goes on from there. Its clock begins at 0 again: what depends on
 //! time is shifted.
 
-use super::{BucklingSpec, Description, Pin, Shift, Sine, SpringSpec, State, Triple};
-use crate::network::Network;
-use crate::path::Path;
-use crate::scenes::Model;
+use a3_core::{Model, Network, Path};
+
+use crate::{BucklingSpec, Description, Pin, Shift, Sine, SpringSpec, State, Triple};
 
 impl Description {
     /// Makes the springs of every body so many times as stiff, and so many times as damped.

@@ -2,21 +2,17 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use a3_core::colliders::{Capsule, Cuboid, Floor, Sphere};
+use a3_core::elements::{Air, Buckling, Sheet, Wind};
+use a3_core::{
+    Constraint, Error, Grid, MAX_PARTICLES, Model, Network, Path, Scene, Spring, SpringKind,
+    SpringLaw, Surface, Swing, Vector3, View, integrators,
+};
 
-use super::bodies::{Body, Woven, in_body};
-use super::{ConstraintSpec, Description, Fault, Mesh, Pin, Shift, Sine, SpringSpec, Triple};
-use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
-use crate::constraints::Constraint;
-use crate::elements::Sheet;
-use crate::elements::{Air, Buckling, Wind};
-use crate::error::{at_least, positive};
-use crate::grid::{Grid, MAX_PARTICLES};
-use crate::integrators;
-use crate::network::Network;
-use crate::path::Path;
-use crate::scenes::{Circling, Model, Scene, Surface, Swing, View, bounds};
-use crate::spring::{Spring, SpringKind, SpringLaw};
+use crate::bodies::{Body, Woven, in_body};
+use crate::check::{at_least, positive};
+use crate::circle::Circling;
+use crate::{ConstraintSpec, Description, Fault, Mesh, Pin, Shift, Sine, SpringSpec, Triple};
 
 /// The most springs that are in no grid.
 const MAX_SPRINGS: usize = 1 << 23;
@@ -108,7 +104,7 @@ fn pins(
     body: &str,
     pins: &[Pin],
     positions: &[Vector3<f64>],
-    spot: impl Fn(super::Spot) -> Option<Vec<usize>>,
+    spot: impl Fn(crate::Spot) -> Option<Vec<usize>>,
 ) -> Result<Vec<(usize, Path)>, Fault> {
     let mut all = vec![];
     for (k, pin) in pins.iter().enumerate() {
@@ -271,8 +267,8 @@ impl Description {
         scene.step_scale = (spacing / own_spacing).min(1.0);
         // From as far away as it is larger.
         if let Ok(own) = self.assemble(mesh) {
-            let (was, small) = bounds(&own.state[..3 * own.model.particles()]);
-            let (is, large) = bounds(&scene.state[..3 * scene.model.particles()]);
+            let (was, small) = own.extent();
+            let (is, large) = scene.extent();
             let zoom = (large / small).max(1.0);
             for point in [&mut scene.view.eye, &mut scene.view.target] {
                 *point = is + (*point - was) * zoom;
@@ -427,7 +423,7 @@ impl Description {
             grid,
             ..
         } = assembly;
-        let whole = |e: crate::Error| Fault::new("", e);
+        let whole = |e: Error| Fault::new("", e);
         let mut network = Network::new(masses).map_err(whole)?;
         if let Some(sheet) = sheet {
             network.set_sheet(sheet).map_err(whole)?;
@@ -668,7 +664,7 @@ impl Place {
         })
     }
 
-    fn check<T>(&self, part: &str, result: Result<T, crate::Error>) -> Result<T, Fault> {
+    fn check<T>(&self, part: &str, result: Result<T, Error>) -> Result<T, Fault> {
         result.map_err(|e| Fault::new(format!("{}.{part}", self.0), e))
     }
 
@@ -701,7 +697,7 @@ fn mean(masses: &[f64]) -> f64 {
 }
 
 /// Sets a state to what is given of it: of a system of first order, positions only.
-fn write_state(given: &super::State, particles: usize, state: &mut [f64]) -> Result<(), Fault> {
+fn write_state(given: &crate::State, particles: usize, state: &mut [f64]) -> Result<(), Fault> {
     let parts = [
         ("state.positions", &given.positions),
         ("state.velocities", &given.velocities),

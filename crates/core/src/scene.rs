@@ -1,25 +1,15 @@
-//! Scenes. A scene is data: a model, the state it starts from, and what a hand or an eye needs. The built-in ones are
-//! files like those that users write, in one table.
-
-mod circle;
-mod description;
-mod surface;
+//! Scenes. A scene is data: a model, the state it starts from, and what a hand or an eye needs.
 
 use std::sync::Arc;
 
 use nalgebra::Vector3;
 
 use crate::elements::Wind;
-use crate::error::Error;
 use crate::grid::Grid;
 use crate::integrators::Method;
 use crate::network::Network;
+use crate::surface::Surface;
 use crate::system::ParticleSystem;
-
-use circle::Circling;
-
-pub use description::*;
-pub use surface::Surface;
 
 /// A first-order system that can be shared with its runs.
 pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
@@ -137,6 +127,13 @@ impl Scene {
         }
     }
 
+    /// The middle of the smallest upright box around the particles at t = 0 (m), and the distance of the farthest from it
+    /// (m), at least 1.
+    #[must_use]
+    pub fn extent(&self) -> (Vector3<f64>, f64) {
+        bounds(&self.state[..3 * self.model.particles()])
+    }
+
     /// The method's step (s) on this scene to two digits, as one would type it, or its tolerance: the scene's own, or the
     /// method's default.
     #[must_use]
@@ -156,62 +153,6 @@ impl Scene {
         }
         format!("{setting:.1e}").parse().unwrap_or(setting)
     }
-}
-
-/// A row of the table of scenes.
-#[derive(Debug)]
-pub struct SceneEntry {
-    /// As typed on the command line.
-    pub name: &'static str,
-    /// Its file.
-    pub text: &'static str,
-}
-
-impl SceneEntry {
-    /// What its file says.
-    ///
-    /// # Errors
-    /// None: that every file can be read is tested.
-    pub fn description(&self) -> Result<Description, Error> {
-        Ok(Description::parse(self.text)?)
-    }
-
-    /// Builds the scene with this grid, or with its own.
-    ///
-    /// # Errors
-    /// A grid is asked of a scene that has none.
-    pub fn build(&self, grid: Option<Grid>) -> Result<Scene, Error> {
-        let no_files = &mut |name: &str| Err(format!("{name}: built-in scenes have no files"));
-        Ok(self.description()?.build(grid, no_files)?)
-    }
-}
-
-macro_rules! entry {
-    ($name:literal) => {
-        SceneEntry {
-            name: $name,
-            text: include_str!(concat!("builtin/", $name, ".toml")),
-        }
-    };
-}
-
-/// Every scene, in the order in which key `t` shows them.
-pub static SCENES: &[SceneEntry] = &[
-    entry!("cloth"),
-    entry!("simple"),
-    entry!("pendulum"),
-    entry!("chain"),
-    entry!("mit"),
-    entry!("mit-sphere"),
-    entry!("double-pendulum"),
-    entry!("flag"),
-    entry!("jelly"),
-];
-
-/// The scene of this name.
-#[must_use]
-pub fn find(name: &str) -> Option<&'static SceneEntry> {
-    SCENES.iter().find(|scene| scene.name == name)
 }
 
 /// The middle of the smallest upright box around the particles, and the distance of the farthest from it, at least 1.

@@ -1,6 +1,6 @@
 //! A box of particles: structural springs along its axes, shear across its faces and its cells, bend to the next but one.
 
-use crate::spring::{Spring, SpringKind, SpringLaw};
+use a3_core::{Spring, SpringKind, SpringLaw};
 
 /// nx x ny x nz particles; x is counted fastest, then y, then z.
 #[derive(Clone, Copy)]

@@ -29,14 +29,14 @@ impl fmt::Display for Fault {
 
 impl std::error::Error for Fault {}
 
-impl From<Fault> for crate::Error {
+impl From<Fault> for a3_core::Error {
     fn from(fault: Fault) -> Self {
         Self::Invalid(fault.to_string())
     }
 }
 
 impl Fault {
-    pub(super) fn new(key: impl Into<String>, why: impl fmt::Display) -> Self {
+    pub(crate) fn new(key: impl Into<String>, why: impl fmt::Display) -> Self {
         Self {
             line: None,
             key: key.into(),
@@ -57,7 +57,7 @@ impl Fault {
         }
     }
 
-    pub(super) fn of_toml(text: &str, error: &toml::de::Error) -> Self {
+    pub(crate) fn of_toml(text: &str, error: &toml::de::Error) -> Self {
         let at = error.span().map(|span| span.start);
         let key = at.and_then(|at| {
             let table = DeTable::parse(text).ok()?;

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Vector3;
+use a3_core::{Error, Spring, SpringKind, SpringLaw, Vector3};
 
-use super::Triple;
-use crate::spring::{Spring, SpringKind, SpringLaw};
+use crate::Triple;
 
 /// Triangles over points.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,8 +54,8 @@ impl Mesh {
     /// makes one of what it is for and its length (m).
     pub(super) fn springs(
         &self,
-        law: impl Fn(SpringKind, f64) -> Result<SpringLaw, crate::Error>,
-    ) -> Result<Vec<Spring>, crate::Error> {
+        law: impl Fn(SpringKind, f64) -> Result<SpringLaw, Error>,
+    ) -> Result<Vec<Spring>, Error> {
         // The corners opposite to each edge.
         let mut edges: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
         for &[a, b, c] in &self.triangles {

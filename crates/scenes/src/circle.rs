@@ -1,6 +1,6 @@
 //! One particle whose velocity is its position turned by a right angle, f = (-y, x, 0): a circle for ever.
 
-use crate::system::ParticleSystem;
+use a3_core::ParticleSystem;
 
 pub(super) struct Circling;
 

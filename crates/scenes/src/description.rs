@@ -1,18 +1,10 @@
 //! Scenes as text: what a scene file may say, in TOML. `docs/scenes.md` shows it by example.
 
-mod bodies;
-mod build;
-mod fault;
-mod lattice;
-mod mesh;
-mod snapshot;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
-pub use fault::Fault;
-pub use mesh::Mesh;
+use crate::bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
+use crate::fault::Fault;
 
 /// Three numbers: x, y (up), z.
 pub type Triple = [f64; 3];
@@ -354,8 +346,8 @@ impl Description {
     ///
     /// # Errors
     /// None that is known of.
-    pub fn to_toml(&self) -> Result<String, crate::Error> {
-        toml::to_string(self).map_err(|e| crate::Error::Invalid(e.to_string()))
+    pub fn to_toml(&self) -> Result<String, a3_core::Error> {
+        toml::to_string(self).map_err(|e| a3_core::Error::Invalid(e.to_string()))
     }
 
     /// The JSON Schema of scene files, by which editors complete and check them.

@@ -1,18 +1,15 @@
 //! What bodies there are, and how each is put together.
 
-use nalgebra::{Rotation3, Vector3};
+use a3_core::elements::{Buckling, Sheet};
+use a3_core::{Constraint, Error, Grid, Spring, SpringKind, SpringLaw, Vector3};
+use nalgebra::Rotation3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::build::{Assembly, Sizes};
-use super::lattice::Lattice;
-use super::{BucklingSpec, Fault, Mesh, Pin, Spot, SpringSpec, Triple};
-use crate::constraints::Constraint;
-use crate::elements::Buckling;
-use crate::elements::Sheet;
-use crate::error::{Error, at_least, positive};
-use crate::grid::Grid;
-use crate::spring::{Spring, SpringKind, SpringLaw};
+use crate::build::{Assembly, Sizes};
+use crate::check::{at_least, positive};
+use crate::lattice::Lattice;
+use crate::{BucklingSpec, Fault, Mesh, Pin, Spot, SpringSpec, Triple};
 
 /// One particle of first order, whose velocity is its position turned by a right angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -224,7 +221,7 @@ fn damping_time(
 }
 
 fn finite(key: &'static str, triple: Option<Triple>) -> Result<Vector3<f64>, Wrong> {
-    super::build::finite(triple.unwrap_or_default()).map_err(|why| (key, why))
+    crate::build::finite(triple.unwrap_or_default()).map_err(|why| (key, why))
 }
 
 impl BucklingSpec {
@@ -728,7 +725,7 @@ impl Body for Particles {
         }
         let first = assembly.masses.len();
         assembly.masses.extend(masses);
-        let springs = super::build::springs(&self.springs, n).map_err(|why| ("springs", why))?;
+        let springs = crate::build::springs(&self.springs, n).map_err(|why| ("springs", why))?;
         assembly.add_springs(first, springs);
         Ok(())
     }
