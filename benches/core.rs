@@ -8,7 +8,9 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use a3_core::{Grid, Mechanics, Model, Network, Scene, Sheet, Simulation, Spring, integrators};
+use a3_core::{
+    Control, Grid, Mechanics, Model, Network, Scene, Sheet, Simulation, Spring, integrators,
+};
 use a3_scenes::Description;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 
@@ -162,7 +164,12 @@ fn rods(c: &mut Criterion) {
         let scene = Description::parse(&text)
             .and_then(|description| description.build(None, &mut |_| Err("no mesh".into())))
             .unwrap();
-        let mut run = Simulation::new(scene, integrators::find("rk4").unwrap(), 1e-3).unwrap();
+        let mut run = Simulation::new(
+            scene,
+            integrators::find("rk4").unwrap(),
+            Control::Step(1e-3),
+        )
+        .unwrap();
         run.advance_to(0.5).unwrap();
         let system = run.model().system();
         let mut dydt = vec![0.0; system.dim()];

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use a3_core::accuracy::{Candidate, Frames, Metric, Reference, choose, ladder, measure};
-use a3_core::{Method, Scene};
+use a3_core::{Control, Method, Scene};
 
 use crate::chart::measure::time;
 use crate::chart::{describe, look_ahead, methods};
@@ -70,7 +70,7 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
     output::say(&report(&options.what, &scene, until, &goal, &found))?;
     output::say(&format!(
         "run it:  {}\n",
-        command(&options.what, best.method, best.setting)
+        command(&options.what, best.method, best.control)
     ))
 }
 
@@ -80,14 +80,16 @@ fn milliseconds(
     candidate: &Candidate,
     reference: &Reference,
 ) -> Result<Option<f64>, Failure> {
-    let Candidate {
-        method, setting, ..
-    } = candidate;
-    let time = time(scene, method, *setting, &reference.frames)?;
+    let time = time(
+        scene,
+        candidate.method,
+        candidate.control,
+        &reference.frames,
+    )?;
     Ok(time.map(|time| 1e3 * time.as_secs_f64() * FRAME / reference.frames.until))
 }
 
-/// Each method at the finest setting whose frames take no longer than the budget (ms), the most accurate first.
+/// Each method at the finest step or tolerance whose frames take no longer than the budget (ms), the most accurate first.
 fn within(
     scene: &Scene,
     reference: &Reference,
@@ -99,15 +101,15 @@ fn within(
     for method in methods {
         bar.say(format!("{:<10} ", method.name));
         let mut best: Option<(Candidate, f64)> = None;
-        for setting in ladder(scene, method, &reference.frames, 1_000_000).map_err(Failure::run)? {
-            let outcome = measure(scene, method, setting, reference, &interrupt::go_on)
+        for control in ladder(scene, method, &reference.frames, 1_000_000).map_err(Failure::run)? {
+            let outcome = measure(scene, method, control, reference, &interrupt::go_on)
                 .map_err(Failure::run)?;
             let Some(outcome) = outcome else {
                 return Ok(None);
             };
             let candidate = Candidate {
                 method,
-                setting,
+                control,
                 outcome,
             };
             let Some(cost) = milliseconds(scene, &candidate, reference)? else {
@@ -163,10 +165,9 @@ fn report(
         rows.push(vec![
             ["best", "runner-up", "then"][k.min(2)].into(),
             c.method.title.into(),
-            if c.method.is_adaptive() {
-                format!("tolerance {}", typed(c.setting))
-            } else {
-                format!("step {} s", typed(c.setting))
+            match c.control {
+                Control::Step(step) => format!("step {} s", typed(step)),
+                Control::Tolerance(tolerance) => format!("tolerance {}", typed(tolerance)),
             },
             format!("{:.1e}", c.outcome.errors.position),
             format!("{:.0}", c.outcome.work.total() / until),
@@ -180,10 +181,10 @@ fn report(
     )
 }
 
-/// A setting as one would type it: four digits, rounded down, so that the run is no coarser.
-fn typed(setting: f64) -> String {
-    let power = 10f64.powi(3 - setting.log10().floor() as i32);
-    let rounded = (setting * power * (1.0 + 1e-12)).floor() / power;
+/// A step or a tolerance as one would type it: four digits, rounded down, so that the run is no coarser.
+fn typed(value: f64) -> String {
+    let power = 10f64.powi(3 - value.log10().floor() as i32);
+    let rounded = (value * power * (1.0 + 1e-12)).floor() / power;
     if rounded < 1e-3 {
         format!("{rounded:e}")
     } else {
@@ -191,8 +192,8 @@ fn typed(setting: f64) -> String {
     }
 }
 
-fn command(what: &What, method: &Method, setting: f64) -> String {
-    let mut words = format!("a3 {} {}", method.letter, typed(setting));
+fn command(what: &What, method: &Method, control: Control) -> String {
+    let mut words = format!("a3 {} {}", method.letter, typed(control.value()));
     if what.scene.typed != "cloth" {
         let _ = write!(words, " --scene {}", what.scene.typed);
     }
@@ -212,15 +213,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_are_typed_short_and_never_coarser() {
-        for (setting, expected) in [
+    fn values_are_typed_short_and_never_coarser() {
+        for (value, expected) in [
             (1.0 / 60.0, "0.01666"),
             (0.01, "0.01"),
             (1.0 / 120.0, "0.008333"),
             (1.7783e-5, "1.778e-5"),
             (0.5, "0.5"),
         ] {
-            assert_eq!(typed(setting), expected);
+            assert_eq!(typed(value), expected);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use a3_core::{Grid, Method, Scene, Simulation, integrators};
+use a3_core::{Control, Grid, Method, Scene, Simulation, integrators};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
@@ -353,8 +353,9 @@ impl What {
                 )));
             }
         }
-        let step = step.unwrap_or_else(|| scene.default_setting(solver));
-        check_setting(solver, step)?;
+        let own = || scene.default_control(solver);
+        let control = step.map_or_else(own, |value| solver.control(value));
+        check_control(solver, control)?;
         if let Err(e) = solver.check(scene.model.system()) {
             let serve = integrators::METHODS
                 .iter()
@@ -366,7 +367,7 @@ impl What {
                 scene.name
             )));
         }
-        let mut simulation = Simulation::new(scene, solver, step).map_err(Failure::usage)?;
+        let mut simulation = Simulation::new(scene, solver, control).map_err(Failure::usage)?;
         // Some scenes begin with wind.
         if self.wind {
             simulation.set_wind(true);
@@ -423,31 +424,29 @@ pub const SMALLEST_STEP: f64 = 1e-7;
 /// The tolerances of adaptive methods: larger ones promise nothing, smaller ones are lost in rounding.
 pub const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-13..=1.0;
 
-/// The settings that a method takes.
-pub fn settings(method: &Method) -> std::ops::RangeInclusive<f64> {
-    if method.is_adaptive() {
-        TOLERANCES
-    } else {
-        SMALLEST_STEP..=LARGEST_STEP
+/// The values that a control of this kind may have: steps (s) or tolerances.
+pub fn range(control: Control) -> std::ops::RangeInclusive<f64> {
+    match control {
+        Control::Step(_) => SMALLEST_STEP..=LARGEST_STEP,
+        Control::Tolerance(_) => TOLERANCES,
     }
 }
 
-/// `Ok` if the method takes that setting.
-fn check_setting(method: &Method, setting: f64) -> Result<(), Failure> {
-    let range = settings(method);
-    if range.contains(&setting) {
+/// `Ok` if the control's value is in its range.
+fn check_control(method: &Method, control: Control) -> Result<(), Failure> {
+    let range = range(control);
+    if range.contains(&control.value()) {
         return Ok(());
     }
     let (low, high) = (range.start(), range.end());
-    Err(Failure::usage(if method.is_adaptive() {
-        format!(
-            "{} takes a relative tolerance from {low:e} to {high}, such as 1e-4, and not {setting}",
+    Err(Failure::usage(match control {
+        Control::Step(step) => format!(
+            "a step is a number of seconds from {low} to {high}, such as 0.01, and not {step}"
+        ),
+        Control::Tolerance(tolerance) => format!(
+            "{} takes a relative tolerance from {low:e} to {high}, such as 1e-4, and not {tolerance}",
             method.name
-        )
-    } else {
-        format!(
-            "a step is a number of seconds from {low} to {high}, such as 0.01, and not {setting}"
-        )
+        ),
     }))
 }
 

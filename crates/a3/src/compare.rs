@@ -46,7 +46,7 @@ pub fn table(session: &Session) -> String {
 
 fn line(pane: &Pane) -> String {
     let run = &pane.simulation;
-    let start = format!("  {:<10}   {:>8}", run.method().name, run.setting());
+    let start = format!("  {:<10}   {:>8}", run.method().name, run.control().value());
     if let Some(lost) = run.blow_up() {
         return format!("{start}   {lost}\n");
     }

@@ -1,6 +1,6 @@
 //! `a3 scenes` and `a3 solvers`: what there is.
 
-use a3_core::integrators;
+use a3_core::{Control, integrators};
 use a3_scenes::Description;
 
 use crate::cli::Scenes;
@@ -101,10 +101,9 @@ pub fn solvers() -> Result<(), Failure> {
                     m.evaluations, m.damped_evaluations
                 )
             },
-            if m.is_adaptive() {
-                format!("tolerance {:.0e}", m.default_setting)
-            } else {
-                format!("{} s", m.default_setting)
+            match m.default_control {
+                Control::Step(step) => format!("{step} s"),
+                Control::Tolerance(tolerance) => format!("tolerance {tolerance:.0e}"),
             },
             if m.needs_mechanics {
                 "masses"

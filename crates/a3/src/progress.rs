@@ -40,12 +40,8 @@ pub fn march(
     until: f64,
     mut frame: impl FnMut(&Simulation) -> bool,
 ) -> Result<bool, Error> {
-    let adaptive = simulation.method().is_adaptive();
-    let step = if adaptive {
-        FRAME
-    } else {
-        simulation.setting()
-    };
+    let control = simulation.control();
+    let step = control.step().unwrap_or(FRAME);
     let stride = (FRAME / step).floor().max(1.0);
     loop {
         // Whole steps that end before the last one, which is whole too if only rounding says otherwise.
@@ -54,7 +50,7 @@ pub fn march(
         if whole < 1.0 {
             break;
         }
-        if adaptive {
+        if control.step().is_none() {
             simulation.advance_to(simulation.time() + FRAME)?;
         } else {
             simulation.take_steps(whole as u64)?;

@@ -10,7 +10,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use a3_core::{Simulation, integrators};
+use a3_core::{Control, Simulation, integrators};
 use common::{TEARING, a3, asked, command, complaint, is_missing, text};
 use serde_json::Value;
 
@@ -37,7 +37,7 @@ fn write(folder: &Path, scene: &str, output: &str, more: &[&str]) -> String {
 fn run(scene: &str, mut frame: impl FnMut(usize, &Simulation)) {
     let scene = a3_scenes::find(scene).unwrap().build(None).unwrap();
     let method = integrators::find("r").unwrap();
-    let mut simulation = Simulation::new(scene, method, 0.007).unwrap();
+    let mut simulation = Simulation::new(scene, method, Control::Step(0.007)).unwrap();
     for k in 0..COUNT {
         simulation.advance_to(k as f64 / RATE).unwrap();
         frame(k, &simulation);

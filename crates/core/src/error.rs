@@ -4,6 +4,8 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
+use crate::control::Control;
+
 /// Why something could not be built or stepped.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -43,8 +45,8 @@ pub enum Error {
 pub struct BlowUp {
     /// The method that lost it, in full.
     pub method: &'static str,
-    /// Its step (s), or the tolerance of an adaptive method.
-    pub setting: f64,
+    /// The step or the tolerance that it was run with.
+    pub control: Control,
     /// Steps taken, the bad one included.
     pub step: u64,
     /// Time at its end (s).

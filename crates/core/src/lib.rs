@@ -11,7 +11,7 @@
 //!
 //! ```
 //! use a3_core::accuracy::{Frames, Reference, measure};
-//! use a3_core::{Model, Network, Path, Scene, Spring, SpringKind, SpringLaw, Simulation, Vector3, integrators};
+//! use a3_core::{Control, Model, Network, Path, Scene, Spring, SpringKind, SpringLaw, Simulation, Vector3, integrators};
 //!
 //! // A particle on a spring below a pin.
 //! let mut network = Network::new(vec![1.0; 2])?;
@@ -24,7 +24,7 @@
 //! let scene = Scene::new("pendulum", Model::Network(Box::new(network)), state);
 //!
 //! let rk4 = integrators::find("rk4").unwrap();
-//! let mut run = Simulation::new(scene.clone(), rk4, 0.01)?;
+//! let mut run = Simulation::new(scene.clone(), rk4, Control::Step(0.01))?;
 //! run.advance_to(1.0)?;
 //! assert!(run.position(1).y < -0.9);
 //!
@@ -33,7 +33,7 @@
 //! let reference = Reference::new(&scene, Frames::new(1.0), &go_on)?.unwrap();
 //! let chart: Vec<_> = [0.02, 0.01, 0.005]
 //!     .iter()
-//!     .map(|step| measure(&scene, rk4, *step, &reference, &go_on))
+//!     .map(|step| measure(&scene, rk4, Control::Step(*step), &reference, &go_on))
 //!     .collect::<Result<Option<Vec<_>>, _>>()?
 //!     .unwrap();
 //! assert!(chart.windows(2).all(|w| w[1].errors.position < w[0].errors.position));
@@ -45,6 +45,7 @@
 pub mod accuracy;
 pub mod colliders;
 pub mod constraints;
+mod control;
 pub mod elements;
 mod error;
 mod grid;
@@ -65,6 +66,7 @@ mod testing;
 mod threads;
 
 pub use constraints::Constraint;
+pub use control::Control;
 pub use elements::Sheet;
 pub use error::{BlowUp, Cause, Error};
 pub use grid::{Grid, MAX_PARTICLES};

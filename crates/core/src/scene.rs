@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use crate::control::Control;
 use crate::elements::Wind;
 use crate::grid::Grid;
 use crate::integrators::Method;
@@ -93,8 +94,8 @@ pub struct Scene {
     pub step_scale: f64,
     /// The method to begin with, if the scene says one.
     pub solver: Option<&'static Method>,
-    /// Its step (s) or tolerance.
-    pub step: Option<f64>,
+    /// Its step or tolerance.
+    pub control: Option<Control>,
     /// How long it is run where no one says (s).
     pub duration: Option<f64>,
     /// A hand stretches the springs it holds to this many times their rest length, and then waits for the other end.
@@ -121,7 +122,7 @@ impl Scene {
             view: View { eye, target },
             step_scale: 1.0,
             solver: None,
-            step: None,
+            control: None,
             duration: None,
             reach: 10.0,
         }
@@ -134,24 +135,21 @@ impl Scene {
         bounds(&self.state[..3 * self.model.particles()])
     }
 
-    /// The method's step (s) on this scene to two digits, as one would type it, or its tolerance: the scene's own, or the
+    /// The method's step on this scene to two digits, as one would type it, or its tolerance: the scene's own, or the
     /// method's default.
     #[must_use]
-    pub fn default_setting(&self, method: &Method) -> f64 {
-        let scale = if method.is_adaptive() {
-            1.0
-        } else {
-            self.step_scale
-        };
-        let own = self.step.filter(|_| {
+    pub fn default_control(&self, method: &Method) -> Control {
+        let own = self.control.filter(|_| {
             self.solver
                 .is_some_and(|solver| std::ptr::eq(solver, method))
         });
-        let setting = own.unwrap_or(method.default_setting) * scale;
-        if scale == 1.0 {
-            return setting;
+        match own.unwrap_or(method.default_control) {
+            Control::Step(step) if self.step_scale != 1.0 => {
+                let step = step * self.step_scale;
+                Control::Step(format!("{step:.1e}").parse().unwrap_or(step))
+            }
+            control => control,
         }
-        format!("{setting:.1e}").parse().unwrap_or(setting)
     }
 }
 

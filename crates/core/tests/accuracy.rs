@@ -3,7 +3,7 @@
 mod common;
 
 use a3_core::accuracy::{Frames, Metric, Reference, choose, horizon, ladder, measure};
-use a3_core::{Scene, integrators};
+use a3_core::{Control, Scene, integrators};
 use common::{method, scene};
 
 const GO_ON: &dyn Fn() -> bool = &|| true;
@@ -19,26 +19,26 @@ fn on_the_circle_the_error_is_the_known_one() {
     let circle = scene("simple");
     let reference = reference(&circle, 10.0);
     assert!(reference.floor.position < 1e-11, "{:?}", reference.floor);
-    for (name, setting) in [
+    for (name, h) in [
         ("rk4", 0.1),
         ("euler", 1.0 / 120.0),
         ("trapezoid", 0.05),
         ("rk4", 0.5),
     ] {
-        let outcome = measure(&circle, method(name), setting, &reference, GO_ON)
+        let outcome = measure(&circle, method(name), Control::Step(h), &reference, GO_ON)
             .unwrap()
             .unwrap();
         // On its own, step by step, against sine and cosine.
         let mut y = circle.state.clone();
         let mut integrator = method(name).integrator(circle.model.system()).unwrap();
         let mut worst: f64 = 0.0;
-        let steps = (10.0 / setting).round() as u64;
+        let steps = (10.0 / h).round() as u64;
         for k in 0..steps {
-            let t = k as f64 * setting;
+            let t = k as f64 * h;
             integrator
-                .step(circle.model.system(), t, setting, &mut y)
+                .step(circle.model.system(), t, h, &mut y)
                 .unwrap();
-            let t = t + setting;
+            let t = t + h;
             worst = worst.max((y[0] - t.cos()).hypot(y[1] - t.sin()));
         }
         let found = outcome.errors.position;
@@ -94,7 +94,9 @@ fn errors_fall_with_the_step_as_the_order_says() {
     for m in integrators::METHODS.iter().filter(|m| !m.is_adaptive()) {
         let h = reference.frames.spacing() / 32.0;
         let error = |h: f64| {
-            let outcome = measure(&mit, m, h, &reference, GO_ON).unwrap().unwrap();
+            let outcome = measure(&mit, m, Control::Step(h), &reference, GO_ON)
+                .unwrap()
+                .unwrap();
             outcome.errors.position
         };
         let (coarse, fine) = (error(h), error(0.5 * h));
@@ -116,13 +118,13 @@ fn ladders_go_down_from_just_past_the_limit() {
         let rungs = ladder(&mit, m, &frames, 20_000).unwrap();
         assert!(rungs.len() > 5, "{}", m.name);
         assert!(
-            rungs.windows(2).all(|w| w[0] > w[1]),
+            rungs.windows(2).all(|w| w[0].value() > w[1].value()),
             "{}: {rungs:?}",
             m.name
         );
         if !m.is_adaptive() {
-            for h in &rungs {
-                let steps = 1.0 / h;
+            for rung in &rungs {
+                let steps = 1.0 / rung.value();
                 assert!((steps - steps.round()).abs() < 1e-6 && steps < 20_001.0);
             }
         }
@@ -142,7 +144,7 @@ fn a_run_can_be_stopped() {
     assert!(horizon(&mit, stop).unwrap().is_none());
     let reference = reference(&mit, 0.1);
     assert!(
-        measure(&mit, method("rk4"), 0.01, &reference, stop)
+        measure(&mit, method("rk4"), Control::Step(0.01), &reference, stop)
             .unwrap()
             .is_none()
     );
@@ -153,7 +155,7 @@ fn a_run_can_be_stopped() {
     );
 }
 
-/// The choice costs at most 1.3 times the best that a search of every method at many settings finds.
+/// The choice costs at most 1.3 times the best that a search of every method at many steps and tolerances finds.
 #[test]
 fn the_choice_is_the_best() {
     // A search of all methods on the jelly and in the air takes minutes.
@@ -167,8 +169,8 @@ fn the_choice_is_the_best() {
             let Ok(rungs) = ladder(&scene, m, &reference.frames, 4000) else {
                 continue;
             };
-            for setting in rungs {
-                let outcome = measure(&scene, m, setting, &reference, GO_ON)
+            for control in rungs {
+                let outcome = measure(&scene, m, control, &reference, GO_ON)
                     .unwrap()
                     .unwrap();
                 if outcome.lost.is_none() {
@@ -197,9 +199,9 @@ fn the_choice_is_the_best() {
                 "{:<11} {error:e}: {} {:.3e}, {:.0} (best {best:.0}), then {:?}",
                 entry.name,
                 pick.method.name,
-                pick.setting,
+                pick.control.value(),
                 pick.outcome.work.total(),
-                found.get(1).map(|c| (c.method.name, c.setting)),
+                found.get(1).map(|c| (c.method.name, c.control)),
             );
             assert!(pick.outcome.errors.position <= error);
             assert!(

@@ -5,7 +5,7 @@ mod common;
 use std::f64::consts::TAU;
 
 use a3_core::integrators::{Taken, Tolerance};
-use a3_core::{Cause, Error, ParticleSystem, Simulation, integrators};
+use a3_core::{Cause, Control, Error, ParticleSystem, Simulation, integrators};
 use common::{distance, integrate, method, scene, simulation, size};
 
 /// Ten times around the circle: the largest error at the ends of the steps, and the steps taken.
@@ -99,7 +99,10 @@ fn frames_cost_no_steps() {
 #[test]
 fn an_adaptive_run_takes_part_in_everything() {
     let mut run = simulation("cloth", "dopri5", 1e-4);
-    assert_eq!((run.setting(), run.step_size()), (1e-4, None));
+    assert_eq!(
+        (run.control(), run.step_size()),
+        (Control::Tolerance(1e-4), None)
+    );
     run.take_steps(5).unwrap();
     assert_eq!(run.steps(), 5);
     assert!(run.step_size().unwrap() > 1e-4 && run.time() > 0.0);
@@ -125,13 +128,51 @@ fn an_adaptive_run_takes_part_in_everything() {
     };
     run.advance_to(0.3).unwrap();
     assert_eq!(run.state(), fresh);
-    run.set_method(method("rk4"), 0.002).unwrap();
+    run.set_method(method("rk4"), Control::Step(0.002)).unwrap();
     run.take_steps(10).unwrap();
     assert!((run.time() - 0.32).abs() < 1e-12);
-    run.set_method(method("dop853"), 1e-7).unwrap();
+    run.set_method(method("dop853"), Control::Tolerance(1e-7))
+        .unwrap();
     run.advance_to(0.5).unwrap();
     assert_eq!(run.time(), 0.5);
-    assert!(run.set_setting(0.0).is_err());
+    assert!(run.set_control(Control::Tolerance(0.0)).is_err());
+}
+
+#[test]
+fn a_fixed_step_of_an_adaptive_method_stays_a_step() {
+    let mut run =
+        Simulation::new(common::scene("mit"), method("dopri5"), Control::Step(0.01)).unwrap();
+    run.take_steps(30).unwrap();
+    let state = run.state().to_vec();
+    assert_eq!((run.time(), run.step_size()), (0.3, Some(0.01)));
+    run.reset();
+    assert_eq!(run.control(), Control::Step(0.01));
+    run.take_steps(30).unwrap();
+    assert_eq!((run.state(), run.time()), (&state[..], 0.3));
+    run.set_control(Control::Step(0.005)).unwrap();
+    run.take_steps(20).unwrap();
+    assert_eq!((run.time(), run.steps()), (0.4, 50));
+    // From a step to a tolerance and back, if someone says so.
+    run.set_control(Control::Tolerance(1e-6)).unwrap();
+    run.advance_to(0.5).unwrap();
+    assert!(run.work().total() > 0.0 && run.step_size() != Some(0.005));
+    run.set_control(Control::Step(0.01)).unwrap();
+    run.take_steps(10).unwrap();
+    assert_eq!(run.time(), 0.6);
+}
+
+#[test]
+fn a_tolerance_is_for_methods_that_estimate_their_error() {
+    let start = |control| Simulation::new(common::scene("mit"), method("rk4"), control);
+    let error = start(Control::Tolerance(1e-3)).err().unwrap().to_string();
+    assert!(error.contains("estimates no error"), "{error}");
+    let mut run = start(Control::Step(0.01)).unwrap();
+    assert!(run.set_control(Control::Tolerance(1e-3)).is_err());
+    assert!(
+        run.set_method(method("rk4"), Control::Tolerance(1e-3))
+            .is_err()
+    );
+    assert_eq!(run.control(), Control::Step(0.01));
 }
 
 /// The tolerance is kept where the motion is stiff, and rejections are counted.
@@ -190,7 +231,7 @@ fn where_no_step_will_do_it_says_so() {
     let mut bare = scene("simple");
     bare.model = a3_core::Model::FirstOrder(std::sync::Arc::new(Pole));
     bare.state = vec![1.0, 0.5, 0.25];
-    let mut run = Simulation::new(bare, method("dopri5"), 1e-6).unwrap();
+    let mut run = Simulation::new(bare, method("dopri5"), Control::Tolerance(1e-6)).unwrap();
     let Err(Error::BlowUp(lost)) = run.advance_to(2.0) else {
         panic!("past a pole");
     };

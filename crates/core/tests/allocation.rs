@@ -44,7 +44,7 @@ fn no_step_allocates() {
     for entry in a3_scenes::SCENES {
         for method in integrators::METHODS {
             let Ok(mut run) =
-                Simulation::new(entry.build(None).unwrap(), method, method.default_setting)
+                Simulation::new(entry.build(None).unwrap(), method, method.default_control)
             else {
                 assert!(
                     method
@@ -72,7 +72,7 @@ fn no_step_in_the_air_allocates_but_the_first() {
         }
         let air = Air::new(1.2, 1.2, 0.5).unwrap();
         scene.wind = Some(Wind::on_triangles(1, Vector3::new(0.0, 0.0, 3.0), air));
-        let mut run = Simulation::new(scene, method, method.default_setting).unwrap();
+        let mut run = Simulation::new(scene, method, method.default_control).unwrap();
         run.set_wind(true);
         run.take_steps(1).unwrap();
         let count = allocations(|| run.take_steps(20).unwrap());
@@ -97,7 +97,7 @@ fn constraints_allocate_nothing() {
     for method in integrators::METHODS.iter().filter(|m| !m.implicit) {
         let model = Model::Network(Box::new(network.clone()));
         let scene = Scene::new("rods", model, state.clone());
-        let mut run = Simulation::new(scene, method, method.default_setting).unwrap();
+        let mut run = Simulation::new(scene, method, method.default_control).unwrap();
         let count = allocations(|| run.take_steps(20).unwrap());
         assert_eq!(count, 0, "{}", method.name);
     }
@@ -111,7 +111,7 @@ fn no_step_that_tears_nothing_allocates() {
             if let Model::Network(network) = &mut scene.model {
                 network.set_tear(Some(1e3)).unwrap();
             }
-            let mut run = Simulation::new(scene, method, method.default_setting).unwrap();
+            let mut run = Simulation::new(scene, method, method.default_control).unwrap();
             let count = allocations(|| run.take_steps(20).unwrap());
             assert_eq!(count, 0, "{} on {name}", method.name);
         }
@@ -127,7 +127,7 @@ fn no_step_after_an_adjustment_allocates() {
         if let Model::Network(network) = &mut scene.model {
             network.scale_springs(1.0, 0.0).unwrap();
         }
-        let mut run = Simulation::new(scene, method, method.default_setting).unwrap();
+        let mut run = Simulation::new(scene, method, method.default_control).unwrap();
         run.take_steps(1).unwrap();
         run.adjust(|network| network.copy_springs(&own).unwrap());
         let count = allocations(|| run.take_steps(20).unwrap());

@@ -4,7 +4,8 @@ mod common;
 
 use a3_core::elements::Buckling;
 use a3_core::{
-    Mechanics, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
+    Control, Mechanics, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
+    Vector3,
 };
 use approx::assert_relative_eq;
 use common::{distance, integrate, method, scene_with_grid, size};
@@ -246,7 +247,7 @@ fn a_compressed_strip_buckles_to_one_side_in_a_smooth_arch() {
         ("rk4", 0.0005),
         ("verlet", 0.0005),
     ] {
-        let mut run = Simulation::new(strip(), method(name), step).unwrap();
+        let mut run = Simulation::new(strip(), method(name), method(name).control(step)).unwrap();
         let mut roughest: f64 = 0.0;
         while run.time() < 8.0 {
             run.take_steps(1).unwrap();
@@ -285,7 +286,7 @@ fn a_compressed_strip_buckles_to_one_side_in_a_smooth_arch() {
 #[test]
 fn a_strip_runs_again_to_the_bit() {
     let run = || {
-        let mut run = Simulation::new(strip(), method("implicit"), 0.01).unwrap();
+        let mut run = Simulation::new(strip(), method("implicit"), Control::Step(0.01)).unwrap();
         run.advance_to(1.5).unwrap();
         run.state().to_vec()
     };

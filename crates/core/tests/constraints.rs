@@ -6,8 +6,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use a3_core::stability::{LargestMode, largest_step, rest, spectrum};
 use a3_core::{
-    Constraint, Grid, Mechanics, Model, Network, ParticleSystem, Path, Scene, Sheet, Simulation,
-    Spring, SpringKind, SpringLaw, Vector3, integrators,
+    Constraint, Control, Grid, Mechanics, Model, Network, ParticleSystem, Path, Scene, Sheet,
+    Simulation, Spring, SpringKind, SpringLaw, Vector3, integrators,
 };
 use common::{distance, integrate, method, size};
 
@@ -569,7 +569,7 @@ fn scene((network, state): (Network, Vec<f64>)) -> Scene {
 #[test]
 fn a_hand_gets_no_farther_than_rods_let_it() {
     for grabbed in [3, 10] {
-        let run = Simulation::new(scene(chain(10)), method("rk4"), 0.005);
+        let run = Simulation::new(scene(chain(10)), method("rk4"), Control::Step(0.005));
         let mut run = run.unwrap();
         run.grab(grabbed).unwrap();
         // Within the chain's reach it comes.
@@ -612,7 +612,7 @@ fn a_hand_keeps_the_length_of_a_rod() {
         (vector(2.0, 0.4, 0.0), vector(2.0, 0.4, 0.0)),
     ] {
         let scene = scene((network.clone(), y.clone()));
-        let mut run = Simulation::new(scene, method("rk4"), 0.01).unwrap();
+        let mut run = Simulation::new(scene, method("rk4"), Control::Step(0.01)).unwrap();
         run.grab(1).unwrap();
         run.pull(target);
         run.advance_to(3.0).unwrap();

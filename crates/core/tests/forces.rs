@@ -4,8 +4,8 @@ mod common;
 
 use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{
-    Grid, Mechanics, Model, Network, ParticleSystem, Sheet, Simulation, Spring, SpringKind,
-    SpringLaw, Vector3,
+    Control, Grid, Mechanics, Model, Network, ParticleSystem, Sheet, Simulation, Spring,
+    SpringKind, SpringLaw, Vector3,
 };
 use approx::assert_relative_eq;
 use common::{distance, integrate, method, scene, scene_with_grid, size};
@@ -284,7 +284,8 @@ fn energy_is_conserved() {
         ..scene
     };
     let drift = |name: &str, h: f64, until: f64| {
-        let mut run = Simulation::new(scene.clone(), method(name), h).unwrap();
+        let mut run =
+            Simulation::new(scene.clone(), method(name), method(name).control(h)).unwrap();
         let before = run.energy().unwrap().total();
         run.advance_to(until).unwrap();
         let after = run.energy().unwrap();
@@ -329,7 +330,7 @@ fn energy_by_kind() {
 #[test]
 fn the_wind_pushes() {
     let scene = scene("cloth");
-    let mut run = Simulation::new(scene, method("trapezoid"), 0.005).unwrap();
+    let mut run = Simulation::new(scene, method("trapezoid"), Control::Step(0.005)).unwrap();
     run.advance_to(40.0).unwrap();
     let calm = run.positions().column(2).mean();
     run.set_wind(true);

@@ -4,7 +4,7 @@ mod common;
 
 use std::time::Instant;
 
-use a3_core::{Grid, Mechanics, Network, Path, Sheet, Simulation, Vector3};
+use a3_core::{Control, Grid, Mechanics, Network, Path, Sheet, Simulation, Vector3};
 use a3_core::{Model, Scene};
 use approx::assert_relative_eq;
 use common::{integrate, method, oscillator, scene, simulation};
@@ -59,7 +59,7 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
         let scene = scene(name);
         let network = scene.model.network().unwrap();
         let n = network.particles();
-        let mut run = Simulation::new(scene.clone(), method("rk4"), 0.005).unwrap();
+        let mut run = Simulation::new(scene.clone(), method("rk4"), Control::Step(0.005)).unwrap();
         run.advance_to(0.3).unwrap();
         let x = &run.state()[..3 * n];
         let zero = vec![0.0; 3 * n];
@@ -120,7 +120,8 @@ fn energy_over_a_long_time() {
         network.set_drag(0.0).unwrap();
     }
     let drift = |name: &str, h: f64| {
-        let mut run = Simulation::new(pendulum.clone(), method(name), h).unwrap();
+        let mut run =
+            Simulation::new(pendulum.clone(), method(name), method(name).control(h)).unwrap();
         let start = run.energy().unwrap().total();
         let (mut early, mut late): (f64, f64) = (0.0, 0.0);
         for k in 1..=2000 {
@@ -186,7 +187,8 @@ fn falling(side: usize, omega: f64) -> Scene {
 fn stiff_cloth_falls_at_a_frame_a_step() {
     for name in ["implicit", "tr-bdf2"] {
         let begun = Instant::now();
-        let mut run = Simulation::new(falling(20, 1000.0), method(name), 1.0 / 60.0).unwrap();
+        let mut run =
+            Simulation::new(falling(20, 1000.0), method(name), Control::Step(1.0 / 60.0)).unwrap();
         run.advance_to(1.0).unwrap();
         println!(
             "{name}: stretch {:.3}, {:?}, {:.0?}",
@@ -197,7 +199,12 @@ fn stiff_cloth_falls_at_a_frame_a_step() {
         assert!(run.largest_stretch().unwrap() < 1.3, "{name}");
     }
     // No explicit method comes near.
-    let mut run = Simulation::new(falling(20, 1000.0), method("rk4"), 1.0 / 60.0).unwrap();
+    let mut run = Simulation::new(
+        falling(20, 1000.0),
+        method("rk4"),
+        Control::Step(1.0 / 60.0),
+    )
+    .unwrap();
     assert!(run.advance_to(1.0).is_err());
 }
 

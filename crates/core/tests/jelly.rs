@@ -4,7 +4,7 @@ mod common;
 
 use std::collections::BTreeMap;
 
-use a3_core::{Scene, Simulation, SpringKind, Vector3};
+use a3_core::{Control, Scene, Simulation, SpringKind, Vector3};
 use a3_scenes::Description;
 use common::{method, scene, simulation};
 
@@ -58,7 +58,7 @@ fn springs_are_counted_by_kind() {
 #[test]
 fn springs_are_at_rest_at_first() {
     let scene = lattice([3, 4, 5]);
-    let run = Simulation::new(scene, method("r"), 0.01).unwrap();
+    let run = Simulation::new(scene, method("r"), Control::Step(0.01)).unwrap();
     let mut seen = std::collections::BTreeSet::new();
     for s in run.model().network().unwrap().springs() {
         let length = (run.position(s.i) - run.position(s.j)).norm();
@@ -83,7 +83,7 @@ fn the_skin_is_closed_and_faces_outwards() {
             .iter()
             .all(|([a, b], n)| *n == 1 && edges.contains_key(&[*b, *a]))
     );
-    let run = Simulation::new(scene, method("r"), 0.01).unwrap();
+    let run = Simulation::new(scene, method("r"), Control::Step(0.01)).unwrap();
     assert!((volume(&run) - 6.0).abs() < 1e-12);
 }
 
@@ -100,7 +100,7 @@ fn it_wobbles_and_keeps_its_volume() {
     }
     assert!(least < 0.99 && least > 0.7, "{least}");
     // Quickly to rest.
-    run.set_method(method("i"), 0.02).unwrap();
+    run.set_method(method("i"), Control::Step(0.02)).unwrap();
     run.advance_to(20.0).unwrap();
     let rest = volume(&run);
     assert!(run.energy().unwrap().kinetic < 1e-6, "{:?}", run.energy());

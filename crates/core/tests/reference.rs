@@ -62,7 +62,7 @@ fn simulate(reference: &Reference, name: &str, h: f64) -> Simulation {
         Model::Network(Box::new(network)),
         column_major(&reference.positions, &reference.velocities),
     );
-    Simulation::new(scene, method(name), h).unwrap()
+    Simulation::new(scene, method(name), method(name).control(h)).unwrap()
 }
 
 /// The largest error over all states of the reference, velocities included.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use a3_core::{Grid, MAX_PARTICLES, Simulation, SpringKind, integrators};
+use a3_core::{Control, Grid, MAX_PARTICLES, Simulation, SpringKind, integrators};
 use common::{scene, scene_with_grid};
 
 #[test]
@@ -68,12 +68,12 @@ fn grids_that_make_no_sense_are_refused() {
 /// With its default step, each method holds on each scene that it serves, for ten seconds of wind and swing; where these take
 /// minutes, for two.
 #[test]
-fn default_settings_hold_everywhere() {
+fn default_controls_hold_everywhere() {
     for entry in a3_scenes::SCENES {
         for method in integrators::METHODS {
             let scene = entry.build(None).unwrap();
             let serves = method.check(scene.model.system()).is_ok();
-            let run = Simulation::new(scene, method, method.default_setting);
+            let run = Simulation::new(scene, method, method.default_control);
             assert_eq!(run.is_ok(), serves);
             let Ok(mut run) = run else { continue };
             run.set_wind(true);
@@ -94,12 +94,15 @@ fn default_settings_hold_everywhere() {
 
 /// A finer cloth has a faster fastest motion: its default steps are shortened, and hold.
 #[test]
-fn default_settings_hold_on_other_grids() {
+fn default_controls_hold_on_other_grids() {
     for (rows, cols) in [(8, 8), (40, 40), (60, 20), (20, 60)] {
         for method in integrators::METHODS {
             let scene = scene_with_grid("cloth", rows, cols);
-            let step = method.default_setting * scene.step_scale;
-            let mut run = Simulation::new(scene, method, step).unwrap();
+            let control = match method.default_control {
+                Control::Step(step) => Control::Step(step * scene.step_scale),
+                Control::Tolerance(_) => method.default_control,
+            };
+            let mut run = Simulation::new(scene, method, control).unwrap();
             run.advance_to(2.0)
                 .unwrap_or_else(|e| panic!("{} on {rows}x{cols}: {e}", method.name));
             assert!(

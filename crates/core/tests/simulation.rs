@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use a3_core::colliders::Sphere;
 use a3_core::{
-    Cause, Error, Model, Moment, Network, ParticleSystem, Path, Scene, Simulation, Vector3,
+    Cause, Control, Error, Model, Moment, Network, ParticleSystem, Path, Scene, Simulation, Vector3,
 };
 use approx::assert_relative_eq;
 use common::{method, scene, simulation};
@@ -150,17 +150,21 @@ fn there_is_nothing_to_grab_out_of_range_or_without_masses() {
 fn method_and_step_change_on_the_way() {
     let mut run = simulation("pendulum", "trapezoid", 0.01);
     run.take_steps(50).unwrap();
-    run.set_method(method("verlet"), 0.01).unwrap();
-    run.set_setting(0.001).unwrap();
+    run.set_method(method("verlet"), Control::Step(0.01))
+        .unwrap();
+    run.set_control(Control::Step(0.001)).unwrap();
     run.take_steps(500).unwrap();
     assert_relative_eq!(run.time(), 1.0, epsilon = 1e-12);
     let mut whole = simulation("pendulum", "rk4", 0.0005);
     whole.advance_to(1.0).unwrap();
     assert_relative_eq!(run.position(1), whole.position(1), epsilon = 1e-2);
-    assert!(run.set_setting(-1.0).is_err() && run.set_setting(f64::NAN).is_err());
+    assert!(
+        run.set_control(Control::Step(-1.0)).is_err()
+            && run.set_control(Control::Step(f64::NAN)).is_err()
+    );
     let mut circle = simulation("simple", "rk4", 0.01);
     assert_eq!(
-        circle.set_method(method("verlet"), 0.01),
+        circle.set_method(method("verlet"), Control::Step(0.01)),
         Err(Error::NeedsMechanics { method: "verlet" })
     );
     assert_eq!(circle.method().name, "rk4");
@@ -169,7 +173,7 @@ fn method_and_step_change_on_the_way() {
 
 #[test]
 fn a_lost_run_shows_its_last_good_state_until_it_is_reset() {
-    let mut run = Simulation::new(scene("mit"), method("rk4"), 0.05).unwrap();
+    let mut run = Simulation::new(scene("mit"), method("rk4"), Control::Step(0.05)).unwrap();
     let blow_up = loop {
         if let Err(Error::BlowUp(blow_up)) = run.take_steps(2) {
             break blow_up;
@@ -227,7 +231,7 @@ fn a_moving_sphere_pushes_without_friction() {
     let mut run = Simulation::new(
         bare(Model::Network(Box::new(network)), state),
         method("rk4"),
-        0.1,
+        Control::Step(0.1),
     )
     .unwrap();
     run.take_steps(1).unwrap();
@@ -249,7 +253,7 @@ fn a_moving_sphere_pushes_without_friction() {
     let mut run = Simulation::new(
         bare(Model::Network(Box::new(network)), state),
         method("rk4"),
-        0.01,
+        Control::Step(0.01),
     )
     .unwrap();
     run.take_steps(1).unwrap();
@@ -259,7 +263,7 @@ fn a_moving_sphere_pushes_without_friction() {
 #[test]
 fn a_sphere_goes_where_it_is_pulled_pushes_cloth_and_comes_back_with_a_reset() {
     for name in ["rk4", "dopri5"] {
-        let mut run = simulation("mit-sphere", name, method(name).default_setting);
+        let mut run = simulation("mit-sphere", name, method(name).default_control.value());
         let of = |run: &Simulation| {
             let sphere = run.model().network().unwrap().spheres()[0];
             (sphere.path.at(run.time()).position, sphere.radius)
@@ -334,7 +338,12 @@ fn what_is_not_finite_is_a_blow_up_that_names_its_particle() {
     ] {
         for entry in [0, 1, 4] {
             let model = Model::FirstOrder(Arc::new(Failing(value, entry)));
-            let mut run = Simulation::new(bare(model, vec![0.5; 6]), method("euler"), 0.1).unwrap();
+            let mut run = Simulation::new(
+                bare(model, vec![0.5; 6]),
+                method("euler"),
+                Control::Step(0.1),
+            )
+            .unwrap();
             let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else {
                 panic!("{} survived", value())
             };
@@ -342,7 +351,10 @@ fn what_is_not_finite_is_a_blow_up_that_names_its_particle() {
                 particle: entry % 2,
             };
             assert_eq!((lost.step, lost.cause), (5, cause), "{}", value());
-            assert_eq!((lost.setting, lost.method), (0.1, "explicit Euler"));
+            assert_eq!(
+                (lost.control, lost.method),
+                (Control::Step(0.1), "explicit Euler")
+            );
             assert!(run.state().iter().all(|y| y.is_finite()));
             assert_eq!((run.time(), run.steps()), (0.0, 0));
         }
@@ -355,7 +367,7 @@ fn the_state_goes_back_to_the_time_it_had_whatever_the_step_is_by_then() {
     while run.position(0).norm() < 4.0 {
         run.take_steps(1).unwrap();
     }
-    run.set_setting(0.7).unwrap();
+    run.set_control(Control::Step(0.7)).unwrap();
     while run.take_steps(1).is_ok() {}
     // The radius after n steps of 0.5 is 1.25^(n/2), so it tells the time.
     assert_relative_eq!(
@@ -375,7 +387,7 @@ fn scenes_that_do_not_fit_their_model_are_refused() {
             vec![0.0; length],
         )
     };
-    let refused = Simulation::new(scene(5), method("euler"), 0.1).err();
+    let refused = Simulation::new(scene(5), method("euler"), Control::Step(0.1)).err();
     assert_eq!(
         refused,
         Some(Error::Dimension {
@@ -383,7 +395,7 @@ fn scenes_that_do_not_fit_their_model_are_refused() {
             found: 5
         })
     );
-    let mut run = Simulation::new(scene(6), method("euler"), 0.1).unwrap();
+    let mut run = Simulation::new(scene(6), method("euler"), Control::Step(0.1)).unwrap();
     for end in [f64::NAN, f64::INFINITY] {
         assert!(run.advance_to(end).is_err());
     }
@@ -448,12 +460,12 @@ fn moment(run: &Simulation) -> Moment {
 #[test]
 fn a_rewound_run_repeats_itself() {
     for method in ["trapezoid", "verlet", "dop853"] {
-        let setting = if method == "dop853" {
+        let value = if method == "dop853" {
             1e-8
         } else {
             0.007_812_5
         };
-        let mut run = simulation("cloth", method, setting);
+        let mut run = simulation("cloth", method, value);
         run.set_swinging(true);
         run.advance_to(0.5).unwrap();
         let then = moment(&run);

@@ -4,8 +4,8 @@ mod common;
 
 use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{
-    Mechanics, Model, Moment, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
-    Vector3, integrators,
+    Control, Mechanics, Model, Moment, Network, Path, Scene, Simulation, Spring, SpringKind,
+    SpringLaw, Vector3, integrators,
 };
 use approx::assert_relative_eq;
 use common::{described, method, scene, scene_with_grid};
@@ -50,13 +50,18 @@ fn stretch(run: &Simulation) -> f64 {
 #[test]
 fn the_weak_link_breaks_as_it_passes_the_limit_and_the_rest_falls_freely() {
     let mut times = vec![];
-    for (name, setting) in [
+    for (name, value) in [
         ("rk4", 0.001),
         ("verlet", 0.001),
         ("implicit-midpoint", 0.001),
         ("dopri5", 1e-8),
     ] {
-        let mut run = Simulation::new(chain(Some(LIMIT)), method(name), setting).unwrap();
+        let mut run = Simulation::new(
+            chain(Some(LIMIT)),
+            method(name),
+            method(name).control(value),
+        )
+        .unwrap();
         let mut before = 1.0;
         let weak = |run: &Simulation| (run.position(1) - run.position(2)).norm() / 0.5;
         while run.tears() == 0 {
@@ -85,7 +90,7 @@ fn the_weak_link_breaks_as_it_passes_the_limit_and_the_rest_falls_freely() {
 #[test]
 fn nothing_tears_unless_it_is_asked_for_or_below_the_limit() {
     let end = |limit, name: &str| {
-        let mut run = Simulation::new(chain(limit), method(name), 0.001).unwrap();
+        let mut run = Simulation::new(chain(limit), method(name), Control::Step(0.001)).unwrap();
         run.advance_to(3.0).unwrap();
         assert!(stretch(&run) > LIMIT && run.tears() == 0);
         run.state().to_vec()
@@ -151,13 +156,14 @@ fn pull_about(run: &mut Simulation) {
 
 #[test]
 fn cloth_pulled_by_a_hand_tears_stays_finite_and_is_mended_by_a_reset() {
-    for (name, setting) in [
+    for (name, value) in [
         ("trapezoid", 0.005),
         ("verlet", 0.005),
         ("implicit", 0.01),
         ("dopri5", 1e-4),
     ] {
-        let mut run = Simulation::new(weak_cloth(), method(name), setting).unwrap();
+        let mut run =
+            Simulation::new(weak_cloth(), method(name), method(name).control(value)).unwrap();
         let all = network_of(&run).springs().count();
         run.set_wind(true);
         pull_about(&mut run);
@@ -328,8 +334,8 @@ fn no_wind_blows_on_a_hole() {
 #[test]
 fn every_method_tears_alike() {
     for m in integrators::METHODS {
-        let setting = if m.is_adaptive() { 1e-6 } else { 0.0005 };
-        let mut run = Simulation::new(chain(Some(LIMIT)), m, setting).unwrap();
+        let control = m.control(if m.is_adaptive() { 1e-6 } else { 0.0005 });
+        let mut run = Simulation::new(chain(Some(LIMIT)), m, control).unwrap();
         while run.tears() == 0 && run.time() < 2.0 {
             run.advance_to(run.time() + 0.0005).unwrap();
         }
@@ -362,7 +368,7 @@ fn what_tore_after_a_moment_is_mended_there() {
         damping_ratio = 0.1
         pin = [{ at = ['left'] }, { at = ['right'], shift = { by = [0.9, 0, 0], start = 0.1, end = 0.7 } }]",
     );
-    let mut run = Simulation::new(scene, method("rk4"), 1.0 / 512.0).unwrap();
+    let mut run = Simulation::new(scene, method("rk4"), Control::Step(1.0 / 512.0)).unwrap();
     let mut moments = vec![];
     for k in 0..=20 {
         run.advance_to(f64::from(k) / 16.0).unwrap();

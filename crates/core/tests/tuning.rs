@@ -7,7 +7,8 @@ use a3_scenes::Description;
 use common::scene;
 
 fn start(scene: Scene, method: &str, step: f64) -> Simulation {
-    Simulation::new(scene, integrators::find(method).unwrap(), step).unwrap()
+    let method = integrators::find(method).unwrap();
+    Simulation::new(scene, method, method.control(step)).unwrap()
 }
 
 fn network(run: &Simulation) -> &Network {

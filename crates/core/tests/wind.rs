@@ -4,7 +4,7 @@ mod common;
 
 use a3_core::elements::{Air, Wind};
 use a3_core::{
-    Mechanics, Model, Network, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
+    Control, Mechanics, Model, Network, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
     integrators,
 };
 use approx::assert_relative_eq;
@@ -177,7 +177,7 @@ fn still_air_slows_what_moves_and_never_drives_it() {
     for (k, v) in scene.state[3 * n..].iter_mut().enumerate() {
         *v = 3.0 * (1.7 * k as f64).sin() + f64::from(u8::from(k < n));
     }
-    let mut run = Simulation::new(scene, method("rk4"), 0.0005).unwrap();
+    let mut run = Simulation::new(scene, method("rk4"), Control::Step(0.0005)).unwrap();
     let mut energies = vec![];
     for windy in [true, false] {
         run.reset();
@@ -199,13 +199,13 @@ fn every_method_flies_in_gusts_alike_and_again_to_the_bit() {
     let air = Air::new(DENSITY, DRAG, LIFT).unwrap();
     let scene = flying(&Wind::on_triangles(2, Vector3::new(1.0, 0.0, 6.0), air));
     let fly = |name: &str| {
-        let mut run = Simulation::new(scene.clone(), method(name), 0.001).unwrap();
+        let mut run = Simulation::new(scene.clone(), method(name), Control::Step(0.001)).unwrap();
         run.set_wind(true);
         run.advance_to(1.0).unwrap();
         run
     };
     let exact = fly("rk4");
-    let mut calm = Simulation::new(scene.clone(), method("rk4"), 0.001).unwrap();
+    let mut calm = Simulation::new(scene.clone(), method("rk4"), Control::Step(0.001)).unwrap();
     calm.advance_to(1.0).unwrap();
     let apart = |a: &Simulation| (a.positions() - exact.positions()).abs().max();
     assert!(apart(&calm) > 0.3, "{}", apart(&calm));
@@ -265,7 +265,7 @@ fn wind_that_comes_and_goes_leaves_nothing_behind() {
     let air = Air::new(DENSITY, DRAG, LIFT).unwrap();
     let scene = flying(&Wind::on_triangles(2, Vector3::new(1.0, 0.0, 6.0), air));
     for m in ["rk4", "verlet", "symplectic"] {
-        let mut run = Simulation::new(scene.clone(), method(m), 0.005).unwrap();
+        let mut run = Simulation::new(scene.clone(), method(m), Control::Step(0.005)).unwrap();
         run.take_steps(20).unwrap();
         let calm = run.state().to_vec();
         run.set_wind(true);

@@ -365,7 +365,9 @@ impl Description {
         if self.step.is_some() && self.solver.is_none() {
             return Err(Fault::new("step", "a step needs the key `solver` too"));
         }
-        (scene.step, scene.duration) = (self.step, self.duration);
+        let own = scene.solver.zip(self.step);
+        scene.control = own.map(|(solver, step)| solver.control(step));
+        scene.duration = self.duration;
         Ok(())
     }
 

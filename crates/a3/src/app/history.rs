@@ -121,13 +121,13 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use a3_core::integrators;
+    use a3_core::{Control, integrators};
 
     fn run(rows: usize) -> Simulation {
         let entry = a3_scenes::find("cloth").unwrap();
         let grid = a3_core::Grid::new(rows, rows).unwrap();
         let scene = entry.build(Some(grid)).unwrap();
-        Simulation::new(scene, integrators::find("t").unwrap(), 0.01).unwrap()
+        Simulation::new(scene, integrators::find("t").unwrap(), Control::Step(0.01)).unwrap()
     }
 
     #[test]
@@ -162,7 +162,8 @@ mod tests {
     #[test]
     fn what_is_lost_has_no_moment() {
         let scene = a3_scenes::find("mit").unwrap().build(None).unwrap();
-        let mut run = Simulation::new(scene, integrators::find("e").unwrap(), 0.05).unwrap();
+        let mut run =
+            Simulation::new(scene, integrators::find("e").unwrap(), Control::Step(0.05)).unwrap();
         let mut history = History::default();
         history.keep(0.0, false, [&run].into_iter());
         while run.take_steps(1).is_ok() {}

@@ -5,7 +5,7 @@ mod timeline;
 
 pub use panes::digits;
 
-use a3_core::{BlowUp, Cause, Simulation, integrators};
+use a3_core::{BlowUp, Cause, Control, Simulation, integrators};
 use egui::{Align2, Area, Color32, Context, Frame, Id, Margin, RichText, Ui};
 
 use super::history::Place;
@@ -209,16 +209,7 @@ fn scene(simulation: &Simulation) -> String {
 }
 
 fn method(simulation: &Simulation) -> String {
-    format!("{},  {}", simulation.method().title, setting(simulation))
-}
-
-/// The step, or the tolerance.
-fn setting(simulation: &Simulation) -> String {
-    if simulation.method().is_adaptive() {
-        format!("tolerance {:e}", simulation.setting())
-    } else {
-        format!("step {} s", simulation.setting())
-    }
+    format!("{},  {}", simulation.method().title, simulation.control())
 }
 
 /// What an adaptive method does with its tolerance.
@@ -226,9 +217,9 @@ fn steps(simulation: &Simulation) -> Option<String> {
     let step = simulation.step_size()?;
     let rejections = simulation.work().rejections;
     simulation
-        .method()
-        .is_adaptive()
-        .then(|| format!("{} ms, {rejections} rejected", panes::digits(1e3 * step)))
+        .control()
+        .tolerance()
+        .map(|_| format!("{} ms, {rejections} rejected", panes::digits(1e3 * step)))
 }
 
 /// The step as a share of the largest stable one: green while there is room, amber near it, red past it.
@@ -252,11 +243,7 @@ fn limit(pane: &Pane) -> Option<(String, Color32)> {
 
 /// With as many digits as tell one step from the next.
 fn time(simulation: &Simulation) -> String {
-    let step = if simulation.method().is_adaptive() {
-        1e-3
-    } else {
-        simulation.setting()
-    };
+    let step = simulation.control().step().unwrap_or(1e-3);
     let digits = (-step.log10()).ceil().clamp(2.0, 7.0) as usize;
     format!("{:.digits$} s", simulation.time())
 }
@@ -328,23 +315,26 @@ fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
             .size(14.5)
             .strong(),
     );
-    let (setting, method) = (lost.setting, lost.method);
-    let adaptive = matches!(lost.cause, Cause::StepTooSmall { .. });
+    let method = lost.method;
     let same = method == pane.simulation.method().title;
     let limit = pane.watch.limit().map(|limit| limit.step);
-    ui.label(text(match limit.zip(pane.watch.would_hold()) {
-        _ if adaptive => {
-            format!("{method} found no step to a tolerance of {setting:e}: a larger one may do.")
+    let hold = limit.zip(pane.watch.would_hold());
+    ui.label(text(match (lost.control, hold) {
+        (Control::Tolerance(tolerance), _) if matches!(lost.cause, Cause::StepTooSmall { .. }) => {
+            format!("{method} found no step to a tolerance of {tolerance:e}: a larger one may do.")
         }
-        Some((limit, would_hold)) if same => {
-            let past = if setting > limit {
+        (Control::Tolerance(tolerance), _) => {
+            format!("A tolerance of {tolerance:e} was too large for {method}.")
+        }
+        (Control::Step(step), Some((limit, would_hold))) if same => {
+            let past = if step > limit {
                 format!(": past its limit here of {} ms", panes::digits(1e3 * limit))
             } else {
                 String::new()
             };
-            format!("A step of {setting} s was too long for {method}{past}. {would_hold} s would have held.")
+            format!("A step of {step} s was too long for {method}{past}. {would_hold} s would have held.")
         }
-        _ => format!("A step of {setting} s was too long for {method}."),
+        (Control::Step(step), _) => format!("A step of {step} s was too long for {method}."),
     }));
 }
 
@@ -456,7 +446,7 @@ pub mod tests {
     pub fn pane(scene: &str, method: &str, step: f64) -> Pane {
         let scene = a3_scenes::find(scene).unwrap().build(None).unwrap();
         let method = integrators::find(method).unwrap();
-        let simulation = Simulation::new(scene, method, step).unwrap();
+        let simulation = Simulation::new(scene, method, method.control(step)).unwrap();
         Pane::new(simulation, Show::new(false, None))
     }
 
@@ -584,8 +574,8 @@ pub mod tests {
 
     #[test]
     fn the_limit_is_said_in_its_colour() {
-        let said = |scene: &str, method: &str, setting: f64| {
-            let mut pane = pane(scene, method, setting);
+        let said = |scene: &str, method: &str, value: f64| {
+            let mut pane = pane(scene, method, value);
             pane.simulation.take_steps(1).unwrap();
             pane.read_state();
             let colour = limit(&pane).unwrap().1;
@@ -632,7 +622,7 @@ pub mod tests {
         let mut pane = pane("mit", "e", 0.05);
         let run = &mut pane.simulation;
         while run.take_steps(1).is_ok() {}
-        run.set_method(integrators::find("r").unwrap(), 0.01)
+        run.set_method(integrators::find("r").unwrap(), Control::Step(0.01))
             .unwrap();
         let panes = [pane];
         let readings = Readings {

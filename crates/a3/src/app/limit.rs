@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use a3_core::stability::{LargestMode, Limit, Mode, largest_step, spectrum};
-use a3_core::{Method, Simulation};
+use a3_core::{Control, Method, Simulation};
 
 /// No look sooner than this after the last one ...
 const INTERVAL: Duration = Duration::from_millis(250);
@@ -62,8 +62,8 @@ impl LimitWatch {
             None => spectrum(system, run.time(), y).first().copied(),
         };
         self.ask(run.method());
-        if let (true, Some(limit)) = (lost, self.limit) {
-            self.would_hold = Some(would_hold(run, limit.step.min(run.setting())));
+        if let (true, Some(limit), Control::Step(step)) = (lost, self.limit, run.control()) {
+            self.would_hold = Some(would_hold(run, limit.step.min(step)));
         }
         let after = Instant::now();
         self.next = Some(after + INTERVAL.max(IDLE * after.duration_since(begun)));
@@ -95,7 +95,7 @@ fn would_hold(run: &Simulation, limit: f64) -> f64 {
 
 /// Whether the run from its start is not lost with steps of h (s).
 fn holds(run: &Simulation, h: f64, deadline: Instant) -> bool {
-    let Ok(mut again) = Simulation::with_fixed_steps(run.scene().clone(), run.method(), h) else {
+    let Ok(mut again) = Simulation::new(run.scene().clone(), run.method(), Control::Step(h)) else {
         return true;
     };
     while again.time() < HOLDING && Instant::now() < deadline {
@@ -132,13 +132,13 @@ mod tests {
         // Euler's method is limited by slow motion without damping, of which the fastest motion knows nothing.
         let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
         let euler = integrators::find("euler").unwrap();
-        let mut run = Simulation::new(scene.clone(), euler, 0.02).unwrap();
+        let mut run = Simulation::new(scene.clone(), euler, Control::Step(0.02)).unwrap();
         assert!(run.advance_to(10.0).is_err());
         let mut watch = LimitWatch::default();
         watch.look(&run);
         let step = watch.would_hold().unwrap();
         assert!(step > 0.001 && step < watch.limit().unwrap().step, "{step}");
-        let mut run = Simulation::new(scene, euler, step).unwrap();
+        let mut run = Simulation::new(scene, euler, Control::Step(step)).unwrap();
         run.advance_to(10.0).unwrap();
     }
 
@@ -146,7 +146,7 @@ mod tests {
     fn the_limit_follows_the_method_and_the_cloth() {
         let scene = a3_scenes::find("mit").unwrap().build(None).unwrap();
         let method = |name| integrators::find(name).unwrap();
-        let mut run = Simulation::new(scene, method("rk4"), 0.01).unwrap();
+        let mut run = Simulation::new(scene, method("rk4"), Control::Step(0.01)).unwrap();
         let mut watch = LimitWatch::default();
         assert_eq!(watch.limit(), None);
         watch.look(&run);

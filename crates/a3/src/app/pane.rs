@@ -70,7 +70,7 @@ impl Pane {
     /// Takes the steps that end by `time` (s). A blow-up is on the screen from then on.
     pub fn take_due_steps(&mut self, time: f64) {
         let begun = Instant::now();
-        let adaptive = self.simulation.method().is_adaptive();
+        let adaptive = self.simulation.control().step().is_none();
         let step = self.pace();
         let due = ((time - self.simulation.time()) / step + 1e-9).floor() as u64;
         if !self.alive() {
@@ -83,13 +83,9 @@ impl Pane {
         self.computing += begun.elapsed();
     }
 
-    /// Its step (s); an adaptive method, which can be read off anywhere, is asked for no more at once than this.
+    /// The step (s); a run to a tolerance, which can be read off anywhere, is asked for no more at once than this.
     pub fn pace(&self) -> f64 {
-        if self.simulation.method().is_adaptive() {
-            PORTION
-        } else {
-            self.simulation.setting()
-        }
+        self.simulation.control().step().unwrap_or(PORTION)
     }
 
     /// Goes on to `time` (s) exactly, however long that takes. A blow-up is on the picture from then on.

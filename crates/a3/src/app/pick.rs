@@ -134,11 +134,11 @@ fn weights(p: [f32; 2], a: [f32; 2], b: [f32; 2], c: [f32; 2]) -> Option<[f32; 3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use a3_core::{Model, integrators};
+    use a3_core::{Control, Model, integrators};
 
     fn cloth() -> Simulation {
         let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
-        Simulation::new(scene, integrators::find("t").unwrap(), 0.01).unwrap()
+        Simulation::new(scene, integrators::find("t").unwrap(), Control::Step(0.01)).unwrap()
     }
 
     #[test]
@@ -189,7 +189,8 @@ mod tests {
     #[test]
     fn a_sphere_is_picked_unless_cloth_is_in_front() {
         let scene = a3_scenes::find("mit-sphere").unwrap().build(None).unwrap();
-        let run = Simulation::new(scene, integrators::find("t").unwrap(), 0.001).unwrap();
+        let run =
+            Simulation::new(scene, integrators::find("t").unwrap(), Control::Step(0.001)).unwrap();
         let hit = |eye: [f32; 3]| {
             let camera = Camera::look_at(eye, [1.0, -4.0, 0.0]);
             pick(&run, &camera, [0.5, 0.5], 1.6, 0.03)
@@ -224,7 +225,7 @@ mod tests {
             let wide: Vec<_> = scene.state[..1200].iter().map(|x| 10.0 * x).collect();
             assert!(network.tear(&wide) > 0);
         }
-        let torn = Simulation::new(scene, run.method(), 0.01).unwrap();
+        let torn = Simulation::new(scene, run.method(), Control::Step(0.01)).unwrap();
         assert!(!hit(&torn));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use a3_core::{Method, Simulation, integrators};
+use a3_core::{Control, Method, Simulation, integrators};
 
 use super::pane::{PORTION, Pane};
 use crate::{Failure, progress};
@@ -20,14 +20,13 @@ pub struct Reference {
 }
 
 /// The reference's method and its tolerance: tight, and tighter still beside adaptive panes.
-fn choose(panes: &[Pane]) -> (&'static Method, f64) {
+fn choose(panes: &[Pane]) -> (&'static Method, Control) {
     let method = integrators::find("dop853").unwrap_or(&integrators::METHODS[0]);
-    let adaptive = panes
+    let tolerances = panes
         .iter()
-        .map(|pane| &pane.simulation)
-        .filter(|run| run.method().is_adaptive());
-    let tightest = adaptive.map(Simulation::setting).fold(1e-6, f64::min);
-    (method, (1e-4 * tightest).max(1e-13))
+        .filter_map(|pane| pane.simulation.control().tolerance());
+    let tightest = tolerances.fold(1e-6, f64::min);
+    (method, Control::Tolerance((1e-4 * tightest).max(1e-13)))
 }
 
 impl Reference {
@@ -36,10 +35,10 @@ impl Reference {
         let [first, _, ..] = panes else {
             return Ok(None);
         };
-        let (method, tolerance) = choose(panes);
+        let (method, control) = choose(panes);
         let run = &first.simulation;
         let mut simulation =
-            Simulation::new(run.scene().clone(), method, tolerance).map_err(Failure::run)?;
+            Simulation::new(run.scene().clone(), method, control).map_err(Failure::run)?;
         simulation.set_wind(run.windy());
         simulation.set_swinging(run.swinging());
         Ok(Some(Self {
@@ -51,10 +50,10 @@ impl Reference {
 
     /// The panes have other methods or steps.
     pub fn adapt(&mut self, panes: &[Pane]) {
-        let (method, tolerance) = choose(panes);
+        let (method, control) = choose(panes);
         // It serves every scene, so it is not refused.
-        if self.simulation.setting() != tolerance {
-            let _ = self.simulation.set_method(method, tolerance);
+        if self.simulation.control() != control {
+            let _ = self.simulation.set_method(method, control);
         }
     }
 
@@ -161,7 +160,7 @@ mod tests {
         let scene = a3_scenes::find("chain").unwrap().build(None).unwrap();
         let pane = |method: &str| {
             let method = integrators::find(method).unwrap();
-            let simulation = Simulation::new(scene.clone(), method, 0.01).unwrap();
+            let simulation = Simulation::new(scene.clone(), method, Control::Step(0.01)).unwrap();
             Pane::new(simulation, Show::new(false, None))
         };
         assert!(Reference::new(&[pane("t")]).ok().unwrap().is_none());

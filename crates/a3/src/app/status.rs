@@ -45,7 +45,7 @@ impl Status {
              slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
-            run.setting(),
+            run.control().value(),
             panes[0].show.style,
             run.windy(),
             run.swinging(),
@@ -88,7 +88,7 @@ impl Status {
             panes.len(),
             hands.join(";"),
             each(&|pane| pane.simulation.method().name.into()),
-            each(&|pane| pane.simulation.setting().to_string()),
+            each(&|pane| pane.simulation.control().value().to_string()),
             each(&|pane| format!("{:.4}", pane.simulation.time())),
             each(&|pane| (!pane.alive()).to_string()),
             each(&|pane| pane

@@ -1,9 +1,9 @@
-//! Runs of every method at every setting that says something, timed alone.
+//! Runs of every method at every step or tolerance that says something, timed alone.
 
 use std::time::{Duration, Instant};
 
 use a3_core::accuracy::{self, Frames, Metric, Outcome, Reference, ladder};
-use a3_core::{Method, Model, Scene, Simulation};
+use a3_core::{Control, Method, Model, Scene, Simulation};
 
 use super::data::{Data, Record, VERSION};
 use crate::progress::Bar;
@@ -89,8 +89,8 @@ impl<'a> Study<'a> {
         data.records.iter().filter(|r| r.same_scene(&self.blank))
     }
 
-    /// The settings of a method.
-    fn rungs(&self, method: &'static Method) -> Result<Vec<f64>, Failure> {
+    /// The steps or tolerances at which a method is run.
+    fn rungs(&self, method: &'static Method) -> Result<Vec<Control>, Failure> {
         let most = MOST_EVALUATIONS as f64 / each(method);
         ladder(&self.scene, method, &self.frames, most as u64).map_err(Failure::run)
     }
@@ -102,18 +102,19 @@ impl<'a> Study<'a> {
             sum += self
                 .rungs(method)?
                 .iter()
-                .map(|setting| self.expected_of(method, *setting))
+                .map(|control| self.expected_of(method, *control))
                 .sum::<f64>();
         }
         Ok(sum)
     }
 
-    fn expected_of(&self, method: &Method, setting: f64) -> f64 {
-        let steps = if method.is_adaptive() {
+    fn expected_of(&self, method: &Method, control: Control) -> f64 {
+        let steps = match control {
+            Control::Step(step) => self.frames.until / step,
             // As on most scenes, within a factor of three.
-            20.0 * self.frames.until * setting.powf(-0.9 / f64::from(method.order))
-        } else {
-            self.frames.until / setting
+            Control::Tolerance(tolerance) => {
+                20.0 * self.frames.until * tolerance.powf(-0.9 / f64::from(method.order))
+            }
         };
         steps * each(method) + 100.0
     }
@@ -122,10 +123,10 @@ impl<'a> Study<'a> {
     pub fn run(&mut self, data: &mut Data, bar: &Bar) -> Result<bool, Failure> {
         for &method in self.methods {
             let rungs = self.rungs(method)?;
-            for (i, &setting) in rungs.iter().enumerate() {
+            for (i, &control) in rungs.iter().enumerate() {
                 let like = Record {
                     solver: method.name.into(),
-                    setting,
+                    setting: control.value(),
                     ..self.blank.clone()
                 };
                 bar.say(format!("{:<10} ", method.name));
@@ -139,11 +140,13 @@ impl<'a> Study<'a> {
                         None => return Ok(false),
                     },
                 };
-                bar.advance(self.expected_of(method, setting));
+                bar.advance(self.expected_of(method, control));
                 // Below what the reference knows there is nothing to see. Linear algebra is known only afterwards.
                 let enough = 10.0 * record.floor(self.metric).max(1e-13);
-                let next = rungs.get(i + 1).map_or(1.0, |next| setting / next);
-                let dear = !method.is_adaptive() && record.work * next > MOST_EVALUATIONS as f64;
+                let next = rungs
+                    .get(i + 1)
+                    .map_or(1.0, |next| control.value() / next.value());
+                let dear = control.step().is_some() && record.work * next > MOST_EVALUATIONS as f64;
                 if record.lost_at.is_none() && (record.error(self.metric) < enough || dear) {
                     let rest = rungs[i + 1..].iter();
                     bar.advance(rest.map(|s| self.expected_of(method, *s)).sum());
@@ -172,19 +175,14 @@ impl<'a> Study<'a> {
         let Some(reference) = &self.reference else {
             return Ok(None);
         };
-        let outcome = accuracy::measure(
-            &self.scene,
-            method,
-            like.setting,
-            reference,
-            &interrupt::go_on,
-        )
-        .map_err(Failure::run)?;
+        let control = method.control(like.setting);
+        let outcome = accuracy::measure(&self.scene, method, control, reference, &interrupt::go_on)
+            .map_err(Failure::run)?;
         let Some(Outcome { errors, work, lost }) = outcome else {
             return Ok(None);
         };
         let seconds = if self.timed && lost.is_none() {
-            let Some(time) = time(&self.scene, method, like.setting, &self.frames)? else {
+            let Some(time) = time(&self.scene, method, control, &self.frames)? else {
                 return Ok(None);
             };
             Some(time.as_secs_f64())
@@ -225,12 +223,12 @@ fn each(method: &Method) -> f64 {
 pub fn time(
     scene: &Scene,
     method: &'static Method,
-    setting: f64,
+    control: Control,
     frames: &Frames,
 ) -> Result<Option<Duration>, Failure> {
     let (mut best, mut sum) = (Duration::MAX, Duration::ZERO);
     for runs in 1..=RUNS {
-        let mut run = Simulation::new(scene.clone(), method, setting).map_err(Failure::run)?;
+        let mut run = Simulation::new(scene.clone(), method, control).map_err(Failure::run)?;
         let begun = Instant::now();
         let end = accuracy::run(&mut run, frames, &interrupt::go_on, |_, _| {});
         let elapsed = begun.elapsed();

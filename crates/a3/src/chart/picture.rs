@@ -79,7 +79,7 @@ fn problem(
                 error: r.error(metric),
                 work: work / r.until,
                 lost: r.lost_at.is_some(),
-                label: Some(table::setting(method, r.setting)),
+                label: Some(table::words(method.control(r.setting))),
             }
         };
         Curve {

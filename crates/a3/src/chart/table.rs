@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use a3_core::Method;
 use a3_core::accuracy::Metric;
+use a3_core::{Control, Method};
 
 use super::data::{Data, Record};
 use super::measure::Study;
@@ -44,14 +44,12 @@ fn short(cost: f64) -> String {
     }
 }
 
-/// A setting with its unit.
-pub fn setting(method: &Method, setting: f64) -> String {
-    if method.is_adaptive() {
-        format!("tolerance {setting:.0e}")
-    } else if setting < 1e-3 {
-        format!("step {} µs", (1e9 * setting).round() / 1e3)
-    } else {
-        format!("step {} ms", (1e6 * setting).round() / 1e3)
+/// The step with its unit, or the tolerance.
+pub fn words(control: Control) -> String {
+    match control {
+        Control::Tolerance(tolerance) => format!("tolerance {tolerance:.0e}"),
+        Control::Step(step) if step < 1e-3 => format!("step {} µs", (1e9 * step).round() / 1e3),
+        Control::Step(step) => format!("step {} ms", (1e6 * step).round() / 1e3),
     }
 }
 
@@ -154,7 +152,7 @@ fn winners(
                     .iter()
                     .find(|m| m.name == r.solver)
                     .map_or(String::new(), |m| {
-                        format!("{}, {}", m.title, setting(m, r.setting))
+                        format!("{}, {}", m.title, words(m.control(r.setting)))
                     }),
             }
         };

@@ -102,12 +102,11 @@ impl Export for Json {
 
 fn state<'a>(simulation: &'a Simulation, velocities: &'a [f64]) -> State<'a> {
     let n = simulation.particles();
-    let adaptive = simulation.method().is_adaptive();
     State {
         scene: &simulation.scene().name,
         solver: simulation.method().name,
-        step: (!adaptive).then_some(simulation.setting()),
-        tolerance: adaptive.then_some(simulation.setting()),
+        step: simulation.control().step(),
+        tolerance: simulation.control().tolerance(),
         time: simulation.time(),
         steps: simulation.steps(),
         evaluations: simulation.work().evaluations,

@@ -109,11 +109,11 @@ pub fn whole_triangles(simulation: &Simulation) -> impl Iterator<Item = [u32; 3]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use a3_core::integrators;
+    use a3_core::{Control, integrators};
 
     fn run(scene: &str) -> Simulation {
         let scene = a3_scenes::find(scene).unwrap().build(None).unwrap();
-        Simulation::new(scene, integrators::find("t").unwrap(), 0.01).unwrap()
+        Simulation::new(scene, integrators::find("t").unwrap(), Control::Step(0.01)).unwrap()
     }
 
     #[test]

@@ -1,30 +1,32 @@
-//! The cheapest method and setting for an error.
+//! The cheapest method, and its step or tolerance, for an error.
 
 use super::{GoOn, Metric, Outcome, Reference, ladder, measure};
+use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{METHODS, Method};
 use crate::scene::Scene;
 
-/// A setting is searched until the next coarser one that fails is no farther than this factor in steps.
+/// Ratio of the shortest step that fails to the longest that is good enough, at which the search ends.
 const CLOSE: f64 = 1.08;
-/// ... or in tolerance, on which the cost hardly depends.
+/// The same ratio for tolerances, on which the cost hardly depends.
 const CLOSE_TOLERANCE: f64 = 1.7;
-/// No run takes more steps.
+/// Most steps that a run takes.
 const MOST_STEPS: u64 = 1_000_000;
 
-/// A method at a setting, and how it went.
+/// A method with its step or tolerance, and what was measured of its run.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
     /// The method.
     pub method: &'static Method,
-    /// The step (s), or the relative tolerance.
-    pub setting: f64,
-    /// What was measured.
+    /// The step or the tolerance.
+    pub control: Control,
+    /// Errors and cost of the run.
     pub outcome: Outcome,
 }
 
-/// The cheapest setting of each method that meets the error, cheapest method first. Methods that cost more than twice as
-/// much as the two best are left out. `None` if it was told to stop.
+/// The cheapest step or tolerance of each method that meets the error, cheapest method first.
+///
+/// Methods that cost more than twice as much as the two best are left out. `None` if it was told to stop.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -87,8 +89,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn measure(&self, setting: f64) -> Result<Option<Outcome>, Error> {
-        measure(self.scene, self.method, setting, self.reference, self.go_on)
+    fn measure(&self, control: Control) -> Result<Option<Outcome>, Error> {
+        measure(self.scene, self.method, control, self.reference, self.go_on)
     }
 
     /// The error over the one asked for; infinite if the run was lost.
@@ -105,47 +107,46 @@ impl Search<'_> {
         let rungs = ladder(self.scene, self.method, &frames, MOST_STEPS)?;
         let (mut fails, mut i) = (None, 0);
         let (mut good, mut outcome) = loop {
-            let Some(&setting) = rungs.get(i) else {
+            let Some(&control) = rungs.get(i) else {
                 return Ok(Found::Nothing);
             };
-            // Of a method with fixed steps the least cost is known beforehand.
-            let steps = frames.until / setting;
-            let least = steps * f64::from(self.method.evaluations);
-            if !self.method.is_adaptive() && least > self.dearest {
+            // The least cost of fixed steps is known beforehand.
+            let least = control
+                .step()
+                .map(|step| frames.until / step * f64::from(self.method.evaluations));
+            if least.is_some_and(|least| least > self.dearest) {
                 return Ok(Found::Nothing);
             }
-            let Some(outcome) = self.measure(setting)? else {
+            let Some(outcome) = self.measure(control)? else {
                 return Ok(Found::Stopped);
             };
             let ratio = self.ratio(&outcome);
             if ratio <= 1.0 {
-                break (setting, outcome);
+                break (control, outcome);
             }
             if outcome.work.total() > self.dearest && outcome.lost.is_none() {
                 return Ok(Found::Nothing);
             }
-            fails = Some(setting);
+            fails = Some(control.value());
             // Rungs that the order says are in vain are skipped.
-            let order = if self.method.is_adaptive() {
-                1.0
-            } else {
-                f64::from(self.method.order)
+            let order = match control {
+                Control::Step(_) => f64::from(self.method.order),
+                Control::Tolerance(_) => 1.0,
             };
             let aim = if ratio.is_finite() {
-                setting * (0.5 * ratio).powf(-1.0 / order)
+                control.value() * (0.5 * ratio).powf(-1.0 / order)
             } else {
-                setting
+                control.value()
             };
-            let next = rungs[i + 1..].iter().position(|rung| *rung <= aim);
+            let next = rungs[i + 1..].iter().position(|rung| rung.value() <= aim);
             i = next.map_or(rungs.len() - 1, |k| i + 1 + k).max(i + 1);
         };
-        let close = if self.method.is_adaptive() {
-            CLOSE_TOLERANCE
-        } else {
-            CLOSE
+        let close = match good {
+            Control::Step(_) => CLOSE,
+            Control::Tolerance(_) => CLOSE_TOLERANCE,
         };
-        while let Some(bad) = fails.filter(|bad| bad / good > close) {
-            let Some(middle) = between(good, bad, &frames, self.method.is_adaptive()) else {
+        while let Some(bad) = fails.filter(|bad| bad / good.value() > close) {
+            let Some(middle) = between(good, bad, &frames) else {
                 break;
             };
             let Some(next) = self.measure(middle)? else {
@@ -154,23 +155,23 @@ impl Search<'_> {
             if self.ratio(&next) <= 1.0 {
                 (good, outcome) = (middle, next);
             } else {
-                fails = Some(middle);
+                fails = Some(middle.value());
             }
         }
         Ok(Found::Best(Candidate {
             method: self.method,
-            setting: good,
+            control: good,
             outcome,
         }))
     }
 }
 
-/// A setting between two others: a step that fits the frames, if there is one left.
-fn between(good: f64, bad: f64, frames: &super::Frames, adaptive: bool) -> Option<f64> {
-    let middle = (good * bad).sqrt();
-    if adaptive {
-        return Some(middle);
-    }
+/// A tolerance between a good one and a bad one, or a step between them that fits the frames, if there is one left.
+fn between(good: Control, bad: f64, frames: &super::Frames) -> Option<Control> {
+    let middle = (good.value() * bad).sqrt();
+    let Control::Step(good) = good else {
+        return Some(Control::Tolerance(middle));
+    };
     let spacing = frames.spacing();
     let inside = |h: f64| h > good * (1.0 + 1e-9) && h < bad * (1.0 - 1e-9);
     let step = if middle < spacing {
@@ -182,5 +183,5 @@ fn between(good: f64, bad: f64, frames: &super::Frames, adaptive: bool) -> Optio
         let near = (0..frames.count).flat_map(|d| [stride + d, stride.saturating_sub(d)]);
         near.into_iter().find(fits)? as f64 * spacing
     };
-    inside(step).then_some(step)
+    inside(step).then_some(Control::Step(step))
 }

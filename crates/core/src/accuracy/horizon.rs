@@ -1,6 +1,7 @@
 //! How long errors mean something: motion that is chaotic makes large ones of the smallest.
 
 use super::GoOn;
+use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::find;
 use crate::random::SplitMix;
@@ -39,7 +40,7 @@ pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
     } else {
         10.0
     };
-    let mut run = Simulation::new(scene.clone(), accurate, 1e-8)?;
+    let mut run = Simulation::new(scene.clone(), accurate, Control::Tolerance(1e-8))?;
     let n = 3 * run.particles();
     let mut random = SplitMix(2);
     let mut beside = scene.clone();
@@ -53,7 +54,7 @@ pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
             *x += size * random.between(-1.0, 1.0);
         }
     }
-    let mut beside = Simulation::new(beside, accurate, 1e-8)?;
+    let mut beside = Simulation::new(beside, accurate, Control::Tolerance(1e-8))?;
     let distance = |a: &Simulation, b: &Simulation| {
         let squares = a.state()[..n].iter().zip(&b.state()[..n]);
         squares.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()

@@ -1,20 +1,22 @@
-//! The settings at which a method is tried, from the coarsest that makes sense.
+//! The steps or tolerances at which a method is tried, from the coarsest that makes sense.
 
 use super::Frames;
+use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::Method;
 use crate::scene::Scene;
 use crate::stability::{largest_step, spectrum};
 
-/// From one step to the next.
+/// Ratio of a step to the next shorter one.
 const RUNG: f64 = 1.5;
-/// Steps past the limit begin at so many times it: one or two of them, to show that they fail.
+/// Longest step as a multiple of the method's limit: one or two steps past the limit show that it is one.
 const PAST: f64 = 1.4;
-/// The tolerances of adaptive methods, powers of ten in halves.
+/// Largest and smallest tolerance of adaptive methods, as halves of a power of ten.
 const TOLERANCES: (i32, i32) = (-2, -24);
 
-/// Steps (s) that fit the frames, from just past the method's limit down, or relative tolerances from 0.1 down: coarse
-/// ones first, and as many as have at most `most` steps in all.
+/// Steps that fit the frames, from just past the method's limit down, or tolerances from 0.1 down.
+///
+/// The coarsest comes first. Steps end where a run would take more than `most` of them.
 ///
 /// # Errors
 /// The method does not serve the scene.
@@ -23,7 +25,7 @@ pub fn ladder(
     method: &'static Method,
     frames: &Frames,
     most: u64,
-) -> Result<Vec<f64>, Error> {
+) -> Result<Vec<Control>, Error> {
     let system = scene.model.system();
     method.check(system)?;
     if method.is_adaptive() {
@@ -32,7 +34,7 @@ pub fn ladder(
             .map(|half| {
                 let digits = if half % 2 == 0 { 1.0 } else { 3.0 };
                 let power = (f64::from(half) / 2.0).floor() as i32;
-                digits / 10f64.powi(-power)
+                Control::Tolerance(digits / 10f64.powi(-power))
             })
             .collect());
     }
@@ -46,14 +48,14 @@ pub fn ladder(
     for stride in (2..=frames.count).rev() {
         let h = stride as f64 * spacing;
         if frames.count.is_multiple_of(stride) && h <= longest && h <= last / RUNG {
-            steps.push(h);
+            steps.push(Control::Step(h));
             last = h;
         }
     }
     // Several steps a frame.
     let mut parts = (spacing / longest).ceil().max(1.0) as u64;
     while parts * frames.count <= most {
-        steps.push(spacing / parts as f64);
+        steps.push(Control::Step(spacing / parts as f64));
         parts = ((parts as f64 * RUNG) as u64).max(parts + 1);
     }
     Ok(steps)

@@ -5,6 +5,7 @@ mod horizon;
 mod ladder;
 mod reference;
 
+use crate::control::Control;
 use crate::elements::springs;
 use crate::error::{BlowUp, Error};
 use crate::integrators::{Method, Work};
@@ -156,9 +157,11 @@ pub struct Outcome {
     pub lost: Option<BlowUp>,
 }
 
-/// Takes a run from its beginning to the end of the frames, and visits each frame that is the end of a step, or, of an
-/// adaptive method, every frame. Steps that neither divide the spacing of the frames nor are a multiple of it are
-/// shortened at each frame. Where the run was lost, if it was; `None` if it was told to stop.
+/// Takes a run from its beginning to the end of the frames, and visits each frame at which a step ends, or, under a
+/// tolerance, every frame.
+///
+/// Steps that neither divide the spacing of the frames nor are a multiple of it are shortened at each frame. Returns
+/// where the run was lost, if it was; `None` if it was told to stop.
 ///
 /// # Errors
 /// The run cannot go on, for another reason than a blow-up.
@@ -168,11 +171,14 @@ pub fn run(
     go_on: GoOn,
     mut visit: impl FnMut(u64, &Simulation),
 ) -> Result<Option<Option<BlowUp>>, Error> {
-    let ratio = simulation.setting() / frames.spacing();
-    let (stride, per_frame) = (ratio.round().max(1.0), (1.0 / ratio).round().max(1.0));
-    let fits = (ratio - stride / per_frame).abs() < 1e-9 * ratio;
-    let adaptive = simulation.method().is_adaptive();
-    let stride = if fits && !adaptive { stride as u64 } else { 1 };
+    // Frames a step takes, and steps a frame takes, if whole numbers of steps and of frames fit.
+    let whole = simulation.control().step().and_then(|step| {
+        let ratio = step / frames.spacing();
+        let (stride, per_frame) = (ratio.round().max(1.0), (1.0 / ratio).round().max(1.0));
+        let fits = (ratio - stride / per_frame).abs() < 1e-9 * ratio;
+        fits.then_some((stride as u64, per_frame as u64))
+    });
+    let stride = whole.map_or(1, |(stride, _)| stride);
     let mut k = 0;
     while k < frames.count {
         if !go_on() {
@@ -180,10 +186,9 @@ pub fn run(
         }
         k = (k + stride).min(frames.count);
         // Counted steps gather no sliver of one at the end of a frame.
-        let result = if fits && !adaptive && k < frames.count {
-            simulation.take_steps(per_frame as u64)
-        } else {
-            simulation.advance_to(frames.time(k))
+        let result = match whole {
+            Some((_, per_frame)) if k < frames.count => simulation.take_steps(per_frame),
+            _ => simulation.advance_to(frames.time(k)),
         };
         match result {
             Ok(()) => visit(k, simulation),
@@ -197,15 +202,15 @@ pub fn run(
 /// Runs a scene and compares it with its reference. `None` if it was told to stop.
 ///
 /// # Errors
-/// The method does not serve the scene, or the setting makes no sense.
+/// The method does not serve the scene or does not take that control.
 pub fn measure(
     scene: &Scene,
     method: &'static Method,
-    setting: f64,
+    control: Control,
     reference: &Reference,
     go_on: GoOn,
 ) -> Result<Option<Outcome>, Error> {
-    let mut simulation = Simulation::new(scene.clone(), method, setting)?;
+    let mut simulation = Simulation::new(scene.clone(), method, control)?;
     let mut errors = Errors::default();
     let end = run(&mut simulation, &reference.frames, go_on, |k, run| {
         errors = errors.max(reference.errors(k, run));

@@ -2,6 +2,7 @@
 //! Runge-Kutta. What they disagree by is what the reference is not sure of.
 
 use super::{Errors, Frames, GoOn, Snapshot, run};
+use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, Work, find};
 use crate::scene::Scene;
@@ -31,8 +32,8 @@ impl Reference {
     /// The scene cannot be run, or the reference itself is lost.
     pub fn new(scene: &Scene, frames: Frames, go_on: GoOn) -> Result<Option<Self>, Error> {
         let mut work = Work::default();
-        let mut trajectory = |method: &'static Method, setting: f64| {
-            let mut simulation = Simulation::new(scene.clone(), method, setting)?;
+        let mut trajectory = |method: &'static Method, control: Control| {
+            let mut simulation = Simulation::new(scene.clone(), method, control)?;
             let mut snapshots = vec![];
             let end = run(&mut simulation, &frames, go_on, |_, run| {
                 snapshots.push(Snapshot::of(run));
@@ -45,10 +46,10 @@ impl Reference {
             }
         };
         let accurate = find("dop853").ok_or_else(missing)?;
-        let Some(best) = trajectory(accurate, TOLERANCES[0])? else {
+        let Some(best) = trajectory(accurate, Control::Tolerance(TOLERANCES[0]))? else {
             return Ok(None);
         };
-        let Some(looser) = trajectory(accurate, TOLERANCES[1])? else {
+        let Some(looser) = trajectory(accurate, Control::Tolerance(TOLERANCES[1]))? else {
             return Ok(None);
         };
         let system = scene.model.system();
@@ -62,10 +63,10 @@ impl Reference {
         let limit = largest_step(other, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
         let parts = (frames.spacing() / (SHARE * limit)).ceil().max(1.0);
         let h = frames.spacing() / parts;
-        let Some(coarse) = trajectory(other, h)? else {
+        let Some(coarse) = trajectory(other, Control::Step(h))? else {
             return Ok(None);
         };
-        let Some(fine) = trajectory(other, 0.5 * h)? else {
+        let Some(fine) = trajectory(other, Control::Step(0.5 * h))? else {
             return Ok(None);
         };
         let mut floor = Errors::default();

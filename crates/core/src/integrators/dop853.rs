@@ -3,6 +3,7 @@
 
 use super::Method;
 use super::embedded::{EmbeddedPair, Tableau};
+use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "dop853",
@@ -10,7 +11,7 @@ pub(super) const METHOD: Method = Method {
     aliases: &[],
     title: "Dormand-Prince 8(5,3), adaptive",
     order: 8,
-    default_setting: 1e-6,
+    default_control: Control::Tolerance(1e-6),
     evaluations: 12,
     damped_evaluations: 12,
     implicit: false,

@@ -4,6 +4,7 @@
 
 use super::Method;
 use super::embedded::{EmbeddedPair, Tableau};
+use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "dopri5",
@@ -11,7 +12,7 @@ pub(super) const METHOD: Method = Method {
     aliases: &["ode45", "dormand-prince"],
     title: "Dormand-Prince 5(4), adaptive",
     order: 5,
-    default_setting: 1e-3,
+    default_control: Control::Tolerance(1e-3),
     evaluations: 6,
     damped_evaluations: 6,
     implicit: false,

@@ -2,6 +2,7 @@
 
 use super::Method;
 use super::runge_kutta::{EULER, RungeKutta};
+use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "euler",
@@ -9,7 +10,7 @@ pub(super) const METHOD: Method = Method {
     aliases: &["explicit-euler", "forward-euler"],
     title: "explicit Euler",
     order: 1,
-    default_setting: 0.0002,
+    default_control: Control::Step(0.0002),
     evaluations: 1,
     damped_evaluations: 1,
     implicit: false,

@@ -3,6 +3,7 @@
 
 use super::Method;
 use super::runge_kutta::{HEUN, RungeKutta};
+use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "trapezoid",
@@ -10,7 +11,7 @@ pub(super) const METHOD: Method = Method {
     aliases: &["heun", "trapezoidal", "explicit-trapezoid"],
     title: "explicit trapezoid (Heun)",
     order: 2,
-    default_setting: 0.005,
+    default_control: Control::Step(0.005),
     evaluations: 2,
     damped_evaluations: 2,
     implicit: false,

@@ -2,6 +2,7 @@
 
 use super::Method;
 use super::runge_kutta::{MIDPOINT, RungeKutta};
+use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "midpoint",
@@ -9,7 +10,7 @@ pub(super) const METHOD: Method = Method {
     aliases: &["explicit-midpoint"],
     title: "explicit midpoint",
     order: 2,
-    default_setting: 0.005,
+    default_control: Control::Step(0.005),
     evaluations: 2,
     damped_evaluations: 2,
     implicit: false,

@@ -17,7 +17,8 @@ mod sweep;
 mod symplectic_euler;
 mod verlet;
 
-use crate::error::Error;
+use crate::control::Control;
+use crate::error::{Error, positive};
 use crate::system::ParticleSystem;
 
 pub use adaptive::{Adaptive, Taken, Tolerance};
@@ -100,8 +101,8 @@ pub struct Method {
     pub title: &'static str,
     /// The global error falls as h to this power.
     pub order: u32,
-    /// The step (s), or the relative tolerance of an adaptive method, that holds on every built-in scene.
-    pub default_setting: f64,
+    /// The step, or the tolerance of an adaptive method, that is stable on every built-in scene.
+    pub default_control: Control,
     /// Evaluations a step takes; of an implicit method, typically.
     pub evaluations: u32,
     /// Evaluations a step takes where springs are damped.
@@ -142,17 +143,44 @@ impl Method {
         Ok((self.create)(system))
     }
 
-    /// Steps of its own choice, if it is an adaptive method.
+    /// The method with steps of its own choice; `None` if it estimates no error.
     #[must_use]
     pub fn adaptive(&self, system: &dyn ParticleSystem, tolerance: Tolerance) -> Option<Adaptive> {
         self.pair
             .map(|tableau| Adaptive::new(tableau, system.dim(), tolerance))
     }
 
-    /// Whether it chooses its steps by itself, to a tolerance.
+    /// Whether the method can choose its steps by itself, to a tolerance.
     #[must_use]
     pub fn is_adaptive(&self) -> bool {
         self.pair.is_some()
+    }
+
+    /// `Ok` if the method can be controlled like this.
+    ///
+    /// # Errors
+    /// The value is not a finite number above 0, or it is a tolerance and the method estimates no error.
+    pub fn check_control(&self, control: Control) -> Result<(), Error> {
+        match control {
+            Control::Step(step) => positive("the step", step),
+            Control::Tolerance(relative) if self.is_adaptive() => {
+                Tolerance::new(relative).map(|_| ())
+            }
+            Control::Tolerance(_) => Err(Error::Invalid(format!(
+                "{} estimates no error: it takes a step, not a tolerance",
+                self.title
+            ))),
+        }
+    }
+
+    /// Control by a number as users type it: the tolerance of an adaptive method, the step (s) of any other.
+    #[must_use]
+    pub fn control(&self, value: f64) -> Control {
+        if self.is_adaptive() {
+            Control::Tolerance(value)
+        } else {
+            Control::Step(value)
+        }
     }
 }
 

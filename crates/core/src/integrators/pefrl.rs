@@ -9,6 +9,7 @@
 use super::Method;
 use super::runge_kutta::RK4;
 use super::splitting::Plan;
+use crate::control::Control;
 use crate::rows::Part;
 
 pub(super) const METHOD: Method = Method {
@@ -17,7 +18,7 @@ pub(super) const METHOD: Method = Method {
     aliases: &["forest-ruth"],
     title: "PEFRL, symplectic",
     order: 4,
-    default_setting: 0.005,
+    default_control: Control::Step(0.005),
     evaluations: 4,
     damped_evaluations: 16,
     implicit: false,

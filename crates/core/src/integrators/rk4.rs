@@ -4,6 +4,7 @@
 
 use super::Method;
 use super::runge_kutta::{RK4, RungeKutta};
+use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "rk4",
@@ -11,7 +12,7 @@ pub(super) const METHOD: Method = Method {
     aliases: &["runge-kutta", "runge-kutta-4"],
     title: "classical Runge-Kutta",
     order: 4,
-    default_setting: 0.01,
+    default_control: Control::Step(0.01),
     evaluations: 4,
     damped_evaluations: 4,
     implicit: false,

@@ -6,6 +6,7 @@
 
 use super::Method;
 use super::embedded::{EmbeddedPair, Tableau};
+use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
     name: "rkf45",
@@ -13,7 +14,7 @@ pub(super) const METHOD: Method = Method {
     aliases: &["fehlberg"],
     title: "Runge-Kutta-Fehlberg 4(5), adaptive",
     order: 5,
-    default_setting: 1e-3,
+    default_control: Control::Tolerance(1e-3),
     evaluations: 6,
     damped_evaluations: 6,
     implicit: false,

@@ -3,6 +3,7 @@
 use super::Method;
 use super::runge_kutta::EULER;
 use super::splitting::Plan;
+use crate::control::Control;
 use crate::rows::Part;
 
 pub(super) const METHOD: Method = Method {
@@ -11,7 +12,7 @@ pub(super) const METHOD: Method = Method {
     aliases: &["symplectic-euler", "semi-implicit-euler"],
     title: "symplectic Euler",
     order: 1,
-    default_setting: 0.005,
+    default_control: Control::Step(0.005),
     evaluations: 1,
     damped_evaluations: 1,
     implicit: false,

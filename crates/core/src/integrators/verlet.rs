@@ -11,6 +11,7 @@
 use super::Method;
 use super::runge_kutta::MIDPOINT;
 use super::splitting::Plan;
+use crate::control::Control;
 use crate::rows::Part;
 
 pub(super) const METHOD: Method = Method {
@@ -19,7 +20,7 @@ pub(super) const METHOD: Method = Method {
     aliases: &["velocity-verlet", "leapfrog"],
     title: "velocity Verlet, exact drag",
     order: 2,
-    default_setting: 0.005,
+    default_control: Control::Step(0.005),
     evaluations: 1,
     damped_evaluations: 2,
     implicit: false,

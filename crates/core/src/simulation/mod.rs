@@ -10,7 +10,8 @@ use std::ops::Range;
 
 use nalgebra::{DMatrixView, Vector3};
 
-use crate::error::{BlowUp, Cause, Error, positive};
+use crate::control::Control;
+use crate::error::{BlowUp, Cause, Error};
 use crate::integrators::{Adaptive, Integrator, Method, Tolerance, Work};
 use crate::network::{Energy, Network};
 use crate::scene::{Model, Scene, bounds};
@@ -28,9 +29,9 @@ pub struct Simulation {
     model: Model,
     method: &'static Method,
     stepper: Stepper,
-    setting: f64,
+    control: Control,
     y: Vec<f64>,
-    /// Time is `since + taken * setting`, which gathers no rounding errors. Of an adaptive method it is `since`.
+    /// Time is `since + taken * step`, which gathers no rounding errors; under a tolerance it is `since` (s).
     since: f64,
     taken: u64,
     steps: u64,
@@ -51,7 +52,7 @@ pub struct Simulation {
 
 /// What takes the steps.
 enum Stepper {
-    /// Steps of the size asked for.
+    /// Steps of a fixed size.
     Fixed(Box<dyn Integrator>),
     /// Steps of its own choice, whose ends are no times that anyone asked for: the run looks ahead, and the state shown
     /// is on the way to `end`.
@@ -65,12 +66,13 @@ enum Stepper {
 }
 
 impl Stepper {
-    fn new(method: &Method, system: &dyn ParticleSystem, setting: f64) -> Result<Self, Error> {
-        if !method.is_adaptive() {
-            positive("the step", setting)?;
-        }
-        let tolerance = Tolerance::new(setting)?;
-        Ok(match method.adaptive(system, tolerance) {
+    fn new(method: &Method, system: &dyn ParticleSystem, control: Control) -> Result<Self, Error> {
+        method.check_control(control)?;
+        let adaptive = match control {
+            Control::Step(_) => None,
+            Control::Tolerance(relative) => method.adaptive(system, Tolerance::new(relative)?),
+        };
+        Ok(match adaptive {
             None => Self::Fixed(method.integrator(system)?),
             Some(adaptive) => Self::Adaptive {
                 adaptive: Box::new(adaptive),
@@ -89,36 +91,13 @@ struct Good {
 }
 
 impl Simulation {
-    /// A run from the scene's beginning. The setting is the step (s), or the relative tolerance of an adaptive method.
+    /// A run from the scene's beginning, in fixed steps or, with an adaptive method, to a tolerance.
     ///
     /// # Errors
-    /// The method does not serve the scene, the scene's state has not the length of its model's, or the setting is not
-    /// above 0.
-    pub fn new(scene: Scene, method: &'static Method, setting: f64) -> Result<Self, Error> {
-        let stepper = Stepper::new(method, scene.model.system(), setting)?;
-        Self::with(scene, method, stepper, setting)
-    }
-
-    /// A run in steps of this size (s), also with a method that would choose its own: to see which steps it holds.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    pub fn with_fixed_steps(
-        scene: Scene,
-        method: &'static Method,
-        step: f64,
-    ) -> Result<Self, Error> {
-        positive("the step", step)?;
-        let stepper = Stepper::Fixed(method.integrator(scene.model.system())?);
-        Self::with(scene, method, stepper, step)
-    }
-
-    fn with(
-        scene: Scene,
-        method: &'static Method,
-        stepper: Stepper,
-        setting: f64,
-    ) -> Result<Self, Error> {
+    /// The method does not serve the scene or does not take that control; or the scene's state has another length
+    /// than its model's.
+    pub fn new(scene: Scene, method: &'static Method, control: Control) -> Result<Self, Error> {
+        let stepper = Stepper::new(method, scene.model.system(), control)?;
         let model = scene.model.clone();
         let (dim, length) = (model.system().dim(), scene.state.len());
         if length != dim {
@@ -144,7 +123,7 @@ impl Simulation {
             model,
             method,
             stepper,
-            setting,
+            control,
             y,
             since: 0.0,
             taken: 0,
@@ -180,17 +159,17 @@ impl Simulation {
         self.method
     }
 
-    /// The step asked for (s), or the relative tolerance of an adaptive method.
+    /// The step or the tolerance.
     #[must_use]
-    pub fn setting(&self) -> f64 {
-        self.setting
+    pub fn control(&self) -> Control {
+        self.control
     }
 
-    /// The step (s): of an adaptive method the last one, if there was one yet.
+    /// The step (s): the fixed one, or the last one under a tolerance, if there was one yet.
     #[must_use]
     pub fn step_size(&self) -> Option<f64> {
         match &self.stepper {
-            Stepper::Fixed(_) => Some(self.setting),
+            Stepper::Fixed(_) => self.control.step(),
             Stepper::Adaptive { adaptive, .. } => Some(adaptive.last().h).filter(|h| *h > 0.0),
         }
     }
@@ -198,7 +177,7 @@ impl Simulation {
     /// Simulated time (s).
     #[must_use]
     pub fn time(&self) -> f64 {
-        self.since + self.taken as f64 * self.setting
+        self.since + self.taken as f64 * self.control.step().unwrap_or(0.0)
     }
 
     /// Steps taken since the beginning.
@@ -298,8 +277,8 @@ impl Simulation {
     pub fn take_steps(&mut self, count: u64) -> Result<(), Error> {
         self.keep()?;
         for _ in 0..count {
-            if let Stepper::Fixed(_) = self.stepper {
-                self.step_by(self.setting)?;
+            if let Control::Step(step) = self.control {
+                self.step_by(step)?;
                 self.taken += 1;
             } else {
                 let until = self.look_ahead()?;
@@ -323,15 +302,15 @@ impl Simulation {
         }
         self.keep()?;
         while self.time() < time {
-            if let Stepper::Adaptive { .. } = self.stepper {
+            let Control::Step(step) = self.control else {
                 let until = self.look_ahead()?;
                 self.show(until.min(time));
                 continue;
-            }
+            };
             let left = time - self.time();
             // A last sliver of a rounding error's size is no step of its own.
-            if left > self.setting * (1.0 + 1e-9) {
-                self.step_by(self.setting)?;
+            if left > step * (1.0 + 1e-9) {
+                self.step_by(step)?;
                 self.taken += 1;
             } else {
                 self.step_by(left)?;
@@ -456,7 +435,7 @@ impl Simulation {
         let Some(cause) = cause else { return Ok(()) };
         let blow_up = BlowUp {
             method: self.method.title,
-            setting: self.setting,
+            control: self.control,
             step: self.steps,
             time,
             cause,
@@ -512,7 +491,7 @@ impl Simulation {
         (self.work, self.blow_up) = (Work::default(), None);
         (self.grabbed, self.grabbed_sphere) = (None, None);
         // The first step is chosen anew too: a run that was reset is the same run.
-        if let Ok(stepper) = Stepper::new(self.method, self.model.system(), self.setting) {
+        if let Ok(stepper) = Stepper::new(self.method, self.model.system(), self.control) {
             self.stepper = stepper;
         }
         (self.swinging, self.swing_phase) = (false, 0.0);
@@ -523,30 +502,30 @@ impl Simulation {
         self.set_swinging(swinging);
     }
 
-    /// Goes on with another method and another setting: a step (s), or a relative tolerance.
+    /// Goes on with another method, in fixed steps or to a tolerance.
     ///
     /// # Errors
-    /// The method does not serve the scene, or the setting is not above 0; the run goes on as before.
-    pub fn set_method(&mut self, method: &'static Method, setting: f64) -> Result<(), Error> {
-        self.stepper = Stepper::new(method, self.model.system(), setting)?;
+    /// The method does not serve the scene or does not take that control; the run goes on as before.
+    pub fn set_method(&mut self, method: &'static Method, control: Control) -> Result<(), Error> {
+        self.stepper = Stepper::new(method, self.model.system(), control)?;
         self.since = self.time();
         self.taken = 0;
-        (self.method, self.setting) = (method, setting);
+        (self.method, self.control) = (method, control);
         Ok(())
     }
 
-    /// Goes on in other steps (s), or to another relative tolerance.
+    /// Goes on in other steps, or to another tolerance.
     ///
     /// # Errors
-    /// The setting is not above 0; the run goes on as before.
-    pub fn set_setting(&mut self, setting: f64) -> Result<(), Error> {
-        if self.method.is_adaptive() {
-            return self.set_method(self.method, setting);
-        }
-        positive("the step", setting)?;
+    /// The method does not take that control; the run goes on as before.
+    pub fn set_control(&mut self, control: Control) -> Result<(), Error> {
+        let (Control::Step(_), Control::Step(_)) = (self.control, control) else {
+            return self.set_method(self.method, control);
+        };
+        self.method.check_control(control)?;
         self.since = self.time();
         self.taken = 0;
-        self.setting = setting;
+        self.control = control;
         Ok(())
     }
 }

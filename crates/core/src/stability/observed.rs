@@ -2,6 +2,7 @@
 
 use super::spectrum::shapes;
 use super::{GROWTH, HORIZON, Limit, Mode, STEPS, spectrum};
+use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, find};
 use crate::network::Network;
@@ -43,7 +44,7 @@ const MOMENTS: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
 /// # Errors
 /// The scene cannot be run.
 pub fn modes_in_motion(scene: &Scene) -> Result<Vec<Mode>, Error> {
-    let mut run = Simulation::new(scene.clone(), accurate()?, 1e-6)?;
+    let mut run = Simulation::new(scene.clone(), accurate()?, Control::Tolerance(1e-6))?;
     let mut modes = vec![];
     for share in MOMENTS {
         if run.advance_to(share * HORIZON).is_err() {
@@ -97,7 +98,7 @@ pub fn rest(scene: &Scene) -> Result<Option<Rest>, Error> {
     if let Model::Network(network) = &mut scene.model {
         network.set_tear(None)?;
     }
-    let mut run = Simulation::new(scene.clone(), implicit, 0.05)?;
+    let mut run = Simulation::new(scene.clone(), implicit, Control::Step(0.05))?;
     let mut random = SplitMix(4);
     for (step, steps, leaves) in SETTLING {
         if leaves {
@@ -110,9 +111,9 @@ pub fn rest(scene: &Scene) -> Result<Option<Rest>, Error> {
                     *x += size * random.between(-1.0, 1.0);
                 }
             }
-            run = Simulation::new(pushed, implicit, step)?;
+            run = Simulation::new(pushed, implicit, Control::Step(step))?;
         }
-        run.set_setting(step)?;
+        run.set_control(Control::Step(step))?;
         for _ in 0..steps {
             let before = run.state().to_vec();
             if run.take_steps(1).is_err() {
@@ -183,8 +184,8 @@ pub fn observe_at_rest(
     // does, and particles on an obstacle are pushed out at every step.
     let least = least(guess);
     let holds = |h: f64| {
-        let mut run = Simulation::with_fixed_steps(nudged.clone(), method, h)?;
-        let mut beside = Simulation::with_fixed_steps(still.clone(), method, h)?;
+        let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
+        let mut beside = Simulation::new(still.clone(), method, Control::Step(h))?;
         Ok(step_and_look(h, least, |count| {
             let held = go_on() && run.take_steps(count).is_ok() && beside.take_steps(count).is_ok();
             let both = run.state().iter().zip(beside.state());
@@ -243,7 +244,7 @@ pub fn observe_from_start(
     let unlimited = guess.is_infinite() && scene.model.network().is_some();
     let least = least(guess);
     let holds = |h: f64| {
-        let mut run = Simulation::with_fixed_steps(scene.clone(), method, h)?;
+        let mut run = Simulation::new(scene.clone(), method, Control::Step(h))?;
         Ok(step_and_look(h, least, |count| {
             go_on()
                 && run.take_steps(count).is_ok()
@@ -273,7 +274,7 @@ impl Truth {
     /// # Errors
     /// The scene cannot be run.
     pub fn of(scene: &Scene) -> Result<Self, Error> {
-        let mut run = Simulation::new(scene.clone(), accurate()?, 1e-6)?;
+        let mut run = Simulation::new(scene.clone(), accurate()?, Control::Tolerance(1e-6))?;
         let Some(mut last) = run.energy() else {
             return Ok(Self::default());
         };

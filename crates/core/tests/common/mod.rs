@@ -29,8 +29,10 @@ pub fn scene_with_grid(name: &str, rows: usize, cols: usize) -> Scene {
         .unwrap()
 }
 
-pub fn simulation(scene_name: &str, method_name: &str, step: f64) -> Simulation {
-    Simulation::new(scene(scene_name), method(method_name), step).unwrap()
+/// A run of a built-in scene: in steps of `value` (s), or to that tolerance with an adaptive method.
+pub fn simulation(scene_name: &str, method_name: &str, value: f64) -> Simulation {
+    let method = method(method_name);
+    Simulation::new(scene(scene_name), method, method.control(value)).unwrap()
 }
 
 /// y after `steps` steps of h with nothing between the method and the system.

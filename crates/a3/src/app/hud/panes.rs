@@ -114,8 +114,8 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
         )
     });
     let step = match super::steps(run) {
-        Some(steps) => ("steps", text(format!("{},  {steps}", super::setting(run)))),
-        None => ("step", text(format!("{} s", run.setting()))),
+        Some(steps) => ("steps", text(format!("{},  {steps}", run.control()))),
+        None => ("step", text(format!("{} s", run.control().value()))),
     };
     let limit = super::limit(pane).map(|(words, colour)| ("limit", text(words).color(colour)));
     let time = ("time", text(time(run)));
@@ -274,7 +274,10 @@ mod tests {
     #[test]
     fn a_pane_that_blew_up_says_so_and_the_others_go_on() {
         let mut panes = panes(4);
-        panes[1].simulation.set_setting(0.05).unwrap();
+        panes[1]
+            .simulation
+            .set_control(a3_core::Control::Step(0.05))
+            .unwrap();
         while panes[1].simulation.take_steps(1).is_ok() {}
         let readings = Readings {
             message: Some("There is nothing to swing here.".into()),

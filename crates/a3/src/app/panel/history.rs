@@ -78,12 +78,13 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use a3_core::integrators;
+    use a3_core::{Control, integrators};
 
     #[test]
     fn twenty_seconds_are_remembered_ten_times_a_second() {
         let scene = a3_scenes::find("pendulum").unwrap().build(None).unwrap();
-        let mut run = Simulation::new(scene, integrators::find("r").unwrap(), 0.01).unwrap();
+        let mut run =
+            Simulation::new(scene, integrators::find("r").unwrap(), Control::Step(0.01)).unwrap();
         let mut history = History::default();
         let mut computing = 0.0;
         for _ in 0..600 {

@@ -1,6 +1,6 @@
 //! What can be tuned while it runs, in one table: the mouse and the keys turn the same knobs.
 
-use a3_core::{Network, Scene, Vector3, integrators};
+use a3_core::{Control, Network, Scene, Vector3, integrators};
 use a3_render::Style;
 
 use super::super::keys::Action;
@@ -105,8 +105,8 @@ pub static KNOBS: &[Knob] = &[
     knob("solver", solver, |session, at, i| {
         session.act(Action::Solver(i as usize), at);
     }),
-    knob("step", step, |session, at, setting| {
-        session.set_step_of(at, setting);
+    knob("step", step, |session, at, value| {
+        session.set_step_of(at, value);
     }),
     apart(knob("stiffness", stiffness, |session, _, factor| {
         session.tuning.stiffness = factor;
@@ -360,21 +360,21 @@ fn solver(session: &Session, at: usize) -> Option<Dial> {
 
 fn step(session: &Session, at: usize) -> Option<Dial> {
     let run = &session.panes.get(at)?.simulation;
-    let (method, value) = (run.method(), run.setting());
-    let range = cli::settings(method);
-    let (from, to, words) = if method.is_adaptive() {
-        (*range.start(), *range.end(), format!("{value:e}"))
-    } else {
+    let (from, to, words) = match run.control() {
         // What is beyond is typed, not turned to.
-        (
-            value.min(1e-5),
-            value.max(1.0),
-            format!("{} s", short(value, 3)),
-        )
+        Control::Step(step) => (
+            step.min(1e-5),
+            step.max(1.0),
+            format!("{} s", short(step, 3)),
+        ),
+        Control::Tolerance(tolerance) => {
+            let range = cli::range(run.control());
+            (*range.start(), *range.end(), format!("{tolerance:e}"))
+        }
     };
     Some(Dial {
-        value,
-        own: session.tuning.own.default_setting(method),
+        value: run.control().value(),
+        own: session.tuning.own.default_control(run.method()).value(),
         scale: Scale::Log { from, to },
         words,
     })

@@ -3,6 +3,7 @@ use egui::{Event, PointerButton, Pos2, RawInput, Shape};
 use super::super::hud;
 use super::super::session::tests::session;
 use super::*;
+use a3_core::Control;
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
 
@@ -324,8 +325,8 @@ fn every_pane_and_the_reference_are_tuned_alike() {
     // The step is that of one pane.
     session.panel.pane = 1;
     session.grant(Wish::Turn(1, Turn::To(0.002)));
-    assert_eq!(session.first().setting(), 0.005);
-    assert_eq!(session.panes[1].simulation.setting(), 0.002);
+    assert_eq!(session.first().control(), Control::Step(0.005));
+    assert_eq!(session.panes[1].simulation.control(), Control::Step(0.002));
 }
 
 #[test]

@@ -98,12 +98,12 @@ impl Session {
         let at = at.min(self.panes.len() - 1);
         let pane = &mut self.panes[at];
         let run = &pane.simulation;
-        let setting = if method.is_adaptive() == run.method().is_adaptive() {
-            run.setting()
+        let control = if method.is_adaptive() == run.method().is_adaptive() {
+            run.control()
         } else {
-            run.scene().default_setting(method)
+            run.scene().default_control(method)
         };
-        match pane.simulation.set_method(method, setting) {
+        match pane.simulation.set_method(method, control) {
             Ok(()) => {
                 pane.wanted = method;
                 pane.count();
@@ -116,10 +116,10 @@ impl Session {
     fn set_steps(&mut self, longer: bool) {
         for k in 0..self.panes.len() {
             let pane = &mut self.panes[k];
-            let range = cli::settings(pane.simulation.method());
-            let next = next_step(pane.simulation.setting(), longer);
-            let setting = next.clamp(*range.start(), *range.end());
-            if let Err(why) = pane.simulation.set_setting(setting) {
+            let control = pane.simulation.control();
+            let range = cli::range(control);
+            let next = next_step(control.value(), longer).clamp(*range.start(), *range.end());
+            if let Err(why) = pane.simulation.set_control(control.with_value(next)) {
                 self.say(why.to_string());
             } else {
                 pane.count();
@@ -128,9 +128,10 @@ impl Session {
         self.adapt();
     }
 
-    /// The step (s) or the tolerance of one pane.
-    pub fn set_step_of(&mut self, at: usize, setting: f64) {
-        match self.panes[at].simulation.set_setting(setting) {
+    /// Sets the step (s) or the tolerance of one pane.
+    pub fn set_step_of(&mut self, at: usize, value: f64) {
+        let run = &mut self.panes[at].simulation;
+        match run.set_control(run.control().with_value(value)) {
             Ok(()) => self.panes[at].count(),
             Err(why) => self.say(why.to_string()),
         }
@@ -200,9 +201,9 @@ impl Session {
             run.set_swinging(swinging);
         });
         if let Some(method) = run {
-            let setting = scene.default_setting(method);
+            let control = scene.default_control(method);
             for pane in &mut self.panes {
-                if let Err(why) = pane.simulation.set_method(method, setting) {
+                if let Err(why) = pane.simulation.set_method(method, control) {
                     self.readings.message = Some(why.to_string());
                 }
                 pane.wanted = method;
@@ -216,7 +217,7 @@ impl Session {
     fn set_scene(&mut self, scene: &Scene) {
         let mut said = None;
         let mut start = |pane: &Pane| {
-            let start = |method| Simulation::new(scene.clone(), method, pane.simulation.setting());
+            let start = |method| Simulation::new(scene.clone(), method, pane.simulation.control());
             // Heun serves every scene.
             start(pane.wanted).or_else(|why| {
                 said = Some(format!("{why}: the explicit trapezoid steps in"));
@@ -274,6 +275,7 @@ mod tests {
     use super::super::tests::{compared, session};
     use super::*;
     use crate::cli::{LARGEST_STEP, SMALLEST_STEP};
+    use a3_core::Control;
 
     #[test]
     fn scenes_come_round_and_the_solver_comes_back() {
@@ -332,7 +334,7 @@ mod tests {
                 Action::ShorterStep
             };
             session.act(action, 0);
-            session.first().setting() == end
+            session.first().control().value() == end
         };
         assert!(ends("r", LARGEST_STEP, true) && ends("r", SMALLEST_STEP, false));
         assert!(ends("a", 1.0, true) && ends("a", 1e-13, false));
@@ -346,9 +348,15 @@ mod tests {
         let methods: Vec<_> = session
             .panes
             .iter()
-            .map(|pane| (pane.simulation.method().name, pane.simulation.setting()))
+            .map(|pane| (pane.simulation.method().name, pane.simulation.control()))
             .collect();
-        assert_eq!(methods, [("euler", 0.06), ("trapezoid", 0.012)]);
+        assert_eq!(
+            methods,
+            [
+                ("euler", Control::Step(0.06)),
+                ("trapezoid", Control::Step(0.012))
+            ]
+        );
         // One step of the longest.
         session.act(Action::Reset, 0);
         session.act(Action::Step, 0);

@@ -90,7 +90,7 @@ impl Session {
             description.pin.retain(|pin| !pin.particles.is_empty());
         }
         description.solver = Some(run.method().name.into());
-        description.step = Some(run.setting());
+        description.step = Some(run.control().value());
         let triple = |p: nalgebra::Point3<f32>| [p.x, p.y, p.z].map(f64::from);
         description.camera = Some(Camera {
             eye: triple(self.camera.eye()),
@@ -126,8 +126,8 @@ mod tests {
             scene.solver.map(|solver| solver.name),
             Some(run.method().name)
         );
-        assert_eq!(scene.step, Some(run.setting()));
-        let again = Simulation::new(scene, run.method(), run.setting()).unwrap();
+        assert_eq!(scene.control, Some(run.control()));
+        let again = Simulation::new(scene, run.method(), run.control()).unwrap();
         assert_eq!(again.state(), run.state(), "{name}");
         for (a, b) in forces(run).into_iter().zip(forces(&again)) {
             assert!((a - b).abs() <= 1e-12 * a.abs().max(1.0), "{name}: {a} {b}");

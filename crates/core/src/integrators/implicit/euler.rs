@@ -3,6 +3,7 @@
 
 use super::super::{Integrator, Method, Work, check_dim};
 use super::{Newton, Stage};
+use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
 
@@ -12,7 +13,7 @@ pub(in super::super) const METHOD: Method = Method {
     aliases: &["implicit-euler", "backward-euler"],
     title: "implicit Euler",
     order: 1,
-    default_setting: 0.02,
+    default_control: Control::Step(0.02),
     evaluations: 1,
     damped_evaluations: 1,
     implicit: true,

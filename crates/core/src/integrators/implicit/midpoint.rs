@@ -3,6 +3,7 @@
 
 use super::super::{Integrator, Method, Work, check_dim};
 use super::{Newton, Stage, place};
+use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
 
@@ -12,7 +13,7 @@ pub(in super::super) const METHOD: Method = Method {
     aliases: &[],
     title: "implicit midpoint",
     order: 2,
-    default_setting: 0.01,
+    default_control: Control::Step(0.01),
     evaluations: 3,
     damped_evaluations: 3,
     implicit: true,

@@ -7,6 +7,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::super::{Integrator, Method, Work, check_dim};
 use super::{Newton, Stage};
+use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
 
@@ -16,7 +17,7 @@ pub(in super::super) const METHOD: Method = Method {
     aliases: &["trbdf2"],
     title: "TR-BDF2, implicit",
     order: 2,
-    default_setting: 0.01,
+    default_control: Control::Step(0.01),
     evaluations: 7,
     damped_evaluations: 7,
     implicit: true,

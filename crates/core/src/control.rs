@@ -1,0 +1,60 @@
+//! Control of the steps of a run.
+
+use std::fmt;
+
+/// Control of the steps of a run: their length, or the error that each of them may make.
+///
+/// Every method takes steps of a fixed length. A tolerance is for adaptive methods, which estimate their error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Control {
+    /// Length of every step (s).
+    Step(f64),
+    /// Relative tolerance of the error of a step, without unit.
+    Tolerance(f64),
+}
+
+impl Control {
+    /// The step (s) or the tolerance, as a user types it or a table shows it.
+    #[must_use]
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Step(value) | Self::Tolerance(value) => value,
+        }
+    }
+
+    /// Control of the same kind with another value.
+    #[must_use]
+    pub fn with_value(self, value: f64) -> Self {
+        match self {
+            Self::Step(_) => Self::Step(value),
+            Self::Tolerance(_) => Self::Tolerance(value),
+        }
+    }
+
+    /// The fixed step (s), if there is one.
+    #[must_use]
+    pub fn step(self) -> Option<f64> {
+        match self {
+            Self::Step(step) => Some(step),
+            Self::Tolerance(_) => None,
+        }
+    }
+
+    /// The relative tolerance, if there is one.
+    #[must_use]
+    pub fn tolerance(self) -> Option<f64> {
+        match self {
+            Self::Step(_) => None,
+            Self::Tolerance(tolerance) => Some(tolerance),
+        }
+    }
+}
+
+impl fmt::Display for Control {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Step(step) => write!(f, "step {step} s"),
+            Self::Tolerance(tolerance) => write!(f, "tolerance {tolerance:e}"),
+        }
+    }
+}
