@@ -1,9 +1,7 @@
 //! Integrators know no physics: a system defined outside the core runs with every method that can serve it.
 
-mod common;
-
+use crate::common::integrate;
 use a3_core::{Error, ParticleSystem, integrators};
-use common::integrate;
 
 /// Predators and prey: a' = a (2/3 - 4/3 b), b' = b (a - 1).
 struct LotkaVolterra;

@@ -1,12 +1,10 @@
 //! The jelly: springs and skin of its lattice, its fall, its wobble, its rest.
 
-mod common;
-
 use std::collections::BTreeMap;
 
+use crate::common::{method, scene, simulation};
 use a3_core::{Control, Scene, Simulation, SpringKind, Vector3};
 use a3_scenes::Description;
-use common::{method, scene, simulation};
 
 /// A jelly of that many particles along its edges, in a world without gravity.
 fn lattice(grid: [usize; 3]) -> Scene {

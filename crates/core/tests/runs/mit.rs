@@ -1,10 +1,8 @@
 //! What is known of the course's cloth: which runs survive, when the others are lost, and how it hangs at rest.
 
-mod common;
-
+use crate::common::simulation;
 use a3_core::{Error, Mechanics};
 use approx::assert_abs_diff_eq;
-use common::simulation;
 
 #[test]
 fn runs_that_survive() {

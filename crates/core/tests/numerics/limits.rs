@@ -1,7 +1,6 @@
 //! Predicted limits against those that mathematics gives, and against what the scenes themselves do.
 
-mod common;
-
+use crate::common::{described, method, scene, scene_with_grid};
 use a3_core::stability::{
     Growth, LargestMode, Mode, Truth, largest_step, modes_in_motion, observe_at_rest,
     observe_from_start, rest, spectrum,
@@ -10,7 +9,6 @@ use a3_core::{
     Grid, Mechanics, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3, integrators,
 };
 use approx::assert_relative_eq;
-use common::{described, method, scene, scene_with_grid};
 
 fn undamped(frequency: f64) -> Mode {
     Mode {

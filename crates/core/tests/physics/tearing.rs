@@ -1,14 +1,12 @@
 //! What is stretched too far tears, and nothing else does.
 
-mod common;
-
+use crate::common::{described, method, scene, scene_with_grid};
 use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{
     Control, Mechanics, Model, Moment, Network, Path, Scene, Simulation, Spring, SpringKind,
     SpringLaw, Vector3, integrators,
 };
 use approx::assert_relative_eq;
-use common::{described, method, scene, scene_with_grid};
 
 const LIMIT: f64 = 1.5;
 const G: f64 = 9.81;

@@ -1,10 +1,8 @@
 //! References that know what they are not sure of, errors that are true, and choices that are the best.
 
-mod common;
-
+use crate::common::{method, scene};
 use a3_core::accuracy::{Frames, Metric, Reference, choose, horizon, ladder, measure};
 use a3_core::{Control, Scene, integrators};
-use common::{method, scene};
 
 const GO_ON: &dyn Fn() -> bool = &|| true;
 

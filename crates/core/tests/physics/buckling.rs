@@ -1,14 +1,12 @@
 //! Bend springs that buckle: their force by hand and by other means, and strips that give way smoothly.
 
-mod common;
-
+use crate::common::{distance, integrate, method, scene_with_grid, size};
 use a3_core::elements::Buckling;
 use a3_core::{
     Control, Mechanics, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
     Vector3,
 };
 use approx::assert_relative_eq;
-use common::{distance, integrate, method, scene_with_grid, size};
 
 /// A straight strip so stiff that it buckles at once.
 const STRIP: Buckling = Buckling {

@@ -1,9 +1,7 @@
 //! Scenes whose states were computed elsewhere, by extended-precision extrapolation: met to 1e-9.
 
-mod common;
-
+use crate::common::method;
 use a3_core::{Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3};
-use common::method;
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -73,7 +71,7 @@ fn error(name: &str, method: &str, h: f64) -> f64 {
     for state in &reference.states {
         simulation.advance_to(state.time).unwrap();
         assert_eq!(simulation.time(), state.time);
-        worst = worst.max(common::distance(
+        worst = worst.max(crate::common::distance(
             simulation.state(),
             &column_major(&state.positions, &state.velocities),
         ));
@@ -113,7 +111,7 @@ fn every_method_meets_the_references_in_the_limit() {
             if method.is_adaptive() {
                 let mut simulation = simulate(&reference, method.name, 1e-12);
                 simulation.advance_to(state.time).unwrap();
-                let error = common::distance(simulation.state(), &expected);
+                let error = crate::common::distance(simulation.state(), &expected);
                 println!("{name}, {}: {error:.1e}", method.name);
                 assert!(error < 1e-9, "{name}, {}: {error:e}", method.name);
                 continue;
@@ -130,7 +128,7 @@ fn every_method_meets_the_references_in_the_limit() {
             let mut row: Vec<Vec<f64>> = (0..levels).map(run).collect();
             let mut best = f64::INFINITY;
             for k in 0..levels as i32 {
-                let error = common::distance(row.last().unwrap(), &expected);
+                let error = crate::common::distance(row.last().unwrap(), &expected);
                 best = best.min(error);
                 let factor = 2f64.powi(order + k);
                 let next = |pair: &[Vec<f64>]| {
@@ -152,11 +150,11 @@ fn every_method_meets_the_references_in_the_limit() {
 fn built_in_scenes_are_the_references() {
     for (name, h) in [("mit", 2e-4), ("chain", 1e-3)] {
         let reference = load(name);
-        let mut simulation = common::simulation(name, "rk4", h);
+        let mut simulation = crate::common::simulation(name, "rk4", h);
         for state in &reference.states {
             simulation.advance_to(state.time).unwrap();
             let expected = column_major(&state.positions, &state.velocities);
-            let error = common::distance(simulation.state(), &expected);
+            let error = crate::common::distance(simulation.state(), &expected);
             assert!(error < 1e-8, "{name} at {}: {error:e}", state.time);
         }
     }

@@ -1,9 +1,7 @@
 //! The global error falls as h to the method's order, with gravity, drag, damped springs and a moving pin.
 
-mod common;
-
+use crate::common::{distance, integrate, method};
 use a3_core::{Grid, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3, integrators};
-use common::{distance, integrate, method};
 
 fn network(spring_damping: f64) -> Network {
     let mut network = Network::new(vec![1.0, 0.7, 1.3]).unwrap();

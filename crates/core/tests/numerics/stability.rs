@@ -1,9 +1,7 @@
 //! Growth factors and limits that mathematics gives exactly, each limit from both sides.
 
-mod common;
-
+use crate::common::{integrate, method, oscillator, scene, size};
 use approx::assert_relative_eq;
-use common::{integrate, method, oscillator, scene, size};
 
 /// Growth of the radius in one step of h on the circle f = (-y, x, 0).
 fn growth(name: &str, h: f64) -> f64 {

@@ -1,14 +1,12 @@
 //! Air that streams past triangles: its force by hand, which way round does not matter, and it takes energy only.
 
-mod common;
-
+use crate::common::{distance, integrate, method, scene_with_grid};
 use a3_core::elements::{Air, Wind};
 use a3_core::{
     Control, Mechanics, Model, Network, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
     integrators,
 };
 use approx::assert_relative_eq;
-use common::{distance, integrate, method, scene_with_grid};
 
 const DENSITY: f64 = 1.2;
 const DRAG: f64 = 1.3;

@@ -1,9 +1,7 @@
 //! The table of scenes: counts, and every scene with every method.
 
-mod common;
-
+use crate::common::{scene, scene_with_grid};
 use a3_core::{Control, Grid, MAX_PARTICLES, Simulation, SpringKind, integrators};
-use common::{scene, scene_with_grid};
 
 #[test]
 fn cloth_springs_are_counted_by_kind() {

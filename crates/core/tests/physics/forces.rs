@@ -1,14 +1,12 @@
 //! Forces: pure, their differentials against central differences, and what they conserve.
 
-mod common;
-
+use crate::common::{distance, integrate, method, scene, scene_with_grid, size};
 use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{
     Control, Grid, Mechanics, Model, Network, ParticleSystem, Sheet, Simulation, Spring,
     SpringKind, SpringLaw, Vector3,
 };
 use approx::assert_relative_eq;
-use common::{distance, integrate, method, scene, scene_with_grid, size};
 
 /// A repeatable number between -1 and 1 for each k.
 fn noise(k: usize) -> f64 {

@@ -1,9 +1,7 @@
 //! What the default cloth promises: `t 0.01` holds, whatever a hand does to it.
 
-mod common;
-
+use crate::common::simulation;
 use a3_core::{Simulation, Vector3};
-use common::simulation;
 
 const FRAME: f64 = 1.0 / 60.0;
 

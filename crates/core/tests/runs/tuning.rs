@@ -1,10 +1,8 @@
 //! What is changed while it runs, and descriptions of runs as they are.
 
-mod common;
-
+use crate::common::scene;
 use a3_core::{Network, Scene, Simulation, Vector3, integrators};
 use a3_scenes::Description;
-use common::scene;
 
 fn start(scene: Scene, method: &str, step: f64) -> Simulation {
     let method = integrators::find(method).unwrap();

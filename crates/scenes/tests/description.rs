@@ -1,10 +1,13 @@
 //! Scenes as text: what is read is what was written, and what is wrong is named with its line and key.
 
-mod common;
+use a3_core::{Grid, Model, Path, Scene, SpringKind, Vector3};
+use a3_scenes::{Description, Fault, Mesh, SCENES, find};
 
-use a3_core::{Model, Path, Scene, SpringKind, Vector3};
-use a3_scenes::{Description, Fault, Mesh, SCENES};
-use common::scene;
+/// A built-in scene, with this grid or its own.
+fn scene(name: &str, grid: Option<[usize; 2]>) -> Scene {
+    let grid = grid.map(|[rows, cols]| Grid::new(rows, cols).unwrap());
+    find(name).unwrap().build(grid).unwrap()
+}
 
 fn mesh(name: &str) -> Result<Mesh, String> {
     match name {
@@ -358,7 +361,7 @@ fn every_cloth_has_its_springs() {
 /// The grid asked for samples the same cloth: as wide, as heavy, and damped alike.
 #[test]
 fn another_grid_is_the_same_cloth() {
-    let (coarse, fine) = (scene("cloth"), common::scene_with_grid("cloth", 39, 39));
+    let (coarse, fine) = (scene("cloth", None), scene("cloth", Some([39, 39])));
     let mass = |scene: &Scene| {
         let network = scene.model.network().unwrap();
         // Border particles stand for half a cell too much.
@@ -366,7 +369,7 @@ fn another_grid_is_the_same_cloth() {
     };
     assert!((mass(&coarse) - mass(&fine)).abs() < 1e-9);
     assert!((fine.step_scale - 0.5).abs() < 1e-12);
-    assert!(common::scene_with_grid("mit", 30, 30).step_scale == 1.0);
+    assert!(scene("mit", Some([30, 30])).step_scale == 1.0);
 }
 
 #[test]

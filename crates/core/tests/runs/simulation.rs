@@ -1,15 +1,13 @@
 //! Stepping, and the hands: swing, wind, grab, pull, release, other methods and steps on the way.
 
-mod common;
-
 use std::sync::Arc;
 
+use crate::common::{method, scene, simulation};
 use a3_core::colliders::Sphere;
 use a3_core::{
     Cause, Control, Error, Model, Moment, Network, ParticleSystem, Path, Scene, Simulation, Vector3,
 };
 use approx::assert_relative_eq;
-use common::{method, scene, simulation};
 
 #[test]
 fn the_end_is_hit_exactly_and_no_step_is_longer() {

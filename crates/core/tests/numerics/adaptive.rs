@@ -1,12 +1,10 @@
 //! Adaptive methods: true errors and costs, dense output, the first step, and what happens where no step will do.
 
-mod common;
-
 use std::f64::consts::TAU;
 
+use crate::common::{distance, integrate, method, scene, simulation, size};
 use a3_core::integrators::{Taken, Tolerance};
 use a3_core::{Cause, Control, Error, ParticleSystem, Simulation, integrators};
-use common::{distance, integrate, method, scene, simulation, size};
 
 /// Ten times around the circle: the largest error at the ends of the steps, and the steps taken.
 fn circle(name: &str, relative: f64) -> (f64, usize) {
@@ -140,8 +138,12 @@ fn an_adaptive_run_takes_part_in_everything() {
 
 #[test]
 fn a_fixed_step_of_an_adaptive_method_stays_a_step() {
-    let mut run =
-        Simulation::new(common::scene("mit"), method("dopri5"), Control::Step(0.01)).unwrap();
+    let mut run = Simulation::new(
+        crate::common::scene("mit"),
+        method("dopri5"),
+        Control::Step(0.01),
+    )
+    .unwrap();
     run.take_steps(30).unwrap();
     let state = run.state().to_vec();
     assert_eq!((run.time(), run.step_size()), (0.3, Some(0.01)));
@@ -163,7 +165,7 @@ fn a_fixed_step_of_an_adaptive_method_stays_a_step() {
 
 #[test]
 fn a_tolerance_is_for_methods_that_estimate_their_error() {
-    let start = |control| Simulation::new(common::scene("mit"), method("rk4"), control);
+    let start = |control| Simulation::new(crate::common::scene("mit"), method("rk4"), control);
     let error = start(Control::Tolerance(1e-3)).err().unwrap().to_string();
     assert!(error.contains("estimates no error"), "{error}");
     let mut run = start(Control::Step(0.01)).unwrap();

@@ -1,13 +1,11 @@
 //! Implicit methods: growth, energy, rest, and steps that no explicit method survives.
 
-mod common;
-
 use std::time::Instant;
 
+use crate::common::{integrate, method, oscillator, scene, simulation};
 use a3_core::{Control, Grid, Mechanics, Network, Path, Sheet, Simulation, Vector3};
 use a3_core::{Model, Scene};
 use approx::assert_relative_eq;
-use common::{integrate, method, oscillator, scene, simulation};
 
 /// |R(iy)|
 fn growth(name: &str, y: f64) -> f64 {
@@ -88,9 +86,9 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
                     sum[a * n + c.j] += force;
                 }
             });
-            let largest = common::size(&df);
+            let largest = crate::common::size(&df);
             assert!(
-                common::distance(&df, &sum) <= 1e-12 * largest,
+                crate::common::distance(&df, &sum) <= 1e-12 * largest,
                 "{name}, {damping}"
             );
         }

@@ -1,15 +1,13 @@
 //! Constraints hold to rounding, forces that hold them do no work, and methods keep their orders with them.
 
-mod common;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::common::{distance, integrate, method, size};
 use a3_core::stability::{LargestMode, largest_step, rest, spectrum};
 use a3_core::{
     Constraint, Control, Grid, Mechanics, Model, Network, ParticleSystem, Path, Scene, Sheet,
     Simulation, Spring, SpringKind, SpringLaw, Vector3, integrators,
 };
-use common::{distance, integrate, method, size};
 
 const G: f64 = 9.81;
 const ZERO: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
