@@ -6,6 +6,8 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use serde_json::Value;
+
 /// A cloth whose left and right edges are pulled apart until it tears in between.
 pub const TEARING: &str = r#"
 solver = "r"
@@ -53,6 +55,14 @@ pub fn a3(folder: &Path, words: &[&str]) -> Output {
 
 pub fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).unwrap()
+}
+
+/// The state that the program writes to standard output.
+pub fn simulate(folder: &Path, words: &[&str]) -> Value {
+    let words = [&["simulate"], words, &["--output", "-"]].concat();
+    let output = a3(folder, &words);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 /// The line on stderr, of a program that left with `code` and said nothing else.

@@ -1,15 +1,10 @@
 //! The archive to hand in: made, unpacked, and used as the one who gets it would.
 
-#![allow(missing_docs, reason = "a test")]
-#![cfg(unix)]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::{asked, complaint, is_missing, text};
+use crate::common::{asked, complaint, is_missing, text};
 
 /// The sources as they are here, committed to a repository of their own.
 fn repository(folder: &Path) {

@@ -1,15 +1,11 @@
 //! Scenes from files: what is read, what is refused, and where it says so.
 
-#![allow(missing_docs, reason = "a test")]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use crate::common::{a3, complaint, simulate, text};
 use a3_scenes::Description;
-use common::{a3, complaint, text};
 use serde_json::Value;
 
 const SQUARE: &str = "\
@@ -18,13 +14,6 @@ file = \"square.obj\"
 density = 3
 stiffness = [7, 2]
 ";
-
-fn simulate(folder: &Path, words: &[&str]) -> Value {
-    let words = [&["simulate"], words, &["--output", "-"]].concat();
-    let output = a3(folder, &words);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
 
 /// Scenes with states that others computed are run as they are, and meet those states.
 #[test]

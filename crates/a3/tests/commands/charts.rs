@@ -1,29 +1,14 @@
 //! Charts as a user makes them: measured, resumed, interrupted, and refused in one line.
 
-#![allow(missing_docs, reason = "a test")]
-
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Command;
 use std::time::Duration;
 
-fn command(folder: &Path, words: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_a3"));
-    command
-        .args(words)
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
-    command
-}
-
-fn a3(folder: &Path, words: &[&str]) -> Output {
-    command(folder, words).output().unwrap()
-}
+use crate::common::{a3, command};
 
 /// What it wrote to stdout, of a program that went well.
-fn said(folder: &Path, words: &[&str]) -> String {
+pub fn said(folder: &Path, words: &[&str]) -> String {
     let output = a3(folder, words);
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{words:?}: {stderr}");
@@ -242,88 +227,6 @@ fn a_long_horizon_is_warned_of() {
     assert!(
         stderr.contains("warning: ") && stderr.contains("Lyapunov time"),
         "{stderr}"
-    );
-}
-
-#[test]
-fn limits_are_predicted_and_observed() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = [
-        "stability",
-        "--scene",
-        "mit",
-        "--solvers",
-        "t,r,v,x,s",
-        "-o",
-        "s.svg",
-    ];
-    let text = said(folder.path(), &words);
-    let mut rows = 0;
-    for line in text.lines() {
-        let mut cells = line.split_whitespace();
-        let solver = cells.next().unwrap_or_default();
-        let cells: Vec<f64> = cells.map_while(|cell| cell.parse().ok()).collect();
-        if let [
-            _,
-            moving,
-            seen_moving,
-            ratio_moving,
-            resting,
-            seen_resting,
-            ratio_resting,
-        ] = cells[..]
-        {
-            assert!((seen_moving / moving - ratio_moving).abs() < 0.01, "{line}");
-            assert!(
-                (seen_resting / resting - ratio_resting).abs() < 0.01,
-                "{line}"
-            );
-            // Past its limit Heun's method grows slowly, while the cloth goes on to another shape.
-            let most = if solver == "trapezoid" { 1.2 } else { 1.1 };
-            assert!((0.9..most).contains(&ratio_moving), "{line}");
-            assert!((0.97..1.03).contains(&ratio_resting), "{line}");
-            rows += 1;
-        }
-    }
-    assert_eq!(rows, 5, "{text}");
-    let svg = fs::read_to_string(folder.path().join("s.svg")).unwrap();
-    for word in ["Where solvers fail: mit", "Re(h", "stable region"] {
-        assert!(svg.contains(word), "{word}");
-    }
-}
-
-#[test]
-fn a_choice_comes_with_its_command() {
-    let folder = tempfile::tempdir().unwrap();
-    let text = said(
-        folder.path(),
-        &["choose", "--error", "1e-4", "--scene", "chain"],
-    );
-    for word in ["best", "runner-up", "an error of 1e-4 m", "ms/frame"] {
-        assert!(text.contains(word), "{word} in\n{text}");
-    }
-    let line = text
-        .lines()
-        .find_map(|line| line.strip_prefix("run it:  a3 "))
-        .unwrap();
-    let mut words: Vec<_> = line.split_whitespace().collect();
-    assert!(
-        words.contains(&"--scene") && words.contains(&"chain"),
-        "{line}"
-    );
-    // The same words, without a window.
-    words.splice(0..0, ["simulate"]);
-    words.extend(["--until", "1", "--output", "c.json"]);
-    said(folder.path(), &words);
-    let text = said(
-        folder.path(),
-        &[
-            "choose", "--budget", "5", "--scene", "simple", "--until", "2",
-        ],
-    );
-    assert!(
-        text.contains("5 ms a frame") && text.contains("run it:  a3 "),
-        "{text}"
     );
 }
 

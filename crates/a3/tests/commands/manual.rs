@@ -1,14 +1,10 @@
 //! The manual and what shells complete, as man and shells take them.
 
-#![allow(missing_docs, reason = "a test")]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use common::{a3, asked, complaint, is_missing, text};
+use crate::common::{a3, asked, complaint, is_missing, text};
 
 const COMMANDS: [&str; 10] = [
     "simulate",

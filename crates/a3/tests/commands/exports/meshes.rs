@@ -1,0 +1,158 @@
+//! Meshes as OBJ and PC2.
+
+use std::fs;
+
+use super::{COUNT, distance, normals, positions, run, triangles, write};
+use crate::common::{TEARING, a3, text};
+use serde_json::Value;
+
+#[test]
+fn obj_sequences_have_surfaces_with_smooth_normals() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "cloth", "f-##.obj", &["--fps", "25"]);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), COUNT);
+    run("cloth", |k, simulation| {
+        let file = folder.path().join(format!("f-{:02}.obj", k + 1));
+        let (models, _) = tobj::load_obj(file, &tobj::LoadOptions::default()).unwrap();
+        let [model] = &models[..] else {
+            panic!("one object")
+        };
+        assert_eq!(model.name, "cloth");
+        let mesh = &model.mesh;
+        let (right, normals) = (positions(simulation), normals(simulation));
+        let corners = triangles(simulation).concat();
+        assert_eq!(mesh.indices.len(), corners.len());
+        let at = |numbers: &[f32], i: u32| {
+            let i = 3 * i as usize;
+            [numbers[i], numbers[i + 1], numbers[i + 2]]
+        };
+        for (c, corner) in corners.iter().enumerate() {
+            assert_eq!(
+                at(&mesh.positions, mesh.indices[c]),
+                right[*corner as usize]
+            );
+            let normal = at(&mesh.normals, mesh.normal_indices[c]);
+            assert!(distance(normal, normals[*corner as usize]) < 1e-6);
+        }
+    });
+    // Without #, the state at the end.
+    write(folder.path(), "cloth", "last.obj", &[]);
+    let last = fs::read_to_string(folder.path().join("last.obj")).unwrap();
+    assert!(last.contains("t = 0.21 s"));
+}
+
+/// No face of an OBJ spans a tear; formats that have one mesh for all frames say that theirs does.
+#[test]
+fn what_is_torn_is_no_face() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("tearing.toml"), TEARING).unwrap();
+    let write = |output: &str, more: &[&str]| {
+        let words = ["simulate", "--scene", "tearing.toml", "--until", "0.8"];
+        let output = a3(
+            folder.path(),
+            &[&words[..], &["--output", output], more].concat(),
+        );
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stderr).to_owned()
+    };
+    assert_eq!(
+        write("f-#.obj", &["--fps", "10", "--summary", "s.json"]),
+        ""
+    );
+    let faces = |k: usize| {
+        let file = folder.path().join(format!("f-{k}.obj"));
+        let (models, _) = tobj::load_obj(file, &tobj::LoadOptions::default()).unwrap();
+        let mesh = &models[0].mesh;
+        let corner = |i: u32| {
+            let i = 3 * i as usize;
+            [0, 1, 2].map(|k| mesh.positions[i + k])
+        };
+        let corners = mesh.indices.chunks_exact(3);
+        let longest = corners.map(|f| {
+            let [a, b, c] = [0, 1, 2].map(|k| corner(f[k]));
+            let side = |a, b: [f32; 3]| distance(a, b.map(f64::from));
+            side(a, b).max(side(b, c)).max(side(c, a))
+        });
+        let longest: Vec<_> = longest.collect();
+        (longest.len(), longest.into_iter().fold(0.0, f64::max))
+    };
+    assert_eq!(faces(1).0, 50);
+    let (left, longest) = faces(9);
+    assert!((20..50).contains(&left), "{left} faces are left");
+    // Diagonals are of springs or across a square of four.
+    assert!(longest < 1.4 * 2.0 * 0.2, "{longest} m");
+    let summary = fs::read(folder.path().join("s.json")).unwrap();
+    let summary: Value = serde_json::from_slice(&summary).unwrap();
+    let torn = summary["torn"].as_u64().unwrap();
+    assert!(torn > 5, "{torn}");
+    for name in ["f.pc2", "f.glb"] {
+        let said = write(name, &["--fps", "10"]);
+        let right = format!("{torn} springs broke, but {name} has one mesh for all its frames");
+        assert!(said.starts_with(&right), "{said}");
+    }
+}
+
+/// The words of the lines of an OBJ that begin with this one.
+fn lines<'a>(obj: &'a str, keyword: &'a str) -> impl Iterator<Item = Vec<&'a str>> {
+    obj.lines()
+        .map(|line| line.split(' ').collect::<Vec<_>>())
+        .filter(move |words| words[0] == keyword)
+}
+
+#[test]
+fn what_has_no_surface_is_points_and_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    for (scene, points, springs) in [("chain", 4, 3), ("pendulum", 2, 1), ("simple", 1, 0)] {
+        write(folder.path(), scene, "f-#.obj", &["--fps", "25"]);
+        run(scene, |k, simulation| {
+            let obj = fs::read_to_string(folder.path().join(format!("f-{}.obj", k + 1))).unwrap();
+            let vertices: Vec<[f32; 3]> = lines(&obj, "v")
+                .map(|words| [1, 2, 3].map(|k| words[k].parse().unwrap()))
+                .collect();
+            assert_eq!(vertices, positions(simulation));
+            let counts = ["p", "l", "f", "vn"].map(|keyword| lines(&obj, keyword).count());
+            assert_eq!(counts, [points, springs, 0, 0]);
+            let network = simulation.model().network();
+            let ends = network.into_iter().flat_map(a3_core::Network::springs);
+            for (spring, words) in ends.zip(lines(&obj, "l")) {
+                assert_eq!(
+                    words[1..],
+                    [(spring.i + 1).to_string(), (spring.j + 1).to_string()]
+                );
+            }
+        });
+    }
+}
+
+/// By the format's definition: 12 letters, four bytes each of version, points, start, rate and samples, then the points.
+#[test]
+fn pc2_has_the_positions_of_all_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    for scene in ["cloth", "chain"] {
+        let said = write(folder.path(), scene, "x.pc2", &["--fps", "25"]);
+        assert!(said.contains("x.obj"), "{said}");
+        let bytes = fs::read(folder.path().join("x.pc2")).unwrap();
+        let word = |k: usize| <[u8; 4]>::try_from(&bytes[12 + 4 * k..16 + 4 * k]).unwrap();
+        let n = u32::from_le_bytes(word(1)) as usize;
+        assert_eq!(&bytes[..12], b"POINTCACHE2\0");
+        assert_eq!(u32::from_le_bytes(word(0)), 1);
+        assert_eq!([2, 3].map(|k| f32::from_le_bytes(word(k))), [0.0, 1.0]);
+        assert_eq!(u32::from_le_bytes(word(4)) as usize, COUNT);
+        assert_eq!(bytes.len(), 32 + 12 * n * COUNT);
+        let at = |k: usize, i: usize| {
+            [0, 1, 2].map(|c| f32::from_le_bytes(word(5 + 3 * (k * n + i) + c)))
+        };
+        // The mesh it belongs to has its points in the same order.
+        let obj = fs::read_to_string(folder.path().join("x.obj")).unwrap();
+        let vertices: Vec<_> = lines(&obj, "v").collect();
+        assert_eq!(vertices.len(), n);
+        run(scene, |k, simulation| {
+            assert_eq!(simulation.particles(), n);
+            for (i, right) in positions(simulation).into_iter().enumerate() {
+                assert_eq!(at(k, i), right);
+                let vertex = [1, 2, 3].map(|c| vertices[i][c].parse::<f32>().unwrap());
+                assert!(k > 0 || vertex == right);
+            }
+        });
+    }
+}

@@ -1,0 +1,83 @@
+//! Files for other programs, read back by readers that were written elsewhere, and compared with the
+//! run that they are of.
+//!
+//! Khronos' own validator is asked too where it is installed: `npm install gltf-validator`, and
+//! `A3_GLTF_VALIDATOR` set to that `node_modules`.
+
+mod endings;
+mod glb;
+mod meshes;
+mod numbers;
+
+use std::path::Path;
+
+use crate::common::{a3, text};
+use a3_core::{Control, Simulation, integrators};
+
+/// Frames a second of what is compared, and how many: the last at 0.2 s, before the end.
+const RATE: f64 = 25.0;
+
+const COUNT: usize = 6;
+
+/// What the program is asked for.
+fn words<'a>(scene: &'a str, output: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let run = [
+        "simulate", "r", "0.007", "--scene", scene, "--until", "0.21", "--output", output,
+    ];
+    [&run[..], more].concat()
+}
+
+fn write(folder: &Path, scene: &str, output: &str, more: &[&str]) -> String {
+    let output = a3(folder, &words(scene, output, more));
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+    text(&output.stdout).to_owned()
+}
+
+/// The same run by the library, at the times of its frames.
+fn run(scene: &str, mut frame: impl FnMut(usize, &Simulation)) {
+    let scene = a3_scenes::find(scene).unwrap().build(None).unwrap();
+    let method = integrators::find("r").unwrap();
+    let mut simulation = Simulation::new(scene, method, Control::Step(0.007)).unwrap();
+    for k in 0..COUNT {
+        simulation.advance_to(k as f64 / RATE).unwrap();
+        frame(k, &simulation);
+    }
+}
+
+/// Row i of an n x 3 matrix.
+fn row(matrix: &[f64], i: usize) -> [f64; 3] {
+    let n = matrix.len() / 3;
+    [matrix[i], matrix[n + i], matrix[2 * n + i]]
+}
+
+/// Positions at a frame in single precision.
+fn positions(simulation: &Simulation) -> Vec<[f32; 3]> {
+    let n = simulation.particles();
+    (0..n)
+        .map(|i| row(&simulation.state()[..3 * n], i).map(|x| x as f32))
+        .collect()
+}
+
+fn triangles(simulation: &Simulation) -> Vec<[u32; 3]> {
+    simulation.scene().surface.triangles.clone()
+}
+
+/// Normals by the textbook: cross products of two sides, which are as long as the areas, summed over the triangles around.
+fn normals(simulation: &Simulation) -> Vec<[f64; 3]> {
+    let mut sums = vec![a3_core::Vector3::zeros(); simulation.particles()];
+    for triangle in triangles(simulation) {
+        let [a, b, c] = triangle.map(|i| simulation.position(i as usize));
+        for i in triangle {
+            sums[i as usize] += (b - a).cross(&(c - a));
+        }
+    }
+    sums.iter().map(|n| n.normalize().into()).collect()
+}
+
+fn distance(a: [f32; 3], b: [f64; 3]) -> f64 {
+    (0..3)
+        .map(|k| (f64::from(a[k]) - b[k]).powi(2))
+        .sum::<f64>()
+        .sqrt()
+}

@@ -1,0 +1,120 @@
+//! MP4s, which ffmpeg makes.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use super::{difference, made, picture, with};
+use crate::common::{asked, command, complaint, gpu_is_missing, is_missing, text};
+
+#[test]
+fn an_mp4_is_what_it_should_be() {
+    let folder = tempfile::tempdir().unwrap();
+    if is_missing("ffmpeg")
+        || is_missing("ffprobe")
+        || !made(folder.path(), &with("film.mp4", &["--fps", "50"]))
+    {
+        return;
+    }
+    let says = asked(
+        folder.path(),
+        "ffprobe",
+        &["-v", "error", "-count_frames", "-show_streams", "film.mp4"],
+    );
+    for line in [
+        "codec_name=h264",
+        "pix_fmt=yuv420p",
+        "width=160",
+        "height=120",
+        "r_frame_rate=50/1",
+        "nb_read_frames=26",
+        "color_space=bt709",
+    ] {
+        assert!(says.lines().any(|said| said == line), "{line} in\n{says}");
+    }
+    // The last frame, decoded, is the picture of its time.
+    asked(
+        folder.path(),
+        "ffmpeg",
+        &[
+            "-v",
+            "error",
+            "-i",
+            "film.mp4",
+            "-vf",
+            "select=eq(n\\,25)",
+            "-frames:v",
+            "1",
+            "last.png",
+        ],
+    );
+    assert!(made(folder.path(), &with("x.png", &[])));
+    let (_, mean) = difference(
+        &picture(folder.path(), "last.png"),
+        &picture(folder.path(), "x.png"),
+    );
+    assert!(mean < 2.0, "mean difference {mean}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+}
+
+/// A program that takes the place of ffmpeg.
+#[cfg(unix)]
+fn stand_in(folder: &Path, script: &str) {
+    use std::os::unix::fs::PermissionsExt;
+    let path = folder.join("ffmpeg");
+    fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+/// It may fail at once or when it has everything: its last line says why.
+#[test]
+#[cfg(unix)]
+fn when_ffmpeg_fails_nothing_is_left_but_its_reason() {
+    let (folder, programs) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    for script in [
+        "echo first >&2; echo no such codec >&2; exit 1",
+        "cat >/dev/null; echo first >&2; echo no such codec >&2; exit 1",
+    ] {
+        stand_in(programs.path(), script);
+        let path = format!("{}:/usr/bin:/bin", programs.path().display());
+        let output = command(folder.path(), &with("film.mp4", &[]))
+            .env("PATH", path)
+            .output()
+            .unwrap();
+        if gpu_is_missing(&output) {
+            return;
+        }
+        assert_eq!(complaint(&output, 1), "error: ffmpeg failed: no such codec");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}
+
+/// The first interrupt waits for an ffmpeg that takes its time, the second does not.
+#[test]
+#[cfg(unix)]
+fn a_second_interrupt_ends_at_once_and_leaves_nothing() {
+    let (folder, programs) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    stand_in(programs.path(), "cat >/dev/null; sleep 5");
+    let words = [
+        "render", "v", "0.01", "--until", "1000", "--size", "80x60", "--output", "x.mp4",
+    ];
+    let path = format!("{}:/usr/bin:/bin", programs.path().display());
+    let child = command(folder.path(), &words)
+        .env("PATH", path)
+        .spawn()
+        .unwrap();
+    let id = child.id().to_string();
+    std::thread::sleep(Duration::from_secs(2));
+    let begun = Instant::now();
+    for _ in 0..2 {
+        asked(folder.path(), "kill", &["-INT", &id]);
+        std::thread::sleep(Duration::from_millis(500));
+    }
+    let output = child.wait_with_output().unwrap();
+    if gpu_is_missing(&output) {
+        return;
+    }
+    assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
+    assert!(begun.elapsed() < Duration::from_secs(4));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}

@@ -1,0 +1,35 @@
+//! The program as it is typed: what it writes, what it refuses, and how it says so.
+
+#![allow(missing_docs, reason = "a test")]
+
+mod charts;
+mod choices;
+#[path = "../common/mod.rs"]
+mod common;
+mod exports;
+mod films;
+#[cfg(unix)]
+mod hand_in;
+mod help;
+mod manual;
+mod pictures;
+mod scene_files;
+mod states;
+mod usage;
+
+use std::fs;
+use std::path::Path;
+
+use common::{a3, complaint};
+
+/// The line on stderr of a program that left with `code`, and left an empty folder empty.
+fn refused(folder: &Path, words: &[&str], code: i32) -> String {
+    let line = complaint(&a3(folder, words), code);
+    assert!(line.starts_with("error: "), "{words:?}: {line}");
+    assert_eq!(
+        fs::read_dir(folder).unwrap().count(),
+        0,
+        "{words:?} leaves nothing behind"
+    );
+    line
+}

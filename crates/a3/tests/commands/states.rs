@@ -1,0 +1,201 @@
+//! The state at the end of a run: its numbers, and the file that they are written to.
+
+use std::fs;
+use std::process::Stdio;
+
+use crate::common::{a3, command, gpu_is_missing, simulate, text};
+use crate::refused;
+use serde_json::Value;
+
+#[test]
+fn the_state_is_written_at_full_precision() {
+    let folder = tempfile::tempdir().unwrap();
+    let state = simulate(
+        folder.path(),
+        &["rk4", "0.3", "--scene", "simple", "--until", "1"],
+    );
+    assert_eq!(
+        (&state["scene"], &state["solver"]),
+        (&"simple".into(), &"rk4".into())
+    );
+    assert_eq!(
+        (&state["step"], &state["time"], &state["steps"]),
+        (&0.3.into(), &1.0.into(), &4.into())
+    );
+    assert_eq!(
+        (&state["evaluations"], &state["energy"]),
+        (&16.into(), &Value::Null)
+    );
+    // The same, by hand.
+    let (mut x, mut y) = (1.0f64, 0.0f64);
+    let f = |x: f64, y: f64| (-y, x);
+    for h in [0.3, 0.3, 0.3, 1.0 - 3.0 * 0.3] {
+        let k1 = f(x, y);
+        let k2 = f(x + h / 2.0 * k1.0, y + h / 2.0 * k1.1);
+        let k3 = f(x + h / 2.0 * k2.0, y + h / 2.0 * k2.1);
+        let k4 = f(x + h * k3.0, y + h * k3.1);
+        x += h / 6.0 * (k1.0 + 2.0 * k2.0 + 2.0 * k3.0 + k4.0);
+        y += h / 6.0 * (k1.1 + 2.0 * k2.1 + 2.0 * k3.1 + k4.1);
+    }
+    let position = &state["positions"][0];
+    assert!((position[0].as_f64().unwrap() - x).abs() < 1e-15);
+    assert!((position[1].as_f64().unwrap() - y).abs() < 1e-15);
+    assert_eq!(
+        state["velocities"][0][0].as_f64().unwrap(),
+        -position[1].as_f64().unwrap()
+    );
+
+    let state = simulate(
+        folder.path(),
+        &[
+            "t", "0.01", "--grid", "5x7", "--until", "0.5", "--wind", "--swing",
+        ],
+    );
+    assert_eq!(state["positions"].as_array().unwrap().len(), 35);
+    assert_eq!(state["velocities"].as_array().unwrap().len(), 35);
+    assert!(state["energy"].as_f64().is_some());
+    let start = simulate(
+        folder.path(),
+        &["t", "0.01", "--grid", "5x7", "--until", "0"],
+    );
+    assert_eq!((&start["steps"], &start["time"]), (&0.into(), &0.0.into()));
+
+    // A tolerance is no step.
+    let state = simulate(folder.path(), &["dopri5", "1e-4", "--until", "0.1"]);
+    assert!(state["step"].is_null());
+    assert_eq!(state["tolerance"], 1e-4);
+}
+
+/// As many steps as it takes, and none of a rounding error's size.
+#[test]
+fn steps_are_counted_right() {
+    let folder = tempfile::tempdir().unwrap();
+    for (step, until, steps) in [
+        ("0.0003", "3", 10_000),
+        ("0.6", "3.6", 6),
+        ("0.3", "0.9", 3),
+        ("0.03", "0.9", 30),
+        ("0.4", "1", 3),
+    ] {
+        let state = simulate(
+            folder.path(),
+            &["e", step, "--scene", "simple", "--until", until],
+        );
+        assert_eq!(state["steps"], steps, "{until} s in steps of {step} s");
+        assert_eq!(state["time"], until.parse::<f64>().unwrap());
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn links_stay_links_and_modes_stay_modes() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let (target, link) = (
+        folder.path().join("target.json"),
+        folder.path().join("link.json"),
+    );
+    fs::write(&target, "old").unwrap();
+    fs::set_permissions(&target, fs::Permissions::from_mode(0o600)).unwrap();
+    std::os::unix::fs::symlink("target.json", &link).unwrap();
+    let words = [
+        "simulate",
+        "t",
+        "0.01",
+        "--scene",
+        "chain",
+        "--until",
+        "1",
+        "--output",
+        "link.json",
+    ];
+    assert!(a3(folder.path(), &words).status.success());
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert!(fs::read_to_string(&target).unwrap().starts_with('{'));
+    assert_eq!(
+        fs::metadata(&target).unwrap().permissions().mode() & 0o777,
+        0o600
+    );
+}
+
+#[test]
+fn a_state_file_is_whole_or_absent() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |output: &str| {
+        a3(
+            folder.path(),
+            &[
+                "simulate", "t", "0.01", "--scene", "chain", "--until", "1", "--output", output,
+            ],
+        )
+    };
+    assert!(run("state.json").status.success());
+    let first = fs::read(folder.path().join("state.json")).unwrap();
+    assert!(run("state.json").status.success());
+    assert_eq!(
+        fs::read(folder.path().join("state.json")).unwrap(),
+        first,
+        "a run repeats itself to the byte"
+    );
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    let output = run("nowhere/state.json");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("there is no folder nowhere"));
+    #[cfg(target_os = "linux")]
+    {
+        // A device that is always full, as a file ending in .json and as standard output.
+        std::os::unix::fs::symlink("/dev/full", folder.path().join("full.json")).unwrap();
+        let output = run("full.json");
+        assert_eq!(output.status.code(), Some(1));
+        assert!(
+            text(&output.stderr).contains("full.json") && text(&output.stderr).contains("space")
+        );
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let words = [
+            "simulate", "t", "0.01", "--scene", "chain", "--until", "1", "--output", "-",
+        ];
+        let output = command(folder.path(), &words)
+            .stdout(full)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let output = output.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        assert!(text(&output.stderr).contains("standard output"));
+    }
+}
+
+#[test]
+fn a_blow_up_writes_nothing_and_says_where() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = [
+        "simulate",
+        "rk4",
+        "0.04",
+        "--scene",
+        "mit",
+        "--until",
+        "8",
+        "--output",
+        "state.json",
+    ];
+    let line = refused(folder.path(), &words, 1);
+    for part in ["blew up at step ", "t = 0.", "particle "] {
+        assert!(line.contains(part), "{line}");
+    }
+    let words = [
+        "render",
+        "rk4",
+        "0.04",
+        "--scene",
+        "mit",
+        "--until",
+        "8",
+        "--output",
+        "picture.png",
+    ];
+    let output = a3(folder.path(), &words);
+    if !gpu_is_missing(&output) {
+        assert!(refused(folder.path(), &words, 1).contains("blew up"));
+    }
+}

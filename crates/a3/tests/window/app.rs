@@ -1,0 +1,184 @@
+//! The program in its window.
+
+use std::collections::HashMap;
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ExitStatus, Stdio};
+use std::sync::{Arc, Mutex};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::display::{Display, PATIENCE, until};
+use crate::screen::Screen;
+
+/// The program in its window, gone when dropped.
+pub struct App<'d> {
+    display: &'d Display,
+    child: Child,
+    pub window: String,
+    lines: Arc<Mutex<Vec<String>>>,
+}
+
+impl<'d> App<'d> {
+    /// Starts the program. Now and then its window does not show up, and why is not known: up to three tries, said aloud.
+    pub fn open(display: &'d Display, folder: &Path, words: &[&str]) -> Self {
+        (0..3)
+            .find_map(|_| Self::try_open(display, folder, words))
+            .expect("no window in three tries")
+    }
+
+    pub fn try_open(display: &'d Display, folder: &Path, words: &[&str]) -> Option<Self> {
+        let mut child = display
+            .command(env!("CARGO_BIN_EXE_a3"))
+            .args(words)
+            .arg("--status")
+            .current_dir(folder)
+            .env("XDG_RUNTIME_DIR", folder)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let lines = Arc::new(Mutex::new(vec![]));
+        let (sink, stderr) = (lines.clone(), child.stderr.take().unwrap());
+        std::thread::spawn(move || {
+            for line in BufReader::new(stderr).lines().map_while(Result::ok) {
+                sink.lock().unwrap().push(line);
+            }
+        });
+        let begun = Instant::now();
+        let window = loop {
+            let found = display.xdotool(&["search", "--onlyvisible", "--name", "^a3: "]);
+            if let Some(window) = found.lines().next() {
+                break window.to_owned();
+            }
+            if let Some(status) = child.try_wait().unwrap() {
+                panic!(
+                    "it left before its window opened, {status}: {:?}",
+                    lines.lock().unwrap()
+                );
+            }
+            if begun.elapsed() > PATIENCE / 3 {
+                child.kill().unwrap();
+                child.wait().unwrap();
+                let lines = lines.lock().unwrap();
+                let _ = writeln!(std::io::stderr(), "NO WINDOW, TRYING AGAIN: {lines:?}");
+                return None;
+            }
+            sleep(Duration::from_millis(20));
+        };
+        display.xdotool(&["windowactivate", "--sync", &window]);
+        let app = Self {
+            display,
+            child,
+            window,
+            lines,
+        };
+        until("a first frame", || {
+            (app.number("frames")? > 2.0).then_some(())
+        });
+        Some(app)
+    }
+
+    pub fn status(&self) -> Option<HashMap<String, String>> {
+        let lines = self.lines.lock().unwrap();
+        let line = lines
+            .iter()
+            .rev()
+            .find_map(|line| line.strip_prefix("status "))?;
+        let pairs = line
+            .split_whitespace()
+            .filter_map(|word| word.split_once('='));
+        Some(
+            pairs
+                .map(|(key, value)| (key.to_owned(), value.to_owned()))
+                .collect(),
+        )
+    }
+
+    pub fn get(&self, key: &str) -> String {
+        self.status()
+            .and_then(|status| status.get(key).cloned())
+            .unwrap_or_default()
+    }
+
+    pub fn number(&self, key: &str) -> Option<f64> {
+        self.status()?.get(key)?.parse().ok()
+    }
+
+    /// Left and top of the window on the screen.
+    pub fn corner(&self) -> (i32, i32) {
+        let text = self
+            .display
+            .xdotool(&["getwindowgeometry", "--shell", &self.window]);
+        let value = |name| {
+            text.lines()
+                .find_map(|line| line.strip_prefix(name)?.parse().ok())
+                .unwrap()
+        };
+        (value("X="), value("Y="))
+    }
+
+    pub fn expect(&self, key: &str, value: &str) {
+        until(&format!("{key}={value}, is {}", self.get(key)), || {
+            (self.get(key) == value).then_some(())
+        });
+    }
+
+    pub fn press(&self, key: &str) {
+        self.display.xdotool(&["key", key]);
+    }
+
+    /// Presses a key, and waits for its effect.
+    pub fn press_for(&self, key: &str, name: &str, value: &str) {
+        self.display.xdotool(&["key", key]);
+        self.expect(name, value);
+    }
+
+    pub fn frames_go_on(&self) {
+        let before = self.number("frames").unwrap();
+        until("more frames", || {
+            (self.number("frames")? > before + 2.0).then_some(())
+        });
+    }
+
+    /// Waits until what is paused is drawn, and looks.
+    pub fn settled(&self) -> Screen {
+        let mut last = self.display.screen();
+        until("a still picture", || {
+            sleep(Duration::from_millis(250));
+            let now = self.display.screen();
+            let still = now.difference(&last) == 0.0;
+            last = now;
+            still.then_some(())
+        });
+        last
+    }
+
+    pub fn processor_ticks(&self) -> u64 {
+        let text = fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap();
+        let fields: Vec<_> = text
+            .rsplit(')')
+            .next()
+            .unwrap()
+            .split_whitespace()
+            .collect();
+        fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
+    }
+
+    pub fn exit(mut self) -> ExitStatus {
+        let status = until("the end", || self.child.try_wait().unwrap());
+        let lines = self.lines.lock().unwrap();
+        assert!(
+            !lines.iter().any(|line| line.contains("panicked")),
+            "{lines:#?}"
+        );
+        status
+    }
+}
+
+impl Drop for App<'_> {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

@@ -1,0 +1,127 @@
+//! Several methods side by side.
+
+use crate::app::App;
+use crate::display::{Display, until};
+use crate::keys::SCENES;
+use crate::screen::{Screen, is_amber, is_red};
+
+/// Where the hands are in the left and in the right pane (px).
+fn hands(app: &App) -> Option<((i32, i32), (i32, i32))> {
+    let hands = app.get("hands");
+    let place = |hand: &str| {
+        let (x, y) = hand.split_once(',')?;
+        Some((x.parse().ok()?, y.parse().ok()?))
+    };
+    let (a, b) = hands.split_once(';')?;
+    Some((place(a)?, place(b)?))
+}
+
+/// Several methods at the same time: each in its pane, with its own error; keys and hands for all.
+#[test]
+fn comparing() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["compare", "e:0.05", "r:0.05", "--scene", "simple"];
+    let app = App::open(&display, folder.path(), &words);
+    assert_eq!(app.get("solvers"), "euler,rk4");
+    let both = |key: &str| -> Option<(f64, f64)> {
+        let values = app.get(key);
+        let (a, b) = values.split_once(',')?;
+        Some((a.parse().ok()?, b.parse().ok()?))
+    };
+    until("two errors", || {
+        let (euler, rk4) = both("errors")?;
+        (euler > 0.05 && rk4 < 1e-5).then_some(())
+    });
+    let (a, b) = both("times").unwrap();
+    assert!((a - b).abs() < 0.051, "{a} {b}");
+
+    // Plus is for all; a digit for the pane under the pointer.
+    app.press_for("plus", "step_sizes", "0.06,0.06");
+    display.xdotool(&["mousemove", "--window", &app.window, "1000", "600"]);
+    app.press_for("2", "solvers", "euler,trapezoid");
+    display.xdotool(&["mousemove", "--window", &app.window, "200", "600"]);
+    app.press_for("4", "solvers", "rk4,trapezoid");
+
+    app.press("p");
+    let picture = folder.path().join("a3-simple-1.png");
+    until("a picture", || picture.exists().then_some(()));
+    let picture = image::open(&picture).unwrap();
+    assert_eq!((picture.width(), picture.height()), (1280, 720));
+
+    // Sizes in which the panes are elsewhere.
+    for (width, height) in [("260", "860"), ("90", "70"), ("1280", "720")] {
+        display.xdotool(&["windowsize", &app.window, width, height]);
+        app.expect("size", &format!("{width}x{height}"));
+        app.frames_go_on();
+    }
+
+    // The next scene is there in both panes, and a pull in the right one is a pull in both.
+    for scene in &SCENES[1..] {
+        app.press_for("t", "scene", scene);
+    }
+    for _ in 0..12 {
+        app.press("minus");
+    }
+    app.press_for("r", "lost", "false,false");
+    until("the cloth to hang", || {
+        (app.number("time")? > 1.0).then_some(())
+    });
+    let (left, top) = app.corner();
+    let halves = |screen: &Screen, is: fn([u8; 3]) -> bool| {
+        let half = |k: i32| left + 642 * k..left + 642 * k + 638;
+        [0, 1].map(|k| screen.count_within(half(k), top + 40..top + 720, is))
+    };
+    let screen = display.screen();
+    assert!(
+        halves(&screen, is_red).into_iter().all(|red| red > 3000),
+        "{:?}",
+        halves(&screen, is_red)
+    );
+    let (x, y) = (1280 * 3 / 4 + 40, 330);
+    let go = |x: i32, y: i32| {
+        let (x, y) = (x.to_string(), y.to_string());
+        display.xdotool(&["mousemove", "--window", &app.window, &x, &y]);
+    };
+    go(x, y);
+    display.xdotool(&["mousedown", "1"]);
+    let hands = || hands(&app);
+    let (_, near) = until("a hand in each pane", hands);
+    assert!(
+        near.0.abs_diff(x) < 40 && near.1.abs_diff(y) < 40,
+        "{near:?}"
+    );
+    go(x + 60, y - 40);
+    until("both hands at the same place of their panes", || {
+        let (a, b) = hands()?;
+        let moved = b.0.abs_diff(near.0 + 60) < 4 && b.1.abs_diff(near.1 - 40) < 4;
+        (moved && a.0.abs_diff(b.0 - 641) < 4 && a.1.abs_diff(b.1) < 4).then_some(())
+    });
+    // A fold of the cloth may lie before a mark for a while.
+    let mut elsewhere = [(-120, -60), (60, -40)].into_iter().cycle();
+    until("a mark in each pane", || {
+        let marked = halves(&display.screen(), is_amber);
+        if marked.into_iter().all(|amber| amber > 5) {
+            return Some(());
+        }
+        let (dx, dy) = elsewhere.next()?;
+        go(x + dx, y + dy);
+        None
+    });
+    display.xdotool(&["mouseup", "1"]);
+    app.expect("grabbed", "-");
+    app.expect("lost", "false,false");
+
+    // The device is lost, and both pictures come back.
+    app.press_for("F12", "devices", "2");
+    app.frames_go_on();
+    assert!(
+        halves(&display.screen(), is_red)
+            .into_iter()
+            .all(|red| red > 3000)
+    );
+    app.press("Escape");
+    assert!(app.exit().success());
+}

@@ -1,0 +1,147 @@
+//! A virtual display with a window manager.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::screen::Screen;
+use tempfile::TempDir;
+
+pub const PATIENCE: Duration = Duration::from_secs(30);
+
+pub fn quiet(program: &str) -> Command {
+    let mut command = Command::new(program);
+    command
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .stdin(Stdio::null());
+    command
+}
+
+pub fn until<T>(what: &str, mut probe: impl FnMut() -> Option<T>) -> T {
+    let begun = Instant::now();
+    loop {
+        if let Some(found) = probe() {
+            return found;
+        }
+        assert!(begun.elapsed() < PATIENCE, "waited in vain: {what}");
+        sleep(Duration::from_millis(20));
+    }
+}
+
+/// One display at a time: two servers and two software renderers on two cores are in one another's way.
+static TURN: Mutex<()> = Mutex::new(());
+
+/// A display with a window manager, gone when dropped.
+pub struct Display {
+    server: Child,
+    manager: Child,
+    name: String,
+    folder: TempDir,
+    _turn: MutexGuard<'static, ()>,
+}
+
+impl Display {
+    pub fn open() -> Option<Self> {
+        let missing: Vec<_> = ["Xvfb", "openbox", "xdotool", "wmctrl"]
+            .into_iter()
+            .filter(|tool| {
+                quiet("which")
+                    .arg(tool)
+                    .status()
+                    .map_or(true, |status| !status.success())
+            })
+            .collect();
+        if !missing.is_empty() {
+            assert!(
+                std::env::var_os("A3_REQUIRE_DISPLAY").is_none(),
+                "A3_REQUIRE_DISPLAY is set: no {missing:?}"
+            );
+            // Past the test runner, which keeps what a passing test prints.
+            let _ = writeln!(
+                std::io::stderr(),
+                "SKIPPED, NOT TESTED: the window needs {missing:?}"
+            );
+            return None;
+        }
+        // A test that failed has had its turn all the same.
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let folder = tempfile::tempdir().unwrap();
+        let mut server = quiet("Xvfb")
+            .args([
+                "-displayfd",
+                "1",
+                "-screen",
+                "0",
+                "1400x900x24",
+                "-noreset",
+                "-nolisten",
+                "tcp",
+                "-fbdir",
+            ])
+            .arg(folder.path())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut number = String::new();
+        BufReader::new(server.stdout.take().unwrap())
+            .read_line(&mut number)
+            .unwrap();
+        let name = format!(":{}", number.trim());
+        let manager = quiet("openbox").env("DISPLAY", &name).spawn().unwrap();
+        let display = Self {
+            server,
+            manager,
+            name,
+            folder,
+            _turn: turn,
+        };
+        // A window that is mapped before the manager is up gets no focus.
+        until("a window manager", || {
+            display
+                .command("wmctrl")
+                .arg("-m")
+                .status()
+                .unwrap()
+                .success()
+                .then_some(())
+        });
+        Some(display)
+    }
+
+    pub fn command(&self, program: &str) -> Command {
+        let mut command = quiet(program);
+        command
+            .env("DISPLAY", &self.name)
+            .env_remove("WAYLAND_DISPLAY");
+        command
+    }
+
+    pub fn xdotool(&self, words: &[&str]) -> String {
+        let output = self
+            .command("xdotool")
+            .args(words)
+            .stdout(Stdio::piped())
+            .output()
+            .unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// The screen as it is: red, green and blue by rows.
+    pub fn screen(&self) -> Screen {
+        let file = self.folder.path().join("Xvfb_screen0");
+        Screen::of(&fs::read(file).unwrap())
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        for child in [&mut self.manager, &mut self.server] {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Keys: what each changes, while the simulation runs, is paused, or has blown up.
+
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::app::App;
+use crate::display::{Display, until};
+use crate::screen::is_red;
+
+/// In the order of key t, after the cloth.
+pub const SCENES: [&str; 9] = [
+    "simple",
+    "pendulum",
+    "chain",
+    "mit",
+    "mit-sphere",
+    "double-pendulum",
+    "flag",
+    "jelly",
+    "cloth",
+];
+
+#[test]
+fn keys() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+    for (key, value) in [
+        ("scene", "cloth"),
+        ("solver", "trapezoid"),
+        ("step", "0.01"),
+        ("size", "1280x720"),
+    ] {
+        assert_eq!(app.get(key), value);
+    }
+
+    // Simulated time keeps up with real time, in steps of exactly that size.
+    let (time, begun) = (app.number("time").unwrap(), Instant::now());
+    sleep(Duration::from_secs(2));
+    let factor = (app.number("time").unwrap() - time) / begun.elapsed().as_secs_f64();
+    assert!((0.5..1.25).contains(&factor), "{factor} times real time");
+    let (time, steps) = (app.number("time").unwrap(), app.number("steps").unwrap());
+    assert!(
+        (time - 0.01 * steps).abs() < 1e-3,
+        "{time} s after {steps} steps"
+    );
+
+    app.press_for("s", "swing", "true");
+    app.press_for("d", "wind", "true");
+    app.press_for("s", "swing", "false");
+    app.press_for("d", "wind", "false");
+
+    app.press_for("plus", "step", "0.012");
+    app.press_for("minus", "step", "0.01");
+    app.press_for("4", "solver", "rk4");
+    app.press_for("6", "solver", "verlet");
+    app.press_for("2", "solver", "trapezoid");
+
+    app.press("p");
+    let picture = folder.path().join("a3-cloth-1.png");
+    until("a picture", || picture.exists().then_some(()));
+    let picture = image::open(&picture).unwrap();
+    assert_eq!((picture.width(), picture.height()), (1280, 720));
+
+    for scene in SCENES {
+        app.press_for("t", "scene", scene);
+    }
+    until("some time", || (app.number("time")? > 1.0).then_some(()));
+    app.press("r");
+    until("the beginning", || {
+        (app.number("time")? < 0.9).then_some(())
+    });
+    app.press("Escape");
+    assert!(app.exit().success());
+}
+
+#[test]
+fn pausing_looking_and_help() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+
+    // Paused it stands still, costs nothing, and takes single steps.
+    app.press_for("space", "paused", "true");
+    let shaded = app.settled();
+    let (steps, ticks) = (app.number("steps").unwrap(), app.processor_ticks());
+    sleep(Duration::from_secs(2));
+    assert!(
+        app.processor_ticks() - ticks <= 4,
+        "paused, it takes {} ticks",
+        app.processor_ticks() - ticks
+    );
+    assert_eq!(app.number("steps").unwrap(), steps);
+    app.press("period");
+    until("a step", || {
+        (app.number("steps")? == steps + 1.0).then_some(())
+    });
+
+    // The surface is red, the wires are not.
+    assert!(
+        shaded.count(is_red) > 20_000,
+        "{} red pixels",
+        shaded.count(is_red)
+    );
+    app.press_for("w", "style", "Wireframe");
+    let wires = app.settled();
+    assert!(
+        wires.count(is_red) < 100,
+        "{} red pixels",
+        wires.count(is_red)
+    );
+    assert!(wires.difference(&shaded) > 2.0);
+    app.press_for("w", "style", "Shaded");
+
+    // Help comes and goes without a trace.
+    let before = app.settled();
+    app.press_for("h", "help", "true");
+    until("the help", || {
+        (display.screen().difference(&before) > 1.0).then_some(())
+    });
+    app.press_for("question", "help", "false");
+    until("no help", || {
+        (display.screen().difference(&before) < 0.1).then_some(())
+    });
+
+    // Wheel and drag move the camera, c brings it home.
+    display.xdotool(&[
+        "mousemove",
+        "--window",
+        &app.window,
+        "1150",
+        "600",
+        "click",
+        "4",
+        "click",
+        "4",
+    ]);
+    display.xdotool(&[
+        "mousedown",
+        "1",
+        "mousemove_relative",
+        "--",
+        "-200",
+        "20",
+        "mouseup",
+        "1",
+    ]);
+    until("another view", || {
+        (display.screen().difference(&before) > 1.0).then_some(())
+    });
+    app.press("c");
+    until("the first view", || {
+        (display.screen().difference(&before) < 0.1).then_some(())
+    });
+
+    app.press_for("space", "paused", "false");
+    until("more steps", || {
+        (app.number("steps")? > steps + 5.0).then_some(())
+    });
+    display.xdotool(&["key", "Escape"]);
+    assert!(app.exit().success());
+}
+
+/// When a run blows up, the window says so, stands still, and starts again with r.
+#[test]
+fn blowing_up() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["e", "0.05", "--scene", "mit"]);
+    app.expect("blown", "true");
+    let steps = app.number("steps").unwrap();
+    sleep(Duration::from_millis(500));
+    assert_eq!(app.number("steps").unwrap(), steps);
+    // In red, on the sheet below the first one, where nothing else can be red.
+    let (left, top) = app.corner();
+    let screen = app.settled();
+    let told = screen.count_within(left + 12..left + 320, top + 200..top + 300, |[r, g, b]| {
+        r > 150 && g < 90 && b < 90
+    });
+    assert!(told > 100, "it says so in red: {told} pixels");
+    for _ in 0..40 {
+        app.press("minus");
+    }
+    until("a small step", || {
+        (app.number("step")? < 0.0003).then_some(())
+    });
+    app.press_for("r", "blown", "false");
+    app.frames_go_on();
+    app.press("Escape");
+    assert!(app.exit().success());
+}

@@ -1,0 +1,164 @@
+//! The mouse: pulling, pinning and listing springs; and going back in time along the bar.
+
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use crate::app::App;
+use crate::display::{Display, until};
+use crate::screen::{is_amber, is_red};
+
+#[test]
+fn pulling() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+    until("the cloth to hang", || {
+        (app.number("time")? > 2.0).then_some(())
+    });
+    // Places in the window from now on.
+    let (x, y) = display.screen().middle(is_red);
+    let (left, top) = app.corner();
+    let (x, y) = (x - left, y - top);
+    let go = |x: i32, y: i32| {
+        display.xdotool(&[
+            "mousemove",
+            "--window",
+            &app.window,
+            &x.to_string(),
+            &y.to_string(),
+        ]);
+    };
+    go(x, y);
+    display.xdotool(&["mousedown", "1"]);
+    until("a grip", || (app.get("grabbed") != "-").then_some(()));
+    let particle = app.get("grabbed");
+    let hand = || {
+        let (x, y) = app
+            .get("hand")
+            .split_once(',')
+            .map(|(x, y)| (x.parse(), y.parse()))?;
+        Some((x.ok()?, y.ok()?))
+    };
+    let (hx, hy): (i32, i32) = until("a hand", hand);
+    assert!(
+        hx.abs_diff(x) < 40 && hy.abs_diff(y) < 40,
+        "the particle {hx},{hy} is near the pointer {x},{y}"
+    );
+    // A fast drag: all of the way at once, then here and there. The particle stays where it is under the pointer.
+    let (mut seen, off) = (0, (hx - x, hy - y));
+    for (dx, dy) in [(150, -60), (-170, -40), (120, 60)] {
+        go(x + dx, y + dy);
+        until("the particle under the pointer", || {
+            let (hx, hy) = hand()?;
+            (hx.abs_diff(x + dx + off.0) < 3 && hy.abs_diff(y + dy + off.1) < 3).then_some(())
+        });
+        assert_eq!(app.get("grabbed"), particle);
+        app.frames_go_on();
+        seen = seen.max(display.screen().count(is_amber));
+    }
+    assert!(seen > 10, "the particle in the hand is marked");
+    display.xdotool(&["mouseup", "1"]);
+    app.expect("grabbed", "-");
+    app.expect("blown", "false");
+    // Off the cloth there is nothing to grab.
+    display.xdotool(&[
+        "mousemove",
+        "--window",
+        &app.window,
+        "1200",
+        "650",
+        "mousedown",
+        "1",
+    ]);
+    app.frames_go_on();
+    assert_eq!(app.get("grabbed"), "-");
+    display.xdotool(&["mouseup", "1"]);
+    app.press("Escape");
+    assert!(app.exit().success());
+}
+
+/// A right click pins and lets go, a right drag does not; a double click lists springs; time goes slowly, and back.
+#[test]
+fn clicks_slow_motion_and_going_back() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+    until("some time", || (app.number("time")? > 1.5).then_some(()));
+    app.press_for("bracketleft", "slowness", "1");
+    app.press_for("bracketleft", "slowness", "2");
+    let (time, begun) = (app.number("time").unwrap(), Instant::now());
+    sleep(Duration::from_secs(2));
+    let factor = (app.number("time").unwrap() - time) / begun.elapsed().as_secs_f64();
+    assert!((0.1..0.32).contains(&factor), "{factor} times real time");
+    app.press_for("bracketright", "slowness", "1");
+    app.press_for("space", "paused", "true");
+    let now = app.number("time").unwrap();
+    app.press_for("comma", "scrubbed", "true");
+    app.press("less");
+    until("a time before", || {
+        (app.number("time")? < now - 0.15).then_some(())
+    });
+    app.press("period");
+    app.press_for("greater", "scrubbed", "false");
+    until("the same time", || {
+        (app.number("time")? == now).then_some(())
+    });
+    // Along the bar.
+    app.press_for("comma", "scrubbed", "true");
+    let go = |x: &str| display.xdotool(&["mousemove", "--window", &app.window, x, "682"]);
+    go("800");
+    display.xdotool(&["mousedown", "1"]);
+    go("420");
+    until("long before", || {
+        (app.number("time")? < 0.4 * now).then_some(())
+    });
+    go("1200");
+    app.expect("scrubbed", "false");
+    display.xdotool(&["mouseup", "1"]);
+    until("the same time", || {
+        (app.number("time")? == now).then_some(())
+    });
+
+    let (x, y) = display.screen().middle(is_red);
+    let (left, top) = app.corner();
+    let place = [(x - left).to_string(), (y - top).to_string()];
+    let click = |words: &[&str]| {
+        let there = ["mousemove", "--window", &app.window, &place[0], &place[1]];
+        display.xdotool(&[&there[..], words].concat());
+    };
+    assert_eq!(app.get("pins"), "20");
+    click(&["click", "3"]);
+    app.expect("pins", "21");
+    click(&["click", "3"]);
+    app.expect("pins", "20");
+    click(&["click", "--repeat", "2", "--delay", "60", "1"]);
+    until("springs", || (app.get("springs_of") != "-").then_some(()));
+    // Two clicks far apart are not one of two.
+    let beside = |x: &'static str| ["mousemove", "--window", &app.window, x, "600", "click", "1"];
+    display.xdotool(&[beside("1100"), beside("1200")].concat());
+    app.frames_go_on();
+    assert_ne!(app.get("springs_of"), "-");
+    let before = app.settled();
+    click(&[
+        "mousedown",
+        "3",
+        "mousemove_relative",
+        "60",
+        "20",
+        "mouseup",
+        "3",
+    ]);
+    until("another view", || {
+        (display.screen().difference(&before) > 0.5).then_some(())
+    });
+    assert_eq!(app.get("pins"), "20");
+    display.xdotool(&["mousemove", "--window", &app.window, "1200", "650"]);
+    display.xdotool(&["click", "--repeat", "2", "--delay", "60", "1"]);
+    app.expect("springs_of", "-");
+    app.press("Escape");
+    assert!(app.exit().success());
+}

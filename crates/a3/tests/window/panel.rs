@@ -1,0 +1,46 @@
+//! The panel of what can be tuned.
+
+use crate::app::App;
+use crate::display::{Display, until};
+
+/// By keys and by the mouse, which turns nothing else then; and what was tuned is written and goes on.
+#[test]
+fn tuning() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["r", "0.01"]);
+    app.press_for("Tab", "panel", "true");
+    app.press("Down");
+    app.press_for("Right", "step", "0.0126");
+    app.press_for("shift+Right", "step", "0.0129");
+    app.press_for("Return", "step", "0.01");
+    app.press_for("s", "swing", "true");
+    // The slider of the same row: to its end, past the panel's edge.
+    let slide = |words: &[&str]| {
+        display.xdotool(&[&["mousemove", "--window", &app.window], words].concat());
+    };
+    slide(&["1120", "70", "mousedown", "1"]);
+    app.frames_go_on();
+    slide(&["700", "300"]);
+    app.expect("step", "0.00001");
+    assert_eq!(app.get("grabbed"), "-");
+    display.xdotool(&["mouseup", "1"]);
+    app.frames_go_on();
+    slide(&["1250", "70", "click", "--repeat", "2", "--delay", "60", "1"]);
+    app.expect("step", "0.01");
+    app.press("f");
+    let file = folder.path().join("a3-cloth-1.toml");
+    until("a scene file", || file.exists().then_some(()));
+    app.press_for("Tab", "panel", "false");
+    app.press("Escape");
+    assert!(app.exit().success());
+    let again = ["--scene", "a3-cloth-1.toml"];
+    let app = App::open(&display, folder.path(), &again);
+    for (key, value) in [("scene", "cloth"), ("solver", "rk4"), ("step", "0.01")] {
+        assert_eq!(app.get(key), value);
+    }
+    app.press("Escape");
+    assert!(app.exit().success());
+}

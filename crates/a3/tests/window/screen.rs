@@ -1,0 +1,83 @@
+//! Pictures of the screen.
+
+use std::ops::Range;
+
+pub struct Screen {
+    width: usize,
+    pixels: Vec<[u8; 3]>,
+}
+
+pub fn is_red([r, g, b]: [u8; 3]) -> bool {
+    r > 100 && r / 2 > g && r / 2 > b
+}
+
+/// The grabbed particle's ball.
+pub fn is_amber([r, g, b]: [u8; 3]) -> bool {
+    r > 170 && g > 100 && g < r && u16::from(b) * 2 < u16::from(g) + 60 && b < 110
+}
+
+impl Screen {
+    /// The screen of an XWD file, which the server keeps up to date.
+    pub fn of(bytes: &[u8]) -> Self {
+        let word =
+            |k: usize| u32::from_be_bytes(bytes[4 * k..4 * k + 4].try_into().unwrap()) as usize;
+        let (width, height, stride, start) = (word(4), word(5), word(12), word(0) + 12 * word(19));
+        assert_eq!(
+            (word(7), word(11)),
+            (0, 32),
+            "four bytes a pixel, blue first"
+        );
+        let pixel = |x: usize, y: usize| {
+            let at = start + y * stride + 4 * x;
+            [bytes[at + 2], bytes[at + 1], bytes[at]]
+        };
+        let pixels = (0..height)
+            .flat_map(|y| (0..width).map(move |x| (x, y)))
+            .map(|(x, y)| pixel(x, y));
+        Self {
+            width,
+            pixels: pixels.collect(),
+        }
+    }
+
+    pub fn count(&self, is: impl Fn([u8; 3]) -> bool) -> usize {
+        self.pixels.iter().filter(|pixel| is(**pixel)).count()
+    }
+
+    pub fn count_within(
+        &self,
+        x: Range<i32>,
+        y: Range<i32>,
+        is: impl Fn([u8; 3]) -> bool,
+    ) -> usize {
+        let inside = |k: &usize| {
+            x.contains(&((k % self.width) as i32)) && y.contains(&((k / self.width) as i32))
+        };
+        (0..self.pixels.len())
+            .filter(inside)
+            .filter(|k| is(self.pixels[*k]))
+            .count()
+    }
+
+    /// Mean difference of the channels.
+    pub fn difference(&self, other: &Self) -> f64 {
+        let pairs = self
+            .pixels
+            .iter()
+            .flatten()
+            .zip(other.pixels.iter().flatten());
+        pairs.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>()
+            / (3.0 * self.pixels.len() as f64)
+    }
+
+    /// The middle of the pixels that are like that.
+    pub fn middle(&self, is: impl Fn([u8; 3]) -> bool) -> (i32, i32) {
+        let places: Vec<_> = (0..self.pixels.len())
+            .filter(|k| is(self.pixels[*k]))
+            .collect();
+        assert!(!places.is_empty(), "nothing of that colour on the screen");
+        let x = places.iter().map(|k| k % self.width).sum::<usize>() / places.len();
+        let y = places.iter().map(|k| k / self.width).sum::<usize>() / places.len();
+        (x as i32, y as i32)
+    }
+}

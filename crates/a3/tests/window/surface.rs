@@ -1,0 +1,70 @@
+//! The window's size, minimising, a lost device, and closing.
+
+use std::thread::sleep;
+use std::time::Duration;
+
+use crate::app::App;
+use crate::display::Display;
+use crate::screen::is_red;
+
+#[test]
+fn sizes_minimising_a_lost_device_and_closing() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["r", "0.01", "--wind"]);
+    for (width, height) in [
+        ("90", "70"),
+        ("4000", "3000"),
+        ("333", "777"),
+        ("1280", "720"),
+    ] {
+        display.xdotool(&["windowsize", &app.window, width, height]);
+        app.expect("size", &format!("{width}x{height}"));
+        app.frames_go_on();
+    }
+    // A flood of sizes.
+    for k in 0..40 {
+        display.xdotool(&[
+            "windowsize",
+            &app.window,
+            &(300 + 17 * k).to_string(),
+            &(700 - 11 * k).to_string(),
+        ]);
+    }
+    display.xdotool(&["windowsize", &app.window, "1280", "720"]);
+    app.expect("size", "1280x720");
+
+    display.xdotool(&["windowminimize", &app.window]);
+    app.expect("visible", "false");
+    let (time, frames) = (app.number("time").unwrap(), app.number("frames").unwrap());
+    sleep(Duration::from_secs(2));
+    assert!(
+        app.number("frames").unwrap() <= frames + 1.0,
+        "drawn while minimised"
+    );
+    display.xdotool(&["windowmap", &app.window, "windowactivate", &app.window]);
+    app.expect("visible", "true");
+    app.frames_go_on();
+    assert!(
+        app.number("time").unwrap() < time + 1.5,
+        "time ran on while minimised"
+    );
+
+    // The device is lost, and the picture comes back, the simulation untouched.
+    for lost in 1..=3 {
+        let steps = app.number("steps").unwrap();
+        app.press_for("F12", "devices", &(1 + lost).to_string());
+        app.frames_go_on();
+        assert!(app.number("steps").unwrap() > steps);
+    }
+    assert!(display.screen().count(is_red) > 10_000);
+
+    display
+        .command("wmctrl")
+        .args(["-i", "-c", &app.window])
+        .status()
+        .unwrap();
+    assert!(app.exit().success());
+}

@@ -1,0 +1,48 @@
+//! Scene files that are loaded again when they change.
+
+use std::fs;
+use std::thread::sleep;
+use std::time::Duration;
+
+use crate::app::App;
+use crate::display::Display;
+
+/// A scene file that is saved is loaded again; one with a fault leaves the scene as it is, until it is mended. Also while
+/// all stands still.
+#[test]
+fn watching() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mine.toml");
+    let save = |step: &str, pins: &str| {
+        let cloth = "[[cloth]]\ngrid = [5, 5]\nwidth = 1\nmass = 0.1\nstiffness = [20, 10, 5]\n";
+        let pin = format!("pin = [{{ at = [{pins}] }}]\n");
+        fs::write(&file, format!("solver = 'r'\nstep = {step}\n{cloth}{pin}")).unwrap();
+    };
+    save("0.01", "'top'");
+    let app = App::open(
+        &display,
+        folder.path(),
+        &["--scene", "mine.toml", "--watch"],
+    );
+    app.expect("pins", "5");
+    app.frames_go_on();
+    save("0.005", "'top-left', 'top-right'");
+    app.expect("pins", "2");
+    app.expect("step", "0.005");
+    fs::write(&file, "step = 0.002\n[[cloth]]\ngrid = [5,").unwrap();
+    sleep(Duration::from_secs(1));
+    app.frames_go_on();
+    assert_eq!(
+        (app.get("pins"), app.get("step")),
+        ("2".into(), "0.005".into())
+    );
+    app.press_for("space", "paused", "true");
+    save("0.002", "'bottom'");
+    app.expect("pins", "5");
+    app.expect("step", "0.002");
+    app.press("Escape");
+    assert!(app.exit().success());
+}
