@@ -18,8 +18,8 @@ pub struct Level {
     pub full: bool,
 }
 
-/// The drawing with the largest text that fits. Explanations are left out only where no size of text
-/// fits otherwise.
+/// The drawing with the largest text that fits. Explanations are left out only where no size of
+/// text fits otherwise.
 ///
 /// # Errors
 /// [`Error::Sheet`] or [`Error::TooSmall`] if no drawing fits.
@@ -164,8 +164,8 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
     area.y0 += (1.4 * rows as f64 + 0.7) * size;
 }
 
-/// Rooms for `n` panels, row by row and `gap` apart, and the number of columns. That number makes the
-/// merit of a panel, a function of its width and height, the greatest.
+/// Rooms for `n` panels, row by row and `gap` apart, and the number of columns. That number makes
+/// the merit of a panel, a function of its width and height, the greatest.
 pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Vec<Rect>, usize) {
     let cell = |columns: usize| {
         let share = |length: f64, parts: usize| (length + gap) / parts as f64 - gap;

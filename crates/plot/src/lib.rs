@@ -7,7 +7,7 @@
 //! covers another, or says what size would do. [`Axis`] serves charts that are drawn elsewhere.
 //!
 //! ```
-//! use a3_plot::{Curve, Measurement, Problem, Style, WorkPrecision};
+//! use a3_plot::{Curve, Measurement, Problem, CurveStyle, WorkPrecision};
 //!
 //! let run = |step: f64, error: f64| Measurement {
 //!     error,
@@ -23,7 +23,7 @@
 //!     problems: vec![Problem {
 //!         title: String::new(),
 //!         curves: vec![Curve {
-//!             style: Style::default(),
+//!             style: CurveStyle::default(),
 //!             name: "RK4".into(),
 //!             runs: vec![run(0.1, 8e-7), run(0.05, 5e-8), run(0.025, 3e-9)],
 //!         }],
@@ -56,5 +56,5 @@ pub use axis::{Axis, Tick};
 pub use error::Error;
 pub use figure::Figure;
 pub use stability::{Region, StabilityRegions};
-pub use style::{Marker, Style};
+pub use style::{CurveStyle, Marker};
 pub use work_precision::{Curve, Measurement, Problem, WorkPrecision};

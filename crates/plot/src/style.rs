@@ -1,4 +1,5 @@
-//! Styles of curves: a colour, a dash and a marker, so that curves are told apart without colour too.
+//! Styles of curves: a colour, a dash and a marker, so that curves are told apart without colour
+//! too.
 
 use std::f64::consts::TAU;
 
@@ -7,7 +8,7 @@ use crate::geometry::Point;
 
 /// The colour, dash and marker of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Style {
+pub struct CurveStyle {
     /// The colour as SVG has it, such as `#0072b2`.
     pub colour: &'static str,
     /// The lengths of dashes and gaps in turn, in widths of the line; none for a solid line.
@@ -27,7 +28,7 @@ pub enum Marker {
     Cross(f64),
 }
 
-impl Default for Style {
+impl Default for CurveStyle {
     /// A solid grey line with octagons.
     fn default() -> Self {
         Self {
@@ -38,7 +39,7 @@ impl Default for Style {
     }
 }
 
-impl Style {
+impl CurveStyle {
     /// A line in this style, as attributes of SVG.
     pub(crate) fn stroke(self, width: f64) -> String {
         let dash: Vec<_> = self

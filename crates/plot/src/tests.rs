@@ -3,7 +3,7 @@
 use resvg::usvg::roxmltree;
 
 use crate::{
-    Curve, Error, Figure, Marker, Measurement, Problem, Region, StabilityRegions, Style,
+    Curve, CurveStyle, Error, Figure, Marker, Measurement, Problem, Region, StabilityRegions,
     WorkPrecision,
 };
 
@@ -14,7 +14,8 @@ const SIZES: [[f64; 2]; 4] = [
     [3000.0, 2000.0],
 ];
 
-/// Methods: letter, name, and evaluations for the errors 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8 (0: never reached), for a cloth in one second.
+/// Methods: letter, name, and evaluations for the errors 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8 (0:
+/// never reached), for a cloth in one second.
 const METHODS: [(char, &str, [f64; 6]); 13] = [
     (
         'v',
@@ -80,7 +81,7 @@ const METHODS: [(char, &str, [f64; 6]); 13] = [
 ];
 
 /// A style that differs from method to method.
-fn style(letter: char) -> Style {
+fn style(letter: char) -> CurveStyle {
     let k = letter as usize;
     let colours = ["#d55e00", "#0072b2", "#882255", "#117733"];
     let dashes: [&[f64]; 3] = [&[], &[7.0, 2.5], &[7.0, 2.0, 1.5, 2.0]];
@@ -89,7 +90,7 @@ fn style(letter: char) -> Style {
         Marker::Star(4 + k as u8 % 3, 0.4),
         Marker::Cross(0.125),
     ];
-    Style {
+    CurveStyle {
         colour: colours[k % 4],
         dash: dashes[k % 3],
         marker: markers[k / 4 % 3],
@@ -280,7 +281,7 @@ fn eigenvalues_outside_the_region_are_crosses() {
         title: String::new(),
         subtitle: String::new(),
         regions: vec![Region {
-            style: Style::default(),
+            style: CurveStyle::default(),
             title: String::new(),
             subtitle: String::new(),
             radius: Box::new(radius),

@@ -6,25 +6,28 @@ use wgpu::BufferUsages;
 use crate::gpu::Gpu;
 use crate::shapes::{rounded_box, sphere};
 
-/// Triangles that are drawn many times.
+/// A closed surface of triangles that is drawn many times.
 pub(crate) struct Shape {
     pub(crate) corners: wgpu::Buffer,
     pub(crate) triangles: wgpu::Buffer,
+    /// The number of corners of all triangles.
     pub(crate) indices: u32,
 }
 
-/// A vertex buffer that grows.
+/// A vertex buffer of instances, which grows as needed.
 pub(crate) struct Instances {
     label: &'static str,
     pub(crate) buffer: wgpu::Buffer,
 }
 
 impl Shape {
+    /// A unit sphere in so many bands of latitude.
     pub(crate) fn sphere(gpu: &Gpu, rings: u16) -> Self {
         let (corners, triangles) = sphere(rings);
         Self::new(gpu, "sphere", &corners, &triangles)
     }
 
+    /// A rounded box in so many bands of latitude and longitude a piece.
     pub(crate) fn rounded_box(gpu: &Gpu, bands: u16) -> Self {
         let (corners, triangles) = rounded_box(bands);
         Self::new(gpu, "rounded box", &corners, &triangles)
@@ -48,6 +51,7 @@ impl Instances {
         }
     }
 
+    /// Replaces the instances.
     pub(crate) fn write<T: Pod>(&mut self, gpu: &Gpu, instances: &[T]) {
         let bytes: &[u8] = bytemuck::cast_slice(instances);
         if bytes.len() as u64 > self.buffer.size() {
@@ -58,7 +62,7 @@ impl Instances {
     }
 }
 
-/// An empty buffer of at least 16 bytes: a binding may not be empty.
+/// A new buffer of at least 16 bytes, because a binding may not be empty.
 pub(crate) fn buffer(
     device: &wgpu::Device,
     label: &str,
@@ -73,8 +77,9 @@ pub(crate) fn buffer(
     })
 }
 
+/// A new buffer with these bytes.
 pub(crate) fn filled(gpu: &Gpu, label: &str, usage: BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
-    // Writes come in multiples of four bytes.
+    // A write has to be a multiple of four bytes.
     let mut bytes = bytes.to_vec();
     bytes.resize(bytes.len().next_multiple_of(4), 0);
     let buffer = buffer(&gpu.device, label, usage, bytes.len());

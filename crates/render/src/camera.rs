@@ -1,23 +1,28 @@
-//! An eye on a sphere around what it looks at.
+//! The camera, whose eye is on a sphere around its target.
 
 use nalgebra::{Isometry3, Matrix4, Perspective3, Point3, Vector3};
 
-/// Full height of the view (rad).
+/// Vertical field of view (rad).
 const FIELD_OF_VIEW: f32 = 0.75;
-/// The eye does not go over the poles (rad).
+/// Largest pitch (rad). The eye does not pass over the poles.
 const STEEPEST: f32 = 1.5;
 
-/// Looks at `target` from `distance`, turned by `yaw` around the vertical and raised by `pitch`.
+/// A camera that looks at its target from a distance, turned by a yaw around the vertical and
+/// raised by a pitch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
+    /// Target (m).
     target: Point3<f32>,
+    /// Yaw (rad), from the z-axis towards the x-axis.
     yaw: f32,
+    /// Pitch (rad).
     pitch: f32,
+    /// Distance of the eye from the target (m).
     distance: f32,
 }
 
 impl Camera {
-    /// Looks from `eye` at `target` (m). They must not be the same.
+    /// A camera that looks from `eye` at `target` (m), which must not be the same point.
     #[must_use]
     pub fn look_at(eye: [f32; 3], target: [f32; 3]) -> Self {
         let target = Point3::from(target);
@@ -34,7 +39,7 @@ impl Camera {
         }
     }
 
-    /// Turns around the target (rad).
+    /// Turns the eye around the target (rad).
     pub fn orbit(&mut self, yaw: f32, pitch: f32) {
         if yaw.is_finite() && pitch.is_finite() {
             self.yaw = (self.yaw + yaw).rem_euclid(std::f32::consts::TAU);
@@ -42,7 +47,7 @@ impl Camera {
         }
     }
 
-    /// Moves eye and target along the picture, by shares of its height.
+    /// Moves eye and target parallel to the picture, by fractions of its height.
     pub fn pan(&mut self, right: f32, up: f32) {
         let height = 2.0 * self.distance * (0.5 * FIELD_OF_VIEW).tan();
         let (x, y, _) = self.axes();
@@ -52,27 +57,27 @@ impl Camera {
         }
     }
 
-    /// Goes nearer (factor below 1) or farther.
+    /// Multiplies the distance of the eye from the target by a factor.
     pub fn zoom(&mut self, factor: f32) {
         if factor.is_finite() {
             self.distance = (self.distance * factor).clamp(0.05, 1000.0);
         }
     }
 
-    /// In m.
+    /// The position of the eye (m).
     #[must_use]
     pub fn eye(&self) -> Point3<f32> {
         let (_, _, z) = self.axes();
         self.target + z * self.distance
     }
 
-    /// In m.
+    /// The target (m).
     #[must_use]
     pub fn target(&self) -> Point3<f32> {
         self.target
     }
 
-    /// Right, up, and towards the eye.
+    /// The unit vectors to the right, up, and towards the eye.
     #[must_use]
     pub fn axes(&self) -> (Vector3<f32>, Vector3<f32>, Vector3<f32>) {
         let ((sy, cy), (sp, cp)) = (self.yaw.sin_cos(), self.pitch.sin_cos());
@@ -81,8 +86,8 @@ impl Camera {
         (x, z.cross(&x), z)
     }
 
-    /// From the world to clip space with z in 0..1, for a picture of this width over height. A tall picture keeps
-    /// its width instead of its height, so that the scene stays in view.
+    /// The matrix from world to clip space, with z from 0 to 1, for a picture of this width over
+    /// height. The field of view is horizontal in a tall picture, so that the scene stays in view.
     #[must_use]
     pub fn view_projection(&self, aspect: f32) -> Matrix4<f32> {
         #[rustfmt::skip]
@@ -99,12 +104,14 @@ impl Camera {
             * Isometry3::look_at_rh(&self.eye(), &self.target, &Vector3::y()).to_homogeneous()
     }
 
+    /// Vertical field of view of a picture of this width over height (rad).
     fn field_of_view(aspect: f32) -> f32 {
         2.0 * ((0.5 * FIELD_OF_VIEW).tan() / aspect.min(1.0)).atan()
     }
 
-    /// Where a point of the world is in the picture: 0..1 from the left and from the top, and its distance from the
-    /// eye along the view (m). `None` behind the eye.
+    /// The projection of a point of the world (m): its place in the picture, from 0 to 1 from the
+    /// left and from the top, and its distance from the eye along the view (m). `None` for a point
+    /// behind the eye.
     #[must_use]
     pub fn project(&self, point: [f32; 3], aspect: f32) -> Option<([f32; 2], f32)> {
         let clip = self.view_projection(aspect) * Point3::from(point).to_homogeneous();
@@ -116,7 +123,8 @@ impl Camera {
         })
     }
 
-    /// The point of the world seen at that place of the picture, at that distance from the eye along the view (m).
+    /// The point of the world (m) at a place in the picture, at a distance from the eye along the
+    /// view (m): the inverse of [`project`](Self::project).
     #[must_use]
     pub fn unproject(&self, at: [f32; 2], distance: f32, aspect: f32) -> [f32; 3] {
         let half = distance * (0.5 * Self::field_of_view(aspect)).tan();

@@ -1,29 +1,30 @@
-//! Opens an adapter, and keeps what it complains about instead of panicking.
+//! The GPU: an open adapter, whose errors are kept until someone asks, instead of a panic.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-use crate::targets::DEPTH;
+/// The format of depth and stencil. The stencil makes a shadow darken each pixel once.
+pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusStencil8;
 
-/// Why nothing can be drawn.
+/// The reason why nothing can be drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// No driver offers an adapter.
+    /// No driver offers an adapter, and why.
     NoAdapter(String),
-    /// The adapter does not open.
+    /// The adapter does not open, and why.
     Device(String),
-    /// A picture of this size is beyond the device's limit.
+    /// A picture has no pixels, or more than the device can draw.
     Size {
-        /// What was asked for (px).
+        /// Width and height that were asked for (px).
         asked: (u32, u32),
-        /// The most it can (px).
+        /// Largest width and height (px).
         limit: u32,
     },
-    /// The device is gone: open another.
+    /// The device was lost. Another must be opened.
     Lost,
-    /// The device refused something.
+    /// The device refused a call, and why.
     Refused(String),
 }
 
@@ -54,7 +55,7 @@ impl fmt::Display for GpuError {
 impl std::error::Error for GpuError {}
 
 impl GpuError {
-    /// No driver answered, perhaps because the environment names backends that are not there.
+    /// The error that no driver answers, with the backends that the environment names.
     #[must_use]
     pub fn no_adapter() -> Self {
         Self::NoAdapter(match std::env::var("WGPU_BACKEND") {
@@ -66,23 +67,23 @@ impl GpuError {
 
 /// An open device.
 pub struct Gpu {
-    /// Where the adapter came from; surfaces are made of it.
+    /// The instance that the adapter belongs to. Surfaces are created by it.
     pub instance: wgpu::Instance,
     /// The adapter.
     pub adapter: wgpu::Adapter,
     /// The device.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// The queue of the device.
     pub queue: wgpu::Queue,
     lost: Arc<AtomicBool>,
     refusal: Arc<Mutex<Option<String>>>,
 }
 
 impl Gpu {
-    /// Opens an adapter for offscreen pictures. `WGPU_BACKEND` and the like are honoured.
+    /// Opens an adapter for offscreen pictures, as the environment variables of wgpu ask for it.
     ///
     /// # Errors
-    /// There is no adapter, or it does not open.
+    /// [`GpuError::NoAdapter`] if there is none, [`GpuError::Device`] if it does not open.
     pub async fn headless() -> Result<Self, GpuError> {
         let mut result = Err(GpuError::no_adapter());
         for backends in Self::backends() {
@@ -96,8 +97,8 @@ impl Gpu {
         result
     }
 
-    /// The backends to try, one set after the other: those of `WGPU_BACKEND`, or the modern ones and then GL, whose
-    /// mere probing takes time and writes to the terminal.
+    /// The sets of backends to try in turn: those of `WGPU_BACKEND`, or else first the modern ones
+    /// and then GL. Looking for GL takes time and writes to the terminal, so that it comes last.
     #[must_use]
     pub fn backends() -> Vec<wgpu::Backends> {
         match wgpu::Backends::from_env() {
@@ -106,10 +107,11 @@ impl Gpu {
         }
     }
 
-    /// Opens the adapter that suits `surface` best, or the one whose name contains `WGPU_ADAPTER_NAME`.
+    /// Opens the adapter that suits `surface` best, or the one whose name contains
+    /// `WGPU_ADAPTER_NAME`.
     ///
     /// # Errors
-    /// There is no adapter, or it does not open.
+    /// [`GpuError::NoAdapter`] if there is none, [`GpuError::Device`] if it does not open.
     pub async fn open(
         instance: wgpu::Instance,
         surface: Option<&wgpu::Surface<'_>>,
@@ -130,7 +132,7 @@ impl Gpu {
         let mut limits = wgpu::Limits::downlevel_defaults()
             .or_worse_values_from(&offered)
             .using_resolution(offered.clone());
-        // Large cloth: as much in one buffer as the adapter gives.
+        // Large cloth needs buffers as large as the adapter can have.
         limits.max_buffer_size = offered.max_buffer_size;
         limits.max_storage_buffer_binding_size = offered.max_storage_buffer_binding_size;
         let (device, queue) = adapter
@@ -149,7 +151,7 @@ impl Gpu {
         device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::SeqCst));
         let refusal = Arc::new(Mutex::new(None));
         let note = refusal.clone();
-        // Without a handler, wgpu panics.
+        // wgpu panics at an error without a handler.
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
             if let Ok(mut note) = note.lock() {
                 note.get_or_insert_with(|| one_line(&e.to_string()));
@@ -165,26 +167,26 @@ impl Gpu {
         })
     }
 
-    /// Name and backend of the adapter.
+    /// The name and the backend of the adapter.
     #[must_use]
     pub fn name(&self) -> String {
         let info = self.adapter.get_info();
         format!("{} ({})", info.name, info.backend)
     }
 
-    /// Whether the adapter is a program rather than a chip.
+    /// Whether the adapter is software that runs on the processor.
     #[must_use]
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }
 
-    /// The longest side of a picture (px).
+    /// The largest width and height of a picture (px).
     #[must_use]
     pub fn largest_side(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
     }
 
-    /// 4 where colour and depth can be drawn with as many samples, else 1.
+    /// The number of samples a pixel: 4 if the adapter can multisample colour and depth, else 1.
     #[must_use]
     pub fn samples(&self, color: wgpu::TextureFormat) -> u32 {
         let four = |format| {
@@ -196,12 +198,12 @@ impl Gpu {
         if four(color) && four(DEPTH) { 4 } else { 1 }
     }
 
-    /// What went wrong since the last look, if anything. Looks at the device, which tells of its loss only when asked.
+    /// Polls the device, and returns what went wrong since the last check.
     ///
     /// # Errors
-    /// [`GpuError::Lost`], or the first thing it refused.
+    /// [`GpuError::Lost`] if the device was lost, [`GpuError::Refused`] if it refused a call.
     pub fn check(&self) -> Result<(), GpuError> {
-        // An error of poll is the loss of the device, which the flag tells too.
+        // Polling fails only if the device was lost, which the flag says too.
         let _ = self.device.poll(wgpu::PollType::Poll);
         if self.lost.load(Ordering::SeqCst) {
             return Err(GpuError::Lost);
@@ -213,6 +215,7 @@ impl Gpu {
     }
 }
 
+/// The first adapter whose name contains `name`, in capitals or not.
 async fn named_adapter(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,
@@ -238,6 +241,7 @@ async fn named_adapter(
     })
 }
 
+/// The text with all white space replaced by single spaces.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -1,13 +1,14 @@
-//! Draws cloth, balls, lines and a floor with wgpu: no physics, no window.
+//! Drawing of cloth, balls, lines and a floor with wgpu. Knows no physics and no window.
 //!
-//! The same [`Renderer`] draws into a window's surface and into an [`Offscreen`] picture. [`Gpu`] opens an adapter;
-//! [`Picture`] says what is to be seen; [`Camera`] from where.
+//! The same [`Renderer`] draws into the surface of a window and into an [`Offscreen`] picture.
+//! [`Gpu`] opens an adapter, [`Picture`] says what is drawn, and [`Camera`] from where.
 
 #![forbid(unsafe_code)]
 
 mod buffers;
 mod camera;
 mod gpu;
+mod mesh;
 mod offscreen;
 mod picture;
 mod pipelines;

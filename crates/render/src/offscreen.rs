@@ -1,16 +1,17 @@
-//! A picture without a window.
+//! Offscreen pictures, drawn without a window.
 
 use crate::gpu::{Gpu, GpuError};
 use crate::picture::{Picture, Tile};
 use crate::renderer::Renderer;
 use crate::targets::{GAP, Targets};
 
-/// Eight bits each of red, green, blue and opacity.
+/// The format of offscreen pictures: eight bits each of red, green, blue and opacity, in sRGB.
 pub const OFFSCREEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// The same bytes, blended as they are.
+/// The same format without sRGB, so that bytes are blended as they are.
 const TEXT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// The format of the view that text is written to: not sRGB where the backend can have two views of one texture.
+/// The format of the view that text is written to: without sRGB, if the backend can have views of
+/// two formats of a texture.
 fn text_format(gpu: &Gpu) -> wgpu::TextureFormat {
     let flags = gpu.adapter.get_downlevel_capabilities().flags;
     if flags.contains(wgpu::DownlevelFlags::VIEW_FORMATS) {
@@ -20,21 +21,21 @@ fn text_format(gpu: &Gpu) -> wgpu::TextureFormat {
     }
 }
 
-/// A texture to draw into, and the way back from the GPU.
+/// A texture to draw into, and the buffer by which its pixels come back from the GPU.
 pub struct Offscreen {
     texture: wgpu::Texture,
     view: wgpu::TextureView,
     targets: Targets,
     buffer: wgpu::Buffer,
-    /// Bytes in a row of the buffer: a multiple of 256.
+    /// The number of bytes in a row of the buffer, which is a multiple of 256.
     stride: u32,
 }
 
 impl Offscreen {
-    /// For pictures of `size` (px).
+    /// A texture for pictures of `size` (px).
     ///
     /// # Errors
-    /// The size is zero or beyond the device's limit.
+    /// [`GpuError::Size`] if a side is zero or beyond the limit of the device.
     pub fn new(gpu: &Gpu, size: (u32, u32)) -> Result<Self, GpuError> {
         let limit = gpu.largest_side();
         let fits = |side| (1..=limit).contains(&side);
@@ -75,17 +76,17 @@ impl Offscreen {
         })
     }
 
-    /// In px.
+    /// Width and height (px).
     #[must_use]
     pub fn size(&self) -> (u32, u32) {
         self.targets.size()
     }
 
-    /// Draws one picture, and brings the pixels back: rows from the top, four bytes a pixel, the colours not multiplied
-    /// by the opacity.
+    /// Draws a picture, and returns its pixels: rows from the top, four bytes a pixel, with colours
+    /// that are not multiplied by the opacity.
     ///
     /// # Errors
-    /// The device was lost, or refused something.
+    /// [`GpuError::Lost`] or [`GpuError::Refused`], as [`Gpu::check`] has them.
     pub fn render(
         &self,
         gpu: &Gpu,
@@ -96,11 +97,12 @@ impl Offscreen {
         self.render_tiles(gpu, renderer, &[(*picture, tile)], |_, _, _| vec![])
     }
 
-    /// Draws several pictures, each in its own part, and brings the pixels back. `text` writes over them, into that view
-    /// of that format; what it returns is submitted before it.
+    /// Draws several pictures, each in its own part of the target, and returns the pixels as
+    /// [`render`](Self::render) does. `text` draws over them, into a view of the given format; the
+    /// commands that it returns are submitted first.
     ///
     /// # Errors
-    /// The device was lost, or refused something.
+    /// [`GpuError::Lost`] or [`GpuError::Refused`], as [`Gpu::check`] has them.
     pub fn render_tiles(
         &self,
         gpu: &Gpu,
@@ -168,7 +170,8 @@ impl Offscreen {
     }
 }
 
-/// What is blended over nothing, and averaged with it at edges, comes multiplied by its opacity: darker than it is.
+/// Divides colours by their opacity. Blending over nothing, and averaging with it at edges, has
+/// multiplied them by it.
 fn straighten(pixels: &mut [u8]) {
     for pixel in pixels.chunks_exact_mut(4) {
         let opacity = f32::from(pixel[3]) / 255.0;
@@ -180,7 +183,7 @@ fn straighten(pixels: &mut [u8]) {
     }
 }
 
-/// From sRGB (IEC 61966-2-1) to light.
+/// The light of an sRGB channel (IEC 61966-2-1).
 fn linear(channel: u8) -> f32 {
     let c = f32::from(channel) / 255.0;
     if c <= 0.04045 {
@@ -190,7 +193,7 @@ fn linear(channel: u8) -> f32 {
     }
 }
 
-/// From light to sRGB.
+/// The sRGB channel of a light: the inverse of [`linear`].
 fn encoded(light: f32) -> u8 {
     let light = light.min(1.0);
     let c = if light <= 0.003_130_8 {

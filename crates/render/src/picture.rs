@@ -1,28 +1,29 @@
-//! What is to be seen.
+//! Pictures: the data that is drawn.
 
 use bytemuck::{Pod, Zeroable};
 
 use crate::camera::Camera;
 
-/// How many looks a surface can have: cloth in four colours, and then jelly in four.
-/// The shader has their colours.
+/// The number of looks of a surface: cloth in four colours, then jelly in four. The shader has the
+/// colours.
 pub const LOOKS: usize = 8;
 
-/// How a surface is drawn.
+/// The way in which surfaces are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
-    /// Its wires.
+    /// Wires.
     Wireframe,
-    /// A smooth mesh. What has no triangles is still drawn by its wires.
+    /// Smooth meshes. A scene without triangles is drawn by its wires all the same.
     Shaded,
 }
 
-/// How particles hang together: what stays the same from frame to frame.
+/// The connections between particles, which stay the same from frame to frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Topology {
     /// Number of particles.
     pub points: usize,
-    /// Corners of the triangles of a surface, wound alike. Empty for a system without one.
+    /// Corners of the triangles of a surface, all with the same orientation. Empty without a
+    /// surface.
     pub triangles: Vec<[u32; 3]>,
     /// Ends of the wires.
     pub wires: Vec<[u32; 2]>,
@@ -32,41 +33,41 @@ pub struct Topology {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Ball {
-    /// In m.
+    /// Centre (m).
     pub center: [f32; 3],
-    /// In m.
+    /// Radius (m).
     pub radius: f32,
-    /// Linear red, green, blue, and 1.
+    /// Linear red, green and blue, and 1.
     pub color: [f32; 4],
 }
 
-/// A shaded box with round edges. Without rounding it is a box, without half extents a ball, with one a capsule.
+/// A shaded box with round edges. It is a ball if all half extents are 0, and a capsule if two are.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Solid {
-    /// In m.
+    /// Centre (m).
     pub center: [f32; 3],
-    /// Of its edges (m); beyond the half extents.
+    /// Radius of the edges (m), which is added to the half extents.
     pub radius: f32,
-    /// Along each side a unit vector, across the others, and half the extent (m).
+    /// Directions of the sides, which are orthogonal unit vectors, each with its half extent (m).
     pub axes: [[f32; 4]; 3],
-    /// Linear red, green, blue, and 1.
+    /// Linear red, green and blue, and 1.
     pub color: [f32; 4],
 }
 
-/// A straight line that is not a wire.
+/// A straight line that is drawn in both styles.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Line {
     /// One end (m).
     pub from: [f32; 3],
-    /// In points: pixels on a screen of ordinary density.
+    /// Width in points, which are pixels on a screen of ordinary density.
     pub width: f32,
     /// The other end (m).
     pub to: [f32; 3],
-    /// Unused.
+    /// Padding, which the shader ignores.
     pub padding: f32,
-    /// Linear red, green, blue and opacity.
+    /// Linear red, green and blue, and opacity.
     pub color: [f32; 4],
 }
 
@@ -84,44 +85,46 @@ impl Line {
     }
 }
 
-/// One frame.
+/// All that is drawn in one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
-    /// From where.
+    /// The camera.
     pub camera: Camera,
-    /// How.
+    /// The way in which surfaces are drawn.
     pub style: Style,
     /// Pixels per point: 1 on a screen of ordinary density, 2 on a dense one.
     pub scale: f32,
-    /// Positions of the particles (m), and which of the [`LOOKS`](crate::LOOKS) their surface has.
+    /// Positions of the particles (m), each with the number of the look of its surface, below
+    /// [`LOOKS`].
     pub points: &'a [[f32; 4]],
-    /// Balls: particles of small systems, pins, obstacles.
+    /// Balls, such as particles of small systems, pins and obstacles.
     pub balls: &'a [Ball],
     /// Boxes and capsules.
     pub solids: &'a [Solid],
-    /// Lines: trails, highlighted springs.
+    /// Lines, such as trails and highlighted springs.
     pub lines: &'a [Line],
     /// Height of the floor (m), if there is one.
     pub floor: Option<f32>,
-    /// Without floor, shadows and background: to be laid over something else.
+    /// Whether floor, shadows and background are left out, so that the picture can be laid over
+    /// another.
     pub transparent: bool,
 }
 
-/// A part of the target (px), inside it and not empty.
+/// A rectangular part of the target, inside it and not empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tile {
-    /// From the left.
+    /// Distance from the left (px).
     pub x: u32,
-    /// From the top.
+    /// Distance from the top (px).
     pub y: u32,
-    /// At least 1.
+    /// Width (px), at least 1.
     pub width: u32,
-    /// At least 1.
+    /// Height (px), at least 1.
     pub height: u32,
 }
 
 impl Tile {
-    /// All of a target of this size.
+    /// The whole of a target of this width and height (px).
     #[must_use]
     pub fn whole((width, height): (u32, u32)) -> Self {
         Self {
@@ -138,7 +141,7 @@ impl Tile {
         self.width as f32 / self.height as f32
     }
 
-    /// Whether that place of the target (px) is in it.
+    /// Whether a point of the target (px) is in this part.
     #[must_use]
     pub fn contains(&self, [x, y]: [f32; 2]) -> bool {
         let (left, top) = (self.x as f32, self.y as f32);
@@ -146,7 +149,8 @@ impl Tile {
             && (top..top + self.height as f32).contains(&y)
     }
 
-    /// That place of the target (px) in shares of the part: 0..1 from its left and from its top.
+    /// A point of the target (px) relative to this part: from 0 to 1 from its left and from its
+    /// top.
     #[must_use]
     pub fn place(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         [

@@ -1,14 +1,15 @@
-//! How each kind of thing is drawn: which shader, which data, and what it does to what is already there.
+//! Render pipelines: the shader and the data of each kind of thing, and how it is combined with the
+//! picture so far.
 
 use wgpu::{CompareFunction, PrimitiveTopology, ShaderStages, StencilOperation, VertexStepMode};
 
+use crate::gpu::DEPTH;
 use crate::picture::{Ball, Line, Solid};
-use crate::targets::DEPTH;
 
-/// The shaders.
+/// The source of the shaders.
 pub(crate) const SOURCE: &str = include_str!("scene.wgsl");
 
-/// One pipeline a kind of thing.
+/// The pipelines, one for each kind of thing.
 pub(crate) struct Pipelines {
     pub(crate) background: wgpu::RenderPipeline,
     pub(crate) floor: wgpu::RenderPipeline,
@@ -22,7 +23,8 @@ pub(crate) struct Pipelines {
     pub(crate) line: wgpu::RenderPipeline,
 }
 
-/// What every pipeline reads: the globals, and the particles with their triangles.
+/// The layout of the bind group that every pipeline reads: the globals, and the particles with
+/// their triangles.
 pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry {
         binding,
@@ -50,16 +52,16 @@ pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     })
 }
 
-/// How a pipeline treats what is already there.
+/// The way in which a pipeline combines its pixels with the picture so far.
 #[derive(Clone, Copy, PartialEq)]
 enum Layer {
-    /// Where nothing else is.
+    /// Drawn where nothing else is.
     Back,
-    /// On the floor, blended, each place once.
+    /// Blended over the floor, at most once at each pixel.
     Shadow,
-    /// Hides what is behind.
+    /// Opaque.
     Solid,
-    /// Blended over what it is in front of.
+    /// Blended over what is behind it.
     Over,
 }
 
@@ -162,6 +164,7 @@ impl Pipelines {
     }
 }
 
+/// The tests of depth and stencil for a layer.
 fn depth_stencil(layer: Layer) -> wgpu::DepthStencilState {
     let once = wgpu::StencilFaceState {
         compare: CompareFunction::Equal,

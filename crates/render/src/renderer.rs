@@ -1,11 +1,10 @@
-//! What pictures of one topology share, and the order in which their parts are drawn.
+//! The renderer: all that pictures of one topology share, and the order in which parts are drawn.
 
 use std::ops::Range;
 
-use wgpu::BufferUsages;
-
-use crate::buffers::{Instances, Shape, filled};
+use crate::buffers::{Instances, Shape};
 use crate::gpu::Gpu;
+use crate::mesh::Mesh;
 use crate::picture::{Picture, Tile, Topology};
 use crate::pipelines::{Pipelines, SOURCE, layout};
 use crate::view::View;
@@ -14,30 +13,18 @@ use crate::view::View;
 pub struct Renderer {
     pipelines: Pipelines,
     layout: wgpu::BindGroupLayout,
-    /// With few, more and many triangles.
+    /// Spheres with few, more and many triangles.
     spheres: [Shape; 3],
     rounded_box: Shape,
     mesh: Mesh,
-    /// As many as were ever drawn at once.
+    /// The views, as many as were ever drawn at once.
     views: Vec<View>,
-    /// How many of them were prepared last.
+    /// The number of views that were prepared last.
     prepared: usize,
 }
 
-/// The buffers of a topology. Clones share them.
-#[derive(Clone)]
-pub(crate) struct Mesh {
-    pub(crate) first: wgpu::Buffer,
-    pub(crate) around: wgpu::Buffer,
-    triangles: wgpu::Buffer,
-    wires: wgpu::Buffer,
-    pub(crate) points: usize,
-    pub(crate) indices: u32,
-    wire_count: u32,
-}
-
 impl Renderer {
-    /// For targets of this format and number of samples.
+    /// A renderer for targets of this format and number of samples.
     #[must_use]
     pub fn new(gpu: &Gpu, color: wgpu::TextureFormat, samples: u32, topology: &Topology) -> Self {
         Self::with_source(gpu, SOURCE, color, samples, topology)
@@ -62,17 +49,18 @@ impl Renderer {
         }
     }
 
-    /// Goes on with another scene.
+    /// Replaces the topology of all pictures by that of another scene.
     pub fn set_topology(&mut self, gpu: &Gpu, topology: &Topology) {
         self.mesh = Mesh::new(gpu, topology);
         self.views.clear();
         self.prepared = 0;
     }
 
-    /// Goes on with another topology of the same particles in picture k alone: of cloth that is torn there.
+    /// Replaces the topology of picture k alone, for cloth that is torn there. The particles must
+    /// be the same.
     ///
     /// # Panics
-    /// It has another number of particles.
+    /// Panics if the number of particles is another one.
     pub fn set_topology_of(&mut self, gpu: &Gpu, k: usize, topology: &Topology) {
         assert_eq!(topology.points, self.mesh.points, "particles of a scene");
         while self.views.len() <= k {
@@ -84,7 +72,7 @@ impl Renderer {
     /// Sends pictures to the GPU, each for its own part of the target.
     ///
     /// # Panics
-    /// A picture has another number of particles than the topology.
+    /// Panics if a picture has another number of particles than the topology.
     pub fn prepare(&mut self, gpu: &Gpu, pictures: &[(Picture, Tile)]) {
         while self.views.len() < pictures.len() {
             self.views.push(View::new(gpu, &self.layout, &self.mesh));
@@ -111,10 +99,11 @@ impl Renderer {
         }
     }
 
+    /// Draws one view into the viewport that is set.
     fn draw_view(&self, pass: &mut wgpu::RenderPass, view: &View) {
         let (p, mesh, frame) = (&self.pipelines, &view.mesh, view.frame);
         pass.set_bind_group(0, &view.bind, &[]);
-        // What hides comes first, so that no pixel is shaded twice; then what is blended over it.
+        // Opaque things come first, so that no pixel is shaded twice, and blended ones last.
         if frame.mesh {
             pass.set_pipeline(&p.mesh);
             mesh.draw(pass);
@@ -179,60 +168,6 @@ impl Shape {
     }
 }
 
-impl Mesh {
-    fn new(gpu: &Gpu, topology: &Topology) -> Self {
-        let (first, around) = triangles_around(topology);
-        let filled = |label, usage, bytes| filled(gpu, label, usage, bytes);
-        Self {
-            first: filled("first", BufferUsages::STORAGE, bytemuck::cast_slice(&first)),
-            around: filled(
-                "around",
-                BufferUsages::STORAGE,
-                bytemuck::cast_slice(&around),
-            ),
-            triangles: filled(
-                "triangles",
-                BufferUsages::INDEX,
-                bytemuck::cast_slice(&topology.triangles),
-            ),
-            wires: filled(
-                "wires",
-                BufferUsages::VERTEX,
-                bytemuck::cast_slice(&topology.wires),
-            ),
-            points: topology.points,
-            indices: 3 * topology.triangles.len() as u32,
-            wire_count: topology.wires.len() as u32,
-        }
-    }
-
-    fn draw(&self, pass: &mut wgpu::RenderPass) {
-        pass.set_index_buffer(self.triangles.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.indices, 0, 0..1);
-    }
-}
-
-/// For each point, where its triangles begin in a list of their other two corners.
-fn triangles_around(topology: &Topology) -> (Vec<u32>, Vec<[u32; 2]>) {
-    let mut first = vec![0u32; topology.points + 1];
-    for corner in topology.triangles.iter().flatten() {
-        first[*corner as usize + 1] += 1;
-    }
-    for i in 0..topology.points {
-        first[i + 1] += first[i];
-    }
-    let mut next = first.clone();
-    let mut around = vec![[0; 2]; 3 * topology.triangles.len()];
-    for &[a, b, c] in &topology.triangles {
-        for (corner, others) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
-            let slot = &mut next[corner as usize];
-            around[*slot as usize] = others;
-            *slot += 1;
-        }
-    }
-    (first, around)
-}
-
 #[cfg(test)]
 mod tests {
     use std::io::Write;
@@ -240,23 +175,7 @@ mod tests {
     use super::*;
     use crate::{Camera, OFFSCREEN_FORMAT, Offscreen, Style};
 
-    #[test]
-    fn every_point_knows_its_triangles() {
-        let triangles = vec![[0, 2, 1], [1, 2, 3], [4, 1, 3]];
-        let (first, around) = triangles_around(&Topology {
-            points: 6,
-            triangles,
-            wires: vec![],
-        });
-        assert_eq!(first, [0, 1, 4, 6, 8, 9, 9]);
-        let of = |i: usize| &around[first[i] as usize..first[i + 1] as usize];
-        assert_eq!(of(0), [[2, 1]]);
-        assert_eq!(of(1), [[0, 2], [2, 3], [3, 4]]);
-        assert_eq!(of(4), [[1, 3]]);
-        assert!(of(5).is_empty());
-    }
-
-    /// A ridge of two slopes of different size, drawn with these shaders: pixels by rows.
+    /// The pixels by rows of a ridge of two slopes of different sizes, drawn with these shaders.
     fn ridge(gpu: &Gpu, source: &str) -> Vec<u8> {
         let points = [
             [-1.0, 0.6, 0.0, 0.0],
@@ -290,7 +209,7 @@ mod tests {
             .unwrap()
     }
 
-    /// Shaders whose normals are wrong in one way or another draw another picture.
+    /// Shaders with wrong normals draw another picture.
     #[test]
     fn normals_are_seen_to_be_right() {
         let gpu = match pollster::block_on(Gpu::headless()) {
@@ -300,7 +219,7 @@ mod tests {
                     std::env::var_os("A3_REQUIRE_GPU").is_none(),
                     "A3_REQUIRE_GPU is set: {why}"
                 );
-                // Past the test runner, which keeps what a passing test prints.
+                // Written directly, because the test runner hides what a passing test prints.
                 let _ = writeln!(std::io::stderr(), "SKIPPED, NOT TESTED: {why}");
                 return;
             }
@@ -311,7 +230,7 @@ mod tests {
         for (good, bad) in [
             ("out.normal = n;", "out.normal = -n;"),
             ("out.normal = n;", "out.normal = vec3(0.0, 0.0, 1.0);"),
-            // Only one of the triangles; all, without regard to their areas.
+            // Only one of the triangles; then all of them with equal weights.
             (
                 sum,
                 "n = cross(points[around[k].x].xyz - p, points[around[k].y].xyz - p);",

@@ -1,22 +1,25 @@
-// One bind group for everything: the camera and the light, and the particles' positions with the topology that turns
-// them into normals. Positions are sent once a frame; the mesh, the wireframe and the shadow all read the same copy.
+// The shaders of all pipelines. One bind group serves all of them: the camera and the light, and
+// the positions of the particles with the triangles that give them normals. Positions are sent once
+// a frame; the mesh, the wireframe and the shadow read the same copy.
 
 struct Globals {
     view_proj: mat4x4<f32>,
     eye: vec4<f32>,
-    // Towards the light, in world space.
+    // The direction towards the light, in world space.
     light: vec4<f32>,
-    // Left, top, width, height of the picture in its target [px].
+    // Left, top, width and height of the picture in its target (px).
     tile: vec4<f32>,
-    // Height of the floor [m], how far it is seen [m], x and z of its middle [m].
+    // Height of the floor, its radius, and x and z of its centre (m).
     floor: vec4<f32>,
-    // Distance of the nearest and the farthest particle from the eye [m], pixels per point, unused.
+    // Distances of the nearest and the farthest particle from the eye (m); pixels per point;
+    // unused.
     depth: vec4<f32>,
 };
 
 @group(0) @binding(0) var<uniform> globals: Globals;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
-// The triangles around point i are around[first[i]] to around[first[i + 1] - 1], each as its two other corners.
+// The triangles around point i are around[first[i]] to around[first[i + 1] - 1]. Each is given by
+// its other two corners.
 @group(0) @binding(2) var<storage, read> first: array<u32>;
 @group(0) @binding(3) var<storage, read> around: array<vec2<u32>>;
 
@@ -24,7 +27,8 @@ const PAPER = vec3(0.86, 0.855, 0.835);
 const SHADE = vec3(0.56, 0.60, 0.655);
 const INK = vec3(0.035, 0.05, 0.09);
 
-// The looks of surfaces, outside and inside: cloth in red, teal, amber and violet, jelly in green, orange, berry and blue.
+// The colours of surfaces by their look, outside and inside: cloth in red, teal, amber and violet,
+// and jelly in green, orange, berry and blue.
 const OUTSIDE = array(
     vec3(0.62, 0.045, 0.06), vec3(0.01, 0.30, 0.34), vec3(0.72, 0.30, 0.02), vec3(0.24, 0.09, 0.46),
     vec3(0.05, 0.42, 0.16), vec3(0.82, 0.22, 0.02), vec3(0.50, 0.03, 0.22), vec3(0.03, 0.20, 0.55),
@@ -34,7 +38,7 @@ const INSIDE = array(
     vec3(0.12, 0.50, 0.24), vec3(0.90, 0.36, 0.08), vec3(0.62, 0.10, 0.32), vec3(0.10, 0.32, 0.66),
 );
 
-// ---- Background: paper, darker towards the corners. Drawn where nothing else is.
+// ---- Background: paper, darker towards the corners, drawn where nothing else is.
 
 @vertex fn background_vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
     return vec4(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 1.0, 1.0);
@@ -45,7 +49,7 @@ fn background(pixel: vec2<f32>) -> vec3<f32> {
     return mix(PAPER, SHADE, min(2.1 * dot(p, p), 1.0));
 }
 
-// Half a step of an 8-bit channel up or down, so that the gradient shows no bands.
+// Noise of up to half a step of an 8-bit channel, so that the gradient shows no bands.
 fn dither(pixel: vec2<f32>) -> f32 {
     return (fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715)))) - 0.5) / 255.0;
 }
@@ -67,7 +71,7 @@ struct Floor { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32>
     return out;
 }
 
-// 1 at the middle of the floor, 0 where it ends.
+// The visibility of the floor, from 1 at its centre to 0 at its edge.
 fn floor_fade(world: vec3<f32>) -> f32 {
     return 1.0 - smoothstep(0.25, 1.0, length(world.xz - globals.floor.zw) / globals.floor.y);
 }
@@ -82,7 +86,8 @@ fn floor_fade(world: vec3<f32>) -> f32 {
     return vec4(mix(paper, color, 0.75 * floor_fade(in.world) * grazing), 1.0);
 }
 
-// ---- Shadow: what is above the floor, thrown onto it along the light. The stencil darkens each place once.
+// ---- Shadow: the projection of everything above the floor onto it, along the light. The stencil
+// lets each pixel be darkened once.
 
 struct Shadow { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32>, @location(1) height: f32 };
 
@@ -92,7 +97,7 @@ fn shadow(p: vec3<f32>) -> Shadow {
     out.world = p - globals.light.xyz * (out.height / globals.light.y);
     out.world.y = globals.floor.x;
     out.clip = globals.view_proj * vec4(out.world, 1.0);
-    // On the floor, not in it.
+    // The shadow lies a little above the floor, so that the floor does not hide it.
     out.clip.z -= 1e-4 * out.clip.w;
     return out;
 }
@@ -111,7 +116,7 @@ fn shadow(p: vec3<f32>) -> Shadow {
     return vec4(0.10, 0.11, 0.17, 0.34 * floor_fade(in.world) / (1.0 + 0.35 * in.height));
 }
 
-// ---- Light: a lamp, the sky, and a little from the eye, so that nothing is black.
+// ---- Light: a lamp, the sky, and a faint light from the eye, so that nothing is black.
 
 fn lit(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>, gloss: f32, sheen: f32) -> vec3<f32> {
     let eye = normalize(globals.eye.xyz - world);
@@ -126,8 +131,9 @@ fn lit(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>, gloss: f32, sheen: f32)
     return color * bright + spark + rim * mix(color, vec3(1.0), 0.45);
 }
 
-// ---- Mesh: smooth, two-sided. The normal of a point is the sum over its triangles of the cross product of two
-// sides, which has twice the triangle's area for its length: area weighting comes for free.
+// ---- Mesh: smooth and two-sided. The normal of a point is the sum of the cross products of two
+// sides of each of its triangles. The length of a cross product is twice the area of its triangle,
+// so that normals are weighted by area.
 
 struct Mesh {
     @builtin(position) clip: vec4<f32>,
@@ -150,8 +156,8 @@ struct Mesh {
     return out;
 }
 
-// Light that went in on the other side comes out: brighter where it is thin, along the outline, and where the lamp shines
-// against the eye.
+// The light of jelly, to which light that entered on the other side adds: more along the outline,
+// where jelly is thin, and where the lamp is opposite the eye.
 fn jelly(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
     let eye = normalize(globals.eye.xyz - world);
     let lamp = globals.light.xyz;
@@ -161,7 +167,7 @@ fn jelly(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
 }
 
 @fragment fn mesh_fragment(in: Mesh, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    // A squashed cell can have no normal: any will do, but not NaN.
+    // A degenerate triangle has no normal; it must not become NaN.
     let n = in.normal / max(length(in.normal), 1e-20) * select(-1.0, 1.0, front);
     var outside = OUTSIDE;
     var inside = INSIDE;
@@ -170,7 +176,7 @@ fn jelly(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
     return vec4(lit(color, n, in.world, 0.07, 0.35), 1.0);
 }
 
-// ---- Balls: particles, pins, and the sphere in the way.
+// ---- Balls: particles, pins and spherical obstacles.
 
 struct Ball {
     @builtin(position) clip: vec4<f32>,
@@ -194,14 +200,14 @@ struct Ball {
     return vec4(lit(in.color, normalize(in.normal), in.world, 0.5, 0.25), 1.0);
 }
 
-// ---- Solids: boxes with round edges. The pieces of a ball, moved apart.
+// ---- Solids: boxes with round edges, which are the pieces of a ball, moved apart.
 
 struct Solid {
     @location(0) unit: vec3<f32>,
-    // As -1 or 1 along each axis.
+    // The piece that the corner belongs to, as -1 or 1 along each axis.
     @location(1) piece: vec3<f32>,
     @location(2) center: vec4<f32>,
-    // Directions and half extents.
+    // Directions of the sides, each with its half extent (m).
     @location(3) x: vec4<f32>,
     @location(4) y: vec4<f32>,
     @location(5) z: vec4<f32>,
@@ -212,14 +218,14 @@ fn solid_normal(in: Solid) -> vec3<f32> {
     return mat3x3(in.x.xyz, in.y.xyz, in.z.xyz) * in.unit;
 }
 
-fn solid_place(in: Solid) -> vec3<f32> {
+fn solid_position(in: Solid) -> vec3<f32> {
     let middle = mat3x3(in.x.xyz, in.y.xyz, in.z.xyz) * (in.piece * vec3(in.x.w, in.y.w, in.z.w));
     return in.center.xyz + middle + in.center.w * solid_normal(in);
 }
 
 @vertex fn solid_vertex(in: Solid) -> Ball {
     var out: Ball;
-    out.world = solid_place(in);
+    out.world = solid_position(in);
     out.clip = globals.view_proj * vec4(out.world, 1.0);
     out.normal = solid_normal(in);
     out.color = in.color.rgb;
@@ -227,20 +233,20 @@ fn solid_place(in: Solid) -> vec3<f32> {
 }
 
 @vertex fn solid_shadow_vertex(in: Solid) -> Shadow {
-    return shadow(solid_place(in));
+    return shadow(solid_position(in));
 }
 
-// ---- Lines: a quad around each, as wide as asked for on the screen, with edges that fade over a pixel.
+// ---- Lines: quads of a given width on the screen, with edges that fade over a pixel.
 
 struct Line {
     @builtin(position) clip: vec4<f32>,
     @location(0) color: vec4<f32>,
-    // Pixels from the middle of the line; half its width.
+    // Distance from the middle of the line, and half its width (px).
     @location(1) @interpolate(linear) across: f32,
     @location(2) @interpolate(flat) half_width: f32,
 };
 
-// The corner i of the quad from a to b. A line that crosses the near plane is cut there.
+// Corner i of the quad from a to b. A line that crosses the near plane is cut there.
 fn line(a: vec3<f32>, b: vec3<f32>, points_wide: f32, color: vec4<f32>, i: u32) -> Line {
     var ca = globals.view_proj * vec4(a, 1.0);
     var cb = globals.view_proj * vec4(b, 1.0);
@@ -253,11 +259,12 @@ fn line(a: vec3<f32>, b: vec3<f32>, points_wide: f32, color: vec4<f32>, i: u32) 
     let side = f32(i & 1u) * 2.0 - 1.0;
     let half_width = 0.5 * points_wide * globals.depth.z;
     let reach = half_width + 1.0;
-    // Half a width beyond each end, so that lines join; not where one would see through both.
+    // Opaque lines reach half a width beyond each end, so that they join. Transparent ones do not,
+    // because the overlap would show.
     let beyond = direction * half_width * select(-1.0, 1.0, i >= 2u) * step(0.999, color.a);
     let offset = (vec2(-direction.y, direction.x) * side * reach + beyond) / half_size;
     var out: Line;
-    // A touch towards the eye, so that a line on a surface is not half in it.
+    // The line lies a little nearer to the eye, so that a line on a surface is not hidden by it.
     out.clip = vec4(end.xy + offset * end.w, end.z - 2e-4 * end.w, end.w);
     out.color = color;
     out.across = side * reach;
@@ -265,7 +272,7 @@ fn line(a: vec3<f32>, b: vec3<f32>, points_wide: f32, color: vec4<f32>, i: u32) 
     return out;
 }
 
-// A wire between two particles: darker near, fainter far.
+// A wire between two particles, which is fainter the farther away it is.
 @vertex fn wire_vertex(@builtin(vertex_index) i: u32, @location(0) ends: vec2<u32>) -> Line {
     let a = points[ends.x].xyz;
     let b = points[ends.y].xyz;

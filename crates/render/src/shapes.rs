@@ -1,6 +1,7 @@
-//! The sphere that every ball is an instance of, and the rounded box that every other solid is.
+//! Shapes: the sphere, of which balls are instances, and the rounded box, of which other solids
+//! are.
 
-/// Corners and triangles of a unit sphere in `rings` bands of latitude.
+/// The corners and the triangles of a unit sphere in `rings` bands of latitude.
 pub(crate) fn sphere(rings: u16) -> (Vec<[f32; 3]>, Vec<u16>) {
     let sectors = 2 * rings;
     let mut corners = vec![];
@@ -22,22 +23,23 @@ pub(crate) fn sphere(rings: u16) -> (Vec<[f32; 3]>, Vec<u16>) {
     (corners, triangles)
 }
 
-/// Corners and triangles of a unit sphere that was cut along the planes of its axes, so that its eight pieces can be moved
-/// apart: a corner is its place and, as -1 or 1 along each axis, its piece. `bands` of latitude and longitude a piece.
+/// The corners and the triangles of a unit sphere that is cut along the coordinate planes, so that
+/// its eight pieces can be moved apart. A corner is given by its position and its piece; the latter
+/// is -1 or 1 along each axis. Each piece has `bands` bands of latitude and of longitude.
 pub(crate) fn rounded_box(bands: u16) -> (Vec<[[f32; 3]; 2]>, Vec<u16>) {
-    // Each border twice: as the end of one piece and as the beginning of the next.
-    let places = |quarters: u16| -> Vec<(f32, u16)> {
-        let place = |q, k| {
+    // Each border is there twice: as the end of one piece and as the beginning of the next.
+    let angles = |quarters: u16| -> Vec<(f32, u16)> {
+        let angle = |q, k| {
             (
                 std::f32::consts::FRAC_PI_2 * (f32::from(q) + f32::from(k) / f32::from(bands)),
                 q,
             )
         };
         (0..quarters)
-            .flat_map(|q| (0..=bands).map(move |k| place(q, k)))
+            .flat_map(|q| (0..=bands).map(move |k| angle(q, k)))
             .collect()
     };
-    let (latitudes, longitudes) = (places(2), places(4));
+    let (latitudes, longitudes) = (angles(2), angles(4));
     let mut corners = vec![];
     for (theta, half) in &latitudes {
         for (phi, quarter) in &longitudes {
@@ -61,7 +63,7 @@ pub(crate) fn rounded_box(bands: u16) -> (Vec<[[f32; 3]; 2]>, Vec<u16>) {
             triangles.extend([a + j, b + j, a + next, a + next, b + j, b + next]);
         }
     }
-    // The faces over the poles.
+    // These are the faces at the poles.
     for row in [0, (rows - 1) * columns] {
         let [a, b, c, d] = [0, 1, 2, 3].map(|quarter| row + quarter * (bands + 1));
         triangles.extend([a, b, c, a, c, d]);
@@ -73,7 +75,8 @@ pub(crate) fn rounded_box(bands: u16) -> (Vec<[[f32; 3]; 2]>, Vec<u16>) {
 mod tests {
     use super::*;
 
-    /// Moved apart it is closed: each edge of a triangle with an area belongs to two of them.
+    /// The box is closed with its pieces moved apart: each edge of a triangle with an area belongs
+    /// to two such triangles.
     #[test]
     fn a_rounded_box_has_no_holes() {
         let (corners, triangles) = rounded_box(3);

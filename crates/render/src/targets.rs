@@ -1,11 +1,8 @@
-//! Depth and multisampled colour, of one size.
+//! Render targets: depth and multisampled colour.
 
-use crate::gpu::Gpu;
+use crate::gpu::{DEPTH, Gpu};
 
-/// Depth for what hides what, stencil so that a shadow darkens once.
-pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusStencil8;
-
-/// Linear, between pictures: the ink of lines.
+/// The linear colour between pictures, which is that of wires.
 pub(crate) const GAP: wgpu::Color = wgpu::Color {
     r: 0.035,
     g: 0.05,
@@ -13,7 +10,8 @@ pub(crate) const GAP: wgpu::Color = wgpu::Color {
     a: 1.0,
 };
 
-/// What a picture is drawn into before it reaches its destination.
+/// The depth buffer and, with several samples a pixel, the colour buffer that pictures are drawn
+/// into.
 pub struct Targets {
     multisampled: Option<wgpu::TextureView>,
     depth: wgpu::TextureView,
@@ -21,7 +19,7 @@ pub struct Targets {
 }
 
 impl Targets {
-    /// For pictures of `size` (px), which the device must be able to have.
+    /// Targets for pictures of `size` (px), which must be within the limits of the device.
     #[must_use]
     pub fn new(gpu: &Gpu, size: (u32, u32), color: wgpu::TextureFormat, samples: u32) -> Self {
         let texture = |format| {
@@ -49,13 +47,13 @@ impl Targets {
         }
     }
 
-    /// In px.
+    /// Width and height (px).
     #[must_use]
     pub fn size(&self) -> (u32, u32) {
         self.size
     }
 
-    /// Begins the pass that ends in `destination`.
+    /// Begins a pass that clears all targets, and whose colours end up in `destination`.
     pub fn pass<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -64,7 +62,7 @@ impl Targets {
         self.pass_over(encoder, destination, GAP)
     }
 
-    /// As [`pass`](Self::pass), with this colour where nothing is drawn.
+    /// Begins a pass as [`pass`](Self::pass) does, with this colour where nothing is drawn.
     pub(crate) fn pass_over<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,

@@ -1,20 +1,22 @@
-//! One of the pictures in a target: where it is, and the buffers of what is in it.
+//! Views: the place of each picture in the target, and the buffers of what is in it.
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
 
 use crate::buffers::{Instances, buffer};
 use crate::gpu::Gpu;
+use crate::mesh::Mesh;
 use crate::picture::{Picture, Style, Tile};
-use crate::renderer::Mesh;
 
-/// Towards the light: over the left shoulder, high.
+/// The direction towards the light: from above, over the left shoulder.
 const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
-/// How far the floor is seen (m), at least, and in distances of the eye from what it looks at.
+/// The radius of the floor: its least value (m), and its ratio to the distance of the eye from the
+/// target.
 const FLOOR_REACH: (f32, f32) = (14.0, 1.4);
-/// Balls from these radii on (m) are drawn with more triangles.
+/// The radii (m) from which balls are drawn with more triangles.
 const LARGER: [f32; 2] = [0.03, 0.25];
 
+/// The uniforms of the shaders, as `scene.wgsl` declares them.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Globals {
@@ -38,16 +40,21 @@ pub(crate) struct View {
     pub(crate) frame: Frame,
 }
 
-/// What of the last prepared picture the draw calls depend on.
+/// The parts of the picture that was prepared last on which draw calls depend.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Frame {
     pub(crate) tile: Tile,
+    /// Whether the floor is drawn.
     pub(crate) floor: bool,
+    /// Whether the background is drawn.
     pub(crate) background: bool,
+    /// Whether the surface is drawn, instead of its wires.
     pub(crate) mesh: bool,
-    /// Where the smallest, the middling and the large ones end.
+    /// The numbers of small balls, of small and middling ones, and of all.
     pub(crate) balls: [u32; 3],
+    /// The number of solids.
     pub(crate) solids: u32,
+    /// The number of lines.
     pub(crate) lines: u32,
 }
 
@@ -85,7 +92,7 @@ impl View {
         }
     }
 
-    /// Sends a picture to the GPU: positions once, and what changes from frame to frame beside them.
+    /// Sends a picture to the GPU, to be drawn in this part of the target.
     pub(crate) fn prepare(&mut self, gpu: &Gpu, picture: &Picture, tile: Tile) {
         let queue = &gpu.queue;
         queue.write_buffer(&self.points, 0, bytemuck::cast_slice(picture.points));
@@ -99,7 +106,7 @@ impl View {
         queue.write_buffer(&self.globals, 0, bytemuck::bytes_of(&globals));
         self.frame = Frame {
             tile,
-            // From below it would hide everything.
+            // Seen from below, the floor would hide everything.
             floor: !picture.transparent
                 && picture
                     .floor
@@ -113,6 +120,7 @@ impl View {
     }
 }
 
+/// The uniforms for a picture in this part of the target.
 fn globals(picture: &Picture, tile: Tile) -> Globals {
     let eye = picture.camera.eye();
     let target = picture.camera.target();

@@ -2,7 +2,7 @@
 //! the dash and the kind of marker. The colours, after Okabe and Ito and after Tol, are told apart
 //! with any kind of colour vision.
 
-use a3_plot::{Marker, Style};
+use a3_plot::{CurveStyle, Marker};
 
 const EXPLICIT: &[f64] = &[];
 const SYMPLECTIC: &[f64] = &[7.0, 2.5];
@@ -10,7 +10,7 @@ const ADAPTIVE: &[f64] = &[1.5, 1.8];
 const IMPLICIT: &[f64] = &[7.0, 2.0, 1.5, 2.0];
 
 /// The style of a method by its letter; grey for one without a style of its own.
-pub fn of(letter: char) -> Style {
+pub fn of(letter: char) -> CurveStyle {
     use Marker::{Cross, Polygon, Star};
     let (colour, dash, marker) = match letter {
         'e' => ("#d55e00", EXPLICIT, Polygon(32, 0.0)),
@@ -26,9 +26,9 @@ pub fn of(letter: char) -> Style {
         'i' => ("#35a596", IMPLICIT, Cross(0.0)),
         'b' => ("#009e73", IMPLICIT, Cross(0.125)),
         'n' => ("#117733", IMPLICIT, Polygon(6, 0.0)),
-        _ => return Style::default(),
+        _ => return CurveStyle::default(),
     };
-    Style {
+    CurveStyle {
         colour,
         dash,
         marker,

@@ -101,8 +101,8 @@ impl StabilityRegions {
         };
         let (rooms, _) = layout::grid(self.regions.len(), inner, 1.2 * size, merit);
         let width = rooms[0].width();
-        // There are as many lines above each panel as the longest text needs, so that the panels of a
-        // row are alike.
+        // There are as many lines above each panel as the longest text needs, so that the panels of
+        // a row are alike.
         let words = |region: &Region| {
             [(&region.title, size), (&region.subtitle, small)]
                 .map(|(text, size)| layout::wrap(text, size, width))

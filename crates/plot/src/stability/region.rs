@@ -7,7 +7,7 @@ use crate::axis::{self, Axis};
 use crate::contour;
 use crate::figure::{Figure, stroke};
 use crate::geometry::{Point, Rect};
-use crate::style::Style;
+use crate::style::CurveStyle;
 
 /// The colour of eigenvalues in the region.
 const INSIDE: &str = "#222222";
@@ -17,7 +17,7 @@ const OUTSIDE: &str = "#d0021b";
 /// The stability region of a method, with the eigenvalues of a problem times a step: one panel.
 pub struct Region {
     /// The style of the method, of which the colour is used.
-    pub style: Style,
+    pub style: CurveStyle,
     /// The method and its step. Lines do not break at no-break spaces, here and below.
     pub title: String,
     /// A note, such as the largest stable step.

@@ -35,8 +35,8 @@ impl WorkPrecision {
     /// The diagram on a sheet of this width and height.
     ///
     /// # Errors
-    /// [`Error::Empty`] if no run has a place on the axes; [`Error::Sheet`] or [`Error::TooSmall`] if
-    /// the diagram does not fit on the sheet.
+    /// [`Error::Empty`] if no run has a place on the axes; [`Error::Sheet`] or [`Error::TooSmall`]
+    /// if the diagram does not fit on the sheet.
     pub fn draw(&self, width: f64, height: f64) -> Result<Figure, Error> {
         let Some(axes) = self.axes() else {
             let why = "no run to draw: each blew up or has no work";

@@ -1,6 +1,6 @@
 //! The data of a work-precision diagram.
 
-use crate::style::Style;
+use crate::style::CurveStyle;
 
 /// The error and the work of one run of a method.
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ pub struct Measurement {
 #[derive(Clone, Debug)]
 pub struct Curve {
     /// The style of the curve. A method has the same style on all problems.
-    pub style: Style,
+    pub style: CurveStyle,
     /// The name of the method.
     pub name: String,
     /// The runs, in any order.
@@ -95,7 +95,7 @@ mod tests {
             label: None,
         };
         let curve = |runs| Curve {
-            style: Style::default(),
+            style: CurveStyle::default(),
             name: String::new(),
             runs,
         };
