@@ -11,9 +11,10 @@ use crate::cli::{Choose, What};
 use crate::progress::Bar;
 use crate::{Failure, interrupt, list, output};
 
-/// As a window has it (s).
+/// Simulated time of a frame (s).
 const FRAME: f64 = 1.0 / 60.0;
 
+/// Finds and prints what the command line asks for.
 pub fn run(options: &Choose) -> Result<(), Failure> {
     interrupt::listen();
     let stopped = || Failure::Interrupted("interrupted: nothing was chosen".into());
@@ -74,7 +75,7 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
     ))
 }
 
-/// Computing time for a frame (ms), timed over the whole run.
+/// Computing time of a frame (ms), averaged over the whole run. `None` if it was interrupted.
 fn milliseconds(
     scene: &Scene,
     candidate: &Candidate,
@@ -89,7 +90,8 @@ fn milliseconds(
     Ok(time.map(|time| 1e3 * time.as_secs_f64() * FRAME / reference.frames.until))
 }
 
-/// Each method at the finest step or tolerance whose frames take no longer than the budget (ms), the most accurate first.
+/// The three most accurate methods, each at its most accurate step or tolerance whose frames take no
+/// longer than the budget (ms). `None` if it was interrupted.
 fn within(
     scene: &Scene,
     reference: &Reference,
@@ -142,6 +144,7 @@ fn within(
     Ok(Some(found))
 }
 
+/// The table of candidates and their costs (ms).
 fn report(
     what: &What,
     scene: &Scene,
@@ -181,7 +184,8 @@ fn report(
     )
 }
 
-/// A step or a tolerance as one would type it: four digits, rounded down, so that the run is no coarser.
+/// A step or a tolerance as it would be typed: to four digits, rounded down, so that the run is no
+/// coarser.
 fn typed(value: f64) -> String {
     let power = 10f64.powi(3 - value.log10().floor() as i32);
     let rounded = (value * power * (1.0 + 1e-12)).floor() / power;
@@ -192,6 +196,7 @@ fn typed(value: f64) -> String {
     }
 }
 
+/// The command line that runs the scene with a method at a step or a tolerance.
 fn command(what: &What, method: &Method, control: Control) -> String {
     let mut words = format!("a3 {} {}", method.letter, typed(control.value()));
     if what.scene.typed != "cloth" {

@@ -1,26 +1,27 @@
-//! When a run is looked at, and what the files of such a sequence are called.
+//! The times of frames, and the names of numbered files.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use crate::Failure;
 
-/// What is more than this was not meant.
+/// Most frames of a run. More are taken for a mistake.
 const MOST: f64 = 1e6;
 
 /// Times `from` + k / `rate` (s), the last at or before the end.
 #[derive(Clone, Copy, Debug)]
-pub struct Frames {
-    /// In s.
+pub struct FrameTimes {
+    /// Time of the first frame (s).
     pub from: f64,
-    /// In 1/s.
+    /// Frames a second (1/s).
     pub rate: f64,
-    /// How many: at least one.
+    /// The number of frames, at least 1.
     pub count: usize,
+    /// The end of the run (s).
     until: f64,
 }
 
-impl Frames {
+impl FrameTimes {
     pub fn new(from: f64, until: f64, rate: f64) -> Result<Self, Failure> {
         if from > until {
             return Err(Failure::usage(format!(
@@ -43,13 +44,13 @@ impl Frames {
         })
     }
 
-    /// In s.
+    /// The times of all frames (s).
     pub fn times(self) -> impl Iterator<Item = f64> {
         (0..self.count).map(move |k| (self.from + k as f64 / self.rate).min(self.until))
     }
 }
 
-/// Files that differ by a number: as many digits as the name has `#`.
+/// Files that are numbered, with as many digits as the name has `#`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sequence {
     folder: PathBuf,
@@ -59,7 +60,7 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// What this path names, if it names one.
+    /// The sequence that a path names, if there is a `#` in its file name.
     pub fn of(path: &Path) -> Option<Self> {
         let name = path.file_name()?.to_str()?;
         let (before, rest) = name.split_once('#')?;
@@ -72,7 +73,7 @@ impl Sequence {
         })
     }
 
-    /// `Ok` if so many files have each a name of its own.
+    /// Refuses a sequence whose numbers have too few digits for so many files.
     pub fn check(&self, count: usize) -> Result<(), Failure> {
         if self.after.contains('#') {
             return Err(Failure::usage(
@@ -103,7 +104,7 @@ mod tests {
     #[test]
     fn frames_end_at_or_before_the_end() {
         let times = |from, until, rate| -> Vec<f64> {
-            let frames = Frames::new(from, until, rate).ok().unwrap();
+            let frames = FrameTimes::new(from, until, rate).ok().unwrap();
             let times: Vec<f64> = frames.times().collect();
             assert_eq!(times.len(), frames.count);
             times
@@ -119,8 +120,8 @@ mod tests {
 
     #[test]
     fn frames_that_cannot_be_are_refused() {
-        assert!(Frames::new(2.0, 1.0, 30.0).is_err());
-        assert!(Frames::new(0.0, 1e9, 30.0).is_err());
+        assert!(FrameTimes::new(2.0, 1.0, 30.0).is_err());
+        assert!(FrameTimes::new(0.0, 1e9, 30.0).is_err());
     }
 
     #[test]

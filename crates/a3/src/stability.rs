@@ -1,4 +1,5 @@
-//! `a3 stability`: the largest step that each solver holds, predicted and observed, and the plane in which one sees why.
+//! `a3 stability`: the largest stable step of each solver, predicted and observed, and a chart of
+//! the stability regions that explain it.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -15,22 +16,24 @@ use crate::cli::Stability;
 use crate::progress::Bar;
 use crate::{Failure, interrupt, list, output};
 
-/// What is known of a method.
-struct Row {
+/// The limits of a method.
+struct MethodLimits {
     method: &'static Method,
-    /// As the scene starts.
+    /// The limit predicted from the modes of the scene as it starts.
     start: Option<Limit>,
-    /// As it moves from there, and as it hangs at rest.
-    motion: Pair,
-    rest: Option<Pair>,
+    /// The limit as the scene moves from its start.
+    motion: Comparison,
+    /// The limit at rest, if the scene comes to rest.
+    rest: Option<Comparison>,
 }
 
-/// A limit as it was predicted, and as it was seen.
-struct Pair {
+/// A limit as it was predicted and as it was observed.
+struct Comparison {
     predicted: Option<Limit>,
     observed: Option<Observation>,
 }
 
+/// Measures, prints and draws what the command line asks for.
 pub fn run(options: &Stability) -> Result<(), Failure> {
     interrupt::listen();
     let scene = options.what.scene()?;
@@ -49,13 +52,13 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     for method in methods {
         bar.say(format!("{:<10} ", method.name));
         let start = largest_step(method, &at_start).map_err(Failure::run)?;
-        let motion = pair(method, &in_motion, |limit| {
+        let motion = compare(method, &in_motion, |limit| {
             let guess = limit.map_or(1.0, |limit| limit.step);
             observe_from_start(&scene, &truth, method, guess, interrupt::go_on)
         })?;
         bar.advance(1.0);
         let rest = match &hanging {
-            Some(rest) => Some(pair(method, &rest.modes, |limit| {
+            Some(rest) => Some(compare(method, &rest.modes, |limit| {
                 observe_at_rest(rest, method, limit, interrupt::go_on)
             })?),
             None => None,
@@ -64,7 +67,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
         if !interrupt::go_on() {
             break;
         }
-        rows.push(Row {
+        rows.push(MethodLimits {
             method,
             start,
             motion,
@@ -84,7 +87,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
         hanging.as_ref().map(|rest| &rest.modes[..]),
     ))?;
     let title = format!("Where solvers fail: {}", describe(&options.what, &scene));
-    // By default the fastest motion turns by one radian a step.
+    // By default a step is one radian of the fastest motion.
     let fastest = at_start.first().map_or(1.0, Mode::frequency);
     let h = options
         .step
@@ -103,20 +106,21 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     }
 }
 
-fn pair(
+/// The limit predicted from modes, and the one that `observe` finds with that prediction.
+fn compare(
     method: &'static Method,
     modes: &[Mode],
     observe: impl FnOnce(Option<&Limit>) -> Result<Option<Observation>, a3_core::Error>,
-) -> Result<Pair, Failure> {
+) -> Result<Comparison, Failure> {
     let predicted = largest_step(method, modes).map_err(Failure::run)?;
     let observed = observe(predicted.as_ref()).map_err(Failure::run)?;
-    Ok(Pair {
+    Ok(Comparison {
         predicted,
         observed,
     })
 }
 
-/// A step in ms, to three digits.
+/// A step in words, to three digits (ms).
 fn step(seconds: f64) -> String {
     let ms = 1e3 * seconds;
     match ms {
@@ -128,18 +132,20 @@ fn step(seconds: f64) -> String {
     }
 }
 
-/// A prediction in ms, with a mark where shorter steps grow too.
+/// A predicted limit in words (ms), with a mark if shorter steps grow too.
 fn prediction(limit: Option<Limit>) -> String {
     limit.map_or("-".into(), |limit| {
         step(limit.step) + if limit.strict { "" } else { "~" }
     })
 }
 
+/// An observed limit in words (ms).
 fn observation(seen: Option<Observation>) -> String {
     seen.map_or("-".into(), |seen| step(seen.step))
 }
 
-fn ratio(pair: &Pair) -> String {
+/// The ratio of the observed to the predicted limit, in words.
+fn ratio(pair: &Comparison) -> String {
     match (pair.predicted, pair.observed) {
         (Some(limit), Some(seen)) if limit.step.is_finite() && seen.step.is_finite() => {
             format!("{:.3}", seen.step / limit.step)
@@ -148,7 +154,8 @@ fn ratio(pair: &Pair) -> String {
     }
 }
 
-fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> String {
+/// The table of all limits, with the fastest motion above it.
+fn text(scene: &Scene, rows: &[MethodLimits], start: &[Mode], rest: Option<&[Mode]>) -> String {
     let heading = [
         "solver",
         " start: predicted",
@@ -210,7 +217,8 @@ fn text(scene: &Scene, rows: &[Row], start: &[Mode], rest: Option<&[Mode]>) -> S
     text
 }
 
-fn chart(title: String, rows: &[Row], modes: &[Mode], h: f64) -> StabilityRegions {
+/// The chart of stability regions, with the eigenvalues of the modes times the step h (s).
+fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> StabilityRegions {
     StabilityRegions {
         title,
         subtitle: format!(
@@ -221,7 +229,8 @@ fn chart(title: String, rows: &[Row], modes: &[Mode], h: f64) -> StabilityRegion
     }
 }
 
-fn region(row: &Row, modes: &[Mode], h: f64) -> Region {
+/// The stability region of a method.
+fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
     let limit = row
         .motion
         .predicted
@@ -239,8 +248,9 @@ fn region(row: &Row, modes: &[Mode], h: f64) -> Region {
     } else {
         "stable at any step".to_owned()
     };
-    // A Runge-Kutta step is the same for every mode with these eigenvalues; a splitting one is that of a mode that
-    // shares its damping between drag and springs as the scene's fastest does.
+    // The growth of a Runge-Kutta step depends on the eigenvalues only. That of a splitting method
+    // also depends on how the damping is divided between drag and springs, which is taken from the
+    // fastest mode.
     let share = modes
         .first()
         .map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300));

@@ -1,4 +1,5 @@
-//! The runs behind a chart, one line each, in a CSV or JSON file that a later chart goes on from.
+//! Data behind a chart: its runs, one line each, in a CSV or JSON file from which a later chart
+//! goes on.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,40 +9,44 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Failure, output};
 
-/// No data file of ours is larger.
+/// Size of the largest data file that is read (bytes).
 const LARGEST_FILE: u64 = 64 << 20;
 
-/// One run.
+/// A run, with its error and its work.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Record {
-    /// Of this program.
+    /// Version of the program that measured it.
     pub version: String,
     pub scene: String,
     pub rows: usize,
     pub cols: usize,
     pub wind: bool,
     pub swing: bool,
-    /// Factor of the scene's own.
+    /// Stiffness of the springs, as a factor of the scene's own.
     pub stiffness: f64,
     /// Simulated time (s).
     pub until: f64,
     pub solver: String,
-    /// The step (s), or the relative tolerance.
+    /// Step (s), or relative tolerance.
     pub setting: f64,
-    /// Errors over the frames that it reached.
+    /// Error of the positions over the frames that the run reached (m).
     pub error_position: f64,
+    /// Error of the energy (J).
     pub error_energy: f64,
+    /// Error of the springs' stretch.
     pub error_strain: f64,
-    /// What the reference is not sure of.
+    /// Error of the reference itself: of the positions (m).
     pub floor_position: f64,
+    /// Error of the reference itself: of the energy (J).
     pub floor_energy: f64,
+    /// Error of the reference itself: of the springs' stretch.
     pub floor_strain: f64,
-    /// When it blew up (s).
+    /// Simulated time at which the run blew up (s).
     pub lost_at: Option<f64>,
-    /// Of the whole run, if it was timed.
+    /// Computing time of the whole run (s), if it was measured.
     pub seconds: Option<f64>,
-    /// In evaluations, linear algebra included.
+    /// Work of the whole run in evaluations, including linear algebra.
     pub work: f64,
     pub evaluations: u64,
     pub solves: u64,
@@ -51,7 +56,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Whether both are of the same scene.
+    /// Whether both runs are of the same scene, by the same version.
     pub fn same_scene(&self, other: &Self) -> bool {
         (&self.version, &self.scene, self.rows, self.cols)
             == (&other.version, &other.scene, other.rows, other.cols)
@@ -59,10 +64,12 @@ impl Record {
             && (self.stiffness, self.until) == (other.stiffness, other.until)
     }
 
+    /// Whether both runs are of the same scene, method and setting.
     fn same_run(&self, other: &Self) -> bool {
         self.same_scene(other) && self.solver == other.solver && self.setting == other.setting
     }
 
+    /// The error of the run.
     pub fn error(&self, metric: Metric) -> f64 {
         metric.of(&Errors {
             position: self.error_position,
@@ -71,6 +78,7 @@ impl Record {
         })
     }
 
+    /// The error of the reference itself.
     pub fn floor(&self, metric: Metric) -> f64 {
         metric.of(&Errors {
             position: self.floor_position,
@@ -80,14 +88,14 @@ impl Record {
     }
 }
 
-/// The runs so far, and the file they are kept in.
+/// The runs so far, and the file that keeps them.
 pub struct Data {
     path: Option<PathBuf>,
     pub records: Vec<Record>,
 }
 
 impl Data {
-    /// What the file holds, if it is there.
+    /// The runs in the file; none if there is no file.
     pub fn open(path: Option<&Path>) -> Result<Self, Failure> {
         let mut data = Self {
             path: path.map(Path::to_owned),
@@ -119,20 +127,21 @@ impl Data {
         Ok(data)
     }
 
-    /// The run like this one by the same version, timed if it has to be.
+    /// The run of the same scene, method, setting and version, if there is one; if `timed`, only
+    /// one that was timed or lost.
     pub fn find(&self, like: &Record, timed: bool) -> Option<&Record> {
         self.records
             .iter()
             .find(|r| r.same_run(like) && (!timed || r.seconds.is_some() || r.lost_at.is_some()))
     }
 
-    /// Adds a run, in place of the same one without a time.
+    /// Adds a run, and removes an older one of the same scene, method and setting.
     pub fn add(&mut self, record: Record) {
         self.records.retain(|r| !r.same_run(&record));
         self.records.push(record);
     }
 
-    /// Writes the file, if there is one to write.
+    /// Writes the file, if the runs have one.
     pub fn save(&self) -> Result<(), Failure> {
         let Some(path) = &self.path else {
             return Ok(());
@@ -152,4 +161,5 @@ impl Data {
     }
 }
 
+/// Version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

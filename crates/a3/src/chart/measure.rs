@@ -1,4 +1,5 @@
-//! Runs of every method at every step or tolerance that says something, timed alone.
+//! Measurement of the runs of a chart: every method at every step or tolerance that tells something,
+//! one run at a time, so that computing times are comparable.
 
 use std::time::{Duration, Instant};
 
@@ -9,22 +10,22 @@ use super::data::{Data, Record, VERSION};
 use crate::progress::Bar;
 use crate::{Failure, interrupt};
 
-/// No run takes more work than so many evaluations, on one to speak of.
+/// Most work of a run, in evaluations. A run that fails may take more.
 const MOST_EVALUATIONS: u64 = 60_000;
-/// What a step of an implicit method takes, in evaluations, within a factor of three.
+/// Work of a step of an implicit method, in evaluations, within a factor of three.
 const IMPLICIT: f64 = 25.0;
-/// The minimum of so many runs is their time ...
+/// Most repetitions of a run, the fastest of which counts.
 const RUNS: u32 = 5;
-/// ... unless they take longer than this together: then of fewer, but of two ...
+/// Computing time after which a run is repeated no more, if it was repeated once.
 const TOGETHER: Duration = Duration::from_millis(600);
-/// ... unless one takes longer than this.
+/// Computing time of one run after which it is not repeated at all.
 const ALONE: Duration = Duration::from_secs(2);
 
-/// A scene at one stiffness, with what is known of it.
+/// A scene at one stiffness, and how it is measured.
 pub struct Study<'a> {
     pub scene: Scene,
     pub frames: Frames,
-    /// A record of this scene, of which the rest is to be filled in.
+    /// A record of the scene, whose other fields are filled in for each run.
     blank: Record,
     reference: Option<Reference>,
     methods: &'a [&'static Method],
@@ -33,6 +34,8 @@ pub struct Study<'a> {
 }
 
 impl<'a> Study<'a> {
+    /// A study of the scene. `name`, `wind` and `swing` describe it in the records; `timed` says
+    /// whether computing times are measured.
     pub fn new(
         scene: Scene,
         (name, wind, swing): (&str, bool, bool),
@@ -79,23 +82,23 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The stiffness, as a factor.
+    /// Stiffness of the springs, as a factor of the scene's own.
     pub fn stiffness(&self) -> f64 {
         self.blank.stiffness
     }
 
-    /// The runs that are this study's.
+    /// The runs of this study.
     pub fn records<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
         data.records.iter().filter(|r| r.same_scene(&self.blank))
     }
 
-    /// The steps or tolerances at which a method is run.
+    /// The steps or tolerances at which a method is run, from the coarsest on.
     fn rungs(&self, method: &'static Method) -> Result<Vec<Control>, Failure> {
         let most = MOST_EVALUATIONS as f64 / each(method);
         ladder(&self.scene, method, &self.frames, most as u64).map_err(Failure::run)
     }
 
-    /// About how long everything takes, in evaluations.
+    /// Expected work of all runs, in evaluations.
     pub fn expected(&self) -> Result<f64, Failure> {
         let mut sum = 0.0;
         for method in self.methods {
@@ -108,10 +111,11 @@ impl<'a> Study<'a> {
         Ok(sum)
     }
 
+    /// Expected work of a run, in evaluations.
     fn expected_of(&self, method: &Method, control: Control) -> f64 {
         let steps = match control {
             Control::Step(step) => self.frames.until / step,
-            // As on most scenes, within a factor of three.
+            // An estimate that holds on most scenes within a factor of three.
             Control::Tolerance(tolerance) => {
                 20.0 * self.frames.until * tolerance.powf(-0.9 / f64::from(method.order))
             }
@@ -119,7 +123,7 @@ impl<'a> Study<'a> {
         steps * each(method) + 100.0
     }
 
-    /// Measures what the data do not have yet. Whether it came to its end.
+    /// Measures the runs that the data do not have yet. `false` if it was interrupted.
     pub fn run(&mut self, data: &mut Data, bar: &Bar) -> Result<bool, Failure> {
         for &method in self.methods {
             let rungs = self.rungs(method)?;
@@ -141,7 +145,8 @@ impl<'a> Study<'a> {
                     },
                 };
                 bar.advance(self.expected_of(method, control));
-                // Below what the reference knows there is nothing to see. Linear algebra is known only afterwards.
+                // Errors below that of the reference tell nothing. The work of linear algebra is
+                // known only after a run.
                 let enough = 10.0 * record.floor(self.metric).max(1e-13);
                 let next = rungs
                     .get(i + 1)
@@ -158,7 +163,7 @@ impl<'a> Study<'a> {
         Ok(true)
     }
 
-    /// `None` if it was interrupted.
+    /// Measures one run. `None` if it was interrupted.
     fn measure(
         &mut self,
         method: &'static Method,
@@ -210,7 +215,7 @@ impl<'a> Study<'a> {
     }
 }
 
-/// About what a step takes, in evaluations.
+/// Expected work of a step, in evaluations.
 fn each(method: &Method) -> f64 {
     if method.implicit {
         IMPLICIT
@@ -219,7 +224,7 @@ fn each(method: &Method) -> f64 {
     }
 }
 
-/// The shortest time that the whole run takes, after one that warmed up. `None` if it was interrupted.
+/// Computing time of a whole run, the shortest of several. `None` if it was interrupted.
 pub fn time(
     scene: &Scene,
     method: &'static Method,
@@ -244,7 +249,7 @@ pub fn time(
     Ok(Some(best))
 }
 
-/// The scene with springs so many times as stiff.
+/// The scene with the stiffness of its springs multiplied by a factor.
 pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
     let mut scene = scene.clone();
     match &mut scene.model {

@@ -18,6 +18,7 @@ use crate::{Failure, interrupt, output};
 use data::Data;
 use measure::{Study, stiffened};
 
+/// Measures, prints and draws what the command line asks for.
 pub fn run(options: &Chart) -> Result<(), Failure> {
     interrupt::listen();
     let scene = options.what.scene()?;
@@ -40,7 +41,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     let mut until = options.until;
     for &factor in &options.stiffness {
         let scene = stiffened(&scene, factor)?;
-        // One horizon for all panels: that of the stiffest, which is the shortest.
+        // All panels have the shortest horizon, which is that of the stiffest scene.
         if let Some(found) = look_ahead(&scene, options.until, factor)? {
             until = Some(until.map_or(found, |until: f64| until.min(found)));
         }
@@ -102,7 +103,7 @@ pub fn write_picture(path: &Path, figure: &Figure) -> Result<(), Failure> {
     }
 }
 
-/// Those asked for, or all that serve the scene.
+/// The methods that were asked for, or else all that can integrate the scene.
 pub fn methods(scene: &Scene, asked: &[&'static Method]) -> Result<Vec<&'static Method>, Failure> {
     if asked.is_empty() {
         let all = integrators::METHODS.iter();
@@ -122,6 +123,7 @@ pub fn methods(scene: &Scene, asked: &[&'static Method]) -> Result<Vec<&'static 
     Ok(methods)
 }
 
+/// The metric that was asked for.
 pub fn metric(error: Error) -> Metric {
     match error {
         Error::Position => Metric::Position,
@@ -130,7 +132,8 @@ pub fn metric(error: Error) -> Metric {
     }
 }
 
-/// Says how far the scene can be foretold: the end of the runs, unless one was asked for. `None` if it was interrupted.
+/// The end of the runs: the one that was asked for, or else the time up to which the motion can be
+/// predicted (s). Prints that time and the reason. `None` if it was interrupted.
 pub fn look_ahead(
     scene: &Scene,
     asked: Option<f64>,
@@ -162,7 +165,7 @@ pub fn look_ahead(
     Ok(Some(asked.unwrap_or(until)))
 }
 
-/// The scene in words.
+/// The scene in words: its name, its grid, and what is switched on.
 pub fn describe(what: &What, scene: &Scene) -> String {
     let grid = scene
         .grid

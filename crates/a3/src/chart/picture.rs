@@ -1,4 +1,4 @@
-//! From runs to a chart.
+//! The work-precision diagram of the runs.
 
 use a3_core::Method;
 use a3_core::accuracy::Metric;
@@ -9,6 +9,7 @@ use super::measure::Study;
 use super::{describe, style, table};
 use crate::cli::What;
 
+/// The diagram, with a panel for each study.
 pub fn chart(
     studies: &[&Study],
     data: &Data,
@@ -50,6 +51,7 @@ pub fn chart(
     }
 }
 
+/// The panel of a study, without a title.
 fn problem(
     study: &Study,
     data: &Data,
@@ -63,7 +65,8 @@ fn problem(
             .filter(|r| r.solver == method.name)
             .collect();
         records.sort_by(|a, b| b.setting.total_cmp(&a.setting));
-        // What a lost run would have cost: its price per evaluation is that of the method's others.
+        // A lost run is drawn at the work that all of it would have taken. Its computing time is
+        // found from that of the other runs of the method.
         let price = records
             .iter()
             .filter_map(|r| Some(r.seconds? / r.work))

@@ -1,4 +1,4 @@
-//! A chart in the terminal: what each method needs for each error, and who wins.
+//! The chart as tables: the work that each method needs for each error, and the cheapest methods.
 
 use std::fmt::Write;
 
@@ -9,10 +9,10 @@ use super::data::{Data, Record};
 use super::measure::Study;
 use crate::list;
 
-/// The errors that are asked for: 1e-2 ... 1e-8.
+/// Decimal digits of the errors in the table, from 1e-2 to 1e-8.
 const ERRORS: std::ops::RangeInclusive<i32> = 2..=8;
 
-/// The cheapest run with at most that error.
+/// The cheapest run whose error is at most `error`.
 fn cheapest<'a>(
     records: impl Iterator<Item = &'a Record>,
     metric: Metric,
@@ -24,7 +24,7 @@ fn cheapest<'a>(
         .min_by(|a, b| cost(a, timed).total_cmp(&cost(b, timed)))
 }
 
-/// Milliseconds, or evaluations.
+/// Cost of a run: computing time (ms) if it is timed, or else work in evaluations.
 fn cost(record: &Record, timed: bool) -> f64 {
     if timed {
         record.seconds.map_or(f64::INFINITY, |s| 1e3 * s)
@@ -33,7 +33,7 @@ fn cost(record: &Record, timed: bool) -> f64 {
     }
 }
 
-/// Three digits.
+/// A cost, to three digits.
 fn short(cost: f64) -> String {
     if cost < 9.995 {
         format!("{cost:.2}")
@@ -44,7 +44,7 @@ fn short(cost: f64) -> String {
     }
 }
 
-/// The step with its unit, or the tolerance.
+/// A step with its unit, or a tolerance, in words.
 pub fn words(control: Control) -> String {
     match control {
         Control::Tolerance(tolerance) => format!("tolerance {tolerance:.0e}"),
@@ -53,7 +53,7 @@ pub fn words(control: Control) -> String {
     }
 }
 
-/// Every study, one after the other.
+/// The tables of all studies.
 pub fn text(
     studies: &[&Study],
     data: &Data,
@@ -88,6 +88,7 @@ pub fn text(
     parts.collect::<Vec<_>>().concat()
 }
 
+/// The rows of a study's table: a heading, and the cost of each method for each error.
 fn rows(
     study: &Study,
     data: &Data,
@@ -128,6 +129,7 @@ fn rows(
     rows
 }
 
+/// The cheapest method for each error, a line each.
 fn winners(
     study: &Study,
     data: &Data,

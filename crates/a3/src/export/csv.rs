@@ -1,4 +1,4 @@
-//! CSV: a row a particle and frame, at full precision.
+//! CSV: a row for each frame and particle, at full precision.
 
 use std::path::Path;
 
@@ -8,15 +8,18 @@ use super::Export;
 use crate::Failure;
 use crate::output::Draft;
 
-/// About how many bytes a row has.
+/// Approximate size of a row (bytes).
 pub const ROW: f64 = 150.0;
 
+/// A CSV file in the making.
 pub struct Csv {
     writer: csv::Writer<Draft>,
+    /// The number of frames so far.
     frames: usize,
 }
 
 impl Csv {
+    /// A file with a heading.
     pub fn new(path: &Path) -> Result<Self, Failure> {
         let mut csv = Self {
             writer: csv::Writer::from_writer(Draft::new(path)?),
@@ -26,6 +29,7 @@ impl Csv {
         Ok(csv)
     }
 
+    /// Writes a row.
     fn row(&mut self, row: impl serde::Serialize) -> Result<(), Failure> {
         let written = self.writer.serialize(row);
         written.map_err(|e| self.writer.get_ref().failure(&e.into()))

@@ -1,5 +1,6 @@
-//! glTF 2.0 in one binary file (Khronos, *glTF 2.0 Specification*): the first frame as a mesh, every other one as a morph
-//! target, and an animation that goes from one to the next. The mesh stays whole when something tears.
+//! glTF 2.0 in one binary file (Khronos, *glTF 2.0 Specification*). The first frame is a mesh,
+//! every other frame a morph target, and an animation goes from one to the next. The mesh stays
+//! whole when something tears.
 
 use std::fs::File;
 use std::io::{self, Seek, Write};
@@ -8,16 +9,17 @@ use std::path::Path;
 use a3_core::Simulation;
 use serde_json::{Value, json};
 
-use super::shape::{Shape, positions};
+use super::geometry::{Geometry, positions};
 use super::{Export, rows};
 use crate::Failure;
-use crate::frames::Frames;
+use crate::frames::FrameTimes;
 use crate::output::{self, Draft};
 
-/// The animation has a weight for each morph target in each frame: the square of the frames.
+/// Most frames. The animation has a weight for each morph target in each frame, so that its size
+/// grows with the square of their number.
 const MOST: usize = 600;
 
-/// glTF's names for kinds of numbers, of buffers and of primitives.
+// The codes of glTF for types of numbers, for uses of buffers, and for kinds of primitives.
 const F32: u32 = 5126;
 const U32: u32 = 5125;
 const VERTICES: u32 = 34962;
@@ -26,39 +28,42 @@ const POINTS: u32 = 0;
 const LINES: u32 = 1;
 const TRIANGLES: u32 = 4;
 
-/// A vector each vertex.
+/// Vectors, one for each vertex.
 type Vectors = Vec<[f32; 3]>;
 
+/// A binary glTF file in the making.
 pub struct Glb {
     draft: Draft,
-    shape: Shape,
-    frames: Frames,
+    geometry: Geometry,
+    frames: FrameTimes,
     scene: String,
     binary: Binary,
     /// Positions and normals of the first frame.
     first: Option<(Vectors, Vectors)>,
-    /// The accessors of each frame: its positions or displacements, and the normals if it has a surface.
+    /// The accessors of each frame: positions or displacements, and normals if there is a surface.
     attributes: Vec<Value>,
 }
 
-/// The binary part, in a file until it is known how long the part before it is.
+/// The binary chunk, which is kept in a temporary file until the length of the chunk before it is
+/// known.
 struct Binary {
     file: io::BufWriter<File>,
+    /// The number of bytes so far.
     length: usize,
     views: Vec<Value>,
     accessors: Vec<Value>,
 }
 
-/// How many bytes it has, but for the text.
-pub fn size(simulation: &Simulation, frames: Frames) -> f64 {
+/// Size of the binary chunk (bytes).
+pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
     let (n, count) = (simulation.particles() as f64, frames.count as f64);
     24.0 * n * count
         + 12.0 * simulation.scene().surface.triangles.len() as f64
         + 4.0 * count * count
 }
 
-/// `Ok` if there are not too many frames.
-pub fn check(frames: Frames) -> Result<(), Failure> {
+/// Refuses too many frames.
+pub fn check(frames: FrameTimes) -> Result<(), Failure> {
     if frames.count <= MOST {
         return Ok(());
     }
@@ -69,12 +74,13 @@ pub fn check(frames: Frames) -> Result<(), Failure> {
 }
 
 impl Glb {
-    pub fn new(path: &Path, simulation: &Simulation, frames: Frames) -> Result<Self, Failure> {
+    /// A file for these frames of the simulation.
+    pub fn new(path: &Path, simulation: &Simulation, frames: FrameTimes) -> Result<Self, Failure> {
         let draft = Draft::new(path)?;
         let file = output::scratch(path)?;
         Ok(Self {
             draft,
-            shape: Shape::of(simulation),
+            geometry: Geometry::of(simulation),
             frames,
             scene: simulation.scene().name.clone(),
             binary: Binary {
@@ -88,14 +94,16 @@ impl Glb {
         })
     }
 
+    /// Whether there is a surface.
     fn has_surface(&self) -> bool {
-        !self.shape.triangles.is_empty()
+        !self.geometry.triangles.is_empty()
     }
 
+    /// Writes the positions and normals of a frame.
     fn write_frame(&mut self, simulation: &Simulation) -> io::Result<()> {
         let mut x = positions(simulation);
         let mut normals = if self.has_surface() {
-            self.shape.normals(&x)
+            self.geometry.normals(&x)
         } else {
             vec![]
         };
@@ -113,12 +121,12 @@ impl Glb {
         Ok(())
     }
 
-    /// What is drawn: of the surface triangles, of the rest lines and points.
+    /// The primitives: triangles of the surface, and lines and points of particles without one.
     fn primitives(&mut self) -> io::Result<Vec<Value>> {
         let parts = [
-            (TRIANGLES, self.shape.triangles.as_flattened()),
-            (LINES, self.shape.lines.as_flattened()),
-            (POINTS, &self.shape.points[..]),
+            (TRIANGLES, self.geometry.triangles.as_flattened()),
+            (LINES, self.geometry.lines.as_flattened()),
+            (POINTS, &self.geometry.points[..]),
         ];
         let mut primitives = vec![];
         for (mode, indices) in parts {
@@ -126,7 +134,7 @@ impl Glb {
                 continue;
             }
             let indices = self.binary.indices(indices)?;
-            // Only a surface has normals.
+            // Only triangles have normals.
             let attributes = self.attributes.iter().map(|attributes| {
                 let mut attributes = attributes.clone();
                 if let Some(names) = attributes.as_object_mut().filter(|_| mode != TRIANGLES) {
@@ -147,7 +155,8 @@ impl Glb {
         Ok(primitives)
     }
 
-    /// From each frame to the next: in frame k > 0, the weight of morph target k - 1 is 1 and all others are 0.
+    /// The animation from each frame to the next. In frame k > 0 the weight of morph target k - 1
+    /// is 1, and all others are 0.
     fn animation(&mut self) -> io::Result<Value> {
         let times: Vec<f32> = self.frames.times().map(|time| time as f32).collect();
         let targets = times.len() - 1;
@@ -167,6 +176,7 @@ impl Glb {
         }]))
     }
 
+    /// Writes the whole file.
     fn write(&mut self) -> io::Result<()> {
         let mut document = json!({
             "asset": { "version": "2.0", "generator": concat!("a3 ", env!("CARGO_PKG_VERSION")) },
@@ -219,7 +229,7 @@ impl Export for Glb {
 }
 
 impl Binary {
-    /// The number of a new accessor, over that many bytes that were just written.
+    /// Adds an accessor of the bytes that were just written, and returns its number.
     fn accessor(&mut self, bytes: usize, target: Option<u32>, mut accessor: Value) -> usize {
         let mut view = json!({ "buffer": 0, "byteOffset": self.length, "byteLength": bytes });
         if let Some(target) = target {
@@ -232,7 +242,8 @@ impl Binary {
         self.accessors.len() - 1
     }
 
-    /// With the range that positions must say they have.
+    /// Writes vectors, and returns the number of their accessor. That of positions must have a
+    /// range.
     fn vectors(&mut self, vectors: &[[f32; 3]], with_range: bool) -> io::Result<usize> {
         rows(&mut self.file, vectors)?;
         let mut accessor = json!({ "componentType": F32, "type": "VEC3", "count": vectors.len() });
@@ -246,6 +257,7 @@ impl Binary {
         Ok(self.accessor(12 * vectors.len(), Some(VERTICES), accessor))
     }
 
+    /// Writes indices, and returns the number of their accessor.
     fn indices(&mut self, indices: &[u32]) -> io::Result<usize> {
         for index in indices {
             self.file.write_all(&index.to_le_bytes())?;
@@ -254,6 +266,7 @@ impl Binary {
         Ok(self.accessor(4 * indices.len(), Some(INDICES), accessor))
     }
 
+    /// Writes `count` scalars, and returns the number of their accessor.
     fn scalars(&mut self, scalars: impl Iterator<Item = f32>, count: usize) -> io::Result<usize> {
         for scalar in scalars {
             self.file.write_all(&scalar.to_le_bytes())?;
@@ -263,6 +276,7 @@ impl Binary {
     }
 }
 
+/// Subtracts the others from the vectors.
 fn subtract(vectors: &mut [[f32; 3]], others: &[[f32; 3]]) {
     for (v, other) in vectors.iter_mut().zip(others) {
         *v = [0, 1, 2].map(|k| v[k] - other[k]);

@@ -1,4 +1,4 @@
-//! JSON: the state at full precision, or those of several frames as an array, a line each.
+//! JSON: the state at full precision, or the states of several frames as an array, a line each.
 
 use std::io::Write;
 use std::path::Path;
@@ -10,39 +10,43 @@ use super::Export;
 use crate::Failure;
 use crate::output::{self, Draft};
 
-/// About how many bytes a particle takes.
+/// Approximate size of a particle (bytes).
 pub const ROW: f64 = 130.0;
 
+/// A JSON file in the making.
 pub struct Json {
-    /// Standard output without one.
+    /// The file, or `None` for standard output.
     draft: Option<Draft>,
+    /// Whether the frames are an array.
     several: bool,
+    /// The number of frames so far.
     frames: usize,
 }
 
+/// The state of a simulation as it is written.
 #[derive(Serialize)]
 struct State<'a> {
     scene: &'a str,
     solver: &'a str,
-    /// In s, of a method with fixed steps.
+    /// Step of a method with fixed steps (s).
     #[serde(skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
-    /// Relative, of an adaptive method.
+    /// Relative tolerance of an adaptive method.
     #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,
-    /// In s.
+    /// Simulated time (s).
     time: f64,
     steps: u64,
     evaluations: u64,
-    /// Total (J); none for a system without forces.
+    /// Total energy (J); none for a system without forces.
     energy: Option<f64>,
-    /// In m.
+    /// Positions (m), a row for each particle.
     positions: Rows<'a>,
-    /// In m/s.
+    /// Velocities (m/s), a row for each particle.
     velocities: Rows<'a>,
 }
 
-/// An n x 3 matrix, of which each row is written as it comes.
+/// An n x 3 matrix in column-major order, which is written row by row.
 struct Rows<'a>(&'a [f64]);
 
 impl Serialize for Rows<'_> {
@@ -53,7 +57,7 @@ impl Serialize for Rows<'_> {
 }
 
 impl Json {
-    /// Of one state, to standard output.
+    /// One state, to standard output.
     pub fn to_stdout() -> Self {
         Self {
             draft: None,
@@ -62,6 +66,7 @@ impl Json {
         }
     }
 
+    /// A file with one state, or with an array of several.
     pub fn new(path: &Path, several: bool) -> Result<Self, Failure> {
         Ok(Self {
             draft: Some(Draft::new(path)?),
@@ -100,6 +105,7 @@ impl Export for Json {
     }
 }
 
+/// The state of a simulation, with its velocities.
 fn state<'a>(simulation: &'a Simulation, velocities: &'a [f64]) -> State<'a> {
     let n = simulation.particles();
     State {

@@ -1,11 +1,11 @@
-//! Where a run is, frame by frame, in files that other programs read.
+//! Exports: the states of a run, frame by frame, in files that other programs read.
 
 mod csv;
+mod geometry;
 mod glb;
 mod json;
 mod obj;
 mod pc2;
-mod shape;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -13,31 +13,32 @@ use std::path::Path;
 use a3_core::Simulation;
 
 use crate::cli::Simulate;
-use crate::frames::{Frames, Sequence};
+use crate::frames::{FrameTimes, Sequence};
 use crate::{Failure, output};
 
-/// Frames a second, unless asked otherwise.
+/// Default frames a second.
 const RATE: f64 = 30.0;
 
-/// The largest files (GiB): in all, and of the format whose lengths have 32 bits.
+/// Sizes of the largest files (GiB): in general, and in the format whose lengths have 32 bits.
 const LARGEST: (f64, f64) = (16.0, 4.0);
 
-/// Where frames go.
+/// An export in the making.
 pub trait Export {
-    /// The run as it is now.
+    /// Adds the current state as a frame.
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure>;
 
-    /// That was the last.
+    /// Completes the export after its last frame.
     fn finish(self: Box<Self>) -> Result<(), Failure>;
 }
 
-/// The file that was asked for, and when its frames are. Says before the work what cannot be.
+/// The export that was asked for, and the times of its frames. Impossible exports are refused here,
+/// before any work is done.
 pub fn begin(
     options: &Simulate,
     simulation: &Simulation,
-) -> Result<(Frames, Box<dyn Export>), Failure> {
+) -> Result<(FrameTimes, Box<dyn Export>), Failure> {
     let (path, until) = (options.output.as_path(), options.run.end()?);
-    let last = Frames::new(until, until, RATE)?;
+    let last = FrameTimes::new(until, until, RATE)?;
     if path == Path::new("-") {
         if options.fps.is_some() {
             return Err(Failure::usage(
@@ -47,7 +48,7 @@ pub fn begin(
         return Ok((last, Box::new(json::Json::to_stdout())));
     }
     output::check(path, &["json", "csv", "obj", "pc2", "glb"])?;
-    let several = Frames::new(0.0, until, options.fps.unwrap_or(RATE))?;
+    let several = FrameTimes::new(0.0, until, options.fps.unwrap_or(RATE))?;
     let particles = simulation.particles() as f64;
     let check = |size: f64, largest: f64| check_size(size, largest).map(|()| several);
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -86,7 +87,7 @@ pub fn begin(
     })
 }
 
-/// `Ok` if so many bytes are no more than `largest` (GiB).
+/// Refuses so many bytes if they are more than `largest` (GiB).
 fn check_size(bytes: f64, largest: f64) -> Result<(), Failure> {
     let size = bytes / 1024f64.powi(3);
     if size <= largest {
@@ -97,7 +98,7 @@ fn check_size(bytes: f64, largest: f64) -> Result<(), Failure> {
     )))
 }
 
-/// Vectors in little-endian single precision, one after the other.
+/// Writes vectors in little-endian single precision, one after the other.
 fn rows(file: &mut dyn Write, vectors: &[[f32; 3]]) -> io::Result<()> {
     for number in vectors.as_flattened() {
         file.write_all(&number.to_le_bytes())?;

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: a file a frame. Particles are its vertices, in their order.
+//! Wavefront OBJ, a file for each frame. The vertices are the particles, in their order.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -6,15 +6,15 @@ use std::path::PathBuf;
 use a3_core::Simulation;
 
 use super::Export;
-use super::shape::{Shape, positions};
+use super::geometry::{Geometry, positions};
 use crate::frames::Sequence;
 use crate::{Failure, output};
 
-/// A file a frame, or the last one only.
+/// One OBJ file of the final state, or a numbered file for each frame.
 pub enum Obj {
-    /// The only one.
+    /// The file of the final state.
     One(PathBuf),
-    /// Those that are still to be written, and how many are.
+    /// The numbered files, and how many of them are written.
     Many(Sequence, usize),
 }
 
@@ -35,34 +35,35 @@ impl Export for Obj {
     }
 }
 
-/// About how many bytes a file has.
+/// Approximate size of a file (bytes).
 pub fn size(simulation: &Simulation) -> f64 {
-    let shape = Shape::of(simulation);
-    let (vertices, normals) = (simulation.particles(), shape.covered);
-    let (faces, lines) = (shape.triangles.len(), shape.lines.len());
+    let geometry = Geometry::of(simulation);
+    let (vertices, normals) = (simulation.particles(), geometry.covered);
+    let (faces, lines) = (geometry.triangles.len(), geometry.lines.len());
     36.0 * vertices as f64 + 37.0 * normals as f64 + 42.0 * faces as f64 + 16.0 * lines as f64
 }
 
-/// The state as it is now: `v`, and `vn` and `f` of what has a surface that is not torn, `l` and `p` of what has none.
+/// Writes the current state: `v` of all particles, `vn` and `f` of surfaces as far as they are not
+/// torn, and `l` and `p` of particles without a surface.
 pub fn write(file: &mut dyn Write, simulation: &Simulation) -> io::Result<()> {
-    let shape = Shape::of(simulation);
+    let geometry = Geometry::of(simulation);
     let positions = positions(simulation);
     writeln!(file, "# a3: t = {} s, in m, y is up", simulation.time())?;
     writeln!(file, "o {}", simulation.scene().name)?;
     for [x, y, z] in &positions {
         writeln!(file, "v {x} {y} {z}")?;
     }
-    for [x, y, z] in &shape.normals(&positions)[..shape.covered] {
+    for [x, y, z] in &geometry.normals(&positions)[..geometry.covered] {
         writeln!(file, "vn {x} {y} {z}")?;
     }
-    for triangle in &shape.triangles {
+    for triangle in &geometry.triangles {
         let [a, b, c] = triangle.map(|i| i + 1);
         writeln!(file, "f {a}//{a} {b}//{b} {c}//{c}")?;
     }
-    for [a, b] in &shape.lines {
+    for [a, b] in &geometry.lines {
         writeln!(file, "l {} {}", a + 1, b + 1)?;
     }
-    for i in &shape.points {
+    for i in &geometry.points {
         writeln!(file, "p {}", i + 1)?;
     }
     Ok(())

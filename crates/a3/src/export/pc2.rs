@@ -1,8 +1,10 @@
-//! `PointCache2`: positions of every particle and frame, as Blender, 3ds Max and Maya read them onto a mesh that has as many
-//! points. That mesh is written beside, as OBJ, and stays whole when something tears.
+//! `PointCache2`: the positions of every particle in every frame. Blender, 3ds Max and Maya apply
+//! them to a mesh with as many points. That mesh is written beside the file, as OBJ, and stays
+//! whole when something tears.
 //!
-//! A header of 32 bytes, all little endian: "POINTCACHE2\0", version 1 (i32), points (i32), first frame (f32), frames a
-//! sample (f32), samples (i32). Then x, y, z (f32) of every point of every sample.
+//! The header has 32 bytes, all little endian: "POINTCACHE2\0", version 1 (i32), points (i32),
+//! first frame (f32), frames a sample (f32), samples (i32). Then follow x, y and z (f32) of every
+//! point of every sample.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -10,26 +12,29 @@ use std::path::{Path, PathBuf};
 use a3_core::Simulation;
 
 use super::Export;
-use super::shape::positions;
+use super::geometry::positions;
 use super::{obj, rows};
 use crate::output::{self, Draft};
-use crate::{Failure, frames::Frames};
+use crate::{Failure, frames::FrameTimes};
 
+/// A `PointCache2` file in the making, with its mesh.
 pub struct Pc2 {
     draft: Draft,
     mesh: Draft,
-    /// The mesh is still to be written.
+    /// Whether the mesh is still to be written.
     first: bool,
+    /// The names of the file and of its mesh.
     names: (PathBuf, PathBuf),
 }
 
-/// How many bytes it has.
-pub fn size(simulation: &Simulation, frames: Frames) -> f64 {
+/// Size of the file (bytes).
+pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
     32.0 + 12.0 * simulation.particles() as f64 * frames.count as f64
 }
 
 impl Pc2 {
-    pub fn new(path: &Path, simulation: &Simulation, frames: Frames) -> Result<Self, Failure> {
+    /// A file for these frames of the simulation.
+    pub fn new(path: &Path, simulation: &Simulation, frames: FrameTimes) -> Result<Self, Failure> {
         let mesh = path.with_extension("obj");
         output::check(&mesh, &["obj"])?;
         let mut draft = Draft::new(path)?;
@@ -43,6 +48,7 @@ impl Pc2 {
     }
 }
 
+/// Writes the header.
 fn header(file: &mut dyn Write, points: usize, samples: usize) -> io::Result<()> {
     file.write_all(b"POINTCACHE2\0")?;
     file.write_all(&1i32.to_le_bytes())?;

@@ -1,4 +1,5 @@
-//! Animated GIF: at most 255 colours a frame, chosen for it, and only what changed since the one before.
+//! Animated GIFs. Each frame has up to 255 colours of its own, and only the part that has changed
+//! since the frame before.
 
 use std::io;
 use std::ops::Range;
@@ -11,27 +12,31 @@ use super::palette::Palette;
 use crate::Failure;
 use crate::output::Draft;
 
-/// Players take shorter delays for slips (1/100 s).
+/// The shortest delay that players obey (1/100 s).
 const SHORTEST: f64 = 2.0;
 
-/// A pixel shown to within so many of 255 levels is not sent again.
+/// Largest difference of a channel, of 255 levels, at which a pixel counts as unchanged.
 const NEAR: u8 = 3;
 
+/// An animated GIF in the making.
 pub struct Gif {
     encoder: Encoder<Draft>,
+    /// Width and height (px).
     size: (u32, u32),
+    /// Delay of each frame (1/100 s).
     delay: u16,
-    /// What is on the screen, where frames are laid over one another: where they are opaque.
+    /// The colours on the screen after the last frame.
     shown: Option<Vec<[u8; 3]>>,
     transparent: bool,
 }
 
-/// A frame's delay (1/100 s), whole, for so many frames a second.
+/// The whole delay (1/100 s) that is nearest to so many frames a second.
 pub fn delay(fps: f64) -> f64 {
     (100.0 / fps).round().max(SHORTEST)
 }
 
 impl Gif {
+    /// A GIF of this size (px), whose frames have this delay (1/100 s).
     pub fn new(
         path: &Path,
         (width, height): (u32, u32),
@@ -59,7 +64,8 @@ impl Gif {
         })
     }
 
-    /// Whether this pixel has to be sent.
+    /// Whether pixel k is part of the next frame: it is opaque in a transparent film, or has
+    /// changed in any other.
     fn is_new(&self, k: usize, pixel: &[u8]) -> bool {
         match &self.shown {
             _ if self.transparent => pixel[3] >= 128,
@@ -80,7 +86,7 @@ impl Film for Gif {
             .collect();
         let sent = || (0..new.len()).filter(|&k| new[k]);
         let palette = Palette::of(sent().map(color), 255);
-        // The one past the last stands for none.
+        // The index after the last colour means no colour.
         let none = palette.colors.len() as u8;
         let index = |k: usize| {
             if new[k] {
@@ -105,7 +111,7 @@ impl Film for Gif {
             ..Frame::default()
         };
         if self.transparent {
-            // What was there is taken away: nothing could be laid over it that is not seen.
+            // The frame is removed before the next, because no pixel can be made transparent again.
             frame.dispose = DisposalMethod::Background;
         }
         let shown = self.shown.get_or_insert_with(|| vec![[0; 3]; new.len()]);
@@ -122,7 +128,8 @@ impl Film for Gif {
     }
 }
 
-/// The columns and rows of the smallest part of a picture that has these pixels: one pixel at least.
+/// The columns and the rows of the smallest rectangle around these pixels; one pixel if there are
+/// none.
 fn bounds(pixels: impl Iterator<Item = usize>, width: usize) -> (Range<usize>, Range<usize>) {
     let join = |a: Range<usize>, b: Range<usize>| a.start.min(b.start)..a.end.max(b.end);
     pixels
@@ -132,6 +139,7 @@ fn bounds(pixels: impl Iterator<Item = usize>, width: usize) -> (Range<usize>, R
         .unwrap_or((0..1, 0..1))
 }
 
+/// The failure of a write.
 fn failure(encoder: &Encoder<Draft>, error: EncodingError) -> Failure {
     let error = match error {
         EncodingError::Io(error) => error,
@@ -144,7 +152,7 @@ fn failure(encoder: &Encoder<Draft>, error: EncodingError) -> Failure {
 mod tests {
     use super::*;
 
-    /// A frame has the smallest part that changed: one pixel where nothing did.
+    /// A frame is the smallest rectangle around what changed, or one pixel if nothing did.
     #[test]
     fn only_what_changed_is_sent() {
         let folder = tempfile::tempdir().ok().unwrap();
@@ -153,7 +161,7 @@ mod tests {
         let mut picture = [200, 100, 50, 255].repeat(20);
         let mut add = |picture: &[u8]| assert!(film.add(picture).is_ok());
         add(&picture);
-        // Nothing that is seen.
+        // A change too small to be seen.
         picture[0] = 201;
         add(&picture);
         for pixel in [1 + 5, 3 + 5 * 2] {

@@ -1,4 +1,4 @@
-//! Films: what a run looks like, frame by frame, as a GIF, an MP4 or numbered pictures.
+//! Films: pictures of a run, frame by frame, as a GIF, an MP4 or numbered files.
 
 mod gif;
 mod mp4;
@@ -9,31 +9,32 @@ use std::path::Path;
 use a3_core::Simulation;
 
 use crate::cli::Render;
-use crate::frames::{Frames, Sequence};
+use crate::frames::{FrameTimes, Sequence};
 use crate::progress::{self, Bar};
 use crate::render::Painter;
 use crate::show::Show;
 use crate::{Failure, interrupt, output};
 
-/// Frames a second of a GIF, whose delays are whole hundredths of a second, and of all else.
+/// Default frames a second: of a GIF, whose delays are whole hundredths of a second, and of others.
 const RATE: (f64, f64) = (25.0, 30.0);
 
-/// Where frames go: rows from the top, four bytes a pixel.
+/// A film in the making. Its frames are rows from the top, four bytes a pixel.
 pub trait Film {
-    /// One more.
+    /// Adds a frame.
     fn add(&mut self, pixels: &[u8]) -> Result<(), Failure>;
 
-    /// That was the last.
+    /// Completes the film after its last frame.
     fn finish(self: Box<Self>) -> Result<(), Failure>;
 }
 
-/// A film, and when its frames are.
-pub type Plan = (Frames, Box<dyn Film>);
+/// A film, and the times of its frames.
+pub type Plan = (FrameTimes, Box<dyn Film>);
 
-/// Numbered pictures.
+/// A film as numbered pictures.
 struct Pictures {
     sequence: Sequence,
     size: (u32, u32),
+    /// The number of pictures so far.
     count: usize,
 }
 
@@ -49,11 +50,12 @@ impl Film for Pictures {
     }
 }
 
-/// The film that was asked for, unless it was a picture. Says before the work what cannot be.
+/// The film that was asked for, or `None` for a single picture. Impossible films are refused here,
+/// before any work is done.
 pub fn begin(options: &Render) -> Result<Option<Plan>, Failure> {
     let (path, size) = (options.output.as_path(), options.size);
     let until = options.run.end()?;
-    let frames = |rate| Frames::new(options.from.unwrap_or(0.0), until, rate);
+    let frames = |rate| FrameTimes::new(options.from.unwrap_or(0.0), until, rate);
     let rate = options.fps.unwrap_or(RATE.1);
     let ends_in = |ending| output::ends_in(path, ending);
     if ends_in("gif") {
@@ -98,7 +100,7 @@ pub fn begin(options: &Render) -> Result<Option<Plan>, Failure> {
     Ok(None)
 }
 
-/// Films the run. What was filmed before it blew up or was interrupted is kept.
+/// Films the run. If it blows up or is interrupted, the frames so far are kept.
 pub fn shoot(
     simulation: &mut Simulation,
     show: &mut Show,

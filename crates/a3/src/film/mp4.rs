@@ -1,4 +1,4 @@
-//! MP4: H.264 by an installed `ffmpeg`, which is sent the frames.
+//! MP4 films with H.264. An installed `ffmpeg` encodes the frames that are sent to it.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -10,15 +10,17 @@ use super::Film;
 use crate::Failure;
 use crate::output::Draft;
 
-/// A film that `ffmpeg` writes beside its place.
+/// An MP4 in the making, which `ffmpeg` writes to a temporary file beside the target.
 pub struct Mp4 {
+    /// The target, until the film is complete.
     draft: Option<Draft>,
     ffmpeg: Child,
-    /// What it complains of.
+    /// The messages of `ffmpeg`.
     log: File,
 }
 
 impl Mp4 {
+    /// A film of this size (px), with so many frames a second.
     pub fn new(path: &Path, (width, height): (u32, u32), fps: f64) -> Result<Self, Failure> {
         if width % 2 + height % 2 > 0 {
             let even = [width, height].map(|side| side + side % 2);
@@ -34,7 +36,7 @@ impl Mp4 {
                 path.display()
             )));
         };
-        // With its protocol: a name may begin with - or contain a colon.
+        // The protocol is named, because a file name may begin with - or contain a colon.
         let target = [OsString::from("file:"), beside.into()]
             .into_iter()
             .collect::<OsString>();
@@ -45,7 +47,8 @@ impl Mp4 {
             .args(["-f", "rawvideo", "-pixel_format", "rgba"])
             .args(["-video_size", &format!("{width}x{height}")])
             .args(["-framerate", &fps.to_string(), "-i", "-"])
-            // The colours of high definition, and said to be: players would guess.
+            // The colour space is that of high definition, and is named, so that players need not
+            // guess.
             .args(["-vf", "scale=out_color_matrix=bt709:out_range=tv"])
             .args([
                 "-colorspace",
@@ -61,7 +64,8 @@ impl Mp4 {
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(log.try_clone().map_err(Failure::run)?);
-        // Ctrl-C is not for it: it ends when there are no more frames.
+        // In a process group of its own, ffmpeg is not interrupted by Ctrl-C. It ends when there
+        // are no more frames.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let ffmpeg = command.spawn().map_err(|e| match e.kind() {
@@ -78,7 +82,7 @@ impl Mp4 {
         })
     }
 
-    /// What `ffmpeg` said last, now that it is at its end.
+    /// The failure with the last message of `ffmpeg`, which must have ended.
     fn complaint(&mut self) -> Failure {
         let mut said = String::new();
         let read = self
@@ -101,7 +105,7 @@ impl Film for Mp4 {
             .as_mut()
             .map_or(Ok(()), |pipe| pipe.write_all(pixels));
         sent.map_err(|_| {
-            // It has closed its end.
+            // ffmpeg has closed its end of the pipe.
             let _ = self.ffmpeg.wait();
             self.complaint()
         })
@@ -117,10 +121,9 @@ impl Film for Mp4 {
     }
 }
 
-/// A film that was given up.
 impl Drop for Mp4 {
     fn drop(&mut self) {
-        // Nothing, if it is at its end already.
+        // This ends ffmpeg if the film was given up, and does nothing if ffmpeg has ended.
         let _ = self.ffmpeg.kill();
         let _ = self.ffmpeg.wait();
     }

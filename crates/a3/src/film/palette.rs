@@ -1,41 +1,47 @@
-//! Few colours for a picture that has many: boxes of the cube of colours are halved, always the one whose colours differ
-//! most, at their mean along the axis on which they do (Heckbert, *Color Image Quantization*, 1982; by variance as in Wu,
-//! *Graphics Gems II*, 1991).
+//! Colour quantisation: a few colours for a picture that has many. The cube of colours is divided
+//! into boxes. Again and again the box with the largest variance along an axis is halved at its
+//! mean on that axis (Heckbert, *Color Image Quantization*, 1982; by variance as in Wu, *Graphics
+//! Gems II*, 1991).
 
-/// Bits of each channel that tell cells of the cube apart.
+/// Bits of each channel that distinguish the cells of the cube.
 const BITS: usize = 7;
 
-/// Colours, and which of them stands for another.
+/// The colours of a picture, and the index of the colour that replaces each other one.
 pub struct Palette {
-    /// sRGB.
+    /// The colours in sRGB.
     pub colors: Vec<[u8; 3]>,
-    /// Of each cell.
+    /// The index of the colour of each cell.
     index: Vec<u8>,
 }
 
-/// Colours of one cell.
+/// The colours of a picture in one cell of the cube.
 #[derive(Clone, Copy)]
 struct Cell {
-    place: usize,
+    /// The number of the cell.
+    number: usize,
+    /// The number of pixels.
     count: f64,
+    /// The mean colour.
     mean: [f64; 3],
 }
 
-/// Cells that share a colour.
-struct Box {
+/// Cells that share a colour of the palette.
+struct ColorBox {
     cells: Vec<Cell>,
+    /// The mean colour.
     mean: [f64; 3],
-    /// The axis on which they differ most, and the sum of squares there.
+    /// The axis with the largest variance.
     axis: usize,
+    /// The sum of squared deviations on that axis.
     spread: f64,
 }
 
 impl Palette {
-    /// At most `most` colours, 256 or less, for these.
+    /// A palette of at most `most` colours for these colours. `most` is at most 256.
     pub fn of(colors: impl Iterator<Item = [u8; 3]>, most: usize) -> Self {
         let mut boxes: Vec<_> = Some(cells(colors))
             .filter(|cells| !cells.is_empty())
-            .map(Box::of)
+            .map(ColorBox::of)
             .into_iter()
             .collect();
         while boxes.len() < most {
@@ -45,20 +51,20 @@ impl Palette {
                 break;
             };
             let (low, high) = boxes.swap_remove(widest).halves();
-            // Rounding may leave a mean on its edge.
+            // Because of rounding, the mean may be at an end of the box.
             if low.is_empty() || high.is_empty() {
-                boxes.push(Box {
+                boxes.push(ColorBox {
                     spread: 0.0,
-                    ..Box::of([low, high].concat())
+                    ..ColorBox::of([low, high].concat())
                 });
                 continue;
             }
-            boxes.extend([Box::of(low), Box::of(high)]);
+            boxes.extend([ColorBox::of(low), ColorBox::of(high)]);
         }
         let mut index = vec![0; 1 << (3 * BITS)];
         for (k, group) in boxes.iter().enumerate() {
             for cell in &group.cells {
-                index[cell.place] = k as u8;
+                index[cell.number] = k as u8;
             }
         }
         let colors = boxes
@@ -70,13 +76,14 @@ impl Palette {
         }
     }
 
-    /// The number of the colour that stands for one of those that the palette is of.
+    /// The index of the colour that replaces one of those that the palette was made for.
     pub fn index(&self, color: [u8; 3]) -> u8 {
-        self.index[place(color)]
+        self.index[cell_of(color)]
     }
 }
 
-impl Box {
+impl ColorBox {
+    /// The box of these cells.
     fn of(cells: Vec<Cell>) -> Self {
         let count: f64 = cells.iter().map(|cell| cell.count).sum();
         let sum =
@@ -92,6 +99,7 @@ impl Box {
         }
     }
 
+    /// The cells below the mean on the axis of the box, and the others.
     fn halves(self) -> (Vec<Cell>, Vec<Cell>) {
         let (axis, mean) = (self.axis, self.mean);
         self.cells
@@ -100,8 +108,9 @@ impl Box {
     }
 }
 
+/// The cells that these colours are in.
 fn cells(colors: impl Iterator<Item = [u8; 3]>) -> Vec<Cell> {
-    let mut colors: Vec<_> = colors.map(|color| (place(color), color)).collect();
+    let mut colors: Vec<_> = colors.map(|color| (cell_of(color), color)).collect();
     colors.sort_unstable();
     let groups = colors.chunk_by(|a, b| a.0 == b.0);
     groups
@@ -109,7 +118,7 @@ fn cells(colors: impl Iterator<Item = [u8; 3]>) -> Vec<Cell> {
             let count = group.len() as f64;
             let sum = |axis: usize| group.iter().map(|(_, c)| f64::from(c[axis])).sum::<f64>();
             Cell {
-                place: group[0].0,
+                number: group[0].0,
                 count,
                 mean: [0, 1, 2].map(|axis| sum(axis) / count),
             }
@@ -117,10 +126,11 @@ fn cells(colors: impl Iterator<Item = [u8; 3]>) -> Vec<Cell> {
         .collect()
 }
 
-fn place(color: [u8; 3]) -> usize {
+/// The number of the cell of a colour.
+fn cell_of(color: [u8; 3]) -> usize {
     color
         .iter()
-        .fold(0, |place, &c| place << BITS | usize::from(c) >> (8 - BITS))
+        .fold(0, |number, &c| number << BITS | usize::from(c) >> (8 - BITS))
 }
 
 #[cfg(test)]

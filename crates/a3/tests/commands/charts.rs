@@ -90,7 +90,8 @@ fn a_chart_goes_on_from_its_data() {
         assert!(two == three);
         assert!(after == fs::read_to_string(&path).unwrap(), "{data}");
     }
-    // What is in the file is believed, not measured again: here, that Verlet's method needs no work.
+    // What is in the file is believed, not measured again: here, that Verlet's method needs no
+    // work.
     let path = folder.path().join("d.csv");
     let mut reader = csv::Reader::from_path(&path).unwrap();
     let headers = reader.headers().unwrap().clone();
@@ -114,7 +115,8 @@ fn a_chart_goes_on_from_its_data() {
     assert!(text.contains("*0.12"), "{text}");
 }
 
-/// Ctrl-C in the middle: what was measured is drawn and kept, and the next run ends where this one would have.
+/// Ctrl-C in the middle: what was measured is drawn and kept, and the next run ends where this one
+/// would have.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_chart_draws_what_it_has() {

@@ -68,7 +68,8 @@ fn methods_side_by_side() {
         return;
     }
     assert!(output.status.success(), "{}", text(&output.stderr));
-    // What is said: Euler's radius grows as sqrt(1 + h^2) a step, and RK4 is late by h^4 / 120 a second.
+    // What is said: Euler's radius grows as sqrt(1 + h^2) a step, and RK4 is late by h^4 / 120 a
+    // second.
     let stdout = text(&output.stdout);
     let rows: Vec<Vec<&str>> = stdout
         .lines()

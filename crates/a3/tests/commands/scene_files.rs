@@ -268,7 +268,8 @@ fn a_chart_knows_which_scene_it_has() {
     assert!(chart("500") > first);
 }
 
-/// The scenes that come with the documents last as long as they say, and what their text shows can be read.
+/// The scenes that come with the documents last as long as they say, and what their text shows can
+/// be read.
 #[test]
 fn documented_scenes_are_scenes() {
     let docs = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs"));

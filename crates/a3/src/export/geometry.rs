@@ -1,22 +1,25 @@
-//! What others are given of a scene: a surface with normals, and lines and points for what has none.
+//! The geometry of a scene for other programs: a surface with normals, and lines and points of
+//! particles without one.
 
 use a3_core::{Network, Simulation};
 
 use crate::show::whole_triangles;
 
-/// How particles hang together: what stays the same from frame to frame until something tears.
-pub struct Shape {
-    /// Corners, wound against the clock as seen from outside.
+/// The connections between particles, which stay the same from frame to frame until something
+/// tears.
+pub struct Geometry {
+    /// Corners of the triangles of the surface, counter-clockwise as seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// How many particles, the first ones, have a surface.
+    /// The number of particles with a surface, which come first.
     pub covered: usize,
-    /// Springs of particles that have no surface.
+    /// The ends of springs of particles without a surface.
     pub lines: Vec<[u32; 2]>,
-    /// These particles.
+    /// The particles without a surface.
     pub points: Vec<u32>,
 }
 
-impl Shape {
+impl Geometry {
+    /// The geometry of the scene as it is now.
     pub fn of(simulation: &Simulation) -> Self {
         let covered = simulation.scene().surface.particles();
         let network = simulation.model().network();
@@ -32,8 +35,9 @@ impl Shape {
         }
     }
 
-    /// Of length 1 at each particle: the sum over its triangles of the cross product of two sides, so that large ones
-    /// count for more. Upwards where there is none.
+    /// The unit normal at each particle: the direction of the sum, over its triangles, of the cross
+    /// product of two sides, so that triangles are weighted by area. A particle without a surface
+    /// has a normal that points upwards.
     pub fn normals(&self, positions: &[[f32; 3]]) -> Vec<[f32; 3]> {
         let mut sums = vec![[0.0f64; 3]; positions.len()];
         for triangle in &self.triangles {
@@ -60,11 +64,12 @@ impl Shape {
     }
 }
 
+/// The difference of two vectors.
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| a[k] - b[k])
 }
 
-/// Of every particle (m), in single precision: that of all files of geometry.
+/// The position of every particle (m), in single precision, as all files of geometry have it.
 pub fn positions(simulation: &Simulation) -> Vec<[f32; 3]> {
     let n = simulation.particles();
     let x = simulation.state();
