@@ -90,8 +90,8 @@ fn milliseconds(
     Ok(time.map(|time| 1e3 * time.as_secs_f64() * FRAME / reference.frames.until))
 }
 
-/// The three most accurate methods, each at its most accurate step or tolerance whose frames take no
-/// longer than the budget (ms). `None` if it was interrupted.
+/// The three most accurate methods, each at its most accurate step or tolerance whose frames take
+/// no longer than the budget (ms). `None` if it was interrupted.
 fn within(
     scene: &Scene,
     reference: &Reference,

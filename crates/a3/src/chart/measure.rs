@@ -1,5 +1,5 @@
-//! Measurement of the runs of a chart: every method at every step or tolerance that tells something,
-//! one run at a time, so that computing times are comparable.
+//! Measurement of the runs of a chart: every method at every step or tolerance that tells
+//! something, one run at a time, so that computing times are comparable.
 
 use std::time::{Duration, Instant};
 

@@ -128,9 +128,9 @@ fn cells(colors: impl Iterator<Item = [u8; 3]>) -> Vec<Cell> {
 
 /// The number of the cell of a colour.
 fn cell_of(color: [u8; 3]) -> usize {
-    color
-        .iter()
-        .fold(0, |number, &c| number << BITS | usize::from(c) >> (8 - BITS))
+    color.iter().fold(0, |number, &c| {
+        number << BITS | usize::from(c) >> (8 - BITS)
+    })
 }
 
 #[cfg(test)]
