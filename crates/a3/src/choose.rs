@@ -9,7 +9,7 @@ use crate::chart::measure::time;
 use crate::chart::{describe, look_ahead, methods};
 use crate::cli::{Choose, What};
 use crate::progress::Bar;
-use crate::{Failure, interrupt, list, output};
+use crate::{Failure, interrupt, list, output, setup};
 
 /// Simulated time of a frame (s).
 const FRAME: f64 = 1.0 / 60.0;
@@ -18,7 +18,7 @@ const FRAME: f64 = 1.0 / 60.0;
 pub fn run(options: &Choose) -> Result<(), Failure> {
     interrupt::listen();
     let stopped = || Failure::Interrupted("interrupted: nothing was chosen".into());
-    let scene = options.what.scene()?;
+    let scene = setup::scene(&options.what)?;
     let until = look_ahead(&scene, options.until, 1.0)?.ok_or_else(stopped)?;
     let reference = Reference::new(&scene, Frames::new(until), &interrupt::go_on)
         .map_err(|e| Failure::run(format!("no reference: {e}")))?

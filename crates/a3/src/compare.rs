@@ -1,20 +1,22 @@
-//! `a3 compare`: several methods side by side, in a window or in a picture.
+//! `a3 compare --output`: several methods side by side in a picture.
 
 use std::path::Path;
 
 use a3_render::{Gpu, Offscreen};
 
-use crate::app::{self, Pane, Session, digits};
 use crate::cli::Compare;
-use crate::{Failure, output, render};
+use crate::failure::Failure;
+use crate::hud::{self, digits};
+use crate::session::{Pane, Session};
+use crate::{output, painter, setup};
 
 /// Of a picture whose size is not asked for (px).
 pub const SIZE: (u32, u32) = (1280, 720);
 
 pub fn run(options: &Compare) -> Result<(), Failure> {
-    let mut session = options.session()?;
+    let mut session = setup::comparison(options)?;
     let (Some(path), Some(until)) = (&options.output, options.until) else {
-        return app::open(session, options.look.status, None);
+        return Err(Failure::usage("a picture takes both --output and --until"));
     };
     if options.look.paused {
         return Err(Failure::usage(
@@ -69,8 +71,8 @@ pub fn save(
 ) -> Result<(), Failure> {
     let size = offscreen.size();
     // Text that shrinks with the picture could not be read.
-    let scale = render::scale(size).max(1.0);
+    let scale = painter::scale(size).max(1.0);
     let (panes, readings) = (&mut session.panes, &session.readings);
-    let pixels = render::draw(gpu, offscreen, panes, session.camera, scale, readings)?;
+    let pixels = hud::draw(gpu, offscreen, panes, session.camera, scale, readings)?;
     output::write(path, &output::png(&pixels, size)?)
 }

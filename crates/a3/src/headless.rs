@@ -3,9 +3,10 @@
 use a3_core::Simulation;
 use a3_render::{Gpu, Offscreen};
 
-use crate::app::{Pane, Session};
 use crate::compare::{self, SIZE};
-use crate::{Failure, output, progress};
+use crate::failure::Failure;
+use crate::session::{Pane, Session};
+use crate::{output, progress};
 
 const SECONDS: u32 = 10;
 

@@ -3,55 +3,46 @@
 #![forbid(unsafe_code)]
 
 mod app;
+mod bounds;
 mod caught;
 mod chart;
 mod choose;
 mod cli;
 mod compare;
 mod export;
+mod failure;
 mod film;
 mod frames;
 mod headless;
+mod hud;
 mod interrupt;
 mod list;
 mod manual;
 mod output;
+mod painter;
 mod progress;
 mod render;
 mod scene_file;
+mod session;
+mod setup;
 mod show;
 mod simulate;
 mod stability;
+mod window;
 
 use std::process::ExitCode;
 
 use clap::Parser;
 use cli::{Cli, Command};
-
-/// What went wrong, and whose fault it is.
-enum Failure {
-    /// The command line asked for something that cannot be: exit code 2.
-    Usage(String),
-    /// It could have been, and was not: exit code 1.
-    Run(String),
-    /// The user ended it: exit code 130.
-    Interrupted(String),
-}
-
-impl Failure {
-    fn run(why: impl std::fmt::Display) -> Self {
-        Self::Run(why.to_string())
-    }
-
-    fn usage(why: impl std::fmt::Display) -> Self {
-        Self::Usage(why.to_string())
-    }
-}
+use failure::Failure;
 
 fn main() -> ExitCode {
     let result = match Cli::try_parse() {
         Ok(cli) => match cli.command {
-            None => app::run(&cli.window),
+            None => window::run(&cli.window),
+            Some(Command::Compare(options)) if options.output.is_none() => {
+                window::compare(&options)
+            }
             Some(Command::Compare(options)) => compare::run(&options),
             Some(Command::Simulate(options)) => simulate::run(&options),
             Some(Command::Render(options)) => render::run(&options),

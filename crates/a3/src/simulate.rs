@@ -7,9 +7,10 @@ use a3_core::Simulation;
 use serde::Serialize;
 
 use crate::cli::Simulate;
+use crate::failure::Failure;
 use crate::frames::Sequence;
 use crate::progress::{self, Bar};
-use crate::{Failure, export, interrupt, output};
+use crate::{export, interrupt, output, setup};
 
 /// What is known of a run when it is over.
 #[derive(Serialize)]
@@ -66,7 +67,7 @@ impl Watch {
 
 pub fn run(options: &Simulate) -> Result<(), Failure> {
     let begun = Instant::now();
-    let mut simulation = options.run.simulation()?;
+    let mut simulation = setup::simulation(&options.run)?;
     let stdout = Path::new("-");
     if let Some(path) = options.summary.as_deref() {
         if path == stdout && options.output == stdout {

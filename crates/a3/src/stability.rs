@@ -14,7 +14,7 @@ use a3_plot::{Region, StabilityRegions};
 use crate::chart::{describe, methods, style, write_picture};
 use crate::cli::Stability;
 use crate::progress::Bar;
-use crate::{Failure, interrupt, list, output};
+use crate::{Failure, interrupt, list, output, setup};
 
 /// The limits of a method.
 struct MethodLimits {
@@ -36,7 +36,7 @@ struct Comparison {
 /// Measures, prints and draws what the command line asks for.
 pub fn run(options: &Stability) -> Result<(), Failure> {
     interrupt::listen();
-    let scene = options.what.scene()?;
+    let scene = setup::scene(&options.what)?;
     let methods = methods(&scene, &options.solvers)?;
     let path = match &options.output {
         Some(path) => path.clone(),

@@ -8,12 +8,11 @@ use wgpu::CurrentSurfaceTexture;
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
-use super::hud::{self, Readings};
-use super::layout;
-use super::panel::{self, Wish};
-use super::session::Session;
-use super::text::Text;
-use crate::{Failure, output, render, show};
+use crate::failure::Failure;
+use crate::hud::panel::{self, Request};
+use crate::hud::{self, Overlay, layout};
+use crate::session::{Readings, Session};
+use crate::{output, show};
 
 /// What became of a frame.
 pub enum Outcome {
@@ -32,7 +31,7 @@ pub struct Graphics {
     targets: Targets,
     /// Springs that had broken when each pane's topology was made.
     tears: Vec<usize>,
-    text: Text,
+    text: Overlay,
     egui_winit: egui_winit::State,
     /// The surface no longer has the size of the window.
     stale: bool,
@@ -55,7 +54,7 @@ impl Graphics {
         config.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &config);
         let samples = window_samples(&gpu, format);
-        let text = Text::new(&gpu, config.format);
+        let text = Overlay::new(&gpu, config.format);
         let egui_winit = egui_winit::State::new(
             text.context.clone(),
             egui::ViewportId::ROOT,
@@ -208,15 +207,15 @@ impl Graphics {
         let text_view = frame
             .texture
             .create_view(&wgpu::TextureViewDescriptor::default());
-        let (before, again, wish) = self.write_text(&mut encoder, &text_view, session);
+        let (before, again, request) = self.write_text(&mut encoder, &text_view, session);
         self.gpu
             .queue
             .submit(before.into_iter().chain([encoder.finish()]));
         self.window.pre_present_notify();
         self.gpu.queue.present(frame);
         self.gpu.check()?;
-        if let Some(wish) = wish {
-            session.grant(wish);
+        if let Some(request) = request {
+            panel::apply(session, request);
             return Ok(Outcome::Drawn(Some(Duration::ZERO)));
         }
         Ok(Outcome::Drawn(again))
@@ -229,17 +228,17 @@ impl Graphics {
         encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,
         session: &Session,
-    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Wish>) {
+    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
         let mut input = self.egui_winit.take_egui_input(&self.window);
         let right = panel::inset(session, self.size(), self.scale());
         input.safe_area_insets = Some(egui::SafeAreaInsets(egui::epaint::MarginF32 {
             right,
             ..Default::default()
         }));
-        let mut wish = None;
+        let mut request = None;
         let mut output = self.text.lay_out(&self.gpu, input, |ctx| {
             hud::show(ctx, &session.panes, &session.readings);
-            wish = panel::show(ctx, session).or(wish);
+            request = panel::show(ctx, session).or(request);
         });
         self.egui_winit
             .handle_platform_output(&self.window, std::mem::take(&mut output.platform_output));
@@ -250,7 +249,7 @@ impl Graphics {
         let again = again.filter(|delay| *delay < Duration::from_mins(1));
         let size = (self.config.width, self.config.height);
         let before = self.text.paint(&self.gpu, encoder, view, size, output);
-        (before, again, wish)
+        (before, again, request)
     }
 
     /// Saves what is seen under the first free name: one pane without the text, several with what tells them apart.
@@ -263,7 +262,7 @@ impl Graphics {
             ..Readings::default()
         };
         let panes = &mut session.panes;
-        let pixels = render::draw(
+        let pixels = hud::draw(
             &self.gpu,
             &offscreen,
             panes,

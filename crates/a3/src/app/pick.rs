@@ -168,7 +168,7 @@ mod tests {
         let camera = Camera::look_at([0.0, 3.0, 9.0], [0.0, 2.5, 0.0]);
         let p = simulation.position(210);
         for panes in 1..=4 {
-            for tile in crate::app::layout::tiles(panes, (1280, 720), 1.0) {
+            for tile in crate::hud::layout::tiles(panes, (1280, 720), 1.0) {
                 let aspect = tile.aspect();
                 let (at, _) = camera
                     .project([p.x as f32, p.y as f32, p.z as f32], aspect)

@@ -5,8 +5,7 @@ use std::time::{Duration, Instant};
 use a3_render::Tile;
 
 use super::graphics::Graphics;
-use super::pane::Pane;
-use super::session::Session;
+use crate::session::{Pane, Session};
 
 /// What was said, and when.
 #[derive(Default)]

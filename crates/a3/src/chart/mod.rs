@@ -14,14 +14,14 @@ use a3_plot::Figure;
 
 use crate::cli::{Chart, Error, What, Work};
 use crate::progress::Bar;
-use crate::{Failure, interrupt, output};
+use crate::{Failure, interrupt, output, setup};
 use data::Data;
 use measure::{Study, stiffened};
 
 /// Measures, prints and draws what the command line asks for.
 pub fn run(options: &Chart) -> Result<(), Failure> {
     interrupt::listen();
-    let scene = options.what.scene()?;
+    let scene = setup::scene(&options.what)?;
     let methods = methods(&scene, &options.solvers)?;
     let path = match &options.output {
         Some(path) => path.clone(),

@@ -10,8 +10,8 @@ use a3_core::Simulation;
 
 use crate::cli::Render;
 use crate::frames::{FrameTimes, Sequence};
+use crate::painter::Painter;
 use crate::progress::{self, Bar};
-use crate::render::Painter;
 use crate::show::Show;
 use crate::{Failure, interrupt, output};
 

@@ -7,6 +7,7 @@ use a3_core::MAX_PARTICLES;
 use a3_scenes::Mesh;
 use base64::Engine;
 
+use super::files;
 use crate::caught::caught;
 
 /// The longest file of a mesh, or of what belongs to one (bytes).
@@ -28,7 +29,7 @@ pub fn read(path: &Path) -> Result<Mesh, String> {
             ));
         }
     };
-    let bytes = super::read(path, LONGEST).map_err(named)?;
+    let bytes = files::read(path, LONGEST).map_err(named)?;
     // Both readers do sums with what a file says before they look at it.
     let parsed = caught(|| parse(&bytes, path)).unwrap_or(Err("it is damaged".into()));
     let mesh = parsed.map_err(named)?;
@@ -100,7 +101,7 @@ fn gltf(bytes: &[u8], path: &Path) -> Result<Mesh, String> {
                         .decode(text)
                         .map_err(|e| wrong(&e))?
                 }
-                None => super::read(&super::beside(Some(path), uri)?, LONGEST)
+                None => files::read(&files::beside(Some(path), uri)?, LONGEST)
                     .map_err(|why| format!("{uri}: {why}"))?,
             },
         });

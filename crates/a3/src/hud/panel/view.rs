@@ -1,55 +1,24 @@
-//! The panel beside the picture: knobs, and plots of what they do. Key Tab.
-
-pub mod history;
-mod knobs;
-mod plots;
-mod row;
+//! The panel as egui draws it: a row for each knob, a button, and plots where there is room.
 
 use egui::{Align2, Area, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
-use winit::keyboard::{Key, NamedKey};
 
-use super::hud::{FAINT, TEXT};
-use super::keys::Action;
-use super::session::Session;
-use knobs::{Dial, KNOBS, Knob, Turn};
-
-pub use knobs::Tuning;
+use super::super::text::{FAINT, TEXT};
+use super::request::{self, Request, is_shown, rows};
+use super::{plots, row};
+use crate::session::Session;
 
 /// In points.
-const WIDTH: f32 = 304.0;
+pub(super) const WIDTH: f32 = 304.0;
 /// The panel takes no more of a window's width than this share.
 const MOST: f32 = 0.6;
-const MARGIN: f32 = 14.0;
+pub(super) const MARGIN: f32 = 14.0;
 const HEAD: f32 = 36.0;
 const FOOT: f32 = 46.0;
 /// Between groups of rows.
 const GAP: f32 = 7.0;
 
-/// What of the panel is no setting of a run.
-#[derive(Default)]
-pub struct Panel {
-    pub open: bool,
-    /// The row that keys turn, in the table.
-    row: usize,
-    /// The pane that it is about: the last that the pointer was over.
-    pub pane: usize,
-}
-
-/// What a hand in the panel wants.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wish {
-    Choose(usize),
-    Turn(usize, Turn),
-    Write,
-}
-
-/// Whether the panel is seen: the help stands alone.
-fn is_shown(session: &Session) -> bool {
-    session.panel.open && !session.readings.help
-}
-
 /// Width of the panel in a window of that width (points).
-fn width(window: f32) -> f32 {
+pub(super) fn width(window: f32) -> f32 {
     WIDTH.min((MOST * window).round())
 }
 
@@ -67,63 +36,8 @@ pub fn inset(session: &Session, size: (u32, u32), scale: f32) -> f32 {
     (size.0 - leaves(session, size, scale).0) as f32 / scale
 }
 
-/// The rows that mean something, by their numbers in the table.
-fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
-    let at = session.panel.pane.min(session.panes.len() - 1);
-    let rows = KNOBS.iter().enumerate();
-    rows.filter_map(|(k, knob)| Some((k, knob, (knob.read)(session, at)?)))
-        .collect()
-}
-
-impl Session {
-    /// Does what a key means while the panel is seen. Whether it means something there.
-    pub fn press_in_panel(&mut self, key: &Key, shift: bool) -> bool {
-        let Key::Named(name) = key else { return false };
-        if !is_shown(self) {
-            return false;
-        }
-        let rows: Vec<_> = rows(self).iter().map(|(k, ..)| *k).collect();
-        // In another scene the row may be gone: the next one above.
-        let at = rows.iter().rposition(|k| *k <= self.panel.row).unwrap_or(0);
-        let turn = match name {
-            NamedKey::ArrowUp | NamedKey::ArrowDown => {
-                let next = if *name == NamedKey::ArrowUp {
-                    at + rows.len() - 1
-                } else {
-                    at + 1
-                };
-                self.panel.row = rows[next % rows.len()];
-                return true;
-            }
-            NamedKey::ArrowLeft | NamedKey::ArrowRight => Turn::By {
-                up: *name == NamedKey::ArrowRight,
-                other: shift,
-            },
-            NamedKey::Enter => Turn::Toggle,
-            _ => return false,
-        };
-        self.grant(Wish::Turn(rows[at], turn));
-        true
-    }
-
-    /// Does what a hand in the panel wants.
-    pub fn grant(&mut self, wish: Wish) {
-        let at = self.panel.pane.min(self.panes.len() - 1);
-        match wish {
-            Wish::Choose(row) => self.panel.row = row,
-            Wish::Turn(row, turn) => {
-                self.panel.row = row;
-                KNOBS[row].turn(self, at, turn);
-            }
-            Wish::Write => {
-                self.act(Action::WriteScene, at);
-            }
-        }
-    }
-}
-
 /// Shows the panel, if it is open. What a hand in it wants.
-pub fn show(ctx: &Context, session: &Session) -> Option<Wish> {
+pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     if !is_shown(session) {
         return None;
     }
@@ -132,7 +46,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Wish> {
         pos2(window.right() - width(window.width()), window.top()),
         window.right_bottom(),
     );
-    let mut wish = None;
+    let mut request = None;
     Area::new(Id::unique("panel"))
         .fixed_pos(rect.min)
         .constrain_to(window)
@@ -159,18 +73,18 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Wish> {
                 }
                 let place =
                     Rect::from_min_size(pos2(inner.left(), top), vec2(inner.width(), row::HEIGHT));
-                wish = row::show(ui, place, *k, knob.name, dial, n == chosen).or(wish);
+                request = row::show(ui, place, *k, knob.name, dial, n == chosen).or(request);
                 top += row::HEIGHT;
             }
-            wish = foot(ui, inner).or(wish);
+            request = foot(ui, inner).or(request);
             let room = Rect::from_min_max(
                 pos2(inner.left(), top + 12.0),
                 pos2(inner.right(), inner.bottom() - FOOT),
             );
-            let pane = &session.panes[session.panel.pane.min(session.panes.len() - 1)];
+            let pane = &session.panes[request::pane(session)];
             plots::draw(ui.painter(), room, &pane.history);
         });
-    wish
+    request
 }
 
 fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
@@ -202,15 +116,12 @@ fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
 }
 
 /// The button.
-fn foot(ui: &egui::Ui, inner: Rect) -> Option<Wish> {
+fn foot(ui: &egui::Ui, inner: Rect) -> Option<Request> {
     let rect = Rect::from_min_max(
         pos2(inner.left(), inner.bottom() - FOOT + 8.0),
         pos2(inner.right(), inner.bottom() - 10.0),
     );
     let response = ui.interact(rect, Id::unique("write scene"), Sense::click());
     row::button(ui, rect, &response, "write scene", "f");
-    response.clicked().then_some(Wish::Write)
+    response.clicked().then_some(Request::Write)
 }
-
-#[cfg(test)]
-mod tests;

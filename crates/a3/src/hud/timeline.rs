@@ -2,9 +2,9 @@
 
 use egui::{Align2, Area, Color32, Context, FontId, Id, Pos2, Rect, Sense, Stroke, vec2};
 
-use super::super::history::Place;
-use super::super::layout;
-use super::{FAINT, PAPER, TEXT};
+use super::layout;
+use super::text::{FAINT, PAPER, TEXT};
+use crate::session::Place;
 
 const DONE: Color32 = Color32::from_rgb(158, 22, 34);
 

@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 use a3_core::{Control, Method, Simulation, integrators};
 
 use super::pane::{PORTION, Pane};
-use crate::{Failure, progress};
+use crate::failure::Failure;
+use crate::progress;
 
 /// Frames in a row that it may be late before it is stopped.
 const PATIENCE: u32 = 30;

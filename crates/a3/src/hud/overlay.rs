@@ -3,12 +3,12 @@
 use a3_render::Gpu;
 
 /// What lays text out, and what draws it.
-pub struct Text {
+pub struct Overlay {
     pub context: egui::Context,
     renderer: egui_wgpu::Renderer,
 }
 
-impl Text {
+impl Overlay {
     /// For views of this format.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         Self {

@@ -3,13 +3,13 @@
 use a3_core::{Error, Method, Scene, Simulation, integrators};
 use a3_render::Style;
 
-use super::super::keys::Action;
-use super::super::pane::{PORTION, Pane};
-use super::super::panel::Tuning;
-use super::super::reference::Reference;
-use super::{KEY_BUDGET, Session};
+use super::keys::Action;
+use super::pane::{PORTION, Pane};
+use super::reference::Reference;
+use super::state::{KEY_BUDGET, Session};
+use super::tuning::Tuning;
 use crate::scene_file::Source;
-use crate::{cli, show};
+use crate::{bounds, show};
 
 /// Slow motion is 1 / 2^6 of real time at least.
 const SLOWEST: i32 = 6;
@@ -117,7 +117,7 @@ impl Session {
         for k in 0..self.panes.len() {
             let pane = &mut self.panes[k];
             let control = pane.simulation.control();
-            let range = cli::range(control);
+            let range = bounds::of(control);
             let next = next_step(control.value(), longer).clamp(*range.start(), *range.end());
             if let Err(why) = pane.simulation.set_control(control.with_value(next)) {
                 self.say(why.to_string());
@@ -146,16 +146,16 @@ impl Session {
 
     /// The next scene of the table, or that of the user.
     fn next_scene(&mut self) {
-        let own = usize::from(self.asked.scene.path.is_some());
+        let own = usize::from(self.asked.0.path.is_some());
         let next = (self.at + 1) % (a3_scenes::SCENES.len() + own);
         let name = match next.checked_sub(own) {
-            None => &self.asked.scene.typed,
+            None => &self.asked.0.typed,
             Some(k) => a3_scenes::SCENES[k].name,
         };
-        let asked = name == self.asked.scene.typed;
-        let grid = self.asked.grid.filter(|_| asked);
+        let asked = name == self.asked.0.typed;
+        let grid = self.asked.1.filter(|_| asked);
         let source = if asked {
-            Ok(self.asked.scene.clone())
+            Ok(self.asked.0.clone())
         } else {
             Source::find(name)
         };
@@ -174,8 +174,8 @@ impl Session {
     /// Loads the scene again from its file, as it is now. What can be kept stays: the camera, solvers and steps, unless the
     /// file says others than before. Whether it could be loaded; if not, it is said why, and all goes on.
     pub fn reload(&mut self) -> bool {
-        let loaded = Source::find(&self.asked.scene.typed);
-        let loaded = loaded.and_then(|source| Ok((source.build(self.asked.grid)?, source)));
+        let loaded = Source::find(&self.asked.0.typed);
+        let loaded = loaded.and_then(|source| Ok((source.build(self.asked.1)?, source)));
         let (scene, source) = match loaded {
             Ok(loaded) => loaded,
             Err(why) => {
@@ -183,7 +183,7 @@ impl Session {
                 return false;
             }
         };
-        let (new, old) = (&source.description, &self.asked.scene.description);
+        let (new, old) = (&source.description, &self.asked.0.description);
         if new.camera != old.camera {
             self.camera = show::camera_of(&scene);
         }
@@ -191,8 +191,8 @@ impl Session {
             .then_some(scene.solver)
             .flatten();
         self.say(format!("loaded {} again", source.typed));
-        self.shown = (source.clone(), self.asked.grid);
-        self.asked.scene = source;
+        self.shown = (source.clone(), self.asked.1);
+        self.asked.0 = source;
         self.at = 0;
         let (windy, swinging) = (self.first().windy(), self.first().swinging());
         self.set_scene(&scene);
@@ -272,9 +272,9 @@ fn next_step(step: f64, longer: bool) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{compared, session};
+    use super::super::state::tests::{compared, session};
     use super::*;
-    use crate::cli::{LARGEST_STEP, SMALLEST_STEP};
+    use crate::bounds::{LARGEST_STEP, SMALLEST_STEP};
     use a3_core::Control;
 
     #[test]

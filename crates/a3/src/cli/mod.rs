@@ -1,15 +1,22 @@
-//! The command line.
+//! The command line: its commands, arguments and help.
+
+mod explain;
+mod values;
 
 use std::path::PathBuf;
 
-use a3_core::{Control, Grid, Method, Scene, Simulation, integrators};
-use clap::error::ErrorKind;
-use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use a3_core::{Grid, Method};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use crate::app::Session;
+use crate::failure::Failure;
 use crate::scene_file::Source;
-use crate::{Failure, output};
+use values::{
+    beginning, budget, error, factor, grid, horizon, particle, picture_size, rate, size, solver,
+    solver_and_step, step, until,
+};
+
+pub use explain::explain;
 
 /// Physical simulation of mass-spring systems: pull at cloth, and see which integrator holds.
 #[derive(Parser)]
@@ -26,7 +33,7 @@ pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
     #[command(flatten)]
-    pub window: Window,
+    pub window: WindowOptions,
 }
 
 #[derive(Subcommand)]
@@ -78,7 +85,7 @@ pub struct What {
 }
 
 #[derive(Args)]
-pub struct Window {
+pub struct WindowOptions {
     /// Solver by letter or name: e, t, r, ... (`a3 solvers` lists them); without it, the scene's own, or t
     #[arg(value_parser = solver)]
     pub solver: Option<&'static Method>,
@@ -135,7 +142,7 @@ pub struct Scenes {
     modifier Mesh Cache, its axes left as they are.")]
 pub struct Simulate {
     #[command(flatten)]
-    pub run: Run,
+    pub run: RunOptions,
     /// File to write: its ending says what; - is JSON to standard output
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
@@ -157,7 +164,7 @@ pub struct Simulate {
     blows up or is interrupted keeps the frames until then.")]
 pub struct Render {
     #[command(flatten)]
-    pub run: Run,
+    pub run: RunOptions,
     /// File to write: its ending says what
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
@@ -286,7 +293,7 @@ pub struct Compare {
 
 /// A run without a window.
 #[derive(Args)]
-pub struct Run {
+pub struct RunOptions {
     /// Solver by letter or name; without it, the scene's own, or t
     #[arg(value_parser = solver)]
     pub solver: Option<&'static Method>,
@@ -300,317 +307,12 @@ pub struct Run {
     pub what: What,
 }
 
-impl Window {
-    pub fn session(&self) -> Result<Session, Failure> {
-        if self.watch && self.what.scene.path.is_none() {
-            return Err(Failure::usage(
-                "--watch is for a scene of your own, as in `--scene flag.toml --watch`",
-            ));
-        }
-        let method = (self.what.scene.solver_or(self.solver), self.step);
-        Session::new(&self.what, &[method], &self.look, self.springs_of)
-    }
-}
-
-impl Compare {
-    pub fn session(&self) -> Result<Session, Failure> {
-        let count = self.methods.len();
-        if !(2..=4).contains(&count) {
-            return Err(Failure::usage(format!(
-                "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
-            )));
-        }
-        Session::new(&self.what, &self.methods, &self.look, None)
-    }
-}
-
-impl What {
-    /// A run of this scene, in steps of this size or of the solver's own.
-    pub fn simulation(
-        &self,
-        solver: &'static Method,
-        step: Option<f64>,
-    ) -> Result<Simulation, Failure> {
-        let scene = self.scene.build(self.grid).map_err(Failure::usage)?;
-        self.run(scene, solver, step)
-    }
-
-    /// A run of that scene.
-    fn run(
-        &self,
-        scene: Scene,
-        solver: &'static Method,
-        step: Option<f64>,
-    ) -> Result<Simulation, Failure> {
-        for (asked, there, option) in [
-            (self.wind, scene.wind.is_some(), "wind"),
-            (self.swing, scene.swing.is_some(), "swing"),
-        ] {
-            if asked && !there {
-                return Err(Failure::usage(format!(
-                    "the scene {} has no {option}: leave out --{option}",
-                    scene.name
-                )));
-            }
-        }
-        let own = || scene.default_control(solver);
-        let control = step.map_or_else(own, |value| solver.control(value));
-        check_control(solver, control)?;
-        if let Err(e) = solver.check(scene.model.system()) {
-            let serve = integrators::METHODS
-                .iter()
-                .filter(|m| m.check(scene.model.system()).is_ok())
-                .map(|m| m.name);
-            let serve = serve.collect::<Vec<_>>().join(", ");
-            return Err(Failure::usage(format!(
-                "scene {}: {e}; use one of {serve}",
-                scene.name
-            )));
-        }
-        let mut simulation = Simulation::new(scene, solver, control).map_err(Failure::usage)?;
-        // Some scenes begin with wind.
-        if self.wind {
-            simulation.set_wind(true);
-        }
-        simulation.set_swinging(self.swing);
-        Ok(simulation)
-    }
-}
-
-impl What {
-    /// The scene, with the wind and the swing that were asked for.
-    pub fn scene(&self) -> Result<Scene, Failure> {
-        // Euler serves every scene.
-        let run = self.simulation(&integrators::METHODS[0], None)?;
-        Ok(Scene {
-            model: run.model().clone(),
-            state: run.state().to_vec(),
-            ..run.scene().clone()
-        })
-    }
-}
-
-impl Run {
-    pub fn simulation(&self) -> Result<Simulation, Failure> {
-        let solver = self.what.scene.solver_or(self.solver);
-        self.what.simulation(solver, self.step)
-    }
-
-    /// Where it ends (s).
+impl RunOptions {
+    /// The end of the run (s).
     pub fn end(&self) -> Result<f64, Failure> {
         let own = self.what.scene.description.duration;
         self.until.or(own).ok_or_else(|| {
             Failure::usage("how long? give --until T in seconds, such as --until 10")
         })
     }
-}
-
-/// `Ok` if the scene has that particle.
-pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Result<(), Failure> {
-    match (particle, simulation.model().network()) {
-        (Some(i), Some(network)) => network
-            .check_particle(i)
-            .map_err(|e| Failure::usage(format!("--springs-of: {e}"))),
-        (Some(_), None) => Err(Failure::usage("--springs-of: this scene has no springs")),
-        (None, _) => Ok(()),
-    }
-}
-
-/// The largest step that is no slip of the finger (s).
-pub const LARGEST_STEP: f64 = 10.0;
-/// The smallest (s).
-pub const SMALLEST_STEP: f64 = 1e-7;
-
-/// The tolerances of adaptive methods: larger ones promise nothing, smaller ones are lost in rounding.
-pub const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-13..=1.0;
-
-/// The values that a control of this kind may have: steps (s) or tolerances.
-pub fn range(control: Control) -> std::ops::RangeInclusive<f64> {
-    match control {
-        Control::Step(_) => SMALLEST_STEP..=LARGEST_STEP,
-        Control::Tolerance(_) => TOLERANCES,
-    }
-}
-
-/// `Ok` if the control's value is in its range.
-fn check_control(method: &Method, control: Control) -> Result<(), Failure> {
-    let range = range(control);
-    if range.contains(&control.value()) {
-        return Ok(());
-    }
-    let (low, high) = (range.start(), range.end());
-    Err(Failure::usage(match control {
-        Control::Step(step) => format!(
-            "a step is a number of seconds from {low} to {high}, such as 0.01, and not {step}"
-        ),
-        Control::Tolerance(tolerance) => format!(
-            "{} takes a relative tolerance from {low:e} to {high}, such as 1e-4, and not {tolerance}",
-            method.name
-        ),
-    }))
-}
-
-fn step(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(step) if (*TOLERANCES.start()..=LARGEST_STEP).contains(&step) => Ok(step),
-        _ => Err(format!(
-            "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01, and the tolerance of an \
-             adaptive solver one from {:e} to {}",
-            TOLERANCES.start(),
-            TOLERANCES.end()
-        )),
-    }
-}
-
-fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), String> {
-    match text.split_once(':') {
-        Some((name, number)) => Ok((solver(name)?, Some(step(number)?))),
-        None => Ok((solver(text)?, None)),
-    }
-}
-
-fn particle(text: &str) -> Result<usize, String> {
-    text.parse()
-        .map_err(|_| "a particle is a whole number from 0, such as 12".into())
-}
-
-fn until(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
-        _ => Err("the end is a number of seconds from 0 to 1e9, such as 10".into()),
-    }
-}
-
-fn beginning(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
-        _ => Err("a film begins at a number of seconds from 0 to 1e9, such as 2.5".into()),
-    }
-}
-
-fn rate(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(rate) if (0.1..=1000.0).contains(&rate) => Ok(rate),
-        _ => Err("a rate is a number of frames a second from 0.1 to 1000, such as 30".into()),
-    }
-}
-
-fn horizon(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(time) if (0.01..=1000.0).contains(&time) => Ok(time),
-        _ => Err("the end is a number of seconds from 0.01 to 1000, such as 1".into()),
-    }
-}
-
-fn factor(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(factor) if (1e-6..=1e6).contains(&factor) => Ok(factor),
-        _ => Err("a factor of the stiffness is a number from 1e-6 to 1e6, such as 10".into()),
-    }
-}
-
-fn error(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(error) if (1e-12..=10.0).contains(&error) => Ok(error),
-        _ => Err("an error is a number of metres from 1e-12 to 10, such as 1e-3".into()),
-    }
-}
-
-fn budget(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(budget) if (1e-4..=1e5).contains(&budget) => Ok(budget),
-        _ => Err("a budget is a number of milliseconds from 1e-4 to 1e5, such as 2".into()),
-    }
-}
-
-fn picture_size(text: &str) -> Result<(u32, u32), String> {
-    match pair(text) {
-        Some((w, h)) if (320..=8000).contains(&w) && (240..=8000).contains(&h) => Ok((w, h)),
-        _ => Err(
-            "a picture's size is WIDTHxHEIGHT, from 320x240 to 8000x8000, such as 1200x800".into(),
-        ),
-    }
-}
-
-fn solver(text: &str) -> Result<&'static Method, String> {
-    integrators::find(text).ok_or_else(|| {
-        let names: Vec<_> = integrators::METHODS
-            .iter()
-            .map(|m| format!("{} ({})", m.letter, m.name))
-            .collect();
-        let cli = Cli::command();
-        let commands: Vec<_> = cli.get_subcommands().map(clap::Command::get_name).collect();
-        format!(
-            "the solvers are {}; the commands, which come first, {}",
-            names.join(", "),
-            commands.join(", ")
-        )
-    })
-}
-
-fn pair<T: std::str::FromStr>(text: &str) -> Option<(T, T)> {
-    let (a, b) = text.split_once(['x', 'X', '×'])?;
-    Some((a.parse().ok()?, b.parse().ok()?))
-}
-
-fn grid(text: &str) -> Result<Grid, String> {
-    let (rows, cols) = pair(text).ok_or("a grid is ROWSxCOLS, such as 20x30")?;
-    Grid::new(rows, cols).map_err(|e| e.to_string())
-}
-
-fn size(text: &str) -> Result<(u32, u32), String> {
-    match pair(text) {
-        Some((w, h)) if w > 0 && h > 0 => Ok((w, h)),
-        _ => Err("a size is WIDTHxHEIGHT in pixels, such as 1280x720".into()),
-    }
-}
-
-/// What is between the first quotes: the value that was refused.
-fn value_of(head: &str) -> &str {
-    head.split('\'').nth(1).unwrap_or_default()
-}
-
-/// Help and version as clap prints them; anything else in one line.
-pub fn explain(error: &clap::Error) -> Result<(), Failure> {
-    if matches!(
-        error.kind(),
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
-    ) {
-        return output::said(error.print());
-    }
-    let text = error.render().to_string();
-    // The first paragraph says it; usage and hints follow.
-    let words: Vec<_> = text
-        .lines()
-        .take_while(|line| !line.is_empty())
-        .map(str::trim)
-        .collect();
-    let line = words.join(" ");
-    let line = line.strip_prefix("error: ").unwrap_or(&line).to_owned();
-    let tip = text
-        .lines()
-        .find_map(|line| line.trim().strip_prefix("tip: "));
-    Err(Failure::Usage(match (error.kind(), tip) {
-        // Its own words end with what is right, and those of a file's faults begin with its name.
-        (ErrorKind::ValueValidation, _) => match line.split_once("': ") {
-            Some((head, rest)) if head.contains(" '") && rest.starts_with(value_of(head)) => {
-                rest.into()
-            }
-            _ => line,
-        },
-        (ErrorKind::ArgumentConflict | ErrorKind::MissingRequiredArgument, _)
-            if line.contains("--error") =>
-        {
-            "choose takes either --error E, in m, or --budget MS, in ms a frame".into()
-        }
-        (ErrorKind::ArgumentConflict, _) => {
-            "beside options there is a solver and a step, as in `a3 t 0.01`, or a command before all else".into()
-        }
-        // clap takes -1e-3 for options, and -0.001 not.
-        (ErrorKind::UnknownArgument, _) if line.contains("argument '-") && !line.contains("argument '--") => {
-            format!("{line}; {}", step("").unwrap_err())
-        }
-        (_, Some(tip)) => format!("{line}; {tip}"),
-        (_, None) => format!("{line} (--help says more)"),
-    }))
 }

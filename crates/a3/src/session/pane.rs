@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use a3_core::{Method, Simulation};
 
 use super::limit::LimitWatch;
-use super::panel::history::History;
+use super::samples::History;
 use crate::progress;
 use crate::show::Show;
 

@@ -2,9 +2,11 @@
 
 use egui::{Area, Context, Frame, Id, Margin, Pos2, Rect, Ui};
 
-use super::super::layout;
-use super::{PAPER, states, text, time, title};
-use super::{Pane, Readings, blow_up, each, energy, faint, frames, scene, sheet, speed};
+use super::layout;
+use super::text;
+use super::text::{PAPER, states, text, time, title};
+use super::text::{blow_up, each, energy, faint, frames, scene, sheet, speed};
+use crate::session::{Pane, Readings};
 
 /// From the edge of a pane (points).
 const MARGIN: f32 = 8.0;
@@ -83,7 +85,7 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                 if readings.rate > 0.0 || readings.paused {
                     say(text(speed(readings)));
                 }
-                if let Some(slow) = super::slow_motion(readings) {
+                if let Some(slow) = text::slow_motion(readings) {
                     say(faint(format!("slow  {slow}")));
                 }
                 if readings.rate > 0.0 && width > 900.0 {
@@ -113,11 +115,11 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
             digits(cost.computing)
         )
     });
-    let step = match super::steps(run) {
+    let step = match text::steps(run) {
         Some(steps) => ("steps", text(format!("{},  {steps}", run.control()))),
         None => ("step", text(format!("{} s", run.control().value()))),
     };
-    let limit = super::limit(pane).map(|(words, colour)| ("limit", text(words).color(colour)));
+    let limit = text::limit(pane).map(|(words, colour)| ("limit", text(words).color(colour)));
     let time = ("time", text(time(run)));
     let error = ("error", text(error(pane, readings)));
     let (name, value) = energy(pane);
@@ -176,9 +178,9 @@ pub fn digits(number: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::pane::Cost;
-    use super::super::tests::{pane, read};
+    use super::super::text::tests::{pane, read};
     use super::*;
+    use crate::session::Cost;
 
     const SIZES: [[f32; 2]; 7] = [
         [1280.0, 720.0],

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use a3_scenes::{Camera, Description, State};
 
-use super::Session;
-use crate::{Failure, output};
+use super::state::Session;
+use crate::failure::Failure;
+use crate::output;
 
 /// The most particles whose states fit into a file that can be read again.
 const MOST: usize = 100_000;
@@ -30,10 +31,9 @@ impl Session {
             output::write(&path, text.as_bytes())?;
             Ok(path)
         };
-        match write() {
-            Ok(path) => Ok(path.display().to_string()),
-            Err(Failure::Run(why) | Failure::Usage(why) | Failure::Interrupted(why)) => Err(why),
-        }
+        write()
+            .map(|path| path.display().to_string())
+            .map_err(Failure::message)
     }
 
     /// The run of pane `at` as it is now.
@@ -102,8 +102,8 @@ impl Session {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::keys::Action;
-    use super::super::tests::session;
+    use super::super::keys::Action;
+    use super::super::state::tests::session;
     use super::*;
     use a3_core::{Network, Simulation, Vector3};
 

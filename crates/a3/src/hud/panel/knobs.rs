@@ -1,35 +1,10 @@
 //! What can be tuned while it runs, in one table: the mouse and the keys turn the same knobs.
 
-use a3_core::{Control, Network, Scene, Vector3, integrators};
+use a3_core::{Control, Network, Vector3, integrators};
 use a3_render::Style;
 
-use super::super::keys::Action;
-use super::super::session::Session;
-use crate::cli;
-
-/// What was changed of a scene that cannot be read off its model.
-#[derive(Clone)]
-pub struct Tuning {
-    /// The scene as it was built.
-    own: Scene,
-    /// Of the springs, over those of the scene's own.
-    pub stiffness: f64,
-    pub damping: f64,
-    /// Of the wind, over the scene's own.
-    pub gusts: f64,
-}
-
-impl Tuning {
-    /// Nothing is changed.
-    pub fn of(scene: &Scene) -> Self {
-        Self {
-            own: scene.clone(),
-            stiffness: 1.0,
-            damping: 1.0,
-            gusts: 1.0,
-        }
-    }
-}
+use crate::bounds;
+use crate::session::{Action, Session, Tuning};
 
 /// What values there are.
 #[derive(Clone, Debug, PartialEq)]
@@ -368,7 +343,7 @@ fn step(session: &Session, at: usize) -> Option<Dial> {
             format!("{} s", short(step, 3)),
         ),
         Control::Tolerance(tolerance) => {
-            let range = cli::range(run.control());
+            let range = bounds::of(run.control());
             (*range.start(), *range.end(), format!("{tolerance:e}"))
         }
     };

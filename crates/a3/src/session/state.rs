@@ -1,35 +1,43 @@
 //! Runs that keep up with real time. Knows no window.
 
-mod acts;
-mod save;
-
 use std::time::{Duration, Instant};
 
-use a3_core::{Grid, Method, Network, Simulation, Vector3};
+use a3_core::{Grid, Network, Simulation, Vector3};
 use a3_render::Camera;
 
-use super::history::History;
-use super::hud::Readings;
 use super::pane::Pane;
-use super::panel::{Panel, Tuning};
+use super::readings::Readings;
 use super::reference::Reference;
-use crate::Failure;
-use crate::cli;
+use super::timeline::History;
+use super::tuning::{PanelState, Tuning};
+use crate::failure::Failure;
 use crate::scene_file::Source;
 use crate::show::{self, Show};
 
 /// Real time a frame may spend on steps. What does not fit is not caught up: all runs are slower than real time then.
-const BUDGET: Duration = Duration::from_millis(12);
+/// Tests, which run several at a time, are not to depend on it.
+const BUDGET: Duration = Duration::from_millis(if cfg!(test) { 400 } else { 12 });
 /// Real time a frame may spend on the reference, at least, and as a share of the time it stands for.
 /// Tests, which run several at a time, are not to hang on it.
 const REFERENCE_BUDGET: (Duration, f64) =
     (Duration::from_millis(if cfg!(test) { 400 } else { 4 }), 0.1);
 /// Real time that a key may take, other than a frame.
-const KEY_BUDGET: Duration = Duration::from_millis(200);
+pub(super) const KEY_BUDGET: Duration = Duration::from_millis(200);
 /// No frame owes more than this (s), however long it took: neither a slow one nor a laptop's sleep.
 const MOST_OWED: f64 = 0.1;
 /// How long a message stays.
 const MESSAGE_TIME: Duration = Duration::from_secs(4);
+
+/// How a session begins.
+#[derive(Clone, Copy, Default)]
+pub struct Beginning {
+    /// Whether wires are drawn instead of the surface.
+    pub wireframe: bool,
+    /// Whether the runs are paused.
+    pub paused: bool,
+    /// The particle whose springs are highlighted.
+    pub springs_of: Option<usize>,
+}
 
 /// One run on the screen, or several of one scene side by side.
 pub struct Session {
@@ -37,18 +45,18 @@ pub struct Session {
     pub panes: Vec<Pane>,
     pub camera: Camera,
     pub readings: Readings,
-    pub panel: Panel,
+    pub panel: PanelState,
     pub tuning: Tuning,
     /// The scene and grid asked for, to come back to.
-    asked: cli::What,
+    pub(super) asked: (Source, Option<Grid>),
     /// The scene shown, and the grid that it was built with if not its own.
-    shown: (Source, Option<Grid>),
+    pub(super) shown: (Source, Option<Grid>),
     /// Which of the scenes is shown: that of the user, if it is a file, and those of the table.
-    at: usize,
+    pub(super) at: usize,
     /// Where there are several panes.
-    reference: Option<Reference>,
+    pub(super) reference: Option<Reference>,
     /// Simulated time that the panes have been brought to (s): each is less than a step behind.
-    clock: f64,
+    pub(super) clock: f64,
     history: History,
     message_ends: Option<Instant>,
     /// At how many steps, and when, the states were last read.
@@ -78,33 +86,29 @@ impl Meter {
 }
 
 impl Session {
-    /// These methods, each with its step (s) or in the solver's own, on one scene.
+    /// These runs of one scene, at least one, which was built from `shown`.
     pub fn new(
-        what: &cli::What,
-        methods: &[(&'static Method, Option<f64>)],
-        look: &cli::Look,
-        springs_of: Option<usize>,
+        (source, grid): (&Source, Option<Grid>),
+        simulations: Vec<Simulation>,
+        beginning: &Beginning,
     ) -> Result<Self, Failure> {
-        let pane = |(method, step): &(&'static Method, Option<f64>)| {
-            let simulation = what.simulation(method, *step)?;
-            cli::check_particle(&simulation, springs_of)?;
-            let show = Show::new(look.wireframe, springs_of);
-            Ok(Pane::new(simulation, show))
-        };
-        let panes: Vec<_> = methods.iter().map(pane).collect::<Result<_, Failure>>()?;
+        let panes: Vec<_> = simulations
+            .into_iter()
+            .map(|run| Pane::new(run, Show::new(beginning.wireframe, beginning.springs_of)))
+            .collect();
         Ok(Self {
             camera: show::camera(&panes[0].simulation),
             readings: Readings {
-                paused: look.paused,
+                paused: beginning.paused,
                 ..Readings::default()
             },
-            panel: Panel::default(),
+            panel: PanelState::default(),
             tuning: Tuning::of(panes[0].simulation.scene()),
-            shown: (what.scene.clone(), what.grid),
-            asked: what.clone(),
+            asked: (source.clone(), grid),
+            shown: (source.clone(), grid),
             at: a3_scenes::SCENES
                 .iter()
-                .position(|entry| entry.name == what.scene.typed)
+                .position(|entry| entry.name == source.typed)
                 .unwrap_or(0),
             reference: Reference::new(&panes)?,
             clock: 0.0,
@@ -146,7 +150,7 @@ impl Session {
 
     /// Brings all panes to a simulated time (s), together: in slices, so that none runs ahead when the budget of real
     /// time is over before.
-    fn advance(&mut self, until: f64, budget: Duration, reference_budget: Duration) {
+    pub(super) fn advance(&mut self, until: f64, budget: Duration, reference_budget: Duration) {
         self.keep(false);
         let (begun, start) = (Instant::now(), self.clock);
         let steps = self.panes.iter().map(Pane::pace);
@@ -225,7 +229,7 @@ impl Session {
     }
 
     /// Owes nothing: the time is that of the pane that is farthest.
-    fn settle(&mut self) {
+    pub(super) fn settle(&mut self) {
         let alive = self.panes.iter().filter(|pane| pane.alive());
         let times = alive.map(|pane| pane.simulation.time());
         self.clock = times.reduce(f64::max).unwrap_or(self.clock);
@@ -251,7 +255,7 @@ impl Session {
     }
 
     /// In every run, one that is lost too: what is on stays on when it starts again.
-    fn do_to_all(&mut self, mut hand: impl FnMut(&mut Simulation)) {
+    pub(super) fn do_to_all(&mut self, mut hand: impl FnMut(&mut Simulation)) {
         for pane in &mut self.panes {
             hand(&mut pane.simulation);
         }
@@ -277,7 +281,7 @@ impl Session {
 
     /// Brings several panes to the same time exactly, by a shorter step where need be: what a hand does from then on, it
     /// does to all of them at once.
-    fn align(&mut self) {
+    pub(super) fn align(&mut self) {
         if self.panes.len() < 2 {
             return;
         }
@@ -407,7 +411,7 @@ impl Session {
     }
 
     /// Forgets what was: it is of another run.
-    fn forget(&mut self) {
+    pub(super) fn forget(&mut self) {
         self.history.clear();
         self.readings.place = None;
         self.hand_off();
@@ -439,21 +443,17 @@ impl Session {
 pub mod tests {
     use super::super::keys::Action;
     use super::*;
+    use crate::{cli, setup};
     use clap::Parser;
 
     pub fn session(words: &[&str]) -> Session {
         let words = ["a3"].iter().chain(words);
         let options = cli::Cli::try_parse_from(words).unwrap();
         let session = match options.command {
-            Some(cli::Command::Compare(options)) => options.session(),
-            _ => options.window.session(),
+            Some(cli::Command::Compare(options)) => setup::comparison(&options),
+            _ => setup::window(&options.window),
         };
-        match session {
-            Ok(session) => session,
-            Err(Failure::Usage(why) | Failure::Run(why) | Failure::Interrupted(why)) => {
-                panic!("{why}")
-            }
-        }
+        session.map_err(Failure::message).unwrap()
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use a3_plot::Axis;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2};
 
-use super::super::hud::{FAINT, TEXT};
-use super::history::{History, SPAN, Sample};
+use super::super::text::{FAINT, TEXT};
+use crate::session::{History, SPAN, Sample};
 
 /// The least height of a plot (points).
 const LEAST: f32 = 56.0;

@@ -4,9 +4,9 @@ use egui::{
     Align2, Color32, CursorIcon, FontId, Id, Rect, Response, Sense, Stroke, Ui, pos2, vec2,
 };
 
-use super::super::hud::{FAINT, TEXT};
-use super::Wish;
+use super::super::text::{FAINT, TEXT};
 use super::knobs::{Dial, Scale, Turn};
+use super::request::Request;
 
 /// Of a row (points).
 pub const HEIGHT: f32 = 23.0;
@@ -24,7 +24,14 @@ const NAME: f32 = 76.0;
 const VALUE: f32 = 76.0;
 
 /// Shows knob k. What a hand does to it.
-pub fn show(ui: &Ui, rect: Rect, k: usize, name: &str, dial: &Dial, chosen: bool) -> Option<Wish> {
+pub fn show(
+    ui: &Ui,
+    rect: Rect,
+    k: usize,
+    name: &str,
+    dial: &Dial,
+    chosen: bool,
+) -> Option<Request> {
     let id = |part| Id::unique((part, k));
     let whole = ui.interact(rect.expand2(vec2(6.0, 0.0)), id("row"), Sense::click());
     let painter = ui.painter();
@@ -71,8 +78,8 @@ pub fn show(ui: &Ui, rect: Rect, k: usize, name: &str, dial: &Dial, chosen: bool
         };
         turn = set.or(turn);
     }
-    turn.map(|turn| Wish::Turn(k, turn))
-        .or_else(|| whole.clicked().then_some(Wish::Choose(k)))
+    turn.map(|turn| Request::Turn(k, turn))
+        .or_else(|| whole.clicked().then_some(Request::Choose(k)))
 }
 
 /// A track with a thumb, and a mark where the scene's own value is.

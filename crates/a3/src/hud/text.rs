@@ -1,45 +1,15 @@
 //! What is written over the picture: egui, without winit and wgpu, so that a test can read it.
 
-mod panes;
-mod timeline;
-
-pub use panes::digits;
-
 use a3_core::{BlowUp, Cause, Control, Simulation, integrators};
 use egui::{Align2, Area, Color32, Context, Frame, Id, Margin, RichText, Ui};
 
-use super::history::Place;
-use super::keys::{KEYS, MOUSE};
-use super::pane::Pane;
+use super::{panes, timeline};
+use crate::session::{KEYS, MOUSE, Pane, Readings};
 use crate::show;
-
-/// What the text says beside the runs themselves.
-#[derive(Clone, Debug, Default)]
-pub struct Readings {
-    pub paused: bool,
-    pub help: bool,
-    /// Simulated over real time.
-    pub factor: f32,
-    /// Frames per second.
-    pub rate: f32,
-    /// Time a frame spends on steps, and on drawing and waiting for the screen (ms).
-    pub simulating: f32,
-    pub drawing: f32,
-    /// What just happened, for a few seconds.
-    pub message: Option<String>,
-    /// There are keys to press.
-    pub in_window: bool,
-    /// Why the panes' errors are not known, if they are not.
-    pub no_error: Option<&'static str>,
-    /// Simulated time goes by at 1 / 2^this of real time.
-    pub slowness: i32,
-    /// Where in the kept time one is, after going back.
-    pub place: Option<Place>,
-}
 
 pub const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
 pub const FAINT: Color32 = Color32::from_rgb(92, 98, 114);
-const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
+pub const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
 const SAFE: Color32 = Color32::from_rgb(12, 106, 52);
 const WARNING: Color32 = Color32::from_rgb(158, 84, 0);
 const ALARM: Color32 = Color32::from_rgb(170, 22, 30);
@@ -66,7 +36,7 @@ fn column(
         });
 }
 
-fn sheet(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+pub fn sheet(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     Frame::new()
         .fill(PAPER)
         .corner_radius(7)
@@ -77,15 +47,15 @@ fn sheet(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
         });
 }
 
-fn title(words: impl Into<String>) -> RichText {
+pub fn title(words: impl Into<String>) -> RichText {
     RichText::new(words).color(TEXT).size(17.0).strong()
 }
 
-fn text(words: impl Into<String>) -> RichText {
+pub fn text(words: impl Into<String>) -> RichText {
     RichText::new(words).color(TEXT).size(13.5)
 }
 
-fn faint(words: impl Into<String>) -> RichText {
+pub fn faint(words: impl Into<String>) -> RichText {
     RichText::new(words).color(FAINT).size(12.5)
 }
 
@@ -200,7 +170,7 @@ fn springs(ui: &mut Ui, simulation: &Simulation, i: usize) {
 }
 
 /// Its name, and its grid if it has one.
-fn scene(simulation: &Simulation) -> String {
+pub fn scene(simulation: &Simulation) -> String {
     let scene = simulation.scene();
     let grid = scene.grid.map_or(String::new(), |grid| {
         format!("  {} × {}", grid.rows(), grid.cols())
@@ -213,7 +183,7 @@ fn method(simulation: &Simulation) -> String {
 }
 
 /// What an adaptive method does with its tolerance.
-fn steps(simulation: &Simulation) -> Option<String> {
+pub fn steps(simulation: &Simulation) -> Option<String> {
     let step = simulation.step_size()?;
     let rejections = simulation.work().rejections;
     simulation
@@ -223,7 +193,7 @@ fn steps(simulation: &Simulation) -> Option<String> {
 }
 
 /// The step as a share of the largest stable one: green while there is room, amber near it, red past it.
-fn limit(pane: &Pane) -> Option<(String, Color32)> {
+pub fn limit(pane: &Pane) -> Option<(String, Color32)> {
     let limit = pane.watch.limit()?;
     if limit.step.is_infinite() {
         return Some(("none: every step is stable".into(), SAFE));
@@ -242,14 +212,14 @@ fn limit(pane: &Pane) -> Option<(String, Color32)> {
 }
 
 /// With as many digits as tell one step from the next.
-fn time(simulation: &Simulation) -> String {
+pub fn time(simulation: &Simulation) -> String {
     let step = simulation.control().step().unwrap_or(1e-3);
     let digits = (-step.log10()).ceil().clamp(2.0, 7.0) as usize;
     format!("{:.digits$} s", simulation.time())
 }
 
 /// What tells best whether the run holds: its energy, or the radius of the circle.
-fn energy(pane: &Pane) -> (&'static str, String) {
+pub fn energy(pane: &Pane) -> (&'static str, String) {
     match pane.energy {
         Some(energy) => ("energy", format!("{energy:.3} J")),
         None => (
@@ -259,17 +229,17 @@ fn energy(pane: &Pane) -> (&'static str, String) {
     }
 }
 
-fn frames(readings: &Readings) -> String {
+pub fn frames(readings: &Readings) -> String {
     format!("{:.0} per second", readings.rate)
 }
 
-fn each(readings: &Readings) -> String {
+pub fn each(readings: &Readings) -> String {
     let (simulating, drawing) = (readings.simulating, readings.drawing);
     format!("{simulating:.1} ms steps + {drawing:.1} ms drawing")
 }
 
 /// What is on.
-fn states(simulation: &Simulation, readings: &Readings) -> RichText {
+pub fn states(simulation: &Simulation, readings: &Readings) -> RichText {
     let states = [
         (readings.paused, "paused"),
         (simulation.windy(), "wind"),
@@ -292,7 +262,7 @@ fn states(simulation: &Simulation, readings: &Readings) -> RichText {
 }
 
 /// Simulated time in real time.
-fn speed(readings: &Readings) -> String {
+pub fn speed(readings: &Readings) -> String {
     match readings.factor {
         _ if readings.paused => "paused".into(),
         0.0 => "-".into(),
@@ -302,13 +272,13 @@ fn speed(readings: &Readings) -> String {
 }
 
 /// What is asked for, if not real time.
-fn slow_motion(readings: &Readings) -> Option<String> {
+pub fn slow_motion(readings: &Readings) -> Option<String> {
     let slowness = Some(readings.slowness).filter(|slowness| *slowness > 0)?;
     Some(format!("1/{} of real time", 1 << slowness))
 }
 
 /// What was lost, which limit was passed, and which step would have held.
-fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
+pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     ui.label(
         RichText::new(format!("It {lost}."))
             .color(ALARM)
@@ -397,6 +367,7 @@ fn help(ui: &mut Ui, several: bool) {
 #[cfg(test)]
 pub mod tests {
     use super::*;
+    use crate::session::Place;
     use crate::show::Show;
 
     /// All that is written, in a window of that size, and the rectangles of the sheets.

@@ -1,9 +1,13 @@
-use egui::{Event, PointerButton, Pos2, RawInput, Shape};
+use egui::{Context, Event, PointerButton, Pos2, RawInput, Rect, Shape, pos2, vec2};
 
-use super::super::hud;
-use super::super::session::tests::session;
-use super::*;
 use a3_core::Control;
+
+use super::knobs::{KNOBS, Scale, Turn};
+use super::request::{PanelKey, Request, apply, press, rows};
+use super::view::{MARGIN, WIDTH, inset, leaves, show, width};
+use crate::hud;
+use crate::session::fixtures::{compared, session};
+use crate::session::{Action, Session};
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
 
@@ -19,8 +23,8 @@ fn every_scene() -> impl Iterator<Item = Session> {
     names.map(|name| opened(&["r", "0.005", "--scene", name]))
 }
 
-fn press(session: &mut Session, key: NamedKey, shift: bool) {
-    assert!(session.press_in_panel(&Key::Named(key), shift), "{key:?}");
+fn type_key(session: &mut Session, key: PanelKey, shift: bool) {
+    assert!(press(session, key, shift), "{key:?}");
 }
 
 /// What all rows say.
@@ -55,7 +59,11 @@ impl Screen {
     }
 
     /// A frame: what was drawn, and what the hand in the panel wants.
-    fn frame(&mut self, session: &Session, events: Vec<Event>) -> (egui::FullOutput, Option<Wish>) {
+    fn frame(
+        &mut self,
+        session: &Session,
+        events: Vec<Event>,
+    ) -> (egui::FullOutput, Option<Request>) {
         self.time += 0.05;
         let px = self.size.map(|side| side as u32);
         let right = inset(session, px.into(), 1.0);
@@ -69,14 +77,14 @@ impl Screen {
             events,
             ..Default::default()
         };
-        let mut wish = None;
+        let mut request = None;
         let mut output = self.ctx.run_ui(input, |ui| {
             hud::show(ui.ctx(), &session.panes, &session.readings);
-            wish = show(ui.ctx(), session).or(wish);
+            request = show(ui.ctx(), session).or(request);
         });
         output.textures_delta.set.clear();
         output.textures_delta.free.clear();
-        (output, wish)
+        (output, request)
     }
 
     /// All that is written, where, and what is seen of it.
@@ -121,8 +129,8 @@ impl Screen {
             vec![button(to, false)],
             vec![],
         ] {
-            if let (_, Some(wish)) = self.frame(session, event) {
-                session.grant(wish);
+            if let (_, Some(request)) = self.frame(session, event) {
+                apply(session, request);
             }
         }
     }
@@ -148,33 +156,32 @@ fn keys_reach_every_row_and_turn_that_only() {
         let count = dials(&session).len();
         for (k, (row, value)) in dials(&session).into_iter().enumerate() {
             let before = dials(&session);
-            press(&mut session, NamedKey::ArrowRight, false);
+            type_key(&mut session, PanelKey::Right, false);
             let mut now = changed(&before, &session);
             if now.is_empty() {
                 // It was at its end.
-                press(&mut session, NamedKey::ArrowLeft, false);
+                type_key(&mut session, PanelKey::Left, false);
                 now = changed(&before, &session);
             }
             // Another solver may take a tolerance.
             now.retain(|other| row != "solver" || *other != "step");
             assert_eq!(now, [row], "row {k} of {name}");
-            press(&mut session, NamedKey::Enter, false);
+            type_key(&mut session, PanelKey::Toggle, false);
             let back = dials(&session)[k].1;
             let own = rows(&session)[k].2.own;
             assert!(back == value || back == own, "{row} of {name}: {back}");
-            press(&mut session, NamedKey::ArrowDown, false);
+            type_key(&mut session, PanelKey::Down, false);
         }
         assert_eq!(
             rows(&session)[0].0,
             session.panel.row,
             "it goes round, after {count}"
         );
-        press(&mut session, NamedKey::ArrowUp, false);
+        type_key(&mut session, PanelKey::Up, false);
         assert_eq!(rows(&session)[count - 1].0, session.panel.row);
-        // All else is for the other keys.
-        assert!(!session.press_in_panel(&Key::Character("r".into()), false));
+        // A closed panel takes no keys.
         session.act(Action::Panel, 0);
-        assert!(!session.press_in_panel(&Key::Named(NamedKey::ArrowUp), false));
+        assert!(!press(&mut session, PanelKey::Up, false));
     }
 }
 
@@ -187,8 +194,8 @@ fn the_mouse_turns_every_row_and_that_only() {
             let before = dials(&session);
             let (value, [low, high]) = screen.place(&session, knob.name);
             match dial.scale {
-                knobs::Scale::Switch => screen.click(&mut session, low, low),
-                knobs::Scale::Choice(_) => screen.click(&mut session, value, value),
+                Scale::Switch => screen.click(&mut session, low, low),
+                Scale::Choice(_) => screen.click(&mut session, value, value),
                 _ => {
                     screen.click(&mut session, low, low + vec2(80.0, 0.0));
                     let now = (knob.read)(&session, 0).unwrap();
@@ -207,7 +214,7 @@ fn the_mouse_turns_every_row_and_that_only() {
             assert_eq!(now, [knob.name], "of {name}");
             assert_eq!(session.panel.row, k);
             // Twice on the value brings the scene's own back.
-            if !matches!(dial.scale, knobs::Scale::Choice(_)) {
+            if !matches!(dial.scale, Scale::Choice(_)) {
                 screen.time += 1.0;
                 screen.click(&mut session, value, value);
                 screen.click(&mut session, value, value);
@@ -231,7 +238,7 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     session.tick(0.1);
     let turn = |session: &mut Session, name: &str, turn| {
         let k = KNOBS.iter().position(|knob| knob.name == name).unwrap();
-        session.grant(Wish::Turn(k, turn));
+        apply(session, Request::Turn(k, turn));
     };
     let before = forces(&session);
     for (name, value) in [
@@ -278,13 +285,16 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
 fn another_scene_is_not_tuned() {
     let mut session = opened(&["r", "0.005"]);
     for k in 2..=5 {
-        session.grant(Wish::Turn(
-            k,
-            Turn::By {
-                up: true,
-                other: false,
-            },
-        ));
+        apply(
+            &mut session,
+            Request::Turn(
+                k,
+                Turn::By {
+                    up: true,
+                    other: false,
+                },
+            ),
+        );
     }
     session.act(Action::NextScene, 0);
     session.act(Action::NextScene, 0);
@@ -300,7 +310,7 @@ fn the_limit_follows_the_stiffness() {
     let limit = |session: &Session| session.panes[0].watch.limit().unwrap().step;
     let before = limit(&session);
     let k = KNOBS.iter().position(|k| k.name == "stiffness").unwrap();
-    session.grant(Wish::Turn(k, Turn::To(4.0)));
+    apply(&mut session, Request::Turn(k, Turn::To(4.0)));
     session.read_state();
     let after = limit(&session);
     assert!((before / after - 2.0).abs() < 0.05, "{before} {after}");
@@ -308,12 +318,11 @@ fn the_limit_follows_the_stiffness() {
 
 #[test]
 fn every_pane_and_the_reference_are_tuned_alike() {
-    let mut session =
-        super::super::session::tests::compared(&["r:0.005", "v:0.005", "--scene", "pendulum"], 0.3);
+    let mut session = compared(&["r:0.005", "v:0.005", "--scene", "pendulum"], 0.3);
     session.act(Action::Panel, 0);
     for (name, value) in [("stiffness", 2.0), ("gravity", 20.0), ("drag", 0.02)] {
         let k = KNOBS.iter().position(|k| k.name == name).unwrap();
-        session.grant(Wish::Turn(k, Turn::To(value)));
+        apply(&mut session, Request::Turn(k, Turn::To(value)));
     }
     for _ in 0..60 {
         session.tick(1.0 / 60.0);
@@ -324,7 +333,7 @@ fn every_pane_and_the_reference_are_tuned_alike() {
     }
     // The step is that of one pane.
     session.panel.pane = 1;
-    session.grant(Wish::Turn(1, Turn::To(0.002)));
+    apply(&mut session, Request::Turn(1, Turn::To(0.002)));
     assert_eq!(session.first().control(), Control::Step(0.005));
     assert_eq!(session.panes[1].simulation.control(), Control::Step(0.002));
 }
@@ -339,11 +348,11 @@ fn turning_goes_by_rungs_and_stays_within() {
     let mut go = |name: &str, key, shift, times: usize| {
         session.panel.row = KNOBS.iter().position(|k| k.name == name).unwrap();
         for _ in 0..times {
-            press(&mut session, key, shift);
+            type_key(&mut session, key, shift);
         }
         value(&session, name)
     };
-    let (left, right) = (NamedKey::ArrowLeft, NamedKey::ArrowRight);
+    let (left, right) = (PanelKey::Left, PanelKey::Right);
     assert_eq!(go("step", right, false, 1), 0.0126);
     assert_eq!(go("step", left, false, 1), 0.01);
     assert_eq!(go("step", right, true, 1), 0.0102);

@@ -1,0 +1,55 @@
+//! Keys as winit names them, in the words of the table of keys and of the panel.
+
+use winit::keyboard::{Key, NamedKey};
+
+use crate::hud::panel::PanelKey;
+use crate::session::{self, Action};
+
+/// The action of a key, if it has one.
+pub fn action(key: &Key) -> Option<Action> {
+    match key {
+        Key::Named(NamedKey::Space) => session::action("Space"),
+        Key::Named(NamedKey::Escape) => session::action("Esc"),
+        Key::Named(NamedKey::Tab) => session::action("Tab"),
+        Key::Character(text) if text == " " => session::action("Space"),
+        Key::Character(text) if text.chars().count() == 1 => session::action(text),
+        _ => None,
+    }
+}
+
+/// The meaning of a key in the panel, if it has one there.
+pub fn panel_key(key: &Key) -> Option<PanelKey> {
+    match key {
+        Key::Named(NamedKey::ArrowUp) => Some(PanelKey::Up),
+        Key::Named(NamedKey::ArrowDown) => Some(PanelKey::Down),
+        Key::Named(NamedKey::ArrowLeft) => Some(PanelKey::Left),
+        Key::Named(NamedKey::ArrowRight) => Some(PanelKey::Right),
+        Key::Named(NamedKey::Enter) => Some(PanelKey::Toggle),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::KEYS;
+
+    #[test]
+    fn every_key_of_the_table_can_be_typed() {
+        for binding in KEYS {
+            for &key in binding.keys {
+                let typed = match key {
+                    "Space" => Key::Named(NamedKey::Space),
+                    "Esc" => Key::Named(NamedKey::Escape),
+                    "Tab" => Key::Named(NamedKey::Tab),
+                    key => Key::Character(key.into()),
+                };
+                assert_eq!(action(&typed), Some(binding.action));
+            }
+        }
+        assert_eq!(action(&Key::Character(" ".into())), Some(Action::Pause));
+        assert_eq!(action(&Key::Character("10".into())), None);
+        assert_eq!(action(&Key::Character("Tab".into())), None);
+        assert_eq!(action(&Key::Named(NamedKey::F1)), None);
+    }
+}

@@ -1,0 +1,13 @@
+//! The panel beside the picture: knobs, and plots of what they do. Key Tab.
+
+mod knobs;
+mod plots;
+mod request;
+mod row;
+mod view;
+
+pub use request::{PanelKey, Request, apply, press};
+pub use view::{inset, leaves, show};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,59 @@
+//! Reading the files of a scene: ordinary ones, of limited length, from the scene's folder downwards.
+
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+
+/// The longest scene file (bytes).
+const LONGEST: u64 = 16 << 20;
+/// The longest line of a scene file (bytes): a longer one was not written by hand.
+const LONGEST_LINE: usize = 8 << 20;
+
+/// The bytes of an ordinary file that is not too long.
+pub fn read(path: &Path, longest: u64) -> Result<Vec<u8>, String> {
+    let meta = fs::metadata(path).map_err(|e| format!("not read: {e}"))?;
+    if !meta.is_file() {
+        return Err("it is no ordinary file".into());
+    }
+    let too_long = || format!("it is longer than {} MiB", longest >> 20);
+    if meta.len() > longest {
+        return Err(too_long());
+    }
+    let mut bytes = vec![];
+    let file = File::open(path).map_err(|e| format!("not read: {e}"))?;
+    file.take(longest + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|e| format!("not read: {e}"))?;
+    if bytes.len() as u64 > longest {
+        return Err(too_long());
+    }
+    Ok(bytes)
+}
+
+/// The text of a scene file.
+pub fn read_text(path: &Path) -> Result<String, String> {
+    let text = String::from_utf8(read(path, LONGEST)?)
+        .map_err(|e| format!("it is no UTF-8 text: byte {}", e.utf8_error().valid_up_to()))?;
+    match text.lines().position(|line| line.len() > LONGEST_LINE) {
+        Some(k) => Err(format!(
+            "line {} is longer than {} MiB",
+            k + 1,
+            LONGEST_LINE >> 20
+        )),
+        None => Ok(text),
+    }
+}
+
+/// The path of a file that a scene names: beside the scene, or in a folder beside it.
+pub fn beside(scene: Option<&Path>, name: &str) -> Result<PathBuf, String> {
+    let below = Path::new(name)
+        .components()
+        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    if !below || name.is_empty() {
+        return Err(format!(
+            "`{name}` must be a path from the scene's folder downwards, without `..`"
+        ));
+    }
+    let folder = scene.and_then(Path::parent).unwrap_or(Path::new(""));
+    Ok(folder.join(name))
+}

@@ -1,0 +1,139 @@
+//! A scene as it was asked for: by name, or in a file.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use a3_core::{Grid, Method, Scene, integrators};
+use a3_scenes::Description;
+
+use super::files::{beside, read_text};
+use super::{listed, mesh};
+
+/// A scene as it was asked for.
+#[derive(Clone)]
+pub struct Source {
+    /// As typed: a name of the table, or a path.
+    pub typed: String,
+    /// Where it was read, if it is a file.
+    pub path: Option<PathBuf>,
+    pub description: Arc<Description>,
+    text: Arc<str>,
+}
+
+impl Source {
+    /// The scene of that name, or in that file.
+    pub fn find(typed: &str) -> Result<Self, String> {
+        if let Some(entry) = a3_scenes::find(typed) {
+            return Ok(Self {
+                typed: typed.into(),
+                path: None,
+                description: Arc::new(entry.description().map_err(|e| e.to_string())?),
+                text: entry.text.into(),
+            });
+        }
+        let path = Path::new(typed);
+        let extension = path
+            .extension()
+            .and_then(|e| e.to_str())
+            .map(str::to_lowercase);
+        let json = match extension.as_deref() {
+            Some("toml") => false,
+            Some("json") => true,
+            _ => return Err(unknown(typed)),
+        };
+        let text = read_text(path).map_err(|why| format!("{typed}: {why}"))?;
+        let parsed = if json {
+            listed::parse(&text)
+        } else {
+            Description::parse(&text).map_err(|fault| fault.to_string())
+        };
+        let mut description = parsed.map_err(|why| place(typed, &why))?;
+        if description.name.is_none() {
+            let stem = path
+                .file_stem()
+                .map(|stem| stem.to_string_lossy().into_owned());
+            description.name = stem;
+        }
+        Ok(Self {
+            typed: typed.into(),
+            path: Some(path.into()),
+            description: Arc::new(description),
+            text: text.into(),
+        })
+    }
+
+    /// The scene, with this grid of its cloth or with its own.
+    pub fn build(&self, grid: Option<Grid>) -> Result<Scene, String> {
+        let mut mesh = |name: &str| {
+            let file = beside(self.path.as_deref(), name)?;
+            mesh::read(&file)
+        };
+        self.description.build(grid, &mut mesh).map_err(|fault| {
+            let fault = fault.locate(&self.text);
+            match &self.path {
+                Some(_) => place(&self.typed, &fault.to_string()),
+                None => fault.to_string(),
+            }
+        })
+    }
+
+    /// The solver that was asked for, or the scene's own, or the explicit trapezoid, which serves every scene.
+    pub fn solver_or(&self, asked: Option<&'static Method>) -> &'static Method {
+        let own = || integrators::find(self.description.solver.as_deref()?);
+        asked
+            .or_else(own)
+            .or_else(|| integrators::find("trapezoid"))
+            .unwrap_or(&integrators::METHODS[0])
+    }
+
+    /// What its file says, whoever wrote it.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// What tells it from other scenes: the name, and of a file what it makes of its meshes too.
+    pub fn fingerprint(&self, scene: &Scene) -> String {
+        if self.path.is_none() {
+            return scene.name.clone();
+        }
+        let state = scene.state.iter().flat_map(|y| y.to_le_bytes());
+        // FNV-1a: no secret, and the same everywhere.
+        let hash = self
+            .text
+            .bytes()
+            .chain(state)
+            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+            });
+        format!("{} {hash:016x}", scene.name)
+    }
+
+    /// The files it depends on: its own and its meshes'.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let meshes = self.description.mesh.iter();
+        let meshes = meshes.filter_map(|mesh| beside(self.path.as_deref(), &mesh.file).ok());
+        self.path.iter().cloned().chain(meshes).collect()
+    }
+}
+
+/// `FILE:LINE: what`, as compilers say it, where there is a line.
+fn place(file: &str, why: &str) -> String {
+    match why.strip_prefix("line ") {
+        Some(rest) => format!("{file}:{rest}"),
+        None => format!("{file}: {why}"),
+    }
+}
+
+fn unknown(typed: &str) -> String {
+    let names = || a3_scenes::SCENES.iter().map(|entry| entry.name);
+    let near = names()
+        .map(|name| (strsim::normalized_damerau_levenshtein(typed, name), name))
+        .filter(|(likeness, _)| *likeness > 0.55)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let hint = near.map_or(String::new(), |(_, name)| format!("did you mean {name}? "));
+    let names: Vec<_> = names().collect();
+    format!(
+        "{hint}the scenes are {}, and files that end in .toml or .json",
+        names.join(", ")
+    )
+}

@@ -1,0 +1,30 @@
+//! What the text over the picture says beside the runs themselves.
+
+use super::timeline::Place;
+
+/// Values that the text shows, taken twice a second or when something happens.
+#[derive(Clone, Debug, Default)]
+pub struct Readings {
+    /// Whether the runs are paused.
+    pub paused: bool,
+    /// Whether the help is shown.
+    pub help: bool,
+    /// Simulated time over real time.
+    pub factor: f32,
+    /// Frames per second.
+    pub rate: f32,
+    /// Time a frame spends on steps (ms).
+    pub simulating: f32,
+    /// Time a frame spends on drawing and on waiting for the screen (ms).
+    pub drawing: f32,
+    /// Message about what just happened, shown for a few seconds.
+    pub message: Option<String>,
+    /// Whether there is a window, with keys to press.
+    pub in_window: bool,
+    /// Reason why the panes' errors are not known, if they are not.
+    pub no_error: Option<&'static str>,
+    /// Slow motion: simulated time goes by at 1 / 2^slowness of real time.
+    pub slowness: i32,
+    /// Place on the timeline after going back, unless it is the newest moment.
+    pub place: Option<Place>,
+}

@@ -1,0 +1,39 @@
+//! What the panel keeps in the session: how the scene was tuned, and which row is chosen.
+
+use a3_core::Scene;
+
+/// Changes to a scene that cannot be read off its model.
+#[derive(Clone)]
+pub struct Tuning {
+    /// The scene as it was built.
+    pub own: Scene,
+    /// Factor of the springs' stiffness over the scene's own.
+    pub stiffness: f64,
+    /// Factor of the springs' damping over the scene's own.
+    pub damping: f64,
+    /// Factor of the wind's velocity over the scene's own.
+    pub gusts: f64,
+}
+
+impl Tuning {
+    /// An untuned scene.
+    pub fn of(scene: &Scene) -> Self {
+        Self {
+            own: scene.clone(),
+            stiffness: 1.0,
+            damping: 1.0,
+            gusts: 1.0,
+        }
+    }
+}
+
+/// The panel beside the picture, as far as it is no setting of a run.
+#[derive(Default)]
+pub struct PanelState {
+    /// Whether the panel is open.
+    pub open: bool,
+    /// The chosen row, as its number in the table of knobs: keys turn it.
+    pub row: usize,
+    /// The pane that the panel is about: the last that the pointer was over.
+    pub pane: usize,
+}

@@ -1,0 +1,136 @@
+//! From arguments to what they ask for: scenes, simulations and sessions.
+
+use a3_core::{Control, Method, Scene, Simulation, integrators};
+
+use crate::bounds;
+use crate::cli::{Compare, RunOptions, What, WindowOptions};
+use crate::failure::Failure;
+use crate::session::{Beginning, Session};
+
+/// The session of a window on one run.
+pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
+    let what = &options.what;
+    if options.watch && what.scene.path.is_none() {
+        return Err(Failure::usage(
+            "--watch is for a scene of your own, as in `--scene flag.toml --watch`",
+        ));
+    }
+    let solver = what.scene.solver_or(options.solver);
+    let simulation = simulate(what, solver, options.step)?;
+    check_particle(&simulation, options.springs_of)?;
+    let beginning = Beginning {
+        wireframe: options.look.wireframe,
+        paused: options.look.paused,
+        springs_of: options.springs_of,
+    };
+    Session::new((&what.scene, what.grid), vec![simulation], &beginning)
+}
+
+/// The session of a comparison.
+pub fn comparison(options: &Compare) -> Result<Session, Failure> {
+    let count = options.methods.len();
+    if !(2..=4).contains(&count) {
+        return Err(Failure::usage(format!(
+            "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
+        )));
+    }
+    let what = &options.what;
+    let simulations = options
+        .methods
+        .iter()
+        .map(|(solver, step)| simulate(what, solver, *step))
+        .collect::<Result<_, Failure>>()?;
+    let beginning = Beginning {
+        wireframe: options.look.wireframe,
+        paused: options.look.paused,
+        springs_of: None,
+    };
+    Session::new((&what.scene, what.grid), simulations, &beginning)
+}
+
+/// The simulation of a run without a window.
+pub fn simulation(options: &RunOptions) -> Result<Simulation, Failure> {
+    let what = &options.what;
+    simulate(what, what.scene.solver_or(options.solver), options.step)
+}
+
+/// The scene, with the wind and the swing that were asked for.
+pub fn scene(what: &What) -> Result<Scene, Failure> {
+    // Euler serves every scene.
+    let run = simulate(what, &integrators::METHODS[0], None)?;
+    Ok(Scene {
+        model: run.model().clone(),
+        state: run.state().to_vec(),
+        ..run.scene().clone()
+    })
+}
+
+/// A simulation by this solver, with its own step or tolerance unless one is given.
+fn simulate(
+    what: &What,
+    solver: &'static Method,
+    step: Option<f64>,
+) -> Result<Simulation, Failure> {
+    let scene = what.scene.build(what.grid).map_err(Failure::usage)?;
+    for (asked, there, option) in [
+        (what.wind, scene.wind.is_some(), "wind"),
+        (what.swing, scene.swing.is_some(), "swing"),
+    ] {
+        if asked && !there {
+            return Err(Failure::usage(format!(
+                "the scene {} has no {option}: leave out --{option}",
+                scene.name
+            )));
+        }
+    }
+    let own = || scene.default_control(solver);
+    let control = step.map_or_else(own, |value| solver.control(value));
+    check_control(solver, control)?;
+    if let Err(e) = solver.check(scene.model.system()) {
+        let serve = integrators::METHODS
+            .iter()
+            .filter(|m| m.check(scene.model.system()).is_ok())
+            .map(|m| m.name);
+        let serve = serve.collect::<Vec<_>>().join(", ");
+        return Err(Failure::usage(format!(
+            "scene {}: {e}; use one of {serve}",
+            scene.name
+        )));
+    }
+    let mut simulation = Simulation::new(scene, solver, control).map_err(Failure::usage)?;
+    // Some scenes begin with wind.
+    if what.wind {
+        simulation.set_wind(true);
+    }
+    simulation.set_swinging(what.swing);
+    Ok(simulation)
+}
+
+/// `Ok` if the scene has that particle.
+pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Result<(), Failure> {
+    match (particle, simulation.model().network()) {
+        (Some(i), Some(network)) => network
+            .check_particle(i)
+            .map_err(|e| Failure::usage(format!("--springs-of: {e}"))),
+        (Some(_), None) => Err(Failure::usage("--springs-of: this scene has no springs")),
+        (None, _) => Ok(()),
+    }
+}
+
+/// `Ok` if the step or the tolerance is within its range.
+fn check_control(method: &Method, control: Control) -> Result<(), Failure> {
+    let range = bounds::of(control);
+    if range.contains(&control.value()) {
+        return Ok(());
+    }
+    let (low, high) = (range.start(), range.end());
+    Err(Failure::usage(match control {
+        Control::Step(step) => format!(
+            "a step is a number of seconds from {low} to {high}, such as 0.01, and not {step}"
+        ),
+        Control::Tolerance(tolerance) => format!(
+            "{} takes a relative tolerance from {low:e} to {high}, such as 1e-4, and not {tolerance}",
+            method.name
+        ),
+    }))
+}

@@ -1,0 +1,35 @@
+//! `a3` and `a3 compare` in a window; without a display, its job is done without one.
+
+use std::path::PathBuf;
+
+use crate::app::{self, End};
+use crate::cli::{Compare, WindowOptions};
+use crate::failure::Failure;
+use crate::session::Session;
+use crate::{headless, setup, show};
+
+/// Opens the window on one run.
+pub fn run(options: &WindowOptions) -> Result<(), Failure> {
+    let session = setup::window(options)?;
+    if let Some(i) = options.springs_of {
+        print!("{}", show::list_springs_of(session.first(), i));
+    }
+    let files = if options.watch {
+        options.what.scene.files()
+    } else {
+        vec![]
+    };
+    open(session, options.look.status, files)
+}
+
+/// Opens the window on several runs.
+pub fn compare(options: &Compare) -> Result<(), Failure> {
+    open(setup::comparison(options)?, options.look.status, vec![])
+}
+
+fn open(session: Session, status: bool, files: Vec<PathBuf>) -> Result<(), Failure> {
+    match app::open(session, status, files)? {
+        End::Closed => Ok(()),
+        End::NoWindow(why, session) => headless::run(&why, *session),
+    }
+}
