@@ -58,3 +58,8 @@ pub use figure::Figure;
 pub use stability::{Region, StabilityRegions};
 pub use style::{CurveStyle, Marker};
 pub use work_precision::{Curve, Measurement, Problem, WorkPrecision};
+
+/// The example of the README, compiled as a test of documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -23,3 +23,8 @@ pub use offscreen::{OFFSCREEN_FORMAT, Offscreen};
 pub use picture::{Ball, LOOKS, Line, Picture, Solid, Style, Tile, Topology};
 pub use renderer::Renderer;
 pub use targets::Targets;
+
+/// The example of the README, compiled as a test of documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
