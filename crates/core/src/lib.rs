@@ -79,3 +79,8 @@ pub use simulation::{Moment, Simulation};
 pub use spring::{Spring, SpringKind, SpringLaw};
 pub use surface::Surface;
 pub use system::{Coupling, Matrix, Mechanics, ParticleSystem};
+
+/// The example of the README, compiled as a test of documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
