@@ -1,17 +1,18 @@
-//! What is wrong with a scene's text, and where.
+//! Faults in the text of a scene, and where they are.
 
 use std::fmt;
 
 use toml::de::{DeTable, DeValue};
 
-/// What is wrong, and where.
+/// Fault in a description, with its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// From 1, once it is known.
+    /// Line of the text, counted from 1, once it is known.
     pub line: Option<usize>,
-    /// Such as `cloth.size`; of the second cloth `cloth.1.size`. Empty for the whole.
+    /// Key, such as `cloth.spacing`, or `cloth.1.spacing` of the second of several cloths. It is empty
+    /// for the description as a whole.
     pub key: String,
-    /// What it is, and what would be right.
+    /// Reason, and what would be right.
     pub why: String,
 }
 
@@ -36,6 +37,7 @@ impl From<Fault> for a3_core::Error {
 }
 
 impl Fault {
+    /// Fault of that key, whose line is not yet known.
     pub(crate) fn new(key: impl Into<String>, why: impl fmt::Display) -> Self {
         Self {
             line: None,
@@ -44,19 +46,42 @@ impl Fault {
         }
     }
 
-    /// With the line of its key in that text.
-    #[must_use]
-    pub fn locate(self, text: &str) -> Self {
-        let place = || {
-            let table = DeTable::parse(text).ok()?;
-            place(table.get_ref(), &self.key)
-        };
+    /// Fault of one of two keys of which only one may be given.
+    pub(crate) fn not_both(a: &str, b: &str) -> Self {
+        Self::new(b, format!("give either `{a}` or `{b}`, not both"))
+    }
+
+    /// Fault of a number that no particle has, among this many.
+    pub(crate) fn no_particle(key: &str, i: usize, particles: usize) -> Self {
+        let last = particles - 1;
+        Self::new(
+            key,
+            format!("there is no particle {i}: they are numbered 0 to {last}"),
+        )
+    }
+
+    /// The fault with its key inside that of a part of the description.
+    pub(crate) fn within(self, key: &str) -> Self {
         Self {
-            line: self.line.or_else(|| place().map(|at| line(text, at))),
+            key: join(Some(key.into()), self.key),
             ..self
         }
     }
 
+    /// The fault with the line of its key in that text.
+    #[must_use]
+    pub fn locate(self, text: &str) -> Self {
+        let offset = || {
+            let table = DeTable::parse(text).ok()?;
+            offset_of(table.get_ref(), &self.key)
+        };
+        Self {
+            line: self.line.or_else(|| offset().map(|at| line(text, at))),
+            ..self
+        }
+    }
+
+    /// Fault that the TOML reader found.
     pub(crate) fn of_toml(text: &str, error: &toml::de::Error) -> Self {
         let at = error.span().map(|span| span.start);
         let key = at.and_then(|at| {
@@ -71,12 +96,13 @@ impl Fault {
     }
 }
 
+/// Line of a byte, counted from 1.
 fn line(text: &str, at: usize) -> usize {
     1 + text.bytes().take(at).filter(|b| *b == b'\n').count()
 }
 
-/// Where the value of a key begins: of the longest part of it that is there.
-fn place(table: &DeTable, key: &str) -> Option<usize> {
+/// Byte at which the value of a key begins, or that of the longest part of the key that is there.
+fn offset_of(table: &DeTable, key: &str) -> Option<usize> {
     let mut parts = key.split('.');
     let first = parts.next()?;
     let (name, value) = table.get_key_value(first)?;
@@ -87,7 +113,7 @@ fn place(table: &DeTable, key: &str) -> Option<usize> {
             DeValue::Table(table) => table.get_key_value(part).map(|(name, v)| (name.span(), v)),
             DeValue::Array(array) => match part.parse::<usize>() {
                 Ok(i) => array.get(i).map(|v| (v.span(), v)),
-                // The only one goes without a number.
+                // The only element goes without a number.
                 Err(_) => array
                     .first()
                     .and_then(|v| v.get_ref().as_table()?.get_key_value(part))
@@ -101,8 +127,8 @@ fn place(table: &DeTable, key: &str) -> Option<usize> {
     Some(at)
 }
 
-/// The key whose value, or whose name, is at that byte. A table's own span is that of its header: what is in it is looked
-/// at first.
+/// The key whose value or name is at that byte. The span of a table is only its header, so that its
+/// contents are searched first.
 fn key_at(table: &DeTable, at: usize) -> Option<String> {
     table.iter().find_map(|(name, value)| {
         let rest = match value.get_ref() {
@@ -128,7 +154,7 @@ fn join(first: Option<String>, rest: String) -> String {
     }
 }
 
-/// The reader's words, in ours.
+/// The TOML reader's message, rephrased.
 fn explain(message: &str) -> String {
     let message = message.lines().next().unwrap_or_default();
     let quoted: Vec<_> = message.split('`').skip(1).step_by(2).collect();
@@ -141,7 +167,7 @@ fn explain(message: &str) -> String {
         } else {
             "there is no"
         };
-        // Slips of two neighbouring letters count as one.
+        // Two neighbouring letters in the wrong order count as one slip.
         let likeness = |name: &str| strsim::normalized_damerau_levenshtein(unknown, name);
         let nearest = known
             .iter()

@@ -1,11 +1,11 @@
-//! Scenes as text: what a scene file may say, in TOML, and the scenes that are built in.
+//! Scenes as text: what a scene file may say, in TOML, and the built-in scenes.
 //!
 //! ```
-//! use a3_core::{Simulation, integrators};
+//! use a3_core::{Control, Simulation, integrators};
 //!
 //! let scene = a3_scenes::find("chain").unwrap().build(None)?;
 //! let method = integrators::find("rk4").unwrap();
-//! let mut simulation = Simulation::new(scene, method, 0.01)?;
+//! let mut simulation = Simulation::new(scene, method, Control::Step(0.01))?;
 //! simulation.advance_to(1.0)?;
 //! assert!(simulation.position(3).y < 0.0);
 //! # Ok::<(), a3_core::Error>(())
@@ -13,18 +13,14 @@
 
 #![forbid(unsafe_code)]
 
-mod bodies;
 mod build;
 mod builtin;
 mod check;
-mod circle;
 mod description;
 mod fault;
-mod lattice;
 mod mesh;
 mod snapshot;
 
-pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
 pub use builtin::{SCENES, SceneEntry, find};
 pub use description::*;
 pub use fault::Fault;

@@ -1,23 +1,23 @@
-//! Cloth of any shape: structural springs on the edges of its triangles, bend springs across them.
+//! Meshes of triangles, and the springs of a cloth that has their shape.
 
 use std::collections::BTreeMap;
 
 use a3_core::{Error, Spring, SpringKind, SpringLaw, Vector3};
 
-use crate::Triple;
+use crate::description::Triple;
 
-/// Triangles over points.
+/// Mesh of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// In m.
+    /// Positions of the points (m).
     pub positions: Vec<Triple>,
-    /// Corners, wound alike.
+    /// Corners of the triangles, all in the same winding order.
     pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
-    /// Points at the same place made one, as files have them twice where normals or textures change; points and
-    /// triangles that then are no longer any, left out. Other orders stay as they are.
+    /// The mesh with points at equal positions made one, since files have such points where normals or
+    /// textures change. Triangles with two equal corners and points without triangles are left out.
     #[must_use]
     pub fn welded(&self) -> Self {
         let key = |p: &Triple| p.map(|x| (x + 0.0).to_bits());
@@ -37,8 +37,17 @@ impl Mesh {
         mesh
     }
 
+    /// The mesh magnified by that factor.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        let positions = self.positions.iter().map(|p| p.map(|x| x * factor));
+        Self {
+            positions: positions.collect(),
+            triangles: self.triangles.clone(),
+        }
+    }
+
     /// A third of the area of the triangles around each point (m2).
-    pub(super) fn areas(&self) -> Vec<f64> {
+    pub(crate) fn areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.positions.len()];
         for t in &self.triangles {
             let [a, b, c] = t.map(|i| Vector3::from(self.positions[i as usize]));
@@ -50,9 +59,9 @@ impl Mesh {
         areas
     }
 
-    /// A structural spring on each edge, a bend spring between the corners opposite to an edge of two triangles. `law`
-    /// makes one of what it is for and its length (m).
-    pub(super) fn springs(
+    /// Springs: a structural one on each edge, and a bend one between the two corners opposite to an
+    /// edge of two triangles. `law` gives the law of a kind of spring of that length (m).
+    pub(crate) fn springs(
         &self,
         law: impl Fn(SpringKind, f64) -> Result<SpringLaw, Error>,
     ) -> Result<Vec<Spring>, Error> {
@@ -70,7 +79,7 @@ impl Mesh {
             [a, b] if a != b => Some([a.min(b), a.max(b)]),
             _ => None,
         });
-        // Where three triangles stand on one another, the corners across an edge may be neighbours themselves.
+        // The corners across an edge may be neighbours themselves, as in a tetrahedron.
         let across = across.filter(|pair| !edges.contains_key(pair));
         let all = edges
             .keys()

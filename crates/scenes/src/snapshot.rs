@@ -3,7 +3,7 @@
 
 use a3_core::{Model, Network, Path};
 
-use crate::{BucklingSpec, Description, Pin, Shift, Sine, SpringSpec, State, Triple};
+use crate::description::{BucklingSpec, Description, Pin, Shift, Sine, SpringSpec, State, Triple};
 
 impl Description {
     /// Makes the springs of every body so many times as stiff, and so many times as damped.

@@ -1,23 +1,23 @@
-//! The built-in scenes: files like those that users write, in one table.
+//! Built-in scenes: files like those that users write, in one table.
 
 use a3_core::{Error, Grid, Scene};
 
-use crate::Description;
+use crate::description::Description;
 
-/// A row of the table of scenes.
+/// Built-in scene.
 #[derive(Debug)]
 pub struct SceneEntry {
-    /// As typed on the command line.
+    /// Name, as it is typed on the command line.
     pub name: &'static str,
-    /// Its file.
+    /// Text of its file.
     pub text: &'static str,
 }
 
 impl SceneEntry {
-    /// What its file says.
+    /// Description that its file holds.
     ///
     /// # Errors
-    /// None: that every file can be read is tested.
+    /// Never fails for a scene of [`SCENES`].
     pub fn description(&self) -> Result<Description, Error> {
         Ok(Description::parse(self.text)?)
     }
@@ -25,7 +25,7 @@ impl SceneEntry {
     /// Builds the scene with this grid, or with its own.
     ///
     /// # Errors
-    /// A grid is asked of a scene that has none.
+    /// The scene has no grid, and one is given.
     pub fn build(&self, grid: Option<Grid>) -> Result<Scene, Error> {
         let no_files = &mut |name: &str| Err(format!("{name}: built-in scenes have no files"));
         Ok(self.description()?.build(grid, no_files)?)
@@ -36,12 +36,12 @@ macro_rules! entry {
     ($name:literal) => {
         SceneEntry {
             name: $name,
-            text: include_str!(concat!("builtin/", $name, ".toml")),
+            text: include_str!(concat!($name, ".toml")),
         }
     };
 }
 
-/// Every scene, in the order in which key `t` shows them.
+/// All built-in scenes, in the order in which the window shows them.
 pub static SCENES: &[SceneEntry] = &[
     entry!("cloth"),
     entry!("simple"),

@@ -1,13 +1,14 @@
-//! A box of particles: structural springs along its axes, shear across its faces and its cells, bend to the next but one.
+//! Lattice of a jelly: structural springs along the axes, shear springs across faces and cells, bend
+//! springs to the next particle but one.
 
 use a3_core::{Spring, SpringKind, SpringLaw};
 
-/// nx x ny x nz particles; x is counted fastest, then y, then z.
+/// Lattice of nx x ny x nz particles, in which x is counted fastest, then y, then z.
 #[derive(Clone, Copy)]
 pub(super) struct Lattice(pub [usize; 3]);
 
-/// What springs are for, and how many particles on they go. The first coordinate that is not zero is positive.
-const WAYS: [(SpringKind, [isize; 3]); 16] = [
+/// Kinds of springs, and the offset from one end to the other in particles.
+const OFFSETS: [(SpringKind, [isize; 3]); 16] = [
     (SpringKind::Structural, [1, 0, 0]),
     (SpringKind::Structural, [0, 1, 0]),
     (SpringKind::Structural, [0, 0, 1]),
@@ -27,40 +28,43 @@ const WAYS: [(SpringKind, [isize; 3]); 16] = [
 ];
 
 impl Lattice {
-    /// Number of particles, if it is one.
+    /// Number of particles; `None` if it overflows.
     pub fn particles(self) -> Option<usize> {
         let [nx, ny, nz] = self.0;
         nx.checked_mul(ny)?.checked_mul(nz)
     }
 
+    /// Number of the particle in that cell.
     pub fn index_of(self, [i, j, k]: [usize; 3]) -> usize {
         (k * self.0[1] + j) * self.0[0] + i
     }
 
-    /// Every place, in the order of its numbers.
-    pub fn places(self) -> impl Iterator<Item = [usize; 3]> {
+    /// The cells [i, j, k] of all particles, in the order of their numbers.
+    pub fn cells(self) -> impl Iterator<Item = [usize; 3]> {
         let [nx, ny, nz] = self.0;
         (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
     }
 
-    /// The springs between cells of that size (m). `law` makes one of what it is for and its length (m).
+    /// The springs of a lattice of that spacing (m). `law` gives the law of a kind of spring of that
+    /// length (m).
     pub fn springs(
         self,
         spacing: [f64; 3],
         law: impl Fn(SpringKind, f64) -> SpringLaw,
     ) -> impl Iterator<Item = Spring> {
-        let laws = WAYS.map(|(kind, way)| {
-            let squares = (0..3).map(|axis| (way[axis] as f64 * spacing[axis]).powi(2));
+        let laws = OFFSETS.map(|(kind, offset)| {
+            let squares = (0..3).map(|axis| (offset[axis] as f64 * spacing[axis]).powi(2));
             law(kind, squares.sum::<f64>().sqrt())
         });
-        self.places().flat_map(move |here| {
-            WAYS.into_iter()
+        self.cells().flat_map(move |here| {
+            OFFSETS
+                .into_iter()
                 .zip(laws)
-                .filter_map(move |((kind, way), law)| {
+                .filter_map(move |((kind, offset), law)| {
                     let mut there = here;
                     for axis in 0..3 {
                         there[axis] = here[axis]
-                            .checked_add_signed(way[axis])
+                            .checked_add_signed(offset[axis])
                             .filter(|k| *k < self.0[axis])?;
                     }
                     Some(Spring {
@@ -73,7 +77,7 @@ impl Lattice {
         })
     }
 
-    /// The triangles of its six faces, wound against the clock as seen from outside.
+    /// The triangles of the six faces, counterclockwise as seen from outside.
     pub fn triangles(self) -> Vec<[u32; 3]> {
         let mut triangles = vec![];
         for axis in 0..3 {

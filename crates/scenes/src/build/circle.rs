@@ -1,7 +1,8 @@
-//! One particle whose velocity is its position turned by a right angle, f = (-y, x, 0): a circle for ever.
+//! First-order system of one particle on a circle.
 
 use a3_core::ParticleSystem;
 
+/// One particle whose velocity is its position turned by a right angle: f = (-y, x, 0).
 pub(super) struct Circling;
 
 impl ParticleSystem for Circling {

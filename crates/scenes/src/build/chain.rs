@@ -1,0 +1,137 @@
+//! Chains of springs or rods, and single particles.
+
+use a3_core::{Constraint, Spring, SpringKind, SpringLaw, Vector3};
+
+use super::assembly::{Assembly, Body, Counts};
+use super::laws::{springs, strip};
+use crate::check::{at, at_least, positive, vector, vector_or_zero};
+use crate::description::{Chain, Particles, Pin, Spot};
+use crate::fault::Fault;
+
+impl Body for Chain {
+    fn counts(&self) -> Result<Counts, Fault> {
+        if self.particles < 2 {
+            return Err(Fault::new(
+                "particles",
+                format!("a chain has at least 2, not {}", self.particles),
+            ));
+        }
+        Ok(Counts {
+            particles: self.particles,
+            springs: self.particles,
+        })
+    }
+
+    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
+        let n = self.particles;
+        let (from, to) = (vector("from", self.from)?, vector("to", self.to)?);
+        at("mass", positive("it", self.mass))?;
+        at("stiffness", at_least(0.0, "it", self.stiffness))?;
+        at("damping", at_least(0.0, "it", self.damping))?;
+        let rest_length = self
+            .rest_length
+            .unwrap_or((to - from).norm() / (n - 1) as f64);
+        at("rest_length", at_least(0.0, "it", rest_length))?;
+        let law = SpringLaw {
+            stiffness: self.stiffness,
+            rest_length,
+            damping: self.damping,
+        };
+        let velocity = vector_or_zero("velocity", self.velocity)?;
+        let first = assembly.masses.len();
+        for i in 0..n {
+            let share = i as f64 / (n - 1) as f64;
+            assembly.positions.push(from + (to - from) * share);
+            assembly.velocities.push(velocity);
+        }
+        assembly.masses.extend(vec![self.mass; n]);
+        let links = (0..n - 1).map(|i| [i, i + 1]);
+        if self.rigid {
+            at("rest_length", positive("that of a rod", rest_length))?;
+            assembly.rods.extend(links.map(|[i, j]| Constraint::Rod {
+                i: first + i,
+                j: first + j,
+                length: rest_length,
+            }));
+        } else {
+            let kind = SpringKind::Structural;
+            assembly.add_springs(first, links.map(|[i, j]| Spring { kind, i, j, law }));
+        }
+        if let Some(law) = &self.buckling {
+            let strip = |i| strip(law, [i, i + 2], 2.0 * rest_length, [0.0, 0.0]);
+            assembly.add_strips(first, (0..n - 2).map(strip).collect());
+        }
+        Ok(())
+    }
+
+    fn pins(&self) -> &[Pin] {
+        &self.pin
+    }
+
+    fn spot(&self, spot: Spot, _: &[Vector3<f64>]) -> Option<Vec<usize>> {
+        match spot {
+            Spot::First => Some(vec![0]),
+            Spot::Last => Some(vec![self.particles - 1]),
+            _ => None,
+        }
+    }
+}
+
+impl Body for Particles {
+    fn counts(&self) -> Result<Counts, Fault> {
+        let n = self.positions.len();
+        for (key, count) in [
+            ("velocities", self.velocities.len()),
+            ("masses", self.masses.len()),
+        ] {
+            if count != 0 && count != n {
+                return Err(Fault::new(
+                    key,
+                    format!("there are {count} for {n} positions"),
+                ));
+            }
+        }
+        if n == 0 {
+            return Err(Fault::new("positions", "there must be at least one"));
+        }
+        Ok(Counts {
+            particles: n,
+            springs: self.springs.len(),
+        })
+    }
+
+    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
+        let n = self.positions.len();
+        let (key, masses) = match (self.mass, &self.masses[..]) {
+            (Some(mass), []) => ("mass", vec![mass; n]),
+            (None, [_, ..]) => ("masses", self.masses.clone()),
+            (Some(_), _) => return Err(Fault::not_both("mass", "masses")),
+            (None, []) => {
+                return Err(Fault::new("", "needs one of the keys `mass` and `masses`"));
+            }
+        };
+        for m in &masses {
+            at(key, positive("each", *m))?;
+        }
+        for p in &self.positions {
+            assembly.positions.push(vector("positions", *p)?);
+        }
+        for i in 0..n {
+            let velocity = self.velocities.get(i).copied();
+            let velocity = vector_or_zero("velocities", velocity)?;
+            assembly.velocities.push(velocity);
+        }
+        let first = assembly.masses.len();
+        assembly.masses.extend(masses);
+        assembly.add_springs(first, springs(&self.springs, n)?);
+        Ok(())
+    }
+
+    fn pins(&self) -> &[Pin] {
+        &self.pin
+    }
+
+    fn spot(&self, _: Spot, _: &[Vector3<f64>]) -> Option<Vec<usize>> {
+        None
+    }
+}

@@ -1,0 +1,159 @@
+//! Cloths.
+
+use a3_core::elements::Sheet;
+use a3_core::{Grid, SpringKind, Vector3};
+
+use super::assembly::{Assembly, Body, Counts};
+use super::laws::{damping_time, strip};
+use crate::check::{at, at_least, one_of, positive, vector_or_zero};
+use crate::description::{Cloth, Pin, Spot};
+use crate::fault::Fault;
+
+impl Cloth {
+    fn checked_grid(&self) -> Result<Grid, Fault> {
+        let [rows, cols] = self.grid;
+        at("grid", Grid::new(rows, cols))
+    }
+
+    /// Distance between neighbouring particles (m).
+    pub(super) fn checked_spacing(&self) -> Result<f64, Fault> {
+        let (by_width, size) = one_of(("width", self.width), ("spacing", self.spacing))?;
+        at(
+            if by_width { "width" } else { "spacing" },
+            positive("it", size),
+        )?;
+        let cells = self.grid[1].max(2) - 1;
+        Ok(if by_width { size / cells as f64 } else { size })
+    }
+
+    /// Unit vector along that key's direction.
+    fn axis(&self, key: &str) -> Result<Vector3<f64>, Fault> {
+        let (given, usual) = match key {
+            "right" => (self.right, Vector3::x()),
+            _ => (self.down, -Vector3::y()),
+        };
+        let axis = given.map_or(usual, Vector3::from);
+        axis.try_normalize(1e-9)
+            .filter(|axis| axis.iter().all(|x| x.is_finite()))
+            .ok_or_else(|| Fault::new(key, "it must be a direction, such as [1, 0, 0]"))
+    }
+}
+
+impl Body for Cloth {
+    fn counts(&self) -> Result<Counts, Fault> {
+        let particles = self.checked_grid()?.particles();
+        Ok(Counts {
+            particles,
+            springs: 6 * particles,
+        })
+    }
+
+    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
+        let grid = self.checked_grid()?;
+        let (rows, cols, spacing) = (grid.rows(), grid.cols(), self.checked_spacing()?);
+        let (by_area, mass) = one_of(("density", self.density), ("mass", self.mass))?;
+        at(
+            if by_area { "density" } else { "mass" },
+            positive("it", mass),
+        )?;
+        let mass = if by_area {
+            mass * spacing * spacing
+        } else {
+            mass
+        };
+        let [structural, shear, bend] = self.stiffness;
+        let time = damping_time(self.damping, self.damping_ratio, mass, structural)?;
+        let sheet = at("stiffness", Sheet::new(grid, spacing, self.stiffness, time))?;
+        let (sheet, strips) = match &self.buckling {
+            None => (sheet, vec![]),
+            Some(law) => {
+                let ends = sheet.springs().filter(|s| s.kind == SpringKind::Bend);
+                let tension = [bend, bend * time];
+                let strips = ends.map(|s| strip(law, [s.i, s.j], 2.0 * spacing, tension));
+                let strips = strips.collect();
+                let others = Sheet::new(grid, spacing, [structural, shear, 0.0], time);
+                (at("stiffness", others)?, strips)
+            }
+        };
+        let (right, down) = (self.axis("right")?, self.axis("down")?);
+        if right.dot(&down).abs() > 1e-6 {
+            let key = if self.down.is_some() { "down" } else { "right" };
+            return Err(Fault::new(
+                key,
+                "`right` and `down` must be at a right angle",
+            ));
+        }
+        let height = down * (spacing * (rows - 1) as f64);
+        let top = match (self.at, self.foot) {
+            (Some(_), Some(_)) => return Err(Fault::not_both("at", "foot")),
+            (_, Some(_)) => vector_or_zero("foot", self.foot)? - height,
+            _ => vector_or_zero("at", self.at)?,
+        };
+        for (key, number) in [("folds", self.folds), ("turn", self.turn)] {
+            at(key, at_least(0.0, "it", number))?;
+        }
+        let row = gathered(cols, spacing, self.folds, self.turn);
+        let middle = 0.5 * row[cols - 1][0];
+        let out = down.cross(&right);
+        let first = assembly.masses.len();
+        let velocity = vector_or_zero("velocity", self.velocity)?;
+        let sway = vector_or_zero("sway", self.sway)?;
+        for i in 0..rows {
+            let share = i as f64 / (rows - 1) as f64;
+            for [along, outwards] in &row {
+                assembly.positions.push(
+                    top + right * (along - middle) + out * *outwards + down * (i as f64 * spacing),
+                );
+                assembly.velocities.push(velocity + sway * share);
+            }
+        }
+        assembly.masses.extend(vec![mass; grid.particles()]);
+        assembly.add_surface(first, grid.triangles().map(|t| t.map(|i| i as u32)));
+        assembly.add_strips(first, strips);
+        if first == 0 {
+            (assembly.sheet, assembly.grid) = (Some(sheet), Some(grid));
+        } else {
+            assembly.add_springs(first, sheet.springs());
+        }
+        Ok(())
+    }
+
+    fn pins(&self) -> &[Pin] {
+        &self.pin
+    }
+
+    fn spot(&self, spot: Spot, _: &[Vector3<f64>]) -> Option<Vec<usize>> {
+        let [rows, cols] = self.grid;
+        let last = (rows - 1) * cols;
+        Some(match spot {
+            Spot::Top => (0..cols).collect(),
+            Spot::Bottom => (last..rows * cols).collect(),
+            Spot::Left => (0..rows).map(|i| i * cols).collect(),
+            Spot::Right => (0..rows).map(|i| i * cols + cols - 1).collect(),
+            Spot::TopLeft => vec![0],
+            Spot::TopRight => vec![cols - 1],
+            Spot::BottomLeft => vec![last],
+            Spot::BottomRight => vec![rows * cols - 1],
+            Spot::First | Spot::Last => return None,
+        })
+    }
+}
+
+/// A row of particles along a sine-generated curve: how far along and how far out each one is (m).
+///
+/// The direction of the curve oscillates, and its length is that of the straight row, so that no
+/// spring is stretched.
+fn gathered(cols: usize, spacing: f64, folds: f64, turn: f64) -> Vec<[f64; 2]> {
+    let steps = (0..cols).map(|j| {
+        let s = (j as f64 + 0.5) / (cols - 1) as f64;
+        let angle = turn * libm::cos(std::f64::consts::TAU * folds * s);
+        [libm::cos(angle) * spacing, libm::sin(angle) * spacing]
+    });
+    let mut here = [0.0, 0.0];
+    steps
+        .map(|[along, out]| {
+            let next = [here[0] + along, here[1] + out];
+            std::mem::replace(&mut here, next)
+        })
+        .collect()
+}

@@ -1,0 +1,97 @@
+//! Rods and wires.
+
+use a3_core::{Constraint, Network, Vector3};
+
+use crate::check::{at, key_of, vector};
+use crate::description::{ConstraintSpec, Description};
+use crate::fault::Fault;
+
+/// Adds the constraints of the description. The state gives the lengths of rods that have none.
+pub(super) fn add(
+    description: &Description,
+    network: &mut Network,
+    state: &[f64],
+) -> Result<(), Fault> {
+    if let Some(w) = description.feedback {
+        at("feedback", network.set_feedback(w))?;
+    }
+    let all = &description.constraint;
+    for (k, spec) in all.iter().enumerate() {
+        let added = constraint(spec, network, state)
+            .and_then(|constraint| at("", network.add_constraint(constraint)));
+        added.map_err(|fault| fault.within(&key_of("constraint", k, all.len())))?;
+    }
+    Ok(())
+}
+
+fn constraint(
+    spec: &ConstraintSpec,
+    network: &Network,
+    state: &[f64],
+) -> Result<Constraint, Fault> {
+    match spec {
+        ConstraintSpec {
+            rod: Some([i, j]),
+            length,
+            particle: None,
+            point: None,
+            line: None,
+            circle: None,
+            sphere: None,
+        } => {
+            for end in [i, j] {
+                at("rod", network.check_particle(*end))?;
+            }
+            let n = network.particles();
+            let point = |i: usize| Vector3::new(state[i], state[n + i], state[2 * n + i]);
+            Ok(Constraint::Rod {
+                i: *i,
+                j: *j,
+                length: length.unwrap_or((point(*i) - point(*j)).norm()),
+            })
+        }
+        ConstraintSpec {
+            rod: None,
+            length: None,
+            particle: Some(particle),
+            ..
+        } => {
+            at("particle", network.check_particle(*particle))?;
+            wire(*particle, spec)
+        }
+        _ => Err(Fault::new(
+            "",
+            "takes either `rod`, of two particles, or `particle` with one of `point`, `line`, `circle`, `sphere`",
+        )),
+    }
+}
+
+/// The point, line, circle or sphere that a particle stays on.
+fn wire(particle: usize, spec: &ConstraintSpec) -> Result<Constraint, Fault> {
+    Ok(match (spec.point, &spec.line, &spec.circle, &spec.sphere) {
+        (Some(position), None, None, None) => Constraint::Point {
+            particle,
+            position: vector("point", position)?,
+        },
+        (None, Some(line), None, None) => Constraint::Line {
+            particle,
+            point: vector("line.point", line.point)?,
+            direction: vector("line.direction", line.direction)?,
+        },
+        (None, None, Some(circle), None) => Constraint::Circle {
+            particle,
+            center: vector("circle.center", circle.center)?,
+            normal: vector("circle.normal", circle.normal)?,
+            radius: circle.radius,
+        },
+        (None, None, None, Some(sphere)) => Constraint::Sphere {
+            particle,
+            center: vector("sphere.center", sphere.center)?,
+            radius: sphere.radius,
+        },
+        _ => {
+            let why = "takes one of `point`, `line`, `circle`, `sphere`";
+            return Err(Fault::new("", why));
+        }
+    })
+}

@@ -1,0 +1,81 @@
+//! Gravity, drag, tearing and wind.
+
+use a3_core::Network;
+use a3_core::elements::{Air, Wind};
+
+use crate::check::{at, at_least, number, vector};
+use crate::description::{Description, WindSpec};
+use crate::fault::Fault;
+
+/// Density of air (kg/m3), drag coefficient and lift coefficient, where they are not given.
+const AIR: [(&str, f64); 3] = [("density", 1.2), ("drag", 1.2), ("lift", 0.6)];
+
+/// Sets gravity, drag, the stretch at which springs break, and breaks those that are torn.
+pub(super) fn set(description: &Description, network: &mut Network) -> Result<(), Fault> {
+    if let Some(g) = description.gravity {
+        network.set_gravity(vector("gravity", g)?);
+    }
+    let drag = match (description.drag, description.drag_per_mass) {
+        (Some(_), Some(_)) => return Err(Fault::not_both("drag", "drag_per_mass")),
+        (Some(drag), None) => Some(("drag", drag)),
+        (None, Some(rate)) => Some(("drag_per_mass", rate * mean(network.masses()))),
+        (None, None) => None,
+    };
+    if let Some((key, drag)) = drag {
+        at(key, network.set_drag(drag))?;
+    }
+    at("tear", network.set_tear(description.tear))?;
+    at("torn", network.break_springs(&description.torn))
+}
+
+/// The wind on the particles or the triangles of a network.
+pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
+    let given = [
+        ("force", spec.force),
+        ("force_per_mass", spec.force_per_mass),
+        ("velocity", spec.velocity),
+    ];
+    let given: Vec<_> = given
+        .into_iter()
+        .filter_map(|(key, x)| Some((key, x?)))
+        .collect();
+    let [(key, mean_wind)] = given[..] else {
+        return Err(Fault::new(
+            "",
+            "give one of the keys `force`, `force_per_mass` and `velocity`",
+        ));
+    };
+    let ahead = number("ahead", spec.ahead)?;
+    let mean_wind = vector(key, mean_wind)?;
+    let coefficients = [spec.density, spec.drag, spec.lift];
+    if key != "velocity" {
+        for ((key, _), given) in AIR.iter().zip(coefficients) {
+            if given.is_some() {
+                return Err(Fault::new(*key, "it is for a wind with a `velocity`"));
+            }
+        }
+        let factor = if key == "force" {
+            1.0
+        } else {
+            mean(network.masses())
+        };
+        return Ok(Wind::new(spec.seed, mean_wind * factor).ahead(ahead));
+    }
+    let mut air = AIR.map(|(_, usual)| usual);
+    for (((key, _), given), number) in AIR.iter().zip(coefficients).zip(&mut air) {
+        *number = given.unwrap_or(*number);
+        at(key, at_least(0.0, "it", *number))?;
+    }
+    let [density, drag, lift] = air;
+    let air = at("", Air::new(density, drag, lift))?;
+    Ok(Wind::on_triangles(spec.seed, mean_wind, air).ahead(ahead))
+}
+
+fn mean(masses: &[f64]) -> f64 {
+    // Equal masses have their common value, without rounding.
+    if masses.iter().all(|m| *m == masses[0]) {
+        masses[0]
+    } else {
+        masses.iter().sum::<f64>() / masses.len() as f64
+    }
+}

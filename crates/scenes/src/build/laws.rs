@@ -1,0 +1,69 @@
+//! Laws of springs as descriptions give them.
+
+use a3_core::elements::Buckling;
+use a3_core::{Spring, SpringKind, SpringLaw};
+
+use crate::check::{at, at_least, positive};
+use crate::description::{BucklingSpec, SpringSpec};
+use crate::fault::Fault;
+
+/// Springs among `particles` particles.
+pub(super) fn springs(specs: &[SpringSpec], particles: usize) -> Result<Vec<Spring>, Fault> {
+    let spring = |(k, &(i, j, stiffness, rest_length, damping)): (usize, &SpringSpec)| {
+        let wrong =
+            |why: String| Fault::new("springs", format!("spring {k}, counted from 0: {why}"));
+        if i.max(j) >= particles || i == j {
+            return Err(wrong(format!(
+                "{i} and {j} are no two particles of 0 to {}",
+                particles - 1
+            )));
+        }
+        let law =
+            SpringLaw::new(stiffness, rest_length, damping).map_err(|e| wrong(e.to_string()))?;
+        let kind = SpringKind::Structural;
+        Ok(Spring { kind, i, j, law })
+    };
+    specs.iter().enumerate().map(spring).collect()
+}
+
+/// Damping over stiffness (s), given directly or by the damping ratio of a particle of that mass (kg)
+/// on a spring of that stiffness (N/m).
+pub(super) fn damping_time(
+    damping: Option<f64>,
+    ratio: Option<f64>,
+    mass: f64,
+    stiffness: f64,
+) -> Result<f64, Fault> {
+    match (damping, ratio) {
+        (None, None) => Ok(0.0),
+        (Some(_), Some(_)) => Err(Fault::not_both("damping", "damping_ratio")),
+        (Some(time), None) => at("damping", at_least(0.0, "it", time)).map(|()| time),
+        (None, Some(ratio)) => {
+            at("damping_ratio", at_least(0.0, "it", ratio))?;
+            at(
+                "damping_ratio",
+                positive("the structural stiffness that it refers to", stiffness),
+            )?;
+            Ok(2.0 * ratio * (mass / stiffness).sqrt())
+        }
+    }
+}
+
+/// The buckling spring between two particles, of that rest length (m), and of that stiffness (N/m)
+/// and damping (N s/m) under tension.
+pub(super) fn strip(
+    law: &BucklingSpec,
+    [i, j]: [usize; 2],
+    rest_length: f64,
+    [tension, damping]: [f64; 2],
+) -> Buckling {
+    Buckling {
+        i,
+        j,
+        rest_length,
+        bending: law.bending,
+        compression: law.compression,
+        tension,
+        damping,
+    }
+}

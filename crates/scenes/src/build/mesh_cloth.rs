@@ -1,0 +1,98 @@
+//! Cloths from files of triangles.
+
+use a3_core::{SpringKind, SpringLaw, Vector3};
+use nalgebra::Rotation3;
+
+use super::assembly::{Assembly, Body, Counts};
+use super::laws::damping_time;
+use crate::check::{at, positive, vector_or_zero};
+use crate::description::{MeshCloth, Pin, Spot};
+use crate::fault::Fault;
+use crate::mesh::Mesh;
+
+/// A cloth with the mesh that its file has.
+pub(super) struct LoadedMesh<'a> {
+    pub cloth: &'a MeshCloth,
+    pub mesh: Mesh,
+}
+
+impl Body for LoadedMesh<'_> {
+    fn counts(&self) -> Result<Counts, Fault> {
+        if self.mesh.triangles.is_empty() {
+            return Err(Fault::new("file", "it has no triangles"));
+        }
+        Ok(Counts {
+            particles: self.mesh.positions.len(),
+            springs: 3 * self.mesh.triangles.len(),
+        })
+    }
+
+    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
+        let Self { cloth, mesh } = self;
+        let scale = cloth.scale.unwrap_or(1.0);
+        at("scale", positive("it", scale))?;
+        at("density", positive("it", cloth.density))?;
+        let rotation = Rotation3::new(vector_or_zero("rotation", cloth.rotation)?);
+        let origin = vector_or_zero("at", cloth.at)?;
+        let velocity = vector_or_zero("velocity", cloth.velocity)?;
+        let first = assembly.masses.len();
+        let scaled = mesh.scaled(scale);
+        let masses: Vec<_> = scaled
+            .areas()
+            .iter()
+            .map(|area| area * cloth.density)
+            .collect();
+        if let Some(bad) = masses.iter().position(|m| !m.is_finite() || *m <= 0.0) {
+            return Err(Fault::new(
+                "file",
+                format!("the triangles around point {bad} have no area"),
+            ));
+        }
+        let mean = masses.iter().sum::<f64>() / masses.len() as f64;
+        let [structural, bend] = cloth.stiffness;
+        let time = damping_time(cloth.damping, cloth.damping_ratio, mean, structural)?;
+        let law = |kind, length| {
+            let k = if kind == SpringKind::Bend {
+                bend
+            } else {
+                structural
+            };
+            SpringLaw::new(k, length, k * time)
+        };
+        let springs = at("stiffness", scaled.springs(law))?;
+        for p in &scaled.positions {
+            assembly
+                .positions
+                .push(origin + rotation * Vector3::from(*p));
+            assembly.velocities.push(velocity);
+        }
+        assembly.masses.extend(masses);
+        assembly.add_surface(first, mesh.triangles.iter().copied());
+        assembly.add_springs(first, springs);
+        Ok(())
+    }
+
+    fn pins(&self) -> &[Pin] {
+        &self.cloth.pin
+    }
+
+    fn spot(&self, spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>> {
+        let heights = || positions.iter().map(|p| p.y);
+        let (low, high) = (
+            heights().fold(f64::INFINITY, f64::min),
+            heights().fold(f64::NEG_INFINITY, f64::max),
+        );
+        let near = 0.01 * (high - low);
+        let there = |at: f64| {
+            let all = heights().enumerate();
+            all.filter(|(_, y)| (y - at).abs() <= near)
+                .map(|(i, _)| i)
+                .collect()
+        };
+        match spot {
+            Spot::Top => Some(there(high)),
+            Spot::Bottom => Some(there(low)),
+            _ => None,
+        }
+    }
+}

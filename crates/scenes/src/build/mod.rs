@@ -1,0 +1,157 @@
+//! Scenes from descriptions.
+
+mod assembly;
+mod chain;
+mod circle;
+mod cloth;
+mod constraints;
+mod forces;
+mod jelly;
+mod lattice;
+mod laws;
+mod mesh_cloth;
+mod network;
+mod obstacles;
+mod pins;
+mod state;
+
+use std::sync::Arc;
+
+use a3_core::{Grid, Model, Scene, Surface, Swing, View, integrators};
+
+use crate::check::{at, at_least, number, positive, vector};
+use crate::description::Description;
+use crate::fault::Fault;
+use crate::mesh::Mesh;
+use circle::Circling;
+use network::NetworkParts;
+
+impl Description {
+    /// The scene, with this grid of its first cloth instead of its own, if one is given. `mesh` reads
+    /// a file of triangles.
+    ///
+    /// # Errors
+    /// A number makes no sense, or a file cannot be read.
+    pub fn build(
+        &self,
+        grid: Option<Grid>,
+        mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
+    ) -> Result<Scene, Fault> {
+        let Some(grid) = grid else {
+            return self.assemble(mesh);
+        };
+        let Some(own) = self.cloth.first() else {
+            return Err(Fault::new(
+                "",
+                format!(
+                    "the scene {} has no grid",
+                    self.name.as_deref().unwrap_or_default()
+                ),
+            ));
+        };
+        let in_cloth = |fault: Fault| fault.within("cloth");
+        let own_spacing = own.checked_spacing().map_err(in_cloth)?;
+        let mut other = self.clone();
+        other.cloth[0].grid = [grid.rows(), grid.cols()];
+        let spacing = other.cloth[0].checked_spacing().map_err(in_cloth)?;
+        let mut scene = other.assemble(mesh)?;
+        scene.step_scale = (spacing / own_spacing).min(1.0);
+        // A larger cloth is seen from farther away, in proportion.
+        if let Ok(own) = self.assemble(mesh) {
+            let (was, small) = own.extent();
+            let (is, large) = scene.extent();
+            let zoom = (large / small).max(1.0);
+            for point in [&mut scene.view.eye, &mut scene.view.target] {
+                *point = is + (*point - was) * zoom;
+            }
+        }
+        Ok(scene)
+    }
+
+    fn assemble(&self, mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>) -> Result<Scene, Fault> {
+        let (model, mut state, surface, grid) = match &self.circle {
+            Some(circle) => {
+                let start = vector("circle.start", circle.start)?;
+                let model = Model::FirstOrder(Arc::new(Circling));
+                (model, start.as_slice().to_vec(), Surface::default(), None)
+            }
+            None => {
+                let NetworkParts {
+                    network,
+                    state,
+                    surface,
+                    grid,
+                } = network::build(self, mesh)?;
+                (Model::Network(Box::new(network)), state, surface, grid)
+            }
+        };
+        if self.circle.is_some() && network::bodies(self) > 0 {
+            return Err(Fault::new(
+                "circle",
+                "it is of first order, and goes with no other body",
+            ));
+        }
+        let n = model.particles();
+        if let Some(given) = &self.state {
+            state::write(given, n, &mut state)?;
+        }
+        if let Some(trail) = self.trail.filter(|i| *i >= n) {
+            return Err(Fault::no_particle("trail", trail, n));
+        }
+        let mut scene = Scene::new(self.name.clone().unwrap_or_default(), model, state);
+        (scene.grid, scene.surface, scene.trail) = (grid, surface.into(), self.trail);
+        if let Some(camera) = &self.camera {
+            scene.view = View {
+                eye: vector("camera.eye", camera.eye)?,
+                target: vector("camera.target", camera.target)?,
+            };
+            if scene.view.eye == scene.view.target {
+                return Err(Fault::new("camera.eye", "it must not be at the target"));
+            }
+        }
+        if let Some(reach) = self.reach {
+            at("reach", at_least(1.0, "it", reach))?;
+            scene.reach = reach;
+        }
+        if let Some(swing) = &self.swing {
+            scene.swing = Some(Swing {
+                amplitude: vector("swing.amplitude", swing.amplitude)?,
+                rate: number("swing.rate", swing.rate)?,
+            });
+        }
+        if let (Model::Network(network), Some(wind)) = (&mut scene.model, &self.wind) {
+            scene.wind = Some(forces::wind(wind, network).map_err(|f| f.within("wind"))?);
+            if wind.on {
+                network.set_wind(scene.wind);
+            }
+        }
+        self.set_defaults(&mut scene)?;
+        Ok(scene)
+    }
+
+    /// Sets the solver, its control and the duration.
+    fn set_defaults(&self, scene: &mut Scene) -> Result<(), Fault> {
+        scene.solver = match self.solver.as_deref() {
+            None => None,
+            Some(name) => Some(integrators::find(name).ok_or_else(|| {
+                let names: Vec<_> = integrators::METHODS.iter().map(|m| m.name).collect();
+                Fault::new(
+                    "solver",
+                    format!("there is no `{name}`: there are {}", names.join(", ")),
+                )
+            })?),
+        };
+        for (key, number) in [("step", self.step), ("duration", self.duration)] {
+            if let Some(number) = number {
+                at(key, positive("it", number))?;
+            }
+        }
+        if self.step.is_some() && self.solver.is_none() {
+            return Err(Fault::new("step", "a step needs the key `solver` too"));
+        }
+        let own = scene.solver.zip(self.step);
+        scene.control = own.map(|(solver, step)| solver.control(step));
+        scene.duration = self.duration;
+        Ok(())
+    }
+}

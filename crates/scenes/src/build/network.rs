@@ -1,0 +1,115 @@
+//! The network of a description: bodies, pins, constraints, forces and obstacles.
+
+use a3_core::{Grid, Network, Surface, Vector3};
+
+use super::assembly::{Assembly, Body};
+use super::mesh_cloth::LoadedMesh;
+use super::{constraints, forces, laws, obstacles, pins, state};
+use crate::check::{at, key_of};
+use crate::description::Description;
+use crate::fault::Fault;
+use crate::mesh::Mesh;
+
+/// A network with the state it starts from, and what of it is drawn as a surface.
+pub(super) struct NetworkParts {
+    pub network: Network,
+    pub state: Vec<f64>,
+    pub surface: Surface,
+    /// Grid of the first cloth.
+    pub grid: Option<Grid>,
+}
+
+/// Number of bodies, without the circle.
+pub(super) fn bodies(description: &Description) -> usize {
+    description.cloth.len()
+        + description.jelly.len()
+        + description.mesh.len()
+        + description.chain.len()
+        + usize::from(description.particles.is_some())
+}
+
+/// Builds everything but the circle. `mesh` reads a file of triangles.
+pub(super) fn build(
+    description: &Description,
+    mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
+) -> Result<NetworkParts, Fault> {
+    let mut assembly = assembled(description, mesh)?;
+    let n = assembly.masses.len();
+    assembly
+        .springs
+        .extend(laws::springs(&description.springs, n)?);
+    let given = description.state.as_ref().map(|state| &state.positions);
+    let given = given.filter(|positions| positions.len() == n);
+    let given = given.map(|all| all.iter().map(|p| Vector3::from(*p)).collect::<Vec<_>>());
+    let positions = given.as_ref().unwrap_or(&assembly.positions);
+    let more = pins::pins(&description.pin, positions, |_| None)?;
+    assembly.pins.extend(more);
+    let state = state::of(&assembly.positions, &assembly.velocities);
+    let mut network = at("", Network::new(assembly.masses))?;
+    if let Some(sheet) = assembly.sheet {
+        at("", network.set_sheet(sheet))?;
+    }
+    at("", network.add_springs(assembly.springs))?;
+    for (k, strip) in assembly.strips.into_iter().enumerate() {
+        let added = network.add_buckling(strip);
+        let added = added.map_err(|e| format!("bend spring {k}, counted from 0: {e}"));
+        at("buckling", added)?;
+    }
+    for rod in assembly.rods {
+        at("", network.add_constraint(rod))?;
+    }
+    constraints::add(description, &mut network, &state)?;
+    let triangles = assembly.surface.triangles.iter();
+    let triangles = triangles.map(|t| t.map(|i| i as usize));
+    at("", network.set_triangles(triangles))?;
+    for (i, path) in assembly.pins {
+        at("", network.pin(i, path))?;
+    }
+    forces::set(description, &mut network)?;
+    obstacles::add(description, &mut network)?;
+    Ok(NetworkParts {
+        network,
+        state,
+        surface: assembly.surface,
+        grid: assembly.grid,
+    })
+}
+
+/// All bodies, in the order in which their particles are numbered.
+fn assembled(
+    description: &Description,
+    mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
+) -> Result<Assembly, Fault> {
+    if bodies(description) == 0 {
+        return Err(Fault::new(
+            "",
+            "there is nothing in the scene: it needs at least one of cloth, jelly, mesh, chain, particles, circle",
+        ));
+    }
+    let mut assembly = Assembly::default();
+    let mut add = |kind: &str, bodies: &[&dyn Body]| {
+        let mut all = bodies.iter().enumerate();
+        all.try_for_each(|(k, body)| assembly.add(&key_of(kind, k, bodies.len()), *body))
+    };
+    let Description {
+        cloth,
+        jelly,
+        chain,
+        ..
+    } = description;
+    add("cloth", &cloth.iter().map(|b| b as _).collect::<Vec<_>>())?;
+    add("jelly", &jelly.iter().map(|b| b as _).collect::<Vec<_>>())?;
+    let meshes = description.mesh.iter().enumerate().map(|(k, cloth)| {
+        let key = key_of("mesh", k, description.mesh.len());
+        let mesh = at("file", mesh(&cloth.file)).map_err(|fault| fault.within(&key))?;
+        let mesh = mesh.welded();
+        Ok(LoadedMesh { cloth, mesh })
+    });
+    let meshes = meshes.collect::<Result<Vec<_>, Fault>>()?;
+    add("mesh", &meshes.iter().map(|b| b as _).collect::<Vec<_>>())?;
+    add("chain", &chain.iter().map(|b| b as _).collect::<Vec<_>>())?;
+    if let Some(body) = &description.particles {
+        add("particles", &[body])?;
+    }
+    Ok(assembly)
+}

@@ -1,0 +1,176 @@
+//! Bodies: what particles and springs come from.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::forces::{BucklingSpec, SpringSpec};
+use super::motion::{Pin, Triple};
+
+/// First-order system of one particle whose velocity is its position turned by a right angle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Circle {
+    /// Initial position (m).
+    pub start: Triple,
+}
+
+/// Rectangular cloth: rows x columns of particles at equal spacing, numbered row by row.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cloth {
+    /// Numbers of rows and columns, each at least 2.
+    pub grid: [usize; 2],
+    /// Width (m), which is the same for every grid. An alternative is `spacing`.
+    pub width: Option<f64>,
+    /// Distance between neighbouring particles (m). An alternative is `width`.
+    pub spacing: Option<f64>,
+    /// Mass per area (kg/m2): each particle has the mass of one cell. An alternative is `mass`.
+    pub density: Option<f64>,
+    /// Mass of each particle (kg). An alternative is `density`.
+    pub mass: Option<f64>,
+    /// Stiffness of structural, shear and bend springs (N/m).
+    pub stiffness: [f64; 3],
+    /// Damping over stiffness of every spring (s). An alternative is `damping_ratio`.
+    pub damping: Option<f64>,
+    /// Damping over the critical damping of a particle on a structural spring, which is the same for
+    /// every grid. An alternative is `damping`.
+    pub damping_ratio: Option<f64>,
+    /// Law of bend springs that buckle; under tension they have the stiffness given above.
+    pub buckling: Option<BucklingSpec>,
+    /// Position of the middle of the first row (m). An alternative is `foot`.
+    pub at: Option<Triple>,
+    /// Position of the middle of the last row (m). An alternative is `at`.
+    pub foot: Option<Triple>,
+    /// Direction along the first row; [1, 0, 0] if not given.
+    pub right: Option<Triple>,
+    /// Direction from row to row, perpendicular to `right`; [0, -1, 0] if not given.
+    pub down: Option<Triple>,
+    /// Number of folds in which the cloth is gathered.
+    #[serde(default)]
+    pub folds: f64,
+    /// Largest angle by which the rows turn to either side in the folds (rad).
+    #[serde(default)]
+    pub turn: f64,
+    /// Velocity (m/s).
+    pub velocity: Option<Triple>,
+    /// Velocity of the last row relative to the first (m/s), with the rows between in proportion.
+    pub sway: Option<Triple>,
+    /// Pins of this body.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pin: Vec<Pin>,
+}
+
+/// Box of jelly: a lattice of particles, joined along edges, across faces and across cells.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Jelly {
+    /// Numbers of particles along x, y and z, each at least 2.
+    pub grid: [usize; 3],
+    /// Lengths of the edges (m).
+    pub size: Triple,
+    /// Mass per volume (kg/m3). An alternative is `mass`.
+    pub density: Option<f64>,
+    /// Mass of each particle (kg). An alternative is `density`.
+    pub mass: Option<f64>,
+    /// Stiffness of structural, shear and bend springs (N/m).
+    pub stiffness: [f64; 3],
+    /// Damping over stiffness of every spring (s). An alternative is `damping_ratio`.
+    pub damping: Option<f64>,
+    /// Damping over the critical damping of a particle on a structural spring. An alternative is
+    /// `damping`.
+    pub damping_ratio: Option<f64>,
+    /// Centre (m).
+    pub at: Triple,
+    /// Rotation vector: its direction is the axis, its length the angle (rad).
+    pub rotation: Option<Triple>,
+    /// Velocity (m/s).
+    pub velocity: Option<Triple>,
+    /// Pins of this body.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pin: Vec<Pin>,
+}
+
+/// Cloth from a file of triangles: particles at their corners, structural springs on their edges,
+/// bend springs across these.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshCloth {
+    /// A .obj, .gltf or .glb file in the scene file's folder or in one below it.
+    pub file: String,
+    /// Unit of length of the file (m); 1 if not given.
+    pub scale: Option<f64>,
+    /// Position of the file's origin (m).
+    pub at: Option<Triple>,
+    /// Rotation vector: its direction is the axis, its length the angle (rad).
+    pub rotation: Option<Triple>,
+    /// Mass per area (kg/m2): each particle has a third of the mass of its triangles.
+    pub density: f64,
+    /// Stiffness of structural and bend springs (N/m).
+    pub stiffness: [f64; 2],
+    /// Damping over stiffness of every spring (s). An alternative is `damping_ratio`.
+    pub damping: Option<f64>,
+    /// Damping over the critical damping of a particle of mean mass on a structural spring. An
+    /// alternative is `damping`.
+    pub damping_ratio: Option<f64>,
+    /// Velocity (m/s).
+    pub velocity: Option<Triple>,
+    /// Pins of this body. Its `top` and `bottom` are the particles as high as the highest and the
+    /// lowest one, to a hundredth of the body's height.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pin: Vec<Pin>,
+}
+
+/// Straight row of particles joined by springs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Chain {
+    /// Number of particles, at least 2.
+    pub particles: usize,
+    /// Position of the first particle (m).
+    pub from: Triple,
+    /// Position of the last particle (m).
+    pub to: Triple,
+    /// Mass of each particle (kg).
+    pub mass: f64,
+    /// Stiffness of each spring (N/m).
+    #[serde(default)]
+    pub stiffness: f64,
+    /// Whether the particles are joined by rods instead of springs.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rigid: bool,
+    /// Rest length of each spring (m); if not given, its initial length.
+    pub rest_length: Option<f64>,
+    /// Damping of each spring (N s/m).
+    #[serde(default)]
+    pub damping: f64,
+    /// Law of buckling bend springs that hold the chain straight, each over two of its links.
+    pub buckling: Option<BucklingSpec>,
+    /// Velocity (m/s).
+    pub velocity: Option<Triple>,
+    /// Pins of this body.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pin: Vec<Pin>,
+}
+
+/// Single particles, with springs between them.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Particles {
+    /// Positions (m).
+    pub positions: Vec<Triple>,
+    /// Velocities (m/s); if not given, all particles are at rest.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub velocities: Vec<Triple>,
+    /// Mass of each particle (kg), if all are the same. An alternative is `masses`.
+    pub mass: Option<f64>,
+    /// Masses of the particles (kg). An alternative is `mass`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub masses: Vec<f64>,
+    /// Springs: [i, j, stiffness (N/m), rest length (m), damping (N s/m)], with the particles numbered
+    /// from 0 among these.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub springs: Vec<SpringSpec>,
+    /// Pins of this body.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pin: Vec<Pin>,
+}

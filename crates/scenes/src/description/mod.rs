@@ -1,0 +1,147 @@
+//! What a scene file may say, in TOML: plain data, without a check of its numbers. `docs/scenes.md`
+//! shows it by example.
+
+mod bodies;
+mod constraints;
+mod forces;
+mod motion;
+mod obstacles;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::fault::Fault;
+
+pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
+pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
+pub use forces::{BucklingSpec, SpringSpec, SwingSpec, WindSpec};
+pub use motion::{Pin, Shift, Sine, Spot, Triple};
+pub use obstacles::{BoxSpec, CapsuleSpec, SphereSpec};
+
+/// A scene: bodies, what acts on them, how it is run and where it is seen from. Units are m, kg, s,
+/// N and rad.
+///
+/// Particles are numbered through all bodies: those of cloths come first, then those of jellies,
+/// meshes, chains and single particles.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Description {
+    /// Short name; if not given, that of the file.
+    pub name: Option<String>,
+    /// Description of the scene in one line.
+    pub summary: Option<String>,
+    /// Solver to begin with, by letter or name.
+    pub solver: Option<String>,
+    /// Step of the solver (s), or relative tolerance of an adaptive solver.
+    pub step: Option<f64>,
+    /// Length of a run (s), where no other is asked for.
+    pub duration: Option<f64>,
+    /// Gravity (m/s2), such as [0, -9.81, 0]; none if not given.
+    pub gravity: Option<Triple>,
+    /// Viscous drag on each particle (kg/s). An alternative is `drag_per_mass`.
+    pub drag: Option<f64>,
+    /// Viscous drag on each particle over the mean mass of a particle (1/s). An alternative is `drag`.
+    pub drag_per_mass: Option<f64>,
+    /// Height of a level floor (m).
+    pub floor: Option<f64>,
+    /// Largest stretch, in rest lengths, to which a hand pulls the springs of the particle it holds.
+    pub reach: Option<f64>,
+    /// Number of the particle whose path is drawn.
+    pub trail: Option<usize>,
+    /// Camera that the scene is first seen by.
+    pub camera: Option<Camera>,
+    /// Wind, which key d turns on and off.
+    pub wind: Option<WindSpec>,
+    /// Swing of the pins, which key s turns on and off.
+    pub swing: Option<SwingSpec>,
+    /// A first-order system in place of all bodies: one particle on a circle, f = (-y, x, 0).
+    pub circle: Option<Circle>,
+    /// Rectangular cloths.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cloth: Vec<Cloth>,
+    /// Boxes of jelly.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub jelly: Vec<Jelly>,
+    /// Cloths of any shape, from files of triangles.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mesh: Vec<MeshCloth>,
+    /// Rows of particles joined by springs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub chain: Vec<Chain>,
+    /// Single particles.
+    pub particles: Option<Particles>,
+    /// Springs between any particles: [i, j, stiffness (N/m), rest length (m), damping (N s/m)].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub springs: Vec<SpringSpec>,
+    /// Rods and wires, which explicit solvers keep exactly.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constraint: Vec<ConstraintSpec>,
+    /// Rate at which a drift off a constraint is corrected (1/s); 10 if not given.
+    pub feedback: Option<f64>,
+    /// Pins of any particles by number. They come after the pins of the bodies, and override them.
+    /// If there is a `state`, pins are at the positions that it gives.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub pin: Vec<Pin>,
+    /// Stretch, in rest lengths, at which springs break. If it is not given, they never break.
+    pub tear: Option<f64>,
+    /// Springs that are broken from the beginning, each given by the two particles it joins.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub torn: Vec<[usize; 2]>,
+    /// Boxes that particles stay out of.
+    #[serde(rename = "box", skip_serializing_if = "Vec::is_empty")]
+    pub boxes: Vec<BoxSpec>,
+    /// Capsules that particles stay out of.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub capsule: Vec<CapsuleSpec>,
+    /// Spheres that particles stay out of.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sphere: Vec<SphereSpec>,
+    /// Positions and velocities of all particles at the start, in place of those of the bodies.
+    pub state: Option<State>,
+}
+
+/// Position of the camera, and the point that it looks at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Camera {
+    /// Position of the camera (m).
+    pub eye: Triple,
+    /// Point that the camera looks at (m).
+    pub target: Triple,
+}
+
+/// State of all particles, one row for each of them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct State {
+    /// Positions (m).
+    pub positions: Vec<Triple>,
+    /// Velocities (m/s); if not given, all particles are at rest.
+    #[serde(default)]
+    pub velocities: Vec<Triple>,
+}
+
+impl Description {
+    /// Reads a description from TOML.
+    ///
+    /// # Errors
+    /// The text is not TOML, a key is unknown or missing, or a value is of the wrong kind.
+    pub fn parse(text: &str) -> Result<Self, Fault> {
+        toml::from_str(text).map_err(|error| Fault::of_toml(text, &error))
+    }
+
+    /// Writes TOML that [`parse`](Self::parse) reads as the same description.
+    ///
+    /// # Errors
+    /// The TOML writer fails; no description is known for which it does.
+    pub fn to_toml(&self) -> Result<String, a3_core::Error> {
+        toml::to_string(self).map_err(|e| a3_core::Error::Invalid(e.to_string()))
+    }
+
+    /// JSON Schema of scene files, by which editors complete and check them.
+    #[must_use]
+    pub fn schema() -> String {
+        let schema = schemars::schema_for!(Self);
+        serde_json::to_string_pretty(&schema).unwrap_or_default()
+    }
+}

@@ -1,0 +1,70 @@
+//! Pins and prescribed motions.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Three numbers: x, y (up), z.
+pub type Triple = [f64; 3];
+
+/// Part of a body that can be pinned. A cloth has edges and corners, a jelly has faces, a chain has
+/// ends, a mesh has a top and a bottom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum Spot {
+    Top,
+    Bottom,
+    Left,
+    Right,
+    TopLeft,
+    TopRight,
+    BottomLeft,
+    BottomRight,
+    First,
+    Last,
+}
+
+/// Pinned particles and their motion. Without a motion they stay where they are.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Pin {
+    /// Parts of the body, such as `["top-left", "top-right"]`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<Spot>,
+    /// Particles, numbered from 0 in their body.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub particles: Vec<usize>,
+    /// Oscillation of the pinned particles.
+    pub sine: Option<Sine>,
+    /// Displacement of the pinned particles, once.
+    pub shift: Option<Shift>,
+}
+
+/// Oscillation by `amplitude sin(rate t + phase)` about the initial position, or about `center`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sine {
+    /// Amplitude (m).
+    pub amplitude: Triple,
+    /// Angular frequency (rad/s).
+    pub rate: f64,
+    /// Phase at t = 0 (rad).
+    #[serde(default)]
+    pub phase: f64,
+    /// Centre (m); if not given, the initial position.
+    #[serde(default)]
+    pub center: Option<Triple>,
+}
+
+/// Displacement along a straight line at constant velocity, between two times.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Shift {
+    /// Displacement (m).
+    pub by: Triple,
+    /// Time at which the motion begins (s).
+    #[serde(default)]
+    pub start: f64,
+    /// Time at which the motion ends (s), later than `start`.
+    pub end: f64,
+}

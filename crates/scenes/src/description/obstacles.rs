@@ -1,0 +1,59 @@
+//! Obstacles that particles stay out of.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::motion::{Shift, Sine, Triple};
+
+/// Sphere that particles stay out of. It may move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SphereSpec {
+    /// Centre (m).
+    pub center: Triple,
+    /// Radius (m).
+    pub radius: f64,
+    /// Oscillation of the sphere.
+    #[serde(default)]
+    pub sine: Option<Sine>,
+    /// Displacement of the sphere, once.
+    #[serde(default)]
+    pub shift: Option<Shift>,
+}
+
+/// Box that particles stay out of. It may move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxSpec {
+    /// Centre (m).
+    pub center: Triple,
+    /// Lengths of the edges (m).
+    pub size: Triple,
+    /// Rotation vector: its direction is the axis, its length the angle (rad).
+    #[serde(default)]
+    pub rotation: Option<Triple>,
+    /// Oscillation of the box.
+    #[serde(default)]
+    pub sine: Option<Sine>,
+    /// Displacement of the box, once.
+    #[serde(default)]
+    pub shift: Option<Shift>,
+}
+
+/// Capsule that particles stay out of: all points within `radius` of a line segment. It may move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CapsuleSpec {
+    /// One end of the segment (m).
+    pub from: Triple,
+    /// Other end of the segment (m).
+    pub to: Triple,
+    /// Radius (m).
+    pub radius: f64,
+    /// Oscillation of the capsule.
+    #[serde(default)]
+    pub sine: Option<Sine>,
+    /// Displacement of the capsule, once.
+    #[serde(default)]
+    pub shift: Option<Shift>,
+}
