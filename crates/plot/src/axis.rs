@@ -30,6 +30,7 @@ pub struct Tick {
 
 impl Axis {
     /// A linear axis between two numbers.
+    #[must_use]
     pub fn linear(ends: [f64; 2]) -> Self {
         Self {
             log: false,
@@ -39,6 +40,7 @@ impl Axis {
     }
 
     /// A logarithmic axis around two positive numbers, which ends at 1, 2 or 5 times powers of ten.
+    #[must_use]
     pub fn log(low: f64, high: f64) -> Self {
         let marks = [0.0, 2_f64.log10(), 5_f64.log10(), 1.0];
         let [low, high] = [low, high].map(|end| end.max(f64::MIN_POSITIVE).log10());
@@ -70,6 +72,7 @@ impl Axis {
     }
 
     /// The coordinate of a number; that of the nearer end for a number beyond the ends.
+    #[must_use]
     pub fn at(&self, value: f64) -> f64 {
         let value = if self.log { value.log10() } else { value };
         let part = (value - self.ends[0]) / (self.ends[1] - self.ends[0]);
@@ -77,12 +80,14 @@ impl Axis {
     }
 
     /// Whether a number lies between the ends.
+    #[must_use]
     pub fn is_inside(&self, value: f64) -> bool {
         let value = if self.log { value.log10() } else { value };
         self.ends[0] < value && value < self.ends[1]
     }
 
     /// The ticks, whose labels are at least `gap` apart on the sheet.
+    #[must_use]
     pub fn ticks(&self, gap: f64) -> Vec<Tick> {
         let span = self.ends[1] - self.ends[0];
         let unit = (self.places[1] - self.places[0]).abs() / span;

@@ -1,23 +1,22 @@
-//! What can go wrong with a chart.
+//! The errors of charts.
 
 use std::fmt;
 
 /// The reason why there is no chart, or no picture of it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// A chart without anything to draw, and what it lacks.
+    /// The chart has nothing to draw, and why.
     Empty(&'static str),
-    /// The width and height of a sheet that is too large for any chart, or has no area.
+    /// The width and height of a sheet are not between 1 and 20000 units.
     Sheet([f64; 2]),
-    /// The width and height of a sheet too small for the chart, and those of a larger one of the
-    /// same shape that would do, if there is any.
+    /// The sheet is too small for the chart.
     TooSmall {
-        /// The sheet that was asked for.
+        /// Width and height that were asked for.
         sheet: [f64; 2],
-        /// The sheet that would do.
+        /// Width and height of a sheet of the same shape that is large enough, if there is any.
         enough: Option<[f64; 2]>,
     },
-    /// What was wrong with the pixels of a picture.
+    /// The picture cannot be made of pixels, and why.
     Pixels(String),
 }
 

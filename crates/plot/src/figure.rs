@@ -178,6 +178,7 @@ impl Figure {
     }
 
     /// The figure as an SVG file.
+    #[must_use]
     pub fn svg(&self) -> String {
         let [w, h] = self.size;
         format!(

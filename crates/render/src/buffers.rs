@@ -27,7 +27,7 @@ impl Shape {
         Self::new(gpu, "sphere", &corners, &triangles)
     }
 
-    /// A rounded box in so many bands of latitude and longitude a piece.
+    /// A rounded box whose pieces have so many bands of latitude and of longitude.
     pub(crate) fn rounded_box(gpu: &Gpu, bands: u16) -> Self {
         let (corners, triangles) = rounded_box(bands);
         Self::new(gpu, "rounded box", &corners, &triangles)

@@ -14,11 +14,11 @@ use crate::{Failure, interrupt};
 const MOST_EVALUATIONS: u64 = 60_000;
 /// Work of a step of an implicit method, in evaluations, within a factor of three.
 const IMPLICIT: f64 = 25.0;
-/// Most repetitions of a run, the fastest of which counts.
+/// Most times that a run is timed. The shortest time counts.
 const RUNS: u32 = 5;
-/// Computing time after which a run is repeated no more, if it was repeated once.
+/// Total computing time after which a run is timed no more, if it was timed twice.
 const TOGETHER: Duration = Duration::from_millis(600);
-/// Computing time of one run after which it is not repeated at all.
+/// Computing time of a single run after which it is timed no more.
 const ALONE: Duration = Duration::from_secs(2);
 
 /// A scene at one stiffness, and how it is measured.

@@ -28,9 +28,6 @@ const POINTS: u32 = 0;
 const LINES: u32 = 1;
 const TRIANGLES: u32 = 4;
 
-/// Vectors, one for each vertex.
-type Vectors = Vec<[f32; 3]>;
-
 /// A binary glTF file in the making.
 pub struct Glb {
     draft: Draft,
@@ -39,7 +36,7 @@ pub struct Glb {
     scene: String,
     binary: Binary,
     /// Positions and normals of the first frame.
-    first: Option<(Vectors, Vectors)>,
+    first: Option<[Vec<[f32; 3]>; 2]>,
     /// The accessors of each frame: positions or displacements, and normals if there is a surface.
     attributes: Vec<Value>,
 }
@@ -107,11 +104,11 @@ impl Glb {
         } else {
             vec![]
         };
-        if let Some((x0, normals0)) = &self.first {
+        if let Some([x0, normals0]) = &self.first {
             subtract(&mut x, x0);
             subtract(&mut normals, normals0);
         } else {
-            self.first = Some((x.clone(), normals.clone()));
+            self.first = Some([x.clone(), normals.clone()]);
         }
         let mut attributes = json!({ "POSITION": self.binary.vectors(&x, true)? });
         if self.has_surface() {

@@ -25,7 +25,7 @@ pub struct Json {
 
 /// The state of a simulation as it is written.
 #[derive(Serialize)]
-struct State<'a> {
+struct StateRecord<'a> {
     scene: &'a str,
     solver: &'a str,
     /// Step of a method with fixed steps (s).
@@ -41,15 +41,15 @@ struct State<'a> {
     /// Total energy (J); none for a system without forces.
     energy: Option<f64>,
     /// Positions (m), a row for each particle.
-    positions: Rows<'a>,
+    positions: MatrixRows<'a>,
     /// Velocities (m/s), a row for each particle.
-    velocities: Rows<'a>,
+    velocities: MatrixRows<'a>,
 }
 
 /// An n x 3 matrix in column-major order, which is written row by row.
-struct Rows<'a>(&'a [f64]);
+struct MatrixRows<'a>(&'a [f64]);
 
-impl Serialize for Rows<'_> {
+impl Serialize for MatrixRows<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let n = self.0.len() / 3;
         serializer.collect_seq((0..n).map(|i| [0, n, 2 * n].map(|column| self.0[column + i])))
@@ -106,9 +106,9 @@ impl Export for Json {
 }
 
 /// The state of a simulation, with its velocities.
-fn state<'a>(simulation: &'a Simulation, velocities: &'a [f64]) -> State<'a> {
+fn state<'a>(simulation: &'a Simulation, velocities: &'a [f64]) -> StateRecord<'a> {
     let n = simulation.particles();
-    State {
+    StateRecord {
         scene: &simulation.scene().name,
         solver: simulation.method().name,
         step: simulation.control().step(),
@@ -117,7 +117,7 @@ fn state<'a>(simulation: &'a Simulation, velocities: &'a [f64]) -> State<'a> {
         steps: simulation.steps(),
         evaluations: simulation.work().evaluations,
         energy: simulation.energy().map(|energy| energy.total()),
-        positions: Rows(&simulation.state()[..3 * n]),
-        velocities: Rows(velocities),
+        positions: MatrixRows(&simulation.state()[..3 * n]),
+        velocities: MatrixRows(velocities),
     }
 }

@@ -28,7 +28,7 @@ pub trait Film {
 }
 
 /// A film, and the times of its frames.
-pub type Plan = (FrameTimes, Box<dyn Film>);
+pub type TimedFilm = (FrameTimes, Box<dyn Film>);
 
 /// A film as numbered pictures.
 struct Pictures {
@@ -52,7 +52,7 @@ impl Film for Pictures {
 
 /// The film that was asked for, or `None` for a single picture. Impossible films are refused here,
 /// before any work is done.
-pub fn begin(options: &Render) -> Result<Option<Plan>, Failure> {
+pub fn begin(options: &Render) -> Result<Option<TimedFilm>, Failure> {
     let (path, size) = (options.output.as_path(), options.size);
     let until = options.run.end()?;
     let frames = |rate| FrameTimes::new(options.from.unwrap_or(0.0), until, rate);
@@ -105,7 +105,7 @@ pub fn shoot(
     simulation: &mut Simulation,
     show: &mut Show,
     painter: &mut Painter,
-    (frames, mut film): Plan,
+    (frames, mut film): TimedFilm,
     path: &Path,
 ) -> Result<(), Failure> {
     interrupt::listen();

@@ -1,5 +1,5 @@
-//! Stability regions in the plane of h λ, with the eigenvalues of a problem times the step: a panel
-//! a method.
+//! Stability regions in the plane of h λ, with the eigenvalues of a problem times the
+//! step, and a panel for each method.
 
 mod region;
 
@@ -18,7 +18,7 @@ pub struct StabilityRegions {
     pub title: String,
     /// A line below the title; left out where there is no room for it.
     pub subtitle: String,
-    /// The regions, a panel each.
+    /// The regions, with a panel for each.
     pub regions: Vec<Region>,
 }
 

@@ -1,5 +1,6 @@
 //! Work-precision diagrams (Hairer, Nørsett, Wanner, Solving Ordinary Differential Equations I,
-//! section II.10): a panel a problem, a curve a method, a point a run.
+//! section II.10), with a panel for each problem, a curve for each method, and a point for each
+//! run.
 
 mod panel;
 mod problem;
@@ -25,7 +26,7 @@ pub struct WorkPrecision {
     pub x_label: String,
     /// The work that the vertical axis shows, with its unit.
     pub y_label: String,
-    /// The problems, a panel each.
+    /// The problems, with a panel for each.
     pub problems: Vec<Problem>,
     /// An explanation below the panels.
     pub foot: String,

@@ -31,7 +31,7 @@ pub struct Curve {
 pub struct Problem {
     /// The title of the panel; none if it is empty.
     pub title: String,
-    /// The methods, a curve each.
+    /// The curves, one for each method.
     pub curves: Vec<Curve>,
     /// The error of the reference itself. Errors below ten times this are shaded.
     pub floor: Option<f64>,
@@ -50,7 +50,8 @@ impl Measurement {
 }
 
 impl Problem {
-    /// The least error that the reference can tell from 0.
+    /// The least error that can be trusted: ten times that of the reference, or 0 if that is not
+    /// known.
     pub(super) fn trusted(&self) -> f64 {
         self.floor
             .filter(|floor| floor.is_finite())
