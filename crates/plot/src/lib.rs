@@ -20,5 +20,3 @@ pub use figure::Figure;
 pub use stability::{Region, StabilityRegions};
 pub use style::{CurveStyle, Marker};
 pub use work_precision::{Curve, Measurement, Problem, WorkPrecision};
-
-/// The example of the README, compiled as a test of documentation.
