@@ -5,7 +5,7 @@ use a3_core::{Control, Method, Scene, Simulation, integrators};
 use crate::bounds;
 use crate::cli::{Compare, RunOptions, What, WindowOptions};
 use crate::failure::Failure;
-use crate::session::{Beginning, Session};
+use crate::session::{Beginning, Origin, Session};
 
 /// The session of a window on one run.
 pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
@@ -23,7 +23,7 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
         paused: options.look.paused,
         springs_of: options.springs_of,
     };
-    Session::new((&what.scene, what.grid), vec![simulation], &beginning)
+    Session::new(origin(what), vec![simulation], &beginning)
 }
 
 /// The session of a comparison.
@@ -45,7 +45,15 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         paused: options.look.paused,
         springs_of: None,
     };
-    Session::new((&what.scene, what.grid), simulations, &beginning)
+    Session::new(origin(what), simulations, &beginning)
+}
+
+/// Where the scene is from.
+fn origin(what: &What) -> Origin {
+    Origin {
+        source: what.scene.clone(),
+        grid: what.grid,
+    }
 }
 
 /// The simulation of a run without a window.

@@ -277,7 +277,7 @@ impl App {
     /// Where on the timeline the pointer is, if that is shown and the pointer no farther from it than `margin` (points).
     fn timeline_share(&self, margin: f32) -> Option<f32> {
         let graphics = self.graphics.as_ref()?;
-        self.session.readings.place?;
+        self.session.readings.rewound?;
         let (scale, size) = (graphics.scale(), graphics.size());
         let size = [size.0, size.1].map(|side| side as f32 / scale);
         let [x, y] = self.pointer.map(|px| px / scale);
@@ -457,9 +457,9 @@ impl ApplicationHandler for App {
             }
             WindowEvent::Occluded(hidden) => {
                 self.visible = !hidden;
-                // What was not seen did not happen.
+                // Time spent hidden is not simulated.
                 self.last = Instant::now();
-                self.session.stand();
+                self.session.start_anew();
                 self.say_status();
                 self.redraw();
             }

@@ -53,7 +53,7 @@ impl Status {
             session.panel.open,
             run.blow_up().is_some(),
             readings.slowness,
-            readings.place.is_some(),
+            readings.rewound.is_some(),
             run.model().network().map_or(0, |n| n.pins().count()),
             panes[0]
                 .show

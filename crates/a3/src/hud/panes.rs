@@ -1,19 +1,20 @@
-//! The text over several panes: a bar for what they share, a sheet each for what they do not.
+//! The text over several panes: a bar for what they share, and a sheet for each pane.
 
 use egui::{Area, Context, Frame, Id, Margin, Pos2, Rect, Ui};
 
+use super::blow_up::blow_up;
 use super::layout;
-use super::text;
-use super::text::{PAPER, states, text, time, title};
-use super::text::{blow_up, each, energy, faint, frames, scene, sheet, speed};
+use super::style::{PAPER, faint, sheet, text, title};
+use super::words::{self, digits, each, energy, frames, scene, speed, states, time};
 use crate::session::{Pane, Readings};
 
-/// From the edge of a pane (points).
+/// Distance of a sheet from the edge of its pane (points).
 const MARGIN: f32 = 8.0;
 
-/// A pane that is lower than this (points) has room for less.
+/// Height below which a pane has room for fewer lines (points).
 const LOW: f32 = 230.0;
 
+/// Writes the bar, and a sheet in each pane unless the help is shown.
 pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     let scale = ctx.pixels_per_point();
     let window = ctx.content_rect();
@@ -45,7 +46,7 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     }
 }
 
-/// What is written there stays there, and no click sees it.
+/// Writes within a rectangle. What is outside is cut off, and clicks go through.
 fn within(ctx: &Context, name: &str, rect: Rect, contents: impl FnOnce(&mut Ui)) {
     Area::new(Id::unique(name))
         .fixed_pos(rect.min)
@@ -58,7 +59,7 @@ fn within(ctx: &Context, name: &str, rect: Rect, contents: impl FnOnce(&mut Ui))
         });
 }
 
-/// What is the same in all panes, or a message.
+/// Writes what is the same in all panes, or a message.
 fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
     let run = &panes[0].simulation;
     let (rect, width) = (ui.clip_rect(), ui.max_rect().width());
@@ -69,14 +70,14 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
             ui.set_width(width - 24.0);
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(14.0, 1.0);
-                // Whole, in the next line if need be.
+                // Words stay whole: they go to the next line if need be.
                 let mut say = |words| ui.add(egui::Label::new(words).extend());
                 say(title(scene(run)).size(15.0));
                 if let Some(message) = &readings.message {
                     ui.label(text(message));
                     return;
                 }
-                // The one that is farthest: others may be lost.
+                // The time of the run that is farthest: others may be lost.
                 let latest = panes
                     .iter()
                     .map(|pane| &pane.simulation)
@@ -85,7 +86,7 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                 if readings.rate > 0.0 || readings.paused {
                     say(text(speed(readings)));
                 }
-                if let Some(slow) = text::slow_motion(readings) {
+                if let Some(slow) = words::slow_motion(readings) {
                     say(faint(format!("slow  {slow}")));
                 }
                 if readings.rate > 0.0 && width > 900.0 {
@@ -101,7 +102,8 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
         });
 }
 
-/// What a pane shows, and how well: a line a reading, or in a low pane two to a line, and the most important ones.
+/// Writes the readings of a pane: each in its own line, or in a low pane the most important ones, some
+/// of them side by side.
 fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let run = &pane.simulation;
     ui.label(title(run.method().title).size(14.0));
@@ -115,11 +117,11 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
             digits(cost.computing)
         )
     });
-    let step = match text::steps(run) {
+    let step = match words::steps(run) {
         Some(steps) => ("steps", text(format!("{},  {steps}", run.control()))),
         None => ("step", text(format!("{} s", run.control().value()))),
     };
-    let limit = text::limit(pane).map(|(words, colour)| ("limit", text(words).color(colour)));
+    let limit = words::limit(pane).map(|(words, colour)| ("limit", text(words).color(colour)));
     let time = ("time", text(time(run)));
     let error = ("error", text(error(pane, readings)));
     let (name, value) = energy(pane);
@@ -154,7 +156,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     }
 }
 
-/// The distance from the reference, or why it is not known.
+/// The distance from the reference, or the reason why it is not known.
 fn error(pane: &Pane, readings: &Readings) -> String {
     match (pane.error, readings.no_error) {
         (Some(error), _) => format!("{} m", digits(error)),
@@ -163,23 +165,10 @@ fn error(pane: &Pane, readings: &Readings) -> String {
     }
 }
 
-/// Three digits of a number that may be small.
-pub fn digits(number: f64) -> String {
-    match number {
-        0.0 => "0".into(),
-        small if small < 1e-3 => format!("{small:.2e}"),
-        large if large >= 100.0 => format!("{large:.0}"),
-        middling => {
-            let places = (2.0 - middling.log10().floor()).clamp(0.0, 5.0) as usize;
-            format!("{middling:.places$}")
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::text::tests::{pane, read};
     use super::*;
+    use crate::hud::{pane, read};
     use crate::session::Cost;
 
     const SIZES: [[f32; 2]; 7] = [
@@ -298,20 +287,6 @@ mod tests {
                 assert!(words.contains(said), "{said} in {words}");
             }
             assert_eq!(words.matches("cost").count(), 3);
-        }
-    }
-
-    #[test]
-    fn three_digits() {
-        for (number, words) in [
-            (0.0, "0"),
-            (1.234e-7, "1.23e-7"),
-            (0.012_34, "0.0123"),
-            (1.234, "1.23"),
-            (99.99, "100.0"),
-            (12345.6, "12346"),
-        ] {
-            assert_eq!(digits(number), words);
         }
     }
 }

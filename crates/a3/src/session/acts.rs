@@ -1,25 +1,27 @@
-//! What the keys do to a session.
+//! The actions of keys on a session.
 
 use a3_core::{Error, Method, Scene, Simulation, integrators};
 use a3_render::Style;
 
+use super::clock::KEY_BUDGET;
 use super::keys::Action;
+use super::origin::Origin;
 use super::pane::{PORTION, Pane};
-use super::reference::Reference;
-use super::state::{KEY_BUDGET, Session};
+use super::reference::ReferenceRun;
+use super::state::Session;
 use super::tuning::Tuning;
 use crate::scene_file::Source;
 use crate::{bounds, show};
 
-/// Slow motion is 1 / 2^6 of real time at least.
+/// The slowest motion is 1 / 2^6 of real time.
 const SLOWEST: i32 = 6;
 
-/// Steps of the keys + and -, in each decade.
+/// Steps and tolerances of the keys + and -, in each decade.
 const LADDER: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
 
 impl Session {
-    /// Does what a key asks for, except what needs the window. A solver is for the pane `at`, all else for every pane.
-    /// Whether the scene is another one now.
+    /// Does an action, except those that need the window, and returns whether another scene is shown. A
+    /// solver is for the pane `at`, all else for every pane.
     pub fn act(&mut self, action: Action, at: usize) -> bool {
         match action {
             Action::NextScene => {
@@ -28,12 +30,12 @@ impl Session {
             }
             Action::Reset => {
                 self.panes.iter_mut().for_each(Pane::reset);
-                self.forget();
+                self.clear_timeline();
                 if let Some(reference) = &mut self.reference {
                     reference.reset();
                     self.readings.no_error = None;
                 }
-                self.stand();
+                self.start_anew();
             }
             Action::Swing if self.first().scene().swing.is_none() => {
                 self.say("There is nothing to swing here.");
@@ -61,16 +63,16 @@ impl Session {
             }
             Action::Pause => {
                 self.readings.paused = !self.readings.paused;
-                self.stand();
+                self.start_anew();
             }
-            Action::Step if self.readings.place.is_some() => self.scrub(1),
+            Action::Step if self.readings.rewound.is_some() => self.scrub(1),
             Action::Scrub(by) => self.scrub(by),
             Action::Slower => self.readings.slowness = (self.readings.slowness + 1).min(SLOWEST),
             Action::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
             Action::Step => {
                 self.readings.paused = true;
                 self.settle();
-                // The longest, and as many of the shorter ones as fit.
+                // The longest step, and as many of the shorter ones as fit.
                 let alive = self.panes.iter().filter(|pane| pane.alive());
                 let step = alive.map(|pane| pane.simulation.step_size().unwrap_or(PORTION));
                 let step = step.fold(0.0, f64::max);
@@ -106,7 +108,7 @@ impl Session {
         match pane.simulation.set_method(method, control) {
             Ok(()) => {
                 pane.wanted = method;
-                pane.count();
+                pane.restart_cost();
             }
             Err(why) => self.say(why.to_string()),
         }
@@ -122,7 +124,7 @@ impl Session {
             if let Err(why) = pane.simulation.set_control(control.with_value(next)) {
                 self.say(why.to_string());
             } else {
-                pane.count();
+                pane.restart_cost();
             }
         }
         self.adapt();
@@ -132,7 +134,7 @@ impl Session {
     pub fn set_step_of(&mut self, at: usize, value: f64) {
         let run = &mut self.panes[at].simulation;
         match run.set_control(run.control().with_value(value)) {
-            Ok(()) => self.panes[at].count(),
+            Ok(()) => self.panes[at].restart_cost(),
             Err(why) => self.say(why.to_string()),
         }
         self.adapt();
@@ -144,38 +146,39 @@ impl Session {
         }
     }
 
-    /// The next scene of the table, or that of the user.
+    /// Shows the next scene of the table, or that of the user.
     fn next_scene(&mut self) {
-        let own = usize::from(self.asked.0.path.is_some());
-        let next = (self.at + 1) % (a3_scenes::SCENES.len() + own);
+        let own = usize::from(self.asked.source.path.is_some());
+        let next = (self.scene_number + 1) % (a3_scenes::SCENES.len() + own);
         let name = match next.checked_sub(own) {
-            None => &self.asked.0.typed,
+            None => &self.asked.source.typed,
             Some(k) => a3_scenes::SCENES[k].name,
         };
-        let asked = name == self.asked.0.typed;
-        let grid = self.asked.1.filter(|_| asked);
+        let asked = name == self.asked.source.typed;
+        let grid = self.asked.grid.filter(|_| asked);
         let source = if asked {
-            Ok(self.asked.0.clone())
+            Ok(self.asked.source.clone())
         } else {
             Source::find(name)
         };
         let scene = source.and_then(|source| Ok((source.build(grid)?, source)));
         match scene {
             Ok((scene, source)) => {
-                self.shown = (source, grid);
+                self.shown = Origin { source, grid };
                 self.camera = show::camera_of(&scene);
                 self.set_scene(&scene);
-                self.at = next;
+                self.scene_number = next;
             }
             Err(why) => self.say(why),
         }
     }
 
-    /// Loads the scene again from its file, as it is now. What can be kept stays: the camera, solvers and steps, unless the
-    /// file says others than before. Whether it could be loaded; if not, it is said why, and all goes on.
+    /// Loads the scene again from its file, and returns whether that was possible; if not, a message
+    /// says why, and all goes on. Camera, solvers and steps stay as they are, unless the file says
+    /// others than before.
     pub fn reload(&mut self) -> bool {
-        let loaded = Source::find(&self.asked.0.typed);
-        let loaded = loaded.and_then(|source| Ok((source.build(self.asked.1)?, source)));
+        let loaded = Source::find(&self.asked.source.typed);
+        let loaded = loaded.and_then(|source| Ok((source.build(self.asked.grid)?, source)));
         let (scene, source) = match loaded {
             Ok(loaded) => loaded,
             Err(why) => {
@@ -183,7 +186,7 @@ impl Session {
                 return false;
             }
         };
-        let (new, old) = (&source.description, &self.asked.0.description);
+        let (new, old) = (&source.description, &self.asked.source.description);
         if new.camera != old.camera {
             self.camera = show::camera_of(&scene);
         }
@@ -191,9 +194,9 @@ impl Session {
             .then_some(scene.solver)
             .flatten();
         self.say(format!("loaded {} again", source.typed));
-        self.shown = (source.clone(), self.asked.1);
-        self.asked.0 = source;
-        self.at = 0;
+        self.asked.source = source;
+        self.shown = self.asked.clone();
+        self.scene_number = 0;
         let (windy, swinging) = (self.first().windy(), self.first().swinging());
         self.set_scene(&scene);
         self.do_to_all(|run| {
@@ -213,7 +216,7 @@ impl Session {
         true
     }
 
-    /// Begins another scene, with the same solvers if it can be, and the same steps.
+    /// Begins another scene, with the same solvers and steps where they serve it.
     fn set_scene(&mut self, scene: &Scene) {
         let mut said = None;
         let mut start = |pane: &Pane| {
@@ -231,11 +234,11 @@ impl Session {
                 for (pane, simulation) in self.panes.iter_mut().zip(simulations) {
                     pane.set_simulation(simulation);
                 }
-                // What builds a pane builds the reference.
-                self.reference = Reference::new(&self.panes).ok().flatten();
-                self.forget();
+                // The panes could be built, so the reference can.
+                self.reference = ReferenceRun::new(&self.panes).ok().flatten();
+                self.clear_timeline();
                 self.readings.no_error = None;
-                self.stand();
+                self.start_anew();
             }
             Err(why) => said = Some(why.to_string()),
         }
@@ -245,11 +248,12 @@ impl Session {
     }
 }
 
-/// The next longer or shorter step of the ladder (s).
+/// The next larger or smaller step or tolerance of the ladder.
 fn next_step(step: f64, longer: bool) -> f64 {
     let decade = step.log10().floor() as i32;
     let rungs = (decade - 1..=decade + 1).flat_map(|d| {
-        // Dividing by a power of ten is exact to the last digit where multiplying by its inverse is not.
+        // Dividing by a power of ten is exact to the last digit where multiplying by its inverse is
+        // not.
         LADDER.iter().map(move |rung| {
             if d < 0 {
                 rung / 10f64.powi(-d)
@@ -272,9 +276,9 @@ fn next_step(step: f64, longer: bool) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::state::tests::{compared, session};
     use super::*;
     use crate::bounds::{LARGEST_STEP, SMALLEST_STEP};
+    use crate::session::{compared, session};
     use a3_core::Control;
 
     #[test]

@@ -1,6 +1,6 @@
-//! The keys, in one table that also prints the help.
+//! The keys, in one table from which the help is made too.
 
-/// What a key does.
+/// Action of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     NextScene,
@@ -10,13 +10,13 @@ pub enum Action {
     Wind,
     Pause,
     Step,
-    /// By its place in the table of methods.
+    /// Choose a solver, by its number in the table of methods.
     Solver(usize),
     LongerStep,
     ShorterStep,
     Slower,
     Faster,
-    /// So many kept frames on, or back.
+    /// Go so many kept frames on, or back if it is negative.
     Scrub(isize),
     Camera,
     Picture,
@@ -26,7 +26,7 @@ pub enum Action {
     Quit,
 }
 
-/// A row of the table: what is typed, what it does, and how the help says so.
+/// A row of the table: keys, their action, and its name in the help.
 pub struct Binding {
     pub keys: &'static [&'static str],
     pub action: Action,
@@ -37,7 +37,7 @@ const fn bind(keys: &'static [&'static str], action: Action, help: &'static str)
     Binding { keys, action, help }
 }
 
-/// Every key but the digits, which stand for the solvers in the order of their table.
+/// All keys but the digits, which stand for the solvers in the order of their table.
 pub static KEYS: &[Binding] = &[
     bind(&["t"], Action::NextScene, "next scene"),
     bind(&["r"], Action::Reset, "reset"),
@@ -61,7 +61,7 @@ pub static KEYS: &[Binding] = &[
     bind(&["Esc"], Action::Quit, "quit"),
 ];
 
-/// What the mouse does, for the help.
+/// Actions of the mouse, for the help.
 pub static MOUSE: &[(&str, &str)] = &[
     ("left, on the scene", "pull"),
     ("left, elsewhere", "turn"),

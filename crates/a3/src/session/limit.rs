@@ -1,20 +1,21 @@
-//! How far a run's step is from the largest stable one, as it goes.
+//! The largest stable step of a run, as the run goes on.
 
 use std::time::{Duration, Instant};
 
 use a3_core::stability::{LargestMode, Limit, Mode, largest_step, spectrum};
 use a3_core::{Control, Method, Simulation};
 
-/// No look sooner than this after the last one ...
+/// The least time from one estimate to the next.
 const INTERVAL: Duration = Duration::from_millis(250);
-/// ... nor than so many times what that took: two percent of the time at most.
+/// The least time from one estimate to the next, over the time that the estimate took: estimates take
+/// two percent of the time at most.
 const IDLE: u32 = 50;
-/// A step that is said to hold was seen to hold for so long (s) ...
+/// Simulated time (s) for which a step was seen to hold before it is said to hold.
 const HOLDING: f64 = 10.0;
-/// ... or as far as it came in this time.
+/// Real time after which a step counts as holding, however far the run came.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// Looks at the fastest motion of a run every now and then.
+/// The largest stable step for the fastest motion of a run, estimated every now and then.
 #[derive(Default)]
 pub struct LimitWatch {
     fastest: LargestMode,
@@ -25,17 +26,17 @@ pub struct LimitWatch {
 }
 
 impl LimitWatch {
-    /// The limit of the run's method for the fastest motion, as it was when last looked at.
+    /// The limit of the run's method for the fastest motion, as it was last estimated.
     pub fn limit(&self) -> Option<Limit> {
         self.limit
     }
 
-    /// Of a lost run: a step (s) with which it would not have been.
+    /// A step (s) with which a lost run would have held.
     pub fn would_hold(&self) -> Option<f64> {
         self.would_hold
     }
 
-    /// Looks again, if it is time, or if the run was just lost.
+    /// Estimates again if the last estimate is old enough, or if the run was just lost.
     pub fn look(&mut self, run: &Simulation) {
         let begun = Instant::now();
         let lost = run.blow_up().is_some();
@@ -47,7 +48,7 @@ impl LimitWatch {
         if wait {
             return;
         }
-        // What is left of a lost run is crumpled: the limit that counts is that of the scene.
+        // The state of a lost run is crumpled: the limit that counts is that of the scene.
         let y = if lost {
             &run.scene().state
         } else {
@@ -69,21 +70,22 @@ impl LimitWatch {
         self.next = Some(after + INTERVAL.max(IDLE * after.duration_since(begun)));
     }
 
-    /// Looks as soon as it is asked to: the scene is another one.
+    /// Makes the next look estimate again: the forces have changed.
     pub fn hurry(&mut self) {
         self.next = None;
     }
 
-    /// The limit of another method, for the motion that was seen last.
+    /// Finds the limit of another method, for the motion that was seen last.
     pub fn ask(&mut self, method: &Method) {
         let modes = self.mode.as_slice();
-        // No method of the table refuses a mode.
+        // Never fails for a method in METHODS.
         self.limit = largest_step(method, modes).ok().flatten();
         self.would_hold = None;
     }
 }
 
-/// The longest step (s) below a limit that was seen to hold: the fastest motion is not what limits every method.
+/// The longest step (s) below a limit that was seen to hold: not every method is limited by the fastest
+/// motion.
 fn would_hold(run: &Simulation, limit: f64) -> f64 {
     let deadline = Instant::now() + PATIENCE;
     let mut step = rounded(0.9 * limit);
@@ -93,7 +95,7 @@ fn would_hold(run: &Simulation, limit: f64) -> f64 {
     step
 }
 
-/// Whether the run from its start is not lost with steps of h (s).
+/// Whether a run from the start of the scene is not lost with steps of h (s).
 fn holds(run: &Simulation, h: f64, deadline: Instant) -> bool {
     let Ok(mut again) = Simulation::new(run.scene().clone(), run.method(), Control::Step(h)) else {
         return true;
@@ -106,10 +108,10 @@ fn holds(run: &Simulation, h: f64, deadline: Instant) -> bool {
     true
 }
 
-/// Of one digit, rounded down.
+/// A number rounded down to one digit.
 fn rounded(most: f64) -> f64 {
     let unit = 10f64.powi(most.log10().floor() as i32);
-    // As one would type it.
+    // The shortest decimal, as one would type it.
     let digits = (most / unit + 1e-9).floor() * unit;
     format!("{digits:.0e}").parse().unwrap_or(digits)
 }

@@ -1,12 +1,17 @@
 //! Runs that keep up with real time, without a window: one run or several side by side, their common
-//! time, the hands that pull at them, the reference, the timeline, and what the keys do.
+//! time, the hands that pull at them, the reference, the timeline, and the actions of keys.
 
 mod acts;
+mod clock;
+mod hands;
 mod keys;
 mod limit;
+mod meter;
+mod origin;
 mod pane;
 mod readings;
 mod reference;
+mod rewind;
 mod samples;
 mod save;
 mod state;
@@ -14,14 +19,57 @@ mod timeline;
 mod tuning;
 
 pub use keys::{Action, KEYS, MOUSE, action};
+pub use origin::Origin;
 pub use pane::Pane;
 pub use readings::Readings;
-pub use samples::{History, SPAN, Sample};
+pub use samples::{SPAN, Sample, Samples};
 pub use state::{Beginning, Session};
-pub use timeline::Place;
+pub use timeline::TimelinePosition;
 pub use tuning::Tuning;
 
 #[cfg(test)]
 pub use pane::Cost;
 #[cfg(test)]
-pub use state::tests as fixtures;
+pub use tests::{compared, frames, session, times};
+
+#[cfg(test)]
+mod tests {
+    //! Sessions for tests.
+
+    use clap::Parser;
+
+    use super::Session;
+    use crate::failure::Failure;
+    use crate::{cli, setup};
+
+    /// The session that a command line asks for.
+    pub fn session(words: &[&str]) -> Session {
+        let words = ["a3"].iter().chain(words);
+        let options = cli::Cli::try_parse_from(words).unwrap();
+        let session = match options.command {
+            Some(cli::Command::Compare(options)) => setup::comparison(&options),
+            _ => setup::window(&options.window),
+        };
+        session.map_err(Failure::message).unwrap()
+    }
+
+    /// Several panes, brought to a time (s) in frames of 60 Hz.
+    pub fn compared(words: &[&str], time: f64) -> Session {
+        let mut session = session(&[&["compare"], words].concat());
+        frames(&mut session, time);
+        session
+    }
+
+    /// Goes on by a time (s) in frames of 60 Hz.
+    pub fn frames(session: &mut Session, time: f64) {
+        for _ in 0..(60.0 * time).round() as u32 {
+            session.tick(1.0 / 60.0);
+        }
+    }
+
+    /// The time of each run (s).
+    pub fn times(session: &Session) -> Vec<f64> {
+        let times = session.panes.iter().map(|pane| pane.simulation.time());
+        times.collect()
+    }
+}

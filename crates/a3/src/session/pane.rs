@@ -1,73 +1,76 @@
-//! One run of the session, and what is known of it.
+//! A pane: one run of the session, and what is known of it.
 
 use std::time::{Duration, Instant};
 
 use a3_core::{Method, Simulation};
 
 use super::limit::LimitWatch;
-use super::samples::History;
+use super::samples::Samples;
 use crate::progress;
 use crate::show::Show;
 
-/// What an adaptive method goes on by at once (s).
+/// Simulated time by which an adaptive method goes on at once (s).
 pub const PORTION: f64 = 1.0 / 240.0;
 
 /// A run on the screen.
 pub struct Pane {
+    /// The run.
     pub simulation: Simulation,
+    /// How the run is drawn.
     pub show: Show,
-    /// The solver asked for, also while a scene is shown that it cannot serve.
+    /// The solver that was asked for, also while a scene is shown that it cannot serve.
     pub wanted: &'static Method,
     /// Total energy (J), if the scene has any.
     pub energy: Option<f64>,
     /// The largest length over rest length, if the scene has springs.
     pub stretch: Option<f64>,
-    /// How far its step is from the largest stable one.
-    pub watch: LimitWatch,
+    /// The largest stable step, as it changes.
+    pub limit: LimitWatch,
     /// Root mean square distance of the particles from the reference (m), if there is one.
     pub error: Option<f64>,
-    /// What it costs, once it is known.
+    /// Cost of the run, once it is known.
     pub cost: Option<Cost>,
-    /// What the plots show.
-    pub history: History,
+    /// Samples for the plots.
+    pub samples: Samples,
     /// Real time spent on steps.
     computing: Duration,
-    /// Time (s), evaluations and computing when the cost was last taken.
+    /// Simulated time (s), evaluations and computing time when the cost was last taken.
     counted: (f64, f64, Duration),
 }
 
-/// Per simulated second.
+/// Cost of a simulated second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// Linear algebra included.
+    /// Evaluations, with linear algebra counted in evaluations.
     pub evaluations: f64,
-    /// In ms.
+    /// Computing time (ms).
     pub computing: f64,
 }
 
 impl Pane {
+    /// A pane that begins with this run.
     pub fn new(simulation: Simulation, show: Show) -> Self {
         Self {
             wanted: simulation.method(),
             show,
             energy: None,
-            watch: LimitWatch::default(),
+            limit: LimitWatch::default(),
             stretch: None,
             error: None,
             cost: None,
-            history: History::default(),
+            samples: Samples::default(),
             computing: Duration::ZERO,
             counted: (simulation.time(), simulation.work().total(), Duration::ZERO),
             simulation,
         }
     }
 
-    /// Whether its run goes on.
+    /// Whether the run goes on: it is not lost.
     pub fn alive(&self) -> bool {
         self.simulation.blow_up().is_none()
     }
 
-    /// Takes the steps that end by `time` (s). A blow-up is on the screen from then on.
+    /// Takes the steps that end by `time` (s). A blow-up is shown from then on.
     pub fn take_due_steps(&mut self, time: f64) {
         let begun = Instant::now();
         let adaptive = self.simulation.control().step().is_none();
@@ -75,7 +78,7 @@ impl Pane {
         let due = ((time - self.simulation.time()) / step + 1e-9).floor() as u64;
         if !self.alive() {
         } else if adaptive {
-            // Read off where it is wanted.
+            // The state is read off between two steps.
             let _ = self.simulation.advance_to(time);
         } else if due > 0 {
             let _ = self.simulation.take_steps(due);
@@ -83,12 +86,13 @@ impl Pane {
         self.computing += begun.elapsed();
     }
 
-    /// The step (s); a run to a tolerance, which can be read off anywhere, is asked for no more at once than this.
+    /// Simulated time by which the run goes on at once (s): its step, or a portion for a run to a
+    /// tolerance, whose state can be read off anywhere.
     pub fn pace(&self) -> f64 {
         self.simulation.control().step().unwrap_or(PORTION)
     }
 
-    /// Goes on to `time` (s) exactly, however long that takes. A blow-up is on the picture from then on.
+    /// Brings the run to `time` (s) exactly, however long that takes. A blow-up is shown from then on.
     pub fn run_to(&mut self, time: f64) {
         let (begun, mut aside) = (Instant::now(), Duration::ZERO);
         let show = &mut self.show;
@@ -102,25 +106,25 @@ impl Pane {
         self.read_cost();
     }
 
-    /// The trail goes on, unless the run is lost: it would lead to where the particle no longer is.
+    /// Continues the trail, unless the run is lost: its state is then no longer that of the motion.
     pub fn follow(&mut self) {
         if self.alive() {
             self.show.follow(&self.simulation);
         }
     }
 
-    /// Energy and stretch of the state as it is now.
+    /// Takes energy, stretch, a sample and the stable step of the state as it is now.
     pub fn read_state(&mut self) {
         let energy = self.simulation.energy();
         self.energy = energy.map(|energy| energy.total());
         self.stretch = self.simulation.largest_stretch();
         let computing = self.computing.as_secs_f64();
-        self.history
+        self.samples
             .take(&self.simulation, energy, self.stretch, computing);
-        self.watch.look(&self.simulation);
+        self.limit.look(&self.simulation);
     }
 
-    /// The cost since it was last taken, if any time was simulated.
+    /// Takes the cost since it was last taken, if any time was simulated.
     pub fn read_cost(&mut self) {
         let (time, evaluations, computing) = self.counted;
         let simulated = self.simulation.time() - time;
@@ -131,39 +135,39 @@ impl Pane {
                 computing: (self.computing.saturating_sub(computing)).as_secs_f64() * 1e3
                     / simulated,
             });
-            self.count();
+            self.restart_cost();
         }
     }
 
-    /// The cost is taken from here on: of another method, or of another step.
-    pub fn count(&mut self) {
-        self.watch.ask(self.simulation.method());
+    /// Counts the cost from here on: of another method, or of another step.
+    pub fn restart_cost(&mut self) {
+        self.limit.ask(self.simulation.method());
         let evaluations = self.simulation.work().total();
         self.counted = (self.simulation.time(), evaluations, self.computing);
     }
 
-    /// The scene's forces are other ones.
-    pub fn changed(&mut self) {
-        self.watch.hurry();
-        self.count();
+    /// Notes that the forces of the scene have changed.
+    pub fn forces_changed(&mut self) {
+        self.limit.hurry();
+        self.restart_cost();
     }
 
-    /// Back to the beginning.
+    /// Goes back to the beginning.
     pub fn reset(&mut self) {
         self.simulation.reset();
         self.show.clear_trail();
         self.error = None;
-        self.count();
+        self.restart_cost();
     }
 
     /// Goes on with another scene.
     pub fn set_simulation(&mut self, simulation: Simulation) {
         self.simulation = simulation;
         self.show.clear_trail();
-        self.history.clear();
+        self.samples.clear();
         self.show.springs_of = None;
         (self.error, self.cost) = (None, None);
-        self.watch = LimitWatch::default();
-        self.count();
+        self.limit = LimitWatch::default();
+        self.restart_cost();
     }
 }

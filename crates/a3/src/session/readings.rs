@@ -1,6 +1,6 @@
 //! What the text over the picture says beside the runs themselves.
 
-use super::timeline::Place;
+use super::timeline::TimelinePosition;
 
 /// Values that the text shows, taken twice a second or when something happens.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +25,6 @@ pub struct Readings {
     pub no_error: Option<&'static str>,
     /// Slow motion: simulated time goes by at 1 / 2^slowness of real time.
     pub slowness: i32,
-    /// Place on the timeline after going back, unless it is the newest moment.
-    pub place: Option<Place>,
+    /// Position on the timeline after going back, unless it is the newest moment.
+    pub rewound: Option<TimelinePosition>,
 }

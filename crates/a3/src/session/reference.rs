@@ -1,4 +1,4 @@
-//! A hidden run that the errors are taken from.
+//! The reference: a hidden run from which the errors of the panes are taken.
 
 use std::time::{Duration, Instant};
 
@@ -8,19 +8,19 @@ use super::pane::{PORTION, Pane};
 use crate::failure::Failure;
 use crate::progress;
 
-/// Frames in a row that it may be late before it is stopped.
+/// Frames in a row that the reference may be late before it is stopped.
 const PATIENCE: u32 = 30;
 
-/// A run of the panes' scene that is much more exact than they are, and gets the same hands.
-pub struct Reference {
+/// A run of the panes' scene that is much more exact than they are and gets the same hands.
+pub struct ReferenceRun {
     simulation: Simulation,
-    /// Frames in a row that it did not keep up.
+    /// Frames in a row that it did not keep up with the panes.
     late: u32,
-    /// Why it was stopped, if it was.
+    /// Reason why it was stopped, if it was.
     stopped: Option<&'static str>,
 }
 
-/// The reference's method and its tolerance: tight, and tighter still beside adaptive panes.
+/// Method and tolerance of the reference: tight, and tighter still beside adaptive panes.
 fn choose(panes: &[Pane]) -> (&'static Method, Control) {
     let method = integrators::find("dop853").unwrap_or(&integrators::METHODS[0]);
     let tolerances = panes
@@ -30,8 +30,8 @@ fn choose(panes: &[Pane]) -> (&'static Method, Control) {
     (method, Control::Tolerance((1e-4 * tightest).max(1e-13)))
 }
 
-impl Reference {
-    /// For panes at the beginning of their scene.
+impl ReferenceRun {
+    /// A reference for several panes at the beginning of their scene; `None` for a single one.
     pub fn new(panes: &[Pane]) -> Result<Option<Self>, Failure> {
         let [first, _, ..] = panes else {
             return Ok(None);
@@ -49,42 +49,43 @@ impl Reference {
         }))
     }
 
-    /// The panes have other methods or steps.
+    /// Fits the tolerance to panes that have other methods or steps.
     pub fn adapt(&mut self, panes: &[Pane]) {
         let (method, control) = choose(panes);
-        // It serves every scene, so it is not refused.
+        // The method serves every scene, so it is not refused.
         if self.simulation.control() != control {
             let _ = self.simulation.set_method(method, control);
         }
     }
 
-    /// The run, for what a hand does, unless it was stopped.
+    /// The run, unless it was stopped.
     pub fn run(&mut self) -> Option<&mut Simulation> {
         Some(&mut self.simulation).filter(|_| self.stopped.is_none())
     }
 
-    /// The run, stopped or not, to look at.
+    /// The run to look at, stopped or not.
     pub fn any(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// The run, stopped or not.
+    /// The run to change, stopped or not.
     pub fn any_run(&mut self) -> &mut Simulation {
         &mut self.simulation
     }
 
-    /// Why there are no errors, if there are none.
+    /// Reason why there are no errors, if there are none.
     pub fn stopped(&self) -> Option<&'static str> {
         self.stopped
     }
 
-    /// Back to the beginning.
+    /// Goes back to the beginning, and goes on if it was stopped.
     pub fn reset(&mut self) {
         self.simulation.reset();
         (self.late, self.stopped) = (0, None);
     }
 
-    /// Goes on to `time` (s) exactly, within `budget` of real time. Whether it got there.
+    /// Goes on to `time` (s) exactly, within `budget` of real time, and returns whether it got
+    /// there.
     pub fn reach(&mut self, time: f64, budget: Duration) -> bool {
         let begun = Instant::now();
         let run = &mut self.simulation;
@@ -101,13 +102,14 @@ impl Reference {
         self.stopped.is_none()
     }
 
-    /// No errors from here on.
+    /// Stops the run: there are no errors from here on.
     pub fn stop(&mut self, why: &'static str) {
         self.stopped = Some(why);
     }
 
-    /// Catches up with the panes one after the other, and takes their errors. Within `budget` of real time: what does
-    /// not fit is left for the next frame, and what never fits is stopped.
+    /// Catches up with the panes one after the other within `budget` of real time, and takes their
+    /// errors. What does not fit is left for the next frame; a reference that is late for too many
+    /// frames is stopped.
     pub fn follow(&mut self, panes: &mut [Pane], budget: Duration) {
         if self.stopped.is_none() {
             let begun = Instant::now();
@@ -116,7 +118,8 @@ impl Reference {
             let mut kept_up = true;
             for pane in runs {
                 let time = pane.simulation.time();
-                // One with long steps may stand where the reference has been before: its error is known.
+                // A run with long steps may stand where the reference has been before: its error is
+                // known.
                 if time < self.simulation.time() - 1e-9 {
                     continue;
                 }
@@ -138,9 +141,10 @@ impl Reference {
         }
     }
 
-    /// Goes on to `time` (s) exactly, however long that takes, and takes the errors of the panes that are there.
+    /// Goes on to `time` (s) exactly, however long that takes, and takes the errors of the panes at that
+    /// time.
     pub fn run_to(&mut self, time: f64, panes: &mut [Pane]) {
-        // A blow-up is found by `reach`.
+        // A blow-up is found by `reach`, through `follow`.
         let _ = progress::advance(&mut self.simulation, time, |_| {});
         self.follow(panes, Duration::MAX);
     }
@@ -164,14 +168,14 @@ mod tests {
             let simulation = Simulation::new(scene.clone(), method, Control::Step(0.01)).unwrap();
             Pane::new(simulation, Show::new(false, None))
         };
-        assert!(Reference::new(&[pane("t")]).ok().unwrap().is_none());
+        assert!(ReferenceRun::new(&[pane("t")]).ok().unwrap().is_none());
         let go = |panes: &mut [Pane], time| {
             for pane in panes {
                 pane.take_due_steps(time);
             }
         };
         let mut panes = [pane("t"), pane("r")];
-        let mut reference = Reference::new(&panes).ok().flatten().unwrap();
+        let mut reference = ReferenceRun::new(&panes).ok().flatten().unwrap();
         // A frame that is late is made up for.
         go(&mut panes, 0.5);
         reference.follow(&mut panes, Duration::ZERO);

@@ -1,36 +1,39 @@
-//! What a run did in the last seconds, for the plots.
+//! Samples of the last seconds of a run, for the plots.
 
 use std::collections::VecDeque;
 
 use a3_core::{Energy, Simulation};
 
-/// Simulated time that is remembered (s).
+/// Simulated time that is kept (s).
 pub const SPAN: f64 = 20.0;
-/// From one sample to the next (s), at least: a little less than a tenth, so that ten a second stay ten.
-const APART: f64 = 0.09;
+/// The least simulated time between two samples (s): a little less than a tenth, so that rounding
+/// leaves ten a second.
+const INTERVAL: f64 = 0.09;
 
-/// A run at one time.
+/// Values of a run at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// In s.
+    /// Simulated time (s).
     pub time: f64,
+    /// Energy by kind, if the scene has any.
     pub energy: Option<Energy>,
-    /// The largest length over rest length.
+    /// The largest length over rest length, if the scene has springs.
     pub stretch: Option<f64>,
-    /// Since the sample before, per simulated second: evaluations, and computing (ms).
+    /// Evaluations and computing time (ms) per simulated second, since the sample before.
     pub cost: Option<[f64; 2]>,
-    /// Evaluations and computing (s) so far.
+    /// Evaluations and computing time (s) since the beginning.
     total: [f64; 2],
 }
 
 /// Samples in the order of their times.
 #[derive(Default)]
-pub struct History {
+pub struct Samples {
     samples: VecDeque<Sample>,
 }
 
-impl History {
-    /// Remembers the run as it is, if it is time. What it had not done yet is forgotten: time may go back.
+impl Samples {
+    /// Takes a sample if the last one is old enough. Samples of a later time are dropped: time may go
+    /// back.
     pub fn take(
         &mut self,
         run: &Simulation,
@@ -43,7 +46,7 @@ impl History {
             self.samples.pop_back();
         }
         let before = self.samples.back();
-        if before.is_some_and(|last| time - last.time < APART) {
+        if before.is_some_and(|last| time - last.time < INTERVAL) {
             return;
         }
         let total = [run.work().total(), computing];
@@ -66,11 +69,13 @@ impl History {
         }
     }
 
+    /// Drops all samples.
     pub fn clear(&mut self) {
         self.samples.clear();
     }
 
-    pub fn samples(&self) -> impl Iterator<Item = &Sample> {
+    /// The samples, the oldest first.
+    pub fn iter(&self) -> impl Iterator<Item = &Sample> {
         self.samples.iter()
     }
 }
@@ -85,14 +90,14 @@ mod tests {
         let scene = a3_scenes::find("pendulum").unwrap().build(None).unwrap();
         let mut run =
             Simulation::new(scene, integrators::find("r").unwrap(), Control::Step(0.01)).unwrap();
-        let mut history = History::default();
+        let mut kept = Samples::default();
         let mut computing = 0.0;
         for _ in 0..600 {
             run.take_steps(5).unwrap();
             computing += 0.001;
-            history.take(&run, run.energy(), run.largest_stretch(), computing);
+            kept.take(&run, run.energy(), run.largest_stretch(), computing);
         }
-        let samples: Vec<_> = history.samples().copied().collect();
+        let samples: Vec<_> = kept.iter().copied().collect();
         assert!((200..=202).contains(&samples.len()), "{}", samples.len());
         for pair in samples.windows(2) {
             assert!((pair[1].time - pair[0].time - 0.1).abs() < 1e-9);
@@ -102,7 +107,7 @@ mod tests {
         assert!(samples[0].time >= 29.9 - SPAN && samples[0].energy.is_some());
         // From the beginning again.
         run.reset();
-        history.take(&run, run.energy(), None, computing);
-        assert_eq!(history.samples().count(), 1);
+        kept.take(&run, run.energy(), None, computing);
+        assert_eq!(kept.iter().count(), 1);
     }
 }

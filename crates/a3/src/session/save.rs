@@ -1,20 +1,21 @@
-//! The run as it is now, as a scene file.
+//! A run as it is now, written as a scene file.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use a3_scenes::{Camera, Description, State};
 
+use super::origin::Origin;
 use super::state::Session;
 use crate::failure::Failure;
 use crate::output;
 
-/// The most particles whose states fit into a file that can be read again.
+/// The most particles of a scene file that can be read again.
 const MOST: usize = 100_000;
 
 impl Session {
-    /// Writes the run of pane `at` as it is now under the first free name, beside the file that it is from if there is one.
-    /// Where.
+    /// Writes the run of pane `at` under the first free name, beside the file of its scene if there is
+    /// one, and returns that name.
     pub fn write_scene(&self, at: usize) -> Result<String, String> {
         let run = &self.panes[at.min(self.panes.len() - 1)].simulation;
         let particles = run.particles();
@@ -23,7 +24,7 @@ impl Session {
                 "a scene file has at most {MOST} particles, and here are {particles}"
             ));
         }
-        let folder = self.shown.0.path.as_deref().and_then(Path::parent);
+        let folder = self.shown.source.path.as_deref().and_then(Path::parent);
         let name = &run.scene().name;
         let write = || -> Result<PathBuf, Failure> {
             let text = self.scene_text(at).map_err(Failure::run)?;
@@ -36,7 +37,7 @@ impl Session {
             .map_err(Failure::message)
     }
 
-    /// The run of pane `at` as it is now.
+    /// The text of the scene file.
     fn scene_text(&self, at: usize) -> Result<String, a3_core::Error> {
         let run = &self.panes[at.min(self.panes.len() - 1)].simulation;
         let mut description = self.description(at);
@@ -57,7 +58,7 @@ impl Session {
         });
         text += "\n[state]\n";
         for (key, rows) in [("positions", positions), ("velocities", velocities)] {
-            // Writing to a string does not fail. As many digits as it takes.
+            // Writing to a string does not fail. Numbers get as many digits as they need.
             let _ = writeln!(text, "{key} = [");
             for row in rows {
                 let _ = writeln!(text, "  {row:?},");
@@ -67,9 +68,10 @@ impl Session {
         Ok(text)
     }
 
+    /// The description of the run: the scene as it is tuned, and the state as it is now.
     fn description(&self, at: usize) -> Description {
         let run = &self.panes[at.min(self.panes.len() - 1)].simulation;
-        let (source, grid) = &self.shown;
+        let Origin { source, grid } = &self.shown;
         let mut description = Description::clone(&source.description);
         if let (Some(grid), Some(cloth)) = (grid, description.cloth.first_mut()) {
             cloth.grid = [grid.rows(), grid.cols()];
@@ -77,7 +79,7 @@ impl Session {
         description.scale_springs(self.tuning.stiffness, self.tuning.damping);
         description.scale_wind(self.tuning.gusts);
         description.begin_with(run.model(), run.time(), run.state());
-        // What only the hand holds is let go of.
+        // A particle that only the hand holds is free in the file.
         if let Some(held) = run.grabbed() {
             let own = run.scene().model.network();
             let pinned = run.pinned() && own.is_some_and(|own| own.is_pinned(held));
@@ -103,8 +105,8 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::super::keys::Action;
-    use super::super::state::tests::session;
     use super::*;
+    use crate::session::session;
     use a3_core::{Network, Simulation, Vector3};
 
     use crate::scene_file::Source;

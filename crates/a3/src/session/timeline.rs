@@ -1,4 +1,4 @@
-//! The last seconds of all runs, to go back to.
+//! The timeline: the last seconds of all runs, to go back to.
 
 use std::collections::VecDeque;
 
@@ -10,9 +10,9 @@ const SPAN: f64 = 20.0;
 /// All of them together may take so much (bytes).
 const MEMORY: usize = 64 << 20;
 
-/// Moments, the oldest first.
+/// Kept moments, the oldest first.
 #[derive(Default)]
-pub struct History {
+pub struct Timeline {
     moments: VecDeque<Entry>,
     /// The one that is shown, unless it is the newest.
     shown: Option<usize>,
@@ -30,9 +30,9 @@ impl Entry {
     }
 }
 
-/// Where in the kept time one is.
+/// Position of a moment on the timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct TimelinePosition {
     /// 0 at the oldest moment, 1 at the newest.
     pub share: f32,
     /// How long before the newest moment (s).
@@ -41,7 +41,8 @@ pub struct Place {
     pub span: f64,
 }
 
-impl History {
+impl Timeline {
+    /// Forgets all moments.
     pub fn clear(&mut self) {
         self.moments.clear();
         self.shown = None;
@@ -106,11 +107,11 @@ impl History {
         }
     }
 
-    /// Where that is, unless it is the newest moment.
-    pub fn place(&self) -> Option<Place> {
+    /// Position of the moment that is shown, unless it is the newest.
+    pub fn position(&self) -> Option<TimelinePosition> {
         let (k, newest) = (self.shown?, self.moments.len() - 1);
         let clock = |k: usize| self.moments[k].clock;
-        Some(Place {
+        Some(TimelinePosition {
             share: k as f32 / newest as f32,
             back: clock(newest) - clock(k),
             span: clock(newest) - clock(0),
@@ -133,29 +134,29 @@ mod tests {
     #[test]
     fn it_keeps_twenty_seconds_and_no_more_than_its_memory() {
         let (small, large) = (run(3), run(200));
-        let mut history = History::default();
+        let mut timeline = Timeline::default();
         for k in 0..3000 {
-            history.keep(f64::from(k) / 120.0, false, [&small].into_iter());
+            timeline.keep(f64::from(k) / 120.0, false, [&small].into_iter());
         }
         // Every other one is kept.
-        assert!(history.moments.len().abs_diff(1201) <= 1);
-        history.clear();
+        assert!(timeline.moments.len().abs_diff(1201) <= 1);
+        timeline.clear();
         for k in 0..50 {
-            history.keep(f64::from(k), false, [&large, &large].into_iter());
+            timeline.keep(f64::from(k), false, [&large, &large].into_iter());
         }
         let size = 2 * 8 * large.state().len();
-        assert_eq!(history.moments.len(), (MEMORY / size).min(21));
+        assert_eq!(timeline.moments.len(), (MEMORY / size).min(21));
     }
 
     #[test]
     fn what_came_after_the_moment_shown_did_not_happen() {
-        let (run, mut history) = (run(3), History::default());
+        let (run, mut timeline) = (run(3), Timeline::default());
         for k in 0..5 {
-            history.keep(f64::from(k), false, [&run].into_iter());
+            timeline.keep(f64::from(k), false, [&run].into_iter());
         }
-        assert!(history.go(-3));
-        history.keep(1.5, false, [&run].into_iter());
-        let clocks: Vec<_> = history.moments.iter().map(|entry| entry.clock).collect();
+        assert!(timeline.go(-3));
+        timeline.keep(1.5, false, [&run].into_iter());
+        let clocks: Vec<_> = timeline.moments.iter().map(|entry| entry.clock).collect();
         assert_eq!(clocks, [0.0, 1.0, 1.5]);
     }
 
@@ -164,26 +165,29 @@ mod tests {
         let scene = a3_scenes::find("mit").unwrap().build(None).unwrap();
         let mut run =
             Simulation::new(scene, integrators::find("e").unwrap(), Control::Step(0.05)).unwrap();
-        let mut history = History::default();
-        history.keep(0.0, false, [&run].into_iter());
+        let mut timeline = Timeline::default();
+        timeline.keep(0.0, false, [&run].into_iter());
         while run.take_steps(1).is_ok() {}
-        history.keep(1.0, false, [&run].into_iter());
-        let kept = history.moments.iter().map(|e| e.moments[0].is_some());
+        timeline.keep(1.0, false, [&run].into_iter());
+        let kept = timeline.moments.iter().map(|e| e.moments[0].is_some());
         assert_eq!(kept.collect::<Vec<_>>(), [true, false]);
     }
 
     #[test]
     fn it_stops_at_both_ends() {
-        let mut history = History::default();
-        assert!(!history.go(-1) && !history.go_to(0.0) && history.place().is_none());
+        let mut timeline = Timeline::default();
+        assert!(!timeline.go(-1) && !timeline.go_to(0.0) && timeline.position().is_none());
         for k in 0..5 {
-            history.keep(f64::from(k), false, [&run(3)].into_iter());
+            timeline.keep(f64::from(k), false, [&run(3)].into_iter());
         }
-        assert!(history.go(-3) && history.go(-3) && !history.go(-1));
-        let place = history.place().unwrap();
-        assert_eq!((place.share, place.back, place.span), (0.0, 4.0, 4.0));
-        assert!(history.go_to(0.5));
-        assert_eq!(history.place().unwrap().back, 2.0);
-        assert!(history.go(10) && history.place().is_none());
+        assert!(timeline.go(-3) && timeline.go(-3) && !timeline.go(-1));
+        let position = timeline.position().unwrap();
+        assert_eq!(
+            (position.share, position.back, position.span),
+            (0.0, 4.0, 4.0)
+        );
+        assert!(timeline.go_to(0.5));
+        assert_eq!(timeline.position().unwrap().back, 2.0);
+        assert!(timeline.go(10) && timeline.position().is_none());
     }
 }

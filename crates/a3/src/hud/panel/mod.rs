@@ -1,9 +1,11 @@
 //! The panel beside the picture: knobs, and plots of what they do. Key Tab.
 
+mod dial;
 mod knobs;
 mod plots;
 mod request;
 mod row;
+mod values;
 mod view;
 
 pub use request::{PanelKey, Request, apply, press};

@@ -1,6 +1,7 @@
 //! What keys and the mouse ask of the panel.
 
-use super::knobs::{Dial, KNOBS, Knob, Turn};
+use super::dial::{Dial, Turn};
+use super::knobs::{KNOBS, Knob};
 use crate::session::{Action, Session};
 
 /// A change that the user asks for in the panel.
@@ -17,10 +18,15 @@ pub enum Request {
 /// A key with a meaning in the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PanelKey {
+    /// Chooses the row above.
     Up,
+    /// Chooses the row below.
     Down,
+    /// Turns the knob down.
     Left,
+    /// Turns the knob up.
     Right,
+    /// Toggles a switch; turns another knob to the scene's own value.
     Toggle,
 }
 

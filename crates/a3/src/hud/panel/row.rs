@@ -4,26 +4,31 @@ use egui::{
     Align2, Color32, CursorIcon, FontId, Id, Rect, Response, Sense, Stroke, Ui, pos2, vec2,
 };
 
-use super::super::text::{FAINT, TEXT};
-use super::knobs::{Dial, Scale, Turn};
+use super::super::style::{FAINT, TEXT};
+use super::dial::{Dial, DialScale, Turn};
 use super::request::Request;
 
-/// Of a row (points).
+/// Height of a row (points).
 pub const HEIGHT: f32 = 23.0;
-/// The panel's paper, and its edge.
+/// Colour of the panel.
 pub const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
+/// Colour of the panel's edge.
 pub const EDGE: Color32 = Color32::from_rgb(188, 189, 192);
-/// What is set.
+/// Colour of values that differ from the scene's own, and of what can be moved.
 const INK: Color32 = Color32::from_rgb(38, 84, 132);
+/// Colour of a track that is empty, and of a switch that is off.
 const TRACK: Color32 = Color32::from_rgb(186, 188, 194);
+/// Colour of the chosen row.
 const CHOSEN: Color32 = Color32::from_rgb(207, 211, 218);
+/// Colour of the row under the pointer.
 const HOVERED: Color32 = Color32::from_rgb(217, 218, 220);
 
-/// From the row's left to what is turned, and from there to the value (points).
+/// Width of the name (points).
 const NAME: f32 = 76.0;
+/// Width of the value (points).
 const VALUE: f32 = 76.0;
 
-/// Shows knob k. What a hand does to it.
+/// Draws the row of knob k, and returns what the mouse asks for.
 pub fn show(
     ui: &Ui,
     rect: Rect,
@@ -50,7 +55,7 @@ pub fn show(
         colour,
     );
     let mut turn = None;
-    if let Scale::Choice(_) = dial.scale {
+    if let DialScale::Choice(_) = dial.scale {
         let room = Rect::from_x_y_ranges(rect.left() + NAME - 18.0..=rect.right(), rect.y_range());
         turn = choice(ui, room, id, dial);
     } else {
@@ -71,7 +76,7 @@ pub fn show(
         {
             turn = Some(Turn::Own);
         }
-        let set = if dial.scale == Scale::Switch {
+        let set = if dial.scale == DialScale::Switch {
             switch(ui, room, id("dial"), dial)
         } else {
             slider(ui, room, id("dial"), dial)
@@ -82,7 +87,7 @@ pub fn show(
         .or_else(|| whole.clicked().then_some(Request::Choose(k)))
 }
 
-/// A track with a thumb, and a mark where the scene's own value is.
+/// Draws a track with a thumb, and a mark at the scene's own value.
 fn slider(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
     let response = ui.interact(room, id, Sense::click_and_drag());
     if response.hovered() || response.dragged() {
@@ -112,6 +117,7 @@ fn slider(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
     Some(Turn::To(dial.scale.at(share.into())))
 }
 
+/// Draws a switch.
 fn switch(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
     let size = vec2(28.0, 15.0);
     let rect = Rect::from_min_size(
@@ -131,7 +137,7 @@ fn switch(ui: &Ui, room: Rect, id: Id, dial: &Dial) -> Option<Turn> {
     response.clicked().then_some(Turn::Toggle)
 }
 
-/// What is chosen, between what is before and after it.
+/// Draws the chosen value between arrows to the one before and the one after it.
 fn choice(ui: &Ui, room: Rect, id: impl Fn(&'static str) -> Id, dial: &Dial) -> Option<Turn> {
     let mut turn = None;
     for (part, x, way, up) in [
@@ -160,7 +166,7 @@ fn choice(ui: &Ui, room: Rect, id: impl Fn(&'static str) -> Id, dial: &Dial) -> 
     turn
 }
 
-/// A button with its key.
+/// Draws a button with its key.
 pub fn button(ui: &Ui, rect: Rect, response: &Response, words: &str, key: &str) {
     let painter = ui.painter();
     let fill = if response.is_pointer_button_down_on() {

@@ -2,19 +2,22 @@
 
 use egui::{Align2, Area, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
 
-use super::super::text::{FAINT, TEXT};
+use super::super::style::{FAINT, TEXT};
 use super::request::{self, Request, is_shown, rows};
 use super::{plots, row};
 use crate::session::Session;
 
-/// In points.
+/// Width of the panel in a window that is wide enough (points).
 pub(super) const WIDTH: f32 = 304.0;
-/// The panel takes no more of a window's width than this share.
+/// The largest share of a window's width that the panel takes.
 const MOST: f32 = 0.6;
+/// Distance of the rows from the edges of the panel (points).
 pub(super) const MARGIN: f32 = 14.0;
+/// Height of the title (points).
 const HEAD: f32 = 36.0;
+/// Height of the button and its margins (points).
 const FOOT: f32 = 46.0;
-/// Between groups of rows.
+/// Distance between groups of rows (points).
 const GAP: f32 = 7.0;
 
 /// Width of the panel in a window of that width (points).
@@ -22,7 +25,7 @@ pub(super) fn width(window: f32) -> f32 {
     WIDTH.min((MOST * window).round())
 }
 
-/// What it leaves of a window of `size` (px), `scale` pixels per point.
+/// What the panel leaves of a window of `size` (px) at `scale` pixels per point.
 pub fn leaves(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     if !is_shown(session) {
         return size;
@@ -31,12 +34,12 @@ pub fn leaves(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     (size.0.saturating_sub(taken).max(1), size.1)
 }
 
-/// What text has to keep clear of, on the right (points).
+/// Width on the right that text must keep clear of (points).
 pub fn inset(session: &Session, size: (u32, u32), scale: f32) -> f32 {
     (size.0 - leaves(session, size, scale).0) as f32 / scale
 }
 
-/// Shows the panel, if it is open. What a hand in it wants.
+/// Draws the panel, if it is shown, and returns what the mouse asks for.
 pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
     if !is_shown(session) {
         return None;
@@ -61,7 +64,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
             let rows = rows(session);
             let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
             let chosen = chosen.unwrap_or(0);
-            // In a low window as many as fit, the chosen one among them.
+            // In a low window there are as many rows as fit, the chosen one among them.
             let room = inner.bottom() - FOOT - (inner.top() + HEAD);
             let fit = ((room / row::HEIGHT) as usize).max(1);
             let gap = if fit > rows.len() { GAP } else { 0.0 };
@@ -82,11 +85,12 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                 pos2(inner.right(), inner.bottom() - FOOT),
             );
             let pane = &session.panes[request::pane(session)];
-            plots::draw(ui.painter(), room, &pane.history);
+            plots::draw(ui.painter(), room, &pane.samples);
         });
     request
 }
 
+/// Draws the title.
 fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
     let painter = ui.painter();
     let line = inner.top() + 19.0;
@@ -115,7 +119,7 @@ fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
     );
 }
 
-/// The button.
+/// Draws the button that writes a scene file.
 fn foot(ui: &egui::Ui, inner: Rect) -> Option<Request> {
     let rect = Rect::from_min_max(
         pos2(inner.left(), inner.bottom() - FOOT + 8.0),

@@ -1,0 +1,106 @@
+//! What is written about a run that blew up.
+
+use a3_core::{BlowUp, Cause, Control};
+use egui::{RichText, Ui};
+
+use super::style::{ALARM, text};
+use super::words::digits;
+use crate::session::Pane;
+
+/// Writes when the run blew up, which limit was passed, and which step would have held.
+pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
+    ui.label(
+        RichText::new(format!("It {lost}."))
+            .color(ALARM)
+            .size(14.5)
+            .strong(),
+    );
+    let method = lost.method;
+    let same = method == pane.simulation.method().title;
+    let limit = pane.limit.limit().map(|limit| limit.step);
+    let hold = limit.zip(pane.limit.would_hold());
+    ui.label(text(match (lost.control, hold) {
+        (Control::Tolerance(tolerance), _) if matches!(lost.cause, Cause::StepTooSmall { .. }) => {
+            format!("{method} found no step to a tolerance of {tolerance:e}: a larger one may do.")
+        }
+        (Control::Tolerance(tolerance), _) => {
+            format!("A tolerance of {tolerance:e} was too large for {method}.")
+        }
+        (Control::Step(step), Some((limit, would_hold))) if same => {
+            let past = if step > limit {
+                format!(": past its limit here of {} ms", digits(1e3 * limit))
+            } else {
+                String::new()
+            };
+            format!("A step of {step} s was too long for {method}{past}. {would_hold} s would have held.")
+        }
+        (Control::Step(step), _) => format!("A step of {step} s was too long for {method}."),
+    }));
+}
+
+/// The keys that lead out of a blow-up.
+pub fn way_out() -> String {
+    "Press - for a shorter step, or a digit for another solver, then r.".into()
+}
+
+#[cfg(test)]
+mod tests {
+    use a3_core::{Control, integrators};
+
+    use crate::hud::{pane, read};
+    use crate::session::Readings;
+
+    #[test]
+    fn a_blow_up_says_which_limit_was_passed() {
+        let mut pane = pane("mit", "r", 0.05);
+        while pane.simulation.take_steps(1).is_ok() {}
+        pane.read_state();
+        let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+        let words = words.replace('\n', " ");
+        for said in [
+            "A step of 0.05 s was too long for classical Runge-Kutta: past its limit here of 3",
+            "0.03 s would have held",
+        ] {
+            assert!(words.contains(said), "{said} in {words}");
+        }
+    }
+
+    #[test]
+    fn a_blow_up_names_what_failed_and_nothing_overlaps() {
+        let mut pane = pane("mit", "e", 0.05);
+        let run = &mut pane.simulation;
+        while run.take_steps(1).is_ok() {}
+        run.set_method(integrators::find("r").unwrap(), Control::Step(0.01))
+            .unwrap();
+        let panes = [pane];
+        let readings = Readings {
+            message: Some("There is no wind here.".into()),
+            ..Readings::default()
+        };
+        for size in [
+            [1280.0, 720.0],
+            [800.0, 600.0],
+            [500.0, 400.0],
+            [260.0, 860.0],
+        ] {
+            let (words, sheets) = read(&panes, &readings, size);
+            let words = words.replace('\n', " ");
+            assert!(
+                words.contains("blew up at step") && words.contains("no wind here"),
+                "{words}"
+            );
+            assert!(
+                words.contains("A step of 0.05 s was too long for explicit Euler."),
+                "{words}"
+            );
+            assert!(sheets.len() >= 3);
+            for (k, a) in sheets.iter().enumerate() {
+                assert!(a.right() <= size[0] + 1.0, "{a:?} in {size:?}");
+                assert!(
+                    sheets[..k].iter().all(|b| !a.shrink(1.0).intersects(*b)),
+                    "{sheets:?} in {size:?}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Tests of the panel, by keys and by the mouse in a window without a screen.
+
+mod drawing;
+mod screen;
+mod turning;
+
+use super::request::{PanelKey, press, rows};
+use crate::session::{Action, Session, session};
+
+fn opened(words: &[&str]) -> Session {
+    let mut session = session(words);
+    session.act(Action::Panel, 0);
+    session
+}
+
+/// Every scene of the table, in a window with its panel.
+fn every_scene() -> impl Iterator<Item = Session> {
+    let names = a3_scenes::SCENES.iter().map(|entry| entry.name);
+    names.map(|name| opened(&["r", "0.005", "--scene", name]))
+}
+
+fn type_key(session: &mut Session, key: PanelKey, shift: bool) {
+    assert!(press(session, key, shift), "{key:?}");
+}
+
+/// What all rows say.
+fn dials(session: &Session) -> Vec<(&'static str, f64)> {
+    let rows = rows(session).into_iter();
+    rows.map(|(_, knob, dial)| (knob.name, dial.value))
+        .collect()
+}
+
+/// Those that differ.
+fn changed(before: &[(&'static str, f64)], session: &Session) -> Vec<&'static str> {
+    let after = dials(session);
+    assert_eq!(before.len(), after.len());
+    let pairs = before.iter().zip(after);
+    pairs.filter(|(a, b)| **a != *b).map(|(a, _)| a.0).collect()
+}

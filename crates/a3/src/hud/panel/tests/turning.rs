@@ -1,0 +1,187 @@
+use a3_core::Control;
+
+use super::{changed, dials, every_scene, opened, type_key};
+use crate::hud::panel::dial::Turn;
+use crate::hud::panel::knobs::KNOBS;
+use crate::hud::panel::request::{PanelKey, Request, apply, press, rows};
+use crate::session::{Action, Session, compared};
+
+#[test]
+fn keys_reach_every_row_and_turn_that_only() {
+    for mut session in every_scene() {
+        let name = session.first().scene().name.clone();
+        let count = dials(&session).len();
+        for (k, (row, value)) in dials(&session).into_iter().enumerate() {
+            let before = dials(&session);
+            type_key(&mut session, PanelKey::Right, false);
+            let mut now = changed(&before, &session);
+            if now.is_empty() {
+                // It was at its end.
+                type_key(&mut session, PanelKey::Left, false);
+                now = changed(&before, &session);
+            }
+            // Another solver may take a tolerance.
+            now.retain(|other| row != "solver" || *other != "step");
+            assert_eq!(now, [row], "row {k} of {name}");
+            type_key(&mut session, PanelKey::Toggle, false);
+            let back = dials(&session)[k].1;
+            let own = rows(&session)[k].2.own;
+            assert!(back == value || back == own, "{row} of {name}: {back}");
+            type_key(&mut session, PanelKey::Down, false);
+        }
+        assert_eq!(
+            rows(&session)[0].0,
+            session.panel.row,
+            "it goes round, after {count}"
+        );
+        type_key(&mut session, PanelKey::Up, false);
+        assert_eq!(rows(&session)[count - 1].0, session.panel.row);
+        // A closed panel takes no keys.
+        session.act(Action::Panel, 0);
+        assert!(!press(&mut session, PanelKey::Up, false));
+    }
+}
+
+/// Turned away and back, the forces are the same bits as before; turned away they are others.
+#[test]
+fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
+    let forces = |session: &Session| {
+        let run = session.first();
+        let mut f = vec![0.0; run.state().len()];
+        run.model().system().eval_f(run.time(), run.state(), &mut f);
+        f
+    };
+    let mut session = opened(&["r", "0.005", "--scene", "mit-sphere", "--wind"]);
+    session.tick(0.1);
+    let turn = |session: &mut Session, name: &str, turn| {
+        let k = KNOBS.iter().position(|knob| knob.name == name).unwrap();
+        apply(session, Request::Turn(k, turn));
+    };
+    let before = forces(&session);
+    for (name, value) in [
+        ("stiffness", 3.0),
+        ("drag", 0.15),
+        ("gravity", 3.7),
+        ("gusts", 2.5),
+    ] {
+        turn(&mut session, name, Turn::To(value));
+        assert_ne!(forces(&session), before, "{name}");
+        // What a reset goes back to is tuned too.
+        session.act(Action::Reset, 0);
+        let k = KNOBS.iter().find(|knob| knob.name == name).unwrap();
+        assert_eq!((k.read)(&session, 0).unwrap().value, value);
+        for _ in 0..6 {
+            session.tick(1.0 / 60.0);
+        }
+        turn(&mut session, name, Turn::Own);
+        session.act(Action::Reset, 0);
+        session.tick(0.1);
+        assert_eq!(forces(&session), before, "{name}");
+    }
+    let mut damped = opened(&["r", "0.005"]);
+    damped.tick(0.1);
+    let before = forces(&damped);
+    turn(&mut damped, "damping", Turn::To(0.0));
+    assert_ne!(forces(&damped), before);
+    turn(&mut damped, "damping", Turn::Own);
+    assert_eq!(forces(&damped), before);
+    let network = |session: &Session| session.first().model().network().unwrap().clone();
+    turn(&mut session, "sphere", Turn::To(0.75));
+    assert_eq!(network(&session).spheres()[0].radius, 0.75);
+    turn(&mut session, "floor", Turn::Toggle);
+    assert_eq!(network(&session).floor(), None);
+    turn(&mut session, "floor", Turn::Toggle);
+    assert_eq!(network(&session).floor().unwrap().height, -5.0);
+    turn(&mut session, "pins", Turn::Toggle);
+    assert_eq!(network(&session).pins().count(), 0);
+    turn(&mut session, "springs of", Turn::To(7.0));
+    assert_eq!(session.panes[0].show.springs_of, Some(7));
+}
+
+#[test]
+fn another_scene_is_not_tuned() {
+    let mut session = opened(&["r", "0.005"]);
+    for k in 2..=5 {
+        apply(
+            &mut session,
+            Request::Turn(
+                k,
+                Turn::By {
+                    up: true,
+                    other: false,
+                },
+            ),
+        );
+    }
+    session.act(Action::NextScene, 0);
+    session.act(Action::NextScene, 0);
+    for (_, knob, dial) in rows(&session).iter().skip(2) {
+        assert_eq!(dial.value, dial.own, "{}", knob.name);
+    }
+}
+
+#[test]
+fn the_limit_follows_the_stiffness() {
+    let mut session = opened(&["r", "0.005", "--scene", "mit", "--paused"]);
+    session.read_state();
+    let limit = |session: &Session| session.panes[0].limit.limit().unwrap().step;
+    let before = limit(&session);
+    let k = KNOBS.iter().position(|k| k.name == "stiffness").unwrap();
+    apply(&mut session, Request::Turn(k, Turn::To(4.0)));
+    session.read_state();
+    let after = limit(&session);
+    assert!((before / after - 2.0).abs() < 0.05, "{before} {after}");
+}
+
+#[test]
+fn every_pane_and_the_reference_are_tuned_alike() {
+    let mut session = compared(&["r:0.005", "v:0.005", "--scene", "pendulum"], 0.3);
+    session.act(Action::Panel, 0);
+    for (name, value) in [("stiffness", 2.0), ("gravity", 20.0), ("drag", 0.02)] {
+        let k = KNOBS.iter().position(|k| k.name == name).unwrap();
+        apply(&mut session, Request::Turn(k, Turn::To(value)));
+    }
+    for _ in 0..60 {
+        session.tick(1.0 / 60.0);
+    }
+    for pane in &session.panes {
+        let error = pane.error.unwrap();
+        assert!(error < 1e-3, "{error}");
+    }
+    // The step is that of one pane.
+    session.panel.pane = 1;
+    apply(&mut session, Request::Turn(1, Turn::To(0.002)));
+    assert_eq!(session.first().control(), Control::Step(0.005));
+    assert_eq!(session.panes[1].simulation.control(), Control::Step(0.002));
+}
+
+#[test]
+fn turning_goes_by_rungs_and_stays_within() {
+    let mut session = opened(&["r", "0.01", "--scene", "cloth"]);
+    let value = |session: &Session, name: &str| {
+        let all = dials(session);
+        all.iter().find(|(n, _)| *n == name).unwrap().1
+    };
+    let mut go = |name: &str, key, shift, times: usize| {
+        session.panel.row = KNOBS.iter().position(|k| k.name == name).unwrap();
+        for _ in 0..times {
+            type_key(&mut session, key, shift);
+        }
+        value(&session, name)
+    };
+    let (left, right) = (PanelKey::Left, PanelKey::Right);
+    assert_eq!(go("step", right, false, 1), 0.0126);
+    assert_eq!(go("step", left, false, 1), 0.01);
+    assert_eq!(go("step", right, true, 1), 0.0102);
+    assert_eq!(go("stiffness", right, false, 3), 2.0);
+    assert_eq!(go("stiffness", right, false, 30), 10.0);
+    assert_eq!(go("stiffness", left, false, 40), 0.1);
+    assert_eq!(go("stiffness", right, false, 10), 1.0);
+    assert_eq!(go("stiffness", right, true, 10), 1.26);
+    assert_eq!(go("gravity", right, false, 1), 10.0);
+    assert_eq!(go("gravity", left, true, 3), 9.85);
+    assert_eq!(go("gravity", left, false, 50), 0.0);
+    assert_eq!(go("damping", left, false, 9), 0.0);
+    assert_eq!(go("springs of", right, true, 2), 19.0);
+    assert_eq!(go("springs of", left, false, 1), 18.0);
+}

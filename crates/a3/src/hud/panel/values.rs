@@ -1,0 +1,173 @@
+//! The values that the knobs show.
+
+use a3_core::{Control, Network, integrators};
+
+use super::dial::{Dial, DialScale, round_up, short};
+use crate::bounds;
+use crate::session::Session;
+
+/// The network of the first run, if its scene has one.
+pub fn network(session: &Session) -> Option<&Network> {
+    session.first().model().network()
+}
+
+/// The network of the scene as it was built.
+pub fn own(session: &Session) -> Option<&Network> {
+    session.tuning.own.model.network()
+}
+
+/// A switch that is on or off.
+pub fn switch(on: bool, own: bool) -> Dial {
+    Dial {
+        value: f64::from(u8::from(on)),
+        own: f64::from(u8::from(own)),
+        scale: DialScale::Switch,
+        words: if on { "on" } else { "off" }.into(),
+    }
+}
+
+pub fn solver(session: &Session, at: usize) -> Option<Dial> {
+    let run = &session.panes.get(at)?.simulation;
+    let serves =
+        |i: &usize| !integrators::METHODS[*i].needs_mechanics || network(session).is_some();
+    let index = |method| {
+        let of = |m: &a3_core::Method| std::ptr::eq(m, method);
+        integrators::METHODS.iter().position(of).unwrap_or(0) as f64
+    };
+    let own = session.shown().solver_or(None);
+    Some(Dial {
+        value: index(run.method()),
+        own: index(own),
+        scale: DialScale::Choice(
+            (0..integrators::METHODS.len())
+                .filter(serves)
+                .map(|i| i as f64)
+                .collect(),
+        ),
+        words: run.method().title.into(),
+    })
+}
+
+pub fn step(session: &Session, at: usize) -> Option<Dial> {
+    let run = &session.panes.get(at)?.simulation;
+    let (from, to, words) = match run.control() {
+        // Steps beyond these ends are typed, not turned to.
+        Control::Step(step) => (
+            step.min(1e-5),
+            step.max(1.0),
+            format!("{} s", short(step, 3)),
+        ),
+        Control::Tolerance(tolerance) => {
+            let range = bounds::of(run.control());
+            (*range.start(), *range.end(), format!("{tolerance:e}"))
+        }
+    };
+    Some(Dial {
+        value: run.control().value(),
+        own: session.tuning.own.default_control(run.method()).value(),
+        scale: DialScale::Log { from, to },
+        words,
+    })
+}
+
+/// A factor of the scene's own value.
+fn factor(value: f64, scale: DialScale) -> Dial {
+    Dial {
+        value,
+        own: 1.0,
+        scale,
+        words: format!("× {value}"),
+    }
+}
+
+pub fn stiffness(session: &Session, _: usize) -> Option<Dial> {
+    own(session)?.springs().next()?;
+    let scale = DialScale::Log {
+        from: 0.1,
+        to: 10.0,
+    };
+    Some(factor(session.tuning.stiffness, scale))
+}
+
+pub fn damping(session: &Session, _: usize) -> Option<Dial> {
+    own(session)?.springs().find(|s| s.law.damping > 0.0)?;
+    let scale = DialScale::Linear {
+        from: 0.0,
+        to: 5.0,
+        step: 0.2,
+    };
+    Some(factor(session.tuning.damping, scale))
+}
+
+pub fn gusts(session: &Session, _: usize) -> Option<Dial> {
+    session.first().scene().wind?;
+    let scale = DialScale::Linear {
+        from: 0.0,
+        to: 3.0,
+        step: 0.1,
+    };
+    Some(factor(session.tuning.gusts, scale))
+}
+
+pub fn drag(session: &Session, _: usize) -> Option<Dial> {
+    let (own, now) = (own(session)?, network(session)?);
+    let mean = own.masses().iter().sum::<f64>() / own.particles() as f64;
+    let (own, value) = (own.drag().unwrap_or(0.0), now.drag().unwrap_or(0.0));
+    // From none to a drag that ends motion within a fifth of a second.
+    let to = round_up((5.0 * mean).max(4.0 * own));
+    Some(Dial {
+        value,
+        own,
+        scale: DialScale::Linear {
+            from: 0.0,
+            to,
+            step: 0.02 * to,
+        },
+        words: format!("{} kg/s", short(value, 3)),
+    })
+}
+
+pub fn gravity(session: &Session, _: usize) -> Option<Dial> {
+    let down = |network: &Network| network.gravity().map_or(0.0, |g| -g.y);
+    let (own, value) = (down(own(session)?), down(network(session)?));
+    Some(Dial {
+        value,
+        own,
+        scale: DialScale::Linear {
+            from: own.min(0.0),
+            // That of Jupiter.
+            to: own.max(25.0),
+            step: 0.5,
+        },
+        words: format!("{} m/s²", short(value, 3)),
+    })
+}
+
+pub fn sphere(session: &Session, _: usize) -> Option<Dial> {
+    let radius = |network: &Network| network.spheres().first().map(|sphere| sphere.radius);
+    let (own, value) = (radius(own(session)?)?, radius(network(session)?)?);
+    Some(Dial {
+        value,
+        own,
+        scale: DialScale::Linear {
+            from: 0.1 * own,
+            to: 2.0 * own,
+            step: 0.05 * round_up(own),
+        },
+        words: format!("{} m", short(value, 3)),
+    })
+}
+
+pub fn springs_of(session: &Session, at: usize) -> Option<Dial> {
+    let network = network(session)?;
+    let i = session.panes.get(at)?.show.springs_of;
+    Some(Dial {
+        value: i.map_or(-1.0, |i| i as f64),
+        own: -1.0,
+        scale: DialScale::Whole {
+            from: -1.0,
+            to: (network.particles() - 1) as f64,
+        },
+        words: i.map_or("none".into(), |i| i.to_string()),
+    })
+}

@@ -1,0 +1,63 @@
+//! Colours, sizes of text, and sheets of paper to write on.
+
+use egui::{Align2, Area, Color32, Context, Frame, Id, Margin, RichText, Ui};
+
+/// Colour of text.
+pub const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
+/// Colour of names and remarks.
+pub const FAINT: Color32 = Color32::from_rgb(92, 98, 114);
+/// Colour of sheets, a little transparent.
+pub const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
+/// Colour of a step well within its limit.
+pub const SAFE: Color32 = Color32::from_rgb(12, 106, 52);
+/// Colour of a step near its limit.
+pub const WARNING: Color32 = Color32::from_rgb(158, 84, 0);
+/// Colour of a step past its limit, and of a blow-up.
+pub const ALARM: Color32 = Color32::from_rgb(170, 22, 30);
+/// Distance of sheets from the edge of the window (points).
+pub const MARGIN: f32 = 12.0;
+
+/// A column for sheets below one another. Clicks go through it.
+pub fn column(
+    ctx: &Context,
+    name: &str,
+    anchor: Align2,
+    offset: [f32; 2],
+    contents: impl FnOnce(&mut Ui),
+) {
+    Area::new(Id::unique(name))
+        .anchor(anchor, offset)
+        .interactable(false)
+        .show(ctx, |ui| {
+            ui.spacing_mut().item_spacing = egui::vec2(8.0, 6.0);
+            ui.set_max_width((ctx.content_rect().width() - 2.0 * MARGIN).clamp(60.0, 760.0));
+            contents(ui);
+        });
+}
+
+/// A sheet of paper.
+pub fn sheet(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    Frame::new()
+        .fill(PAPER)
+        .corner_radius(7)
+        .inner_margin(Margin::symmetric(12, 9))
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing = egui::vec2(8.0, 3.0);
+            contents(ui);
+        });
+}
+
+/// The title of a sheet.
+pub fn title(words: impl Into<String>) -> RichText {
+    RichText::new(words).color(TEXT).size(17.0).strong()
+}
+
+/// Text of usual size.
+pub fn text(words: impl Into<String>) -> RichText {
+    RichText::new(words).color(TEXT).size(13.5)
+}
+
+/// A name or a remark.
+pub fn faint(words: impl Into<String>) -> RichText {
+    RichText::new(words).color(FAINT).size(12.5)
+}

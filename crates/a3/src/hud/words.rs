@@ -1,0 +1,182 @@
+//! The readings of a run in words.
+
+use a3_core::Simulation;
+use egui::{Color32, RichText};
+
+use super::style::{ALARM, SAFE, WARNING, faint, text};
+use crate::session::{Pane, Readings};
+
+/// A number with three digits, however small it is.
+pub fn digits(number: f64) -> String {
+    match number {
+        0.0 => "0".into(),
+        small if small < 1e-3 => format!("{small:.2e}"),
+        large if large >= 100.0 => format!("{large:.0}"),
+        middling => {
+            let places = (2.0 - middling.log10().floor()).clamp(0.0, 5.0) as usize;
+            format!("{middling:.places$}")
+        }
+    }
+}
+
+/// The scene's name, and its grid if it has one.
+pub fn scene(simulation: &Simulation) -> String {
+    let scene = simulation.scene();
+    let grid = scene.grid.map_or(String::new(), |grid| {
+        format!("  {} × {}", grid.rows(), grid.cols())
+    });
+    format!("{}{grid}", scene.name)
+}
+
+/// The method, and its step or tolerance.
+pub fn method(simulation: &Simulation) -> String {
+    format!("{},  {}", simulation.method().title, simulation.control())
+}
+
+/// The steps of an adaptive method: their length now, and how many were rejected.
+pub fn steps(simulation: &Simulation) -> Option<String> {
+    let step = simulation.step_size()?;
+    let rejections = simulation.work().rejections;
+    simulation
+        .control()
+        .tolerance()
+        .map(|_| format!("{} ms, {rejections} rejected", digits(1e3 * step)))
+}
+
+/// The largest stable step and the share of it that the step is, in green while there is room, amber
+/// near it, and red past it.
+pub fn limit(pane: &Pane) -> Option<(String, Color32)> {
+    let limit = pane.limit.limit()?;
+    if limit.step.is_infinite() {
+        return Some(("none: every step is stable".into(), SAFE));
+    }
+    let share = pane.simulation.step_size()? / limit.step;
+    let colour = match share {
+        past if past > 1.0 => ALARM,
+        near if near > 0.8 => WARNING,
+        _ => SAFE,
+    };
+    let largest = digits(1e3 * limit.step);
+    Some((
+        format!("{largest} ms (step at {:.0} %)", 100.0 * share),
+        colour,
+    ))
+}
+
+/// The simulated time, with as many digits as tell one step from the next.
+pub fn time(simulation: &Simulation) -> String {
+    let step = simulation.control().step().unwrap_or(1e-3);
+    let digits = (-step.log10()).ceil().clamp(2.0, 7.0) as usize;
+    format!("{:.digits$} s", simulation.time())
+}
+
+/// The reading that tells best whether the run holds: its energy, or the radius of the circle.
+pub fn energy(pane: &Pane) -> (&'static str, String) {
+    match pane.energy {
+        Some(energy) => ("energy", format!("{energy:.3} J")),
+        None => (
+            "radius",
+            format!("{:.6} m", pane.simulation.position(0).norm()),
+        ),
+    }
+}
+
+/// The rate of frames.
+pub fn frames(readings: &Readings) -> String {
+    format!("{:.0} per second", readings.rate)
+}
+
+/// The time that a frame takes.
+pub fn each(readings: &Readings) -> String {
+    let (simulating, drawing) = (readings.simulating, readings.drawing);
+    format!("{simulating:.1} ms steps + {drawing:.1} ms drawing")
+}
+
+/// The states that are on: pause, wind, swing, a hand.
+pub fn states(simulation: &Simulation, readings: &Readings) -> RichText {
+    let states = [
+        (readings.paused, "paused"),
+        (simulation.windy(), "wind"),
+        (simulation.swinging(), "swing"),
+        (
+            simulation.grabbed().is_some() || simulation.grabbed_sphere().is_some(),
+            "pulling",
+        ),
+    ];
+    let on: Vec<_> = states
+        .iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| *name)
+        .collect();
+    if on.is_empty() {
+        faint("no wind, no swing")
+    } else {
+        text(on.join("   ")).strong()
+    }
+}
+
+/// Simulated time over real time.
+pub fn speed(readings: &Readings) -> String {
+    match readings.factor {
+        _ if readings.paused => "paused".into(),
+        0.0 => "-".into(),
+        slow if slow < 0.01 => format!("{slow:.1e} × real time"),
+        factor => format!("{factor:.2} × real time"),
+    }
+}
+
+/// The slow motion that was asked for, if any.
+pub fn slow_motion(readings: &Readings) -> Option<String> {
+    let slowness = Some(readings.slowness).filter(|slowness| *slowness > 0)?;
+    Some(format!("1/{} of real time", 1 << slowness))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hud::{pane, read};
+
+    #[test]
+    fn three_digits() {
+        for (number, words) in [
+            (0.0, "0"),
+            (1.234e-7, "1.23e-7"),
+            (0.012_34, "0.0123"),
+            (1.234, "1.23"),
+            (99.99, "100.0"),
+            (12345.6, "12346"),
+        ] {
+            assert_eq!(digits(number), words);
+        }
+    }
+
+    #[test]
+    fn the_limit_is_said_in_its_colour() {
+        let said = |scene: &str, method: &str, value: f64| {
+            let mut pane = pane(scene, method, value);
+            pane.simulation.take_steps(1).unwrap();
+            pane.read_state();
+            let colour = limit(&pane).unwrap().1;
+            let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+            (words.replace('\n', " "), colour)
+        };
+        for (step, colour) in [(0.01, SAFE), (0.032, WARNING), (0.04, ALARM)] {
+            let (words, found) = said("mit", "r", step);
+            // Within 1 % of 34.9 ms.
+            let share = format!("35.2 ms (step at {:.0} %)", step / 0.0352 * 100.0);
+            assert!(words.contains(&share), "{share} in {words}");
+            assert_eq!(found, colour);
+        }
+        assert!(
+            said("mit", "i", 0.1)
+                .0
+                .contains("none: every step is stable")
+        );
+        let (words, _) = said("cloth", "a", 1e-4);
+        assert!(words.contains("tolerance 1e-4"), "{words}");
+        assert!(
+            words.contains("rejected") && words.contains("limit"),
+            "{words}"
+        );
+    }
+}

@@ -1,0 +1,218 @@
+//! Hands that change all runs of a session at the same time.
+
+use a3_core::{Network, Simulation, Vector3};
+
+use super::clock::KEY_BUDGET;
+use super::reference::ReferenceRun;
+use super::state::Session;
+
+impl Session {
+    /// The runs that go on, the reference included.
+    fn runs(&mut self) -> impl Iterator<Item = &mut Simulation> {
+        let alive = self.panes.iter_mut().filter(|pane| pane.alive());
+        let reference = self.reference.as_mut().and_then(ReferenceRun::run);
+        alive.map(|pane| &mut pane.simulation).chain(reference)
+    }
+
+    /// Does something to every run, also to a lost one: what is on stays on after a reset.
+    pub(super) fn do_to_all(&mut self, mut hand: impl FnMut(&mut Simulation)) {
+        for pane in &mut self.panes {
+            hand(&mut pane.simulation);
+        }
+        if let Some(reference) = &mut self.reference {
+            hand(reference.any_run());
+        }
+    }
+
+    /// Changes something in every run at the same simulated time.
+    pub fn change_all(&mut self, change: impl FnMut(&mut Simulation)) {
+        self.align();
+        self.do_to_all(change);
+        for pane in &mut self.panes {
+            pane.forces_changed();
+        }
+        self.read = None;
+    }
+
+    /// Changes the model of every run. A reset keeps the change.
+    pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
+        self.change_all(|run| run.adjust(&change));
+    }
+
+    /// Brings several panes to the same time exactly, by a shorter step where need be, so that a hand
+    /// acts on all of them at once.
+    pub(super) fn align(&mut self) {
+        if self.panes.len() < 2 {
+            return;
+        }
+        self.settle();
+        let clock = self.clock;
+        if let Some(reference) = &mut self.reference
+            && reference.run().is_some()
+            && !reference.reach(clock, KEY_BUDGET)
+        {
+            reference.stop("the reference is too slow");
+        }
+        for run in self.runs() {
+            // A blow-up is shown from now on.
+            let _ = run.advance_to(clock);
+        }
+    }
+
+    /// Takes hold of particle i in every run, and returns whether any run holds it.
+    pub fn grab(&mut self, i: usize) -> bool {
+        self.align();
+        self.runs()
+            .fold(false, |held, run| held | run.grab(i).is_ok())
+    }
+
+    /// Takes hold of sphere k in every run, and returns whether any run holds it.
+    pub fn grab_sphere(&mut self, k: usize) -> bool {
+        self.align();
+        self.runs()
+            .fold(false, |held, run| held | run.grab_sphere(k).is_ok())
+    }
+
+    /// Pulls the held particle or sphere to the same point (m) in every run.
+    pub fn pull(&mut self, target: Vector3<f64>) {
+        self.runs().for_each(|run| {
+            run.pull(target);
+            run.pull_sphere(target);
+        });
+        for pane in &mut self.panes {
+            pane.show.hand = Some(target);
+        }
+    }
+
+    /// Lets go of the held particle or sphere.
+    pub fn release(&mut self) {
+        let held = |run: &Simulation| run.grabbed().is_some() || run.grabbed_sphere().is_some();
+        if self.runs().any(|run| held(run)) {
+            self.align();
+        }
+        self.do_to_all(|run| {
+            run.release();
+            run.release_sphere();
+        });
+        self.hide_hand();
+    }
+
+    /// Stops drawing the hand.
+    pub(super) fn hide_hand(&mut self) {
+        for pane in &mut self.panes {
+            pane.show.hand = None;
+        }
+    }
+
+    /// Pins particle i where it is in every run, or frees it if the first run has it pinned.
+    pub fn toggle_pin(&mut self, i: usize) {
+        self.align();
+        // All runs follow the first one, even if the particle is pinned in some of them only.
+        let pinned = self
+            .first()
+            .model()
+            .network()
+            .is_some_and(|n| n.is_pinned(i));
+        self.do_to_all(|run| {
+            if run.model().network().is_some_and(|n| n.is_pinned(i)) == pinned {
+                // The particle was picked in the picture, so it exists.
+                let _ = run.toggle_pin(i);
+            }
+        });
+        let now = if pinned { "free" } else { "pinned" };
+        self.say(format!("particle {i} is {now} now"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::session::keys::Action;
+    use crate::session::{compared, frames, session, times};
+
+    use super::*;
+
+    #[test]
+    fn a_sphere_is_let_go_of_where_it_was_pushed() {
+        let mut session = session(&["r", "0.005", "--scene", "mit-sphere"]);
+        let place = |session: &Session| {
+            let run = session.first();
+            let sphere = run.model().network().unwrap().spheres()[0];
+            sphere.path.at(run.time()).position
+        };
+        let before = place(&session);
+        assert!(session.grab_sphere(0));
+        session.pull(before + Vector3::new(0.2, 0.0, 0.0));
+        frames(&mut session, 1.0);
+        session.release();
+        assert_eq!(session.first().grabbed_sphere(), None);
+        let pushed = place(&session);
+        assert!((pushed - before).norm() > 0.1);
+        session.pull(before);
+        frames(&mut session, 1.0);
+        assert_eq!(place(&session), pushed);
+    }
+
+    #[test]
+    fn a_pin_is_set_in_every_run_at_the_same_time() {
+        let mut session = compared(&["r:0.013", "r:0.005", "--scene", "cloth"], 0.3);
+        session.toggle_pin(210);
+        let times = times(&session);
+        assert_eq!(times[0], times[1]);
+        let pinned = |session: &Session| {
+            let networks = session
+                .panes
+                .iter()
+                .map(|p| p.simulation.model().network().unwrap());
+            networks.map(|n| n.is_pinned(210)).collect::<Vec<_>>()
+        };
+        assert_eq!(pinned(&session), [true, true]);
+        frames(&mut session, 0.3);
+        assert!(session.panes.iter().all(|pane| pane.error.unwrap() < 2e-3));
+        session.toggle_pin(210);
+        assert_eq!(pinned(&session), [false, false]);
+    }
+
+    /// All that a hand does to the panes, it does to the reference, at the same time.
+    #[test]
+    fn the_reference_gets_the_same_hands() {
+        let mut session = compared(&["r:0.013", "r:0.005", "--scene", "cloth"], 0.5);
+        let small = |session: &Session, what: &str| {
+            let errors: Vec<_> = session.panes.iter().map(|pane| pane.error).collect();
+            assert!(
+                errors.iter().all(|e| e.is_some_and(|e| e < 2e-3)),
+                "{what}: {errors:?}"
+            );
+        };
+        small(&session, "still");
+        session.act(Action::Swing, 0);
+        let aligned = times(&session);
+        assert_eq!(aligned[0], aligned[1]);
+        frames(&mut session, 0.5);
+        small(&session, "swinging");
+        session.act(Action::Wind, 0);
+        frames(&mut session, 0.5);
+        small(&session, "in the wind");
+        assert!(session.grab(399));
+        for _ in 0..20 {
+            session.pull(Vector3::new(1.0, 1.0, 1.5));
+            frames(&mut session, 1.0 / 60.0);
+        }
+        let places = session
+            .panes
+            .iter()
+            .map(|pane| pane.simulation.position(399));
+        assert!(
+            places
+                .clone()
+                .all(|p| (p - Vector3::new(1.0, 1.0, 1.5)).norm() < 0.1)
+        );
+        session.release();
+        frames(&mut session, 0.2);
+        // Each was pulled from its own place in its own time.
+        assert!(session.panes.iter().all(|pane| pane.error.unwrap() < 0.1));
+        session.act(Action::Reset, 0);
+        assert_eq!(times(&session), [0.0, 0.0]);
+        frames(&mut session, 0.5);
+        small(&session, "again");
+    }
+}
