@@ -43,8 +43,8 @@
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
-pub mod colliders;
 pub mod constraints;
+pub mod contact;
 mod control;
 pub mod elements;
 mod error;

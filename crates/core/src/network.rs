@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::colliders::{Capsule, Cuboid, Floor, Sphere};
 use crate::constraints::Constraints;
+use crate::contact::Obstacle;
 use crate::elements::Sheet;
 use crate::elements::air::OnTriangles;
 use crate::elements::buckling::{Buckling, Strip};
@@ -78,10 +78,7 @@ pub struct Network {
     triangles: Arc<[[u32; 3]]>,
     constraints: Constraints,
     hand: Option<Hand>,
-    spheres: Vec<Sphere>,
-    boxes: Vec<Cuboid>,
-    capsules: Vec<Capsule>,
-    floor: Option<Floor>,
+    obstacles: Vec<Obstacle>,
 }
 
 impl Network {
@@ -117,10 +114,7 @@ impl Network {
             triangles: Arc::default(),
             constraints: Constraints::default(),
             hand: None,
-            spheres: vec![],
-            boxes: vec![],
-            capsules: vec![],
-            floor: None,
+            obstacles: vec![],
         })
     }
 
@@ -412,6 +406,10 @@ impl Network {
     /// Names of the forces and obstacles this network pays for.
     #[must_use]
     pub fn forces_in_use(&self) -> Vec<&'static str> {
+        let met = |name: &str| {
+            let mut obstacles = self.obstacles.iter();
+            obstacles.any(|obstacle| obstacle.shape.name() == name)
+        };
         [
             (self.laws().next().is_some(), "springs"),
             (!self.strips.is_empty(), "buckling"),
@@ -420,10 +418,10 @@ impl Network {
             (self.drag.is_some(), "drag"),
             (self.wind.is_some(), "wind"),
             (self.is_constrained(), "constraints"),
-            (!self.spheres.is_empty(), "sphere"),
-            (!self.boxes.is_empty(), "box"),
-            (!self.capsules.is_empty(), "capsule"),
-            (self.floor.is_some(), "floor"),
+            (met("sphere"), "sphere"),
+            (met("box"), "box"),
+            (met("capsule"), "capsule"),
+            (met("floor"), "floor"),
             (self.tear.is_some(), "tearing"),
         ]
         .into_iter()

@@ -25,7 +25,7 @@ impl Place {
     }
 }
 
-/// The path of a pin or of a sphere.
+/// Path of a pin or of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Path {
     /// Stays there.

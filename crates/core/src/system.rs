@@ -148,11 +148,6 @@ pub trait Mechanics {
         }
         place_pins(self, t + h, x, v);
     }
-
-    /// Puts back, at the end of a step, what forces cannot hold: pins in their places, particles out of obstacles.
-    fn constrain(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
-        place_pins(self, t, x, v);
-    }
 }
 
 /// Writes the place of every pin at time t into x and v.

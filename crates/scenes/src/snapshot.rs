@@ -1,9 +1,13 @@
 //! A description of a run as it is now, so that another goes on from there. Its clock begins at 0 again: what depends on
 //! time is shifted.
 
+use a3_core::contact::Shape;
 use a3_core::{Model, Network, Path};
 
-use crate::description::{BucklingSpec, Description, Pin, Shift, Sine, SpringSpec, State, Triple};
+use crate::description::{
+    BucklingSpec, CapsuleSpec, Description, Floor, FloorSpec, Pin, Shift, Sine, SphereSpec,
+    SpringSpec, State, Triple,
+};
 
 impl Description {
     /// Makes the springs of every body so many times as stiff, and so many times as damped.
@@ -88,31 +92,67 @@ impl Description {
         };
         self.gravity = network.gravity().map(Into::into);
         (self.drag, self.drag_per_mass) = (network.drag(), None);
-        self.floor = network.floor().map(|floor| floor.height);
         self.torn = network.torn().to_vec();
         if let Some(wind) = &mut self.wind {
             wind.on = network.wind().is_some();
             wind.ahead += t;
         }
-        for (described, sphere) in self.sphere.iter_mut().zip(network.spheres()) {
-            described.center = sphere.path.at(t).position.into();
-            described.radius = sphere.radius;
-            (described.sine, described.shift) = motion(&sphere.path, t);
-        }
-        for (described, cuboid) in self.boxes.iter_mut().zip(network.boxes()) {
-            described.center = cuboid.path.at(t).position.into();
-            (described.sine, described.shift) = motion(&cuboid.path, t);
-        }
-        for (described, capsule) in self.capsule.iter_mut().zip(network.capsules()) {
-            let here = capsule.path.at(t).position;
-            described.from = (here + capsule.ends[0]).into();
-            described.to = (here + capsule.ends[1]).into();
-            (described.sine, described.shift) = motion(&capsule.path, t);
-        }
+        self.write_obstacles(network, t);
         for pins in self.body_pins() {
             pins.clear();
         }
         self.pin = pins(network, t);
+    }
+
+    /// Writes the obstacles as they are at time t (s). Each kind is described in the order in which it was added; a floor
+    /// may have gone.
+    fn write_obstacles(&mut self, network: &Network, t: f64) {
+        let mut spheres = self.sphere.iter_mut();
+        let mut boxes = self.boxes.iter_mut();
+        let mut capsules = self.capsule.iter_mut();
+        self.floor = None;
+        for obstacle in network.obstacles() {
+            let here = obstacle.path.at(t).position;
+            let (sine, shift) = motion(&obstacle.path, t);
+            let friction = obstacle.friction;
+            match obstacle.shape {
+                Shape::Sphere { radius } => {
+                    if let Some(described) = spheres.next() {
+                        *described = SphereSpec {
+                            center: here.into(),
+                            radius,
+                            friction,
+                            sine,
+                            shift,
+                        };
+                    }
+                }
+                Shape::Box { .. } => {
+                    if let Some(described) = boxes.next() {
+                        described.center = here.into();
+                        described.friction = friction;
+                        (described.sine, described.shift) = (sine, shift);
+                    }
+                }
+                Shape::Capsule { ends, radius } => {
+                    if let Some(described) = capsules.next() {
+                        *described = CapsuleSpec {
+                            from: (here + ends[0]).into(),
+                            to: (here + ends[1]).into(),
+                            radius,
+                            friction,
+                            sine,
+                            shift,
+                        };
+                    }
+                }
+                Shape::Floor if friction == 0.0 => self.floor = Some(Floor::Height(here.y)),
+                Shape::Floor => {
+                    let height = here.y;
+                    self.floor = Some(Floor::Table(FloorSpec { height, friction }));
+                }
+            }
+        }
     }
 
     fn body_pins(&mut self) -> impl Iterator<Item = &mut Vec<Pin>> {

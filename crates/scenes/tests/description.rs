@@ -1,5 +1,6 @@
 //! Scenes as text: what is read is what was written, and what is wrong is named with its line and key.
 
+use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Grid, Model, Path, Scene, SpringKind, Vector3};
 use a3_scenes::{Description, Fault, Mesh, SCENES, find};
 
@@ -189,6 +190,36 @@ const WRONG: &[(&str, &str, &str)] = &[
         "gravity = [0, -9.81, 0]",
         "sphere = [{ center = [0, 0, 0], radius = -1 }]",
         "line 1: sphere.radius: it must be a finite number above 0",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "sphere = [{ center = [0, 0, 0], radius = 1, friction = -0.1 }]",
+        "line 1: sphere.friction: it must be a finite number of at least 0, not -0.1",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "box = [{ center = [0, 0, 0], size = [1, 1, 1] }, { center = [0, 0, 0], size = [1, 1, 1], friction = nan }]",
+        "line 1: box.1.friction: it must be a finite number of at least 0, not NaN",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "floor = { height = 0, friction = inf }",
+        "line 1: floor.friction: it must be a finite number of at least 0, not inf",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "floor = { height = 0, frition = 0.4 }",
+        "line 1: floor.frition: there is no key `frition`: did you mean `friction`? there are height, friction",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "floor = { friction = 0.4 }",
+        "line 1: floor: needs the key `height`",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "floor = true",
+        "line 1: floor: invalid type: boolean `true`, expected a height (m), or a table with the keys `height` and `friction`",
     ),
     (
         "gravity = [0, -9.81, 0]",
@@ -395,11 +426,11 @@ fn a_state_stands_for_that_of_the_bodies() {
 #[test]
 fn obstacles_wind_and_buckling_are_there() {
     let scene = build(&format!(
-        "floor = 0
+        "floor = {{ height = -1, friction = 0.4 }}
 tear = 2
 box = [{{ center = [0, 0, 0], size = [1, 2, 3], rotation = [0, 1, 0] }}]
-capsule = [{{ from = [0, 0, 0], to = [1, 0, 0], radius = 0.1 }}]
-sphere = [{{ center = [0, 0, 0], radius = 1, shift = {{ by = [1, 0, 0], end = 2 }} }}]
+capsule = [{{ from = [0, 0, 0], to = [1, 0, 0], radius = 0.1, friction = 0.5 }}]
+sphere = [{{ center = [0, 0, 0], radius = 1, friction = 0.25, shift = {{ by = [1, 0, 0], end = 2 }} }}]
 wind = {{ on = true, velocity = [1, 0, 0] }}
 {}",
         CLOTH.replace(
@@ -417,16 +448,23 @@ wind = {{ on = true, velocity = [1, 0, 0] }}
             .count(),
         5
     );
+    let [sphere, cuboid, capsule, floor] = network.obstacles() else {
+        panic!("{:?}", network.obstacles());
+    };
     assert_eq!(
-        (
-            network.boxes()[0].half_extents,
-            network.capsules()[0].radius
-        ),
-        (Vector3::new(0.5, 1.0, 1.5), 0.1)
+        (sphere.path.at(1.0).position, sphere.friction),
+        (Vector3::new(0.5, 0.0, 0.0), 0.25)
     );
+    let half = Vector3::new(0.5, 1.0, 1.5);
+    assert!(matches!(cuboid.shape, Shape::Box { half_extents, .. } if half_extents == half));
+    assert!(matches!(capsule.shape, Shape::Capsule { radius: 0.1, .. }));
+    assert_eq!((cuboid.friction, capsule.friction), (0.0, 0.5));
     assert_eq!(
-        network.spheres()[0].path.at(1.0).position,
-        Vector3::new(0.5, 0.0, 0.0)
+        *floor,
+        Obstacle {
+            friction: 0.4,
+            ..Obstacle::smooth(Shape::Floor, Path::Still(Vector3::new(0.0, -1.0, 0.0)))
+        }
     );
     assert_eq!(network.buckling().count(), 3 * 2 + 4);
     assert_eq!(

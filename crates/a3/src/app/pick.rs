@@ -1,5 +1,6 @@
 //! From a place in the picture to a particle, and back to a place in the world.
 
+use a3_core::contact::Shape;
 use a3_core::{Simulation, Vector3};
 use a3_render::Camera;
 
@@ -9,10 +10,10 @@ use crate::show;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     Particle(usize),
-    Sphere(usize),
+    Obstacle(usize),
 }
 
-/// A particle or a sphere in the hand: what keeps it under the pointer.
+/// Hold of a particle or an obstacle: what keeps it under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
     /// Its distance from the eye along the view (m).
@@ -29,7 +30,7 @@ impl Grip {
     }
 }
 
-/// The particle or the sphere under the pointer, whichever is nearer to the eye. The particle: of the nearest triangle of
+/// Particle or sphere under the pointer, whichever is nearer to the eye. The particle: of the nearest triangle of
 /// a cloth that it hits the closest corner, else the one that is nearest on the screen within `reach`, as a share of
 /// the picture's height.
 pub fn pick(
@@ -80,20 +81,17 @@ pub fn pick(
         let (at, distance) = places[i]?;
         Some((depth, Target::Particle(i), at, distance))
     });
-    let spheres = network.spheres().iter().enumerate();
-    let sphere = spheres.filter_map(|(k, sphere)| {
-        let c = sphere.path.at(simulation.time()).position;
+    let obstacles = network.obstacles().iter().enumerate();
+    let sphere = obstacles.filter_map(|(k, obstacle)| {
+        let Shape::Sphere { radius } = obstacle.shape else {
+            return None;
+        };
+        let c = obstacle.path.at(simulation.time()).position;
         let c = [c.x as f32, c.y as f32, c.z as f32];
         let (at, distance) = camera.project(c, aspect)?;
-        let surface = ball_hit(
-            camera,
-            pointer,
-            aspect,
-            c,
-            show::SHOWN * sphere.radius as f32,
-        )?;
+        let surface = ball_hit(camera, pointer, aspect, c, show::SHOWN * radius as f32)?;
         let (_, depth) = camera.project(surface, aspect)?;
-        Some((depth, Target::Sphere(k), at, distance))
+        Some((depth, Target::Obstacle(k), at, distance))
     });
     let (_, target, at, distance) = sphere.chain(particle).min_by(|a, b| a.0.total_cmp(&b.0))?;
     let offset = [at[0] - pointer[0], at[1] - pointer[1]];
@@ -196,7 +194,7 @@ mod tests {
             pick(&run, &camera, [0.5, 0.5], 1.6, 0.03)
         };
         let (target, grip) = hit([1.0, -4.0, 8.0]).unwrap();
-        assert_eq!(target, Target::Sphere(0));
+        assert_eq!(target, Target::Obstacle(0));
         assert_eq!(grip.offset.map(|o| (1e4 * o).round() as i32), [0, 0]);
         assert!((grip.distance - 8.0).abs() < 1e-3);
         // Through the cloth, which lies at a height of 0.

@@ -248,14 +248,16 @@ impl App {
             MouseButton::Left => {
                 let particle = hit.and_then(|(target, _)| match target {
                     Target::Particle(i) => Some(i),
-                    Target::Sphere(_) => None,
+                    Target::Obstacle(_) => None,
                 });
                 if again {
                     session.show_springs_of(particle);
                 }
                 match hit {
                     Some((Target::Particle(i), grip)) if session.grab(i) => Hand::Pull(grip),
-                    Some((Target::Sphere(k), grip)) if session.grab_sphere(k) => Hand::Pull(grip),
+                    Some((Target::Obstacle(k), grip)) if session.grab_obstacle(k) => {
+                        Hand::Pull(grip)
+                    }
                     _ => Hand::Orbit,
                 }
             }

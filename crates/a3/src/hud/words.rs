@@ -99,7 +99,7 @@ pub fn states(simulation: &Simulation, readings: &Readings) -> RichText {
         (simulation.windy(), "wind"),
         (simulation.swinging(), "swing"),
         (
-            simulation.grabbed().is_some() || simulation.grabbed_sphere().is_some(),
+            simulation.grabbed().is_some() || simulation.grabbed_obstacle().is_some(),
             "pulling",
         ),
     ];

@@ -67,17 +67,17 @@ impl Session {
     }
 
     /// Takes hold of sphere k in every run, and returns whether any run holds it.
-    pub fn grab_sphere(&mut self, k: usize) -> bool {
+    pub fn grab_obstacle(&mut self, k: usize) -> bool {
         self.align();
         self.runs()
-            .fold(false, |held, run| held | run.grab_sphere(k).is_ok())
+            .fold(false, |held, run| held | run.grab_obstacle(k).is_ok())
     }
 
     /// Pulls the held particle or sphere to the same point (m) in every run.
     pub fn pull(&mut self, target: Vector3<f64>) {
         self.runs().for_each(|run| {
             run.pull(target);
-            run.pull_sphere(target);
+            run.pull_obstacle(target);
         });
         for pane in &mut self.panes {
             pane.show.hand = Some(target);
@@ -86,13 +86,13 @@ impl Session {
 
     /// Lets go of the held particle or sphere.
     pub fn release(&mut self) {
-        let held = |run: &Simulation| run.grabbed().is_some() || run.grabbed_sphere().is_some();
+        let held = |run: &Simulation| run.grabbed().is_some() || run.grabbed_obstacle().is_some();
         if self.runs().any(|run| held(run)) {
             self.align();
         }
         self.do_to_all(|run| {
             run.release();
-            run.release_sphere();
+            run.release_obstacle();
         });
         self.hide_hand();
     }
@@ -136,15 +136,15 @@ mod tests {
         let mut session = session(&["r", "0.005", "--scene", "mit-sphere"]);
         let place = |session: &Session| {
             let run = session.first();
-            let sphere = run.model().network().unwrap().spheres()[0];
+            let sphere = run.model().network().unwrap().obstacles()[0];
             sphere.path.at(run.time()).position
         };
         let before = place(&session);
-        assert!(session.grab_sphere(0));
+        assert!(session.grab_obstacle(0));
         session.pull(before + Vector3::new(0.2, 0.0, 0.0));
         frames(&mut session, 1.0);
         session.release();
-        assert_eq!(session.first().grabbed_sphere(), None);
+        assert_eq!(session.first().grabbed_obstacle(), None);
         let pushed = place(&session);
         assert!((pushed - before).norm() > 0.1);
         session.pull(before);

@@ -107,6 +107,7 @@ mod tests {
     use super::super::keys::Action;
     use super::*;
     use crate::session::session;
+    use a3_core::contact::Shape;
     use a3_core::{Network, Simulation, Vector3};
 
     use crate::scene_file::Source;
@@ -170,9 +171,15 @@ mod tests {
                 network.scale_springs(1.5, 1.0).unwrap();
                 network.set_gravity(Vector3::new(0.0, -5.0, 0.0));
                 network.set_drag(0.03).unwrap();
-                network.remove_floor();
-                for k in 0..network.spheres().len() {
-                    network.resize_sphere(k, 1.25).unwrap();
+                for k in (0..network.obstacles().len()).rev() {
+                    match network.obstacles()[k].shape {
+                        Shape::Floor => {
+                            network.remove_obstacle(k).unwrap();
+                        }
+                        _ => network
+                            .reshape_obstacle(k, Shape::Sphere { radius: 1.25 })
+                            .unwrap(),
+                    }
                 }
             });
             session.change_all(|run| {

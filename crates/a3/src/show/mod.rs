@@ -5,6 +5,7 @@ mod wires;
 
 use std::collections::VecDeque;
 
+use a3_core::contact::Shape;
 use a3_core::{Network, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3};
 use a3_render::{Ball, Camera, Line, Picture, Solid, Style};
 
@@ -231,51 +232,45 @@ impl Show {
         let Some(network) = simulation.model().network() else {
             return;
         };
-        self.floor = network.floor().map(|floor| floor.height as f32);
         // A little smaller than they are, so that the flat triangles between particles on them stay outside.
         let inside = |radius: f64| SHOWN * radius as f32;
-        for sphere in network.spheres() {
-            self.balls.push(Ball {
-                center: to_f32(sphere.path.at(simulation.time()).position),
-                radius: inside(sphere.radius),
-                color: STEEL,
-            });
-        }
-        for cuboid in network.boxes() {
-            let half = cuboid.half_extents;
-            let (gap, round) = (0.02 * half.min(), 0.06 * half.min());
-            let side = |k: usize| {
-                let [x, y, z] = to_f32(cuboid.axes[k]);
-                [x, y, z, (half[k] - gap - round) as f32]
-            };
-            self.solids.push(Solid {
-                center: to_f32(cuboid.path.at(simulation.time()).position),
-                radius: round as f32,
-                axes: [0, 1, 2].map(side),
-                color: STEEL,
-            });
-        }
-        for capsule in network.capsules() {
-            let [a, b] = capsule.ends;
-            let (along, across) = (b - a, a_side(b - a));
-            let half = 0.5 * along.norm();
-            let y = along.try_normalize(0.0).unwrap_or(Vector3::y());
-            let axis = |v: Vector3<f64>, half: f64| {
-                let [x, y, z] = to_f32(v);
-                [x, y, z, half as f32]
-            };
-            let axes = [
-                axis(across, 0.0),
-                axis(y, half),
-                axis(across.cross(&y), 0.0),
-            ];
-            let place = capsule.path.at(simulation.time()).position;
-            self.solids.push(Solid {
-                center: to_f32(place + 0.5 * (a + b)),
-                radius: inside(capsule.radius),
-                axes,
-                color: STEEL,
-            });
+        for obstacle in network.obstacles() {
+            let place = obstacle.path.at(simulation.time()).position;
+            match obstacle.shape {
+                Shape::Sphere { radius } => self.balls.push(Ball {
+                    center: to_f32(place),
+                    radius: inside(radius),
+                    color: STEEL,
+                }),
+                Shape::Box { half_extents, axes } => {
+                    let least = half_extents.min();
+                    let (gap, round) = (0.02 * least, 0.06 * least);
+                    self.solids.push(Solid {
+                        center: to_f32(place),
+                        radius: round as f32,
+                        axes: [0, 1, 2].map(|k| axis(axes[k], half_extents[k] - gap - round)),
+                        color: STEEL,
+                    });
+                }
+                Shape::Capsule {
+                    ends: [a, b],
+                    radius,
+                } => {
+                    let (along, side) = (b - a, a_side(b - a));
+                    let y = along.try_normalize(0.0).unwrap_or(Vector3::y());
+                    self.solids.push(Solid {
+                        center: to_f32(place + 0.5 * (a + b)),
+                        radius: inside(radius),
+                        axes: [
+                            axis(side, 0.0),
+                            axis(y, 0.5 * along.norm()),
+                            axis(side.cross(&y), 0.0),
+                        ],
+                        color: STEEL,
+                    });
+                }
+                Shape::Floor => self.floor = Some(place.y as f32),
+            }
         }
     }
 
@@ -373,6 +368,12 @@ pub fn camera_of(scene: &Scene) -> Camera {
 
 fn to_f32(v: Vector3<f64>) -> [f32; 3] {
     [v.x as f32, v.y as f32, v.z as f32]
+}
+
+/// Half axis of a solid: its direction and its length.
+fn axis(direction: Vector3<f64>, half: f64) -> [f32; 4] {
+    let [x, y, z] = to_f32(direction);
+    [x, y, z, half as f32]
 }
 
 /// A unit vector across `along`.

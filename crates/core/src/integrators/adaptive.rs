@@ -110,6 +110,11 @@ impl Adaptive {
         self.next = h;
     }
 
+    /// Tries no longer step than h (s) next.
+    pub fn try_at_most(&mut self, h: f64) {
+        self.next = self.next.min(h);
+    }
+
     /// Forgets what depends on the system and the state: to be called when either changes between steps.
     pub fn restart(&mut self) {
         self.goes_on = false;
@@ -128,7 +133,7 @@ impl Adaptive {
     ) -> Result<Taken, Error> {
         super::check_dim(self.pair.dim(), y)?;
         let mut work = Work::default();
-        // What constraints put right after the last step has another derivative.
+        // What contact put right after the last step has another derivative.
         if self.goes_on && self.pair.end() == &*y {
             self.pair.go_on();
         } else {

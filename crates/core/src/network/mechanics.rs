@@ -240,22 +240,6 @@ impl Mechanics for Network {
         self.flow(Part::Kick, h, all, columns_mut(x), columns_mut(v));
         place_pins(self, t + h, x, v);
     }
-
-    fn constrain(&self, t: f64, x: &mut [f64], v: &mut [f64]) {
-        for sphere in &self.spheres {
-            sphere.push_out(t, x, v);
-        }
-        for cuboid in &self.boxes {
-            cuboid.push_out(t, x, v);
-        }
-        for capsule in &self.capsules {
-            capsule.push_out(t, x, v);
-        }
-        if let Some(floor) = self.floor {
-            floor.push_out(x, v);
-        }
-        place_pins(self, t, x, v);
-    }
 }
 
 impl Rows for Network {

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::Simulation;
+use crate::contact::Shape;
 use crate::error::Error;
 use crate::network::Network;
 use crate::path::Path;
@@ -218,49 +219,52 @@ impl Simulation {
         Ok(!pinned)
     }
 
-    /// The grabbed sphere.
+    /// Number of the grabbed obstacle.
     #[must_use]
-    pub fn grabbed_sphere(&self) -> Option<usize> {
-        self.grabbed_sphere
+    pub fn grabbed_obstacle(&self) -> Option<usize> {
+        self.grabbed_obstacle
     }
 
-    /// Takes hold of sphere k where it is, and lets go of any other. Does nothing in a scene without masses, where
-    /// spheres push nothing.
+    /// Takes hold of obstacle k where it is, and lets go of any other. Does nothing in a scene without masses, where
+    /// obstacles push nothing.
     ///
     /// # Errors
-    /// There is no such sphere.
-    pub fn grab_sphere(&mut self, k: usize) -> Result<(), Error> {
-        self.release_sphere();
+    /// There is no such obstacle, or it is a floor.
+    pub fn grab_obstacle(&mut self, k: usize) -> Result<(), Error> {
+        self.release_obstacle();
         let Some(network) = self.model.network() else {
             return Ok(());
         };
-        network.check_sphere(k)?;
-        self.grabbed_sphere = Some(k);
-        self.lead_sphere(|_, position| Path::Still(position));
+        network.check_obstacle(k)?;
+        if network.obstacles()[k].shape == Shape::Floor {
+            return Err(Error::Invalid("a floor cannot be pushed".into()));
+        }
+        self.grabbed_obstacle = Some(k);
+        self.lead_obstacle(|_, position| Path::Still(position));
         Ok(())
     }
 
-    /// Moves the grabbed sphere's centre to `target` (m), as fast as a pulled particle.
-    pub fn pull_sphere(&mut self, target: Vector3<f64>) {
-        self.lead_sphere(|run, position| run.way(position, target));
+    /// Moves the grabbed obstacle's place to `target` (m), as fast as a pulled particle.
+    pub fn pull_obstacle(&mut self, target: Vector3<f64>) {
+        self.lead_obstacle(|run, position| run.way(position, target));
     }
 
-    /// Lets go of the sphere: it stays where it is.
-    pub fn release_sphere(&mut self) {
-        self.lead_sphere(|_, position| Path::Still(position));
-        self.grabbed_sphere = None;
+    /// Lets go of the obstacle: it stays where it is.
+    pub fn release_obstacle(&mut self) {
+        self.lead_obstacle(|_, position| Path::Still(position));
+        self.grabbed_obstacle = None;
     }
 
-    /// Gives the grabbed sphere the path that `path` makes of its place.
-    fn lead_sphere(&mut self, path: impl FnOnce(&Self, Vector3<f64>) -> Path) {
-        let network = self.model.network().zip(self.grabbed_sphere);
-        let Some(sphere) = network.and_then(|(network, k)| network.spheres().get(k)) else {
+    /// Gives the grabbed obstacle the path that `path` makes of its place.
+    fn lead_obstacle(&mut self, path: impl FnOnce(&Self, Vector3<f64>) -> Path) {
+        let network = self.model.network().zip(self.grabbed_obstacle);
+        let Some(obstacle) = network.and_then(|(network, k)| network.obstacles().get(k)) else {
             return;
         };
-        let path = path(self, sphere.path.at(self.time()).position);
-        if let Some((k, network)) = self.grabbed_sphere.zip(self.network_mut()) {
+        let path = path(self, obstacle.path.at(self.time()).position);
+        if let Some((k, network)) = self.grabbed_obstacle.zip(self.network_mut()) {
             // It is there: it was found above.
-            let _ = network.lead_sphere(k, path);
+            let _ = network.lead_obstacle(k, path);
         }
     }
 }

@@ -10,18 +10,26 @@ use std::ops::Range;
 
 use nalgebra::{DMatrixView, Vector3};
 
+use crate::contact::{Contact, Obstacle, Statistics};
 use crate::control::Control;
 use crate::error::{BlowUp, Cause, Error};
 use crate::integrators::{Adaptive, Integrator, Method, Tolerance, Work};
 use crate::network::{Energy, Network};
 use crate::scene::{Model, Scene, bounds};
-use crate::system::ParticleSystem;
+use crate::system::{Mechanics, ParticleSystem, place_pins};
 
 /// A particle this many times the scene's radius away from its middle is lost.
 const LOST: f64 = 100.0;
 
 /// The state to go back to when one is lost has all of them within this many radii: still a picture of the scene.
 const GOOD: f64 = 3.0;
+
+/// An adaptive method's step takes no particle farther into an obstacle than this share of the scene's radius, so that
+/// states between its ends do not sink visibly ...
+const SUNK: f64 = 1e-3;
+
+/// ... unless it is shorter than this (s).
+const SHORT: f64 = 1e-6;
 
 /// A run of a scene.
 pub struct Simulation {
@@ -36,12 +44,13 @@ pub struct Simulation {
     taken: u64,
     steps: u64,
     work: Work,
+    contact: Contact,
     swinging: bool,
     /// The swing's: while it swings, sin(rate t + phase); while it stands, sin(phase) (rad).
     swing_phase: f64,
     /// The grabbed particle, and whether it was pinned before.
     grabbed: Option<(usize, bool)>,
-    grabbed_sphere: Option<usize>,
+    grabbed_obstacle: Option<usize>,
     /// Whether the scene's pins hold nothing.
     unpinned: bool,
     blow_up: Option<BlowUp>,
@@ -113,6 +122,8 @@ impl Simulation {
         }
         let y = scene.state.clone();
         let (middle, radius) = bounds(&y[..3 * model.particles()]);
+        let mut contact = Contact::new(dim);
+        contact.begin(obstacles(&model), &y);
         let good = Good {
             y: y.clone(),
             time: 0.0,
@@ -129,10 +140,11 @@ impl Simulation {
             taken: 0,
             steps: 0,
             work: Work::default(),
+            contact,
             swinging: false,
             swing_phase: 0.0,
             grabbed: None,
-            grabbed_sphere: None,
+            grabbed_obstacle: None,
             unpinned: false,
             blow_up: None,
             good,
@@ -190,6 +202,12 @@ impl Simulation {
     #[must_use]
     pub fn work(&self) -> Work {
         self.work
+    }
+
+    /// What contact did in the last step, up to the end of it.
+    #[must_use]
+    pub fn contact(&self) -> Statistics {
+        self.contact.last()
     }
 
     /// y: of a network [x | v], in m and m/s.
@@ -334,17 +352,18 @@ impl Simulation {
         Ok(())
     }
 
-    /// One step of h, and what follows it: constraints, and the look whether it went well.
+    /// One step of h, and what follows it: contact, and the look whether it went well.
     fn step_by(&mut self, h: f64) -> Result<(), Error> {
         let t = self.time();
         let system = self.model.system();
         let Stepper::Fixed(integrator) = &mut self.stepper else {
             return Ok(());
         };
+        self.contact.begin(obstacles(&self.model), &self.y);
         let cause = match integrator.step(system, t, h, &mut self.y) {
             Ok(work) => {
                 self.work += work;
-                constrain(system, t + h, &mut self.y);
+                settle(&self.model, &mut self.contact, (t, h), &mut self.y);
                 self.beyond(LOST, &self.y)
             }
             Err(error) => Some(cause(error)?),
@@ -376,24 +395,41 @@ impl Simulation {
             }
         };
         *until = None;
-        let (cause, end) = match adaptive.advance(system, begin, end) {
-            Ok(taken) => {
-                self.work += taken.work;
-                let reached = begin + taken.h;
-                constrain(system, reached, end);
-                *until = Some(reached);
-                let Stepper::Adaptive { end, .. } = &self.stepper else {
-                    return Ok(now);
-                };
-                (self.beyond(LOST, end), reached)
+        let limit = SUNK * self.radius;
+        let (cause, reached) = loop {
+            self.contact.begin(obstacles(&self.model), end);
+            let taken = match adaptive.advance(system, begin, end) {
+                Ok(taken) => taken,
+                Err(error) => break (Some(cause(error)?), begin),
+            };
+            self.work += taken.work;
+            let met = settle(&self.model, &mut self.contact, (begin, taken.h), end);
+            if met.depth > limit && taken.h > SHORT {
+                // Again, to just after the touch.
+                end.copy_from_slice(self.contact.y0());
+                adaptive.restart();
+                let share = met.touched + (1.0 - met.touched) * 0.5 * limit / met.depth;
+                adaptive.try_first(taken.h * share);
+                self.work.rejections += 1;
+                continue;
             }
-            Err(error) => (Some(cause(error)?), begin),
+            if met.depth > 0.0 {
+                // Under a constant force the depth grows with the square of the step.
+                adaptive.try_at_most(taken.h * 0.9 * (limit / met.depth).sqrt());
+            }
+            let reached = begin + taken.h;
+            *until = Some(reached);
+            let Stepper::Adaptive { end, .. } = &self.stepper else {
+                return Ok(now);
+            };
+            break (self.beyond(LOST, end), reached);
         };
-        self.judge(cause, end)?;
-        Ok(end)
+        self.judge(cause, reached)?;
+        Ok(reached)
     }
 
-    /// Shows the state at a time (s) up to the end of an adaptive method's step.
+    /// Shows the state at a time (s) up to the end of an adaptive method's step: between its ends as its polynomial has
+    /// it, with pins in their places.
     fn show(&mut self, time: f64) {
         let system = self.model.system();
         if let Stepper::Adaptive {
@@ -406,7 +442,7 @@ impl Simulation {
                 self.y.copy_from_slice(end);
             } else {
                 self.work += adaptive.interpolate(system, time, &mut self.y);
-                constrain(system, time, &mut self.y);
+                hold_pins(system, time, &mut self.y);
             }
             self.since = time;
             self.tear();
@@ -489,7 +525,7 @@ impl Simulation {
         self.y.copy_from_slice(&self.scene.state);
         (self.since, self.taken, self.steps) = (0.0, 0, 0);
         (self.work, self.blow_up) = (Work::default(), None);
-        (self.grabbed, self.grabbed_sphere) = (None, None);
+        (self.grabbed, self.grabbed_obstacle) = (None, None);
         // The first step is chosen anew too: a run that was reset is the same run.
         if let Ok(stepper) = Stepper::new(self.method, self.model.system(), self.control) {
             self.stepper = stepper;
@@ -530,11 +566,24 @@ impl Simulation {
     }
 }
 
-/// What forces cannot hold is put right after a step.
-fn constrain(system: &dyn ParticleSystem, t: f64, y: &mut [f64]) {
+fn obstacles(model: &Model) -> &[Obstacle] {
+    model.network().map_or(&[], Network::obstacles)
+}
+
+/// What follows a step of h (s) from t (s) to y1: particles leave obstacles, and pins are in their places.
+fn settle(model: &Model, contact: &mut Contact, (t, h): (f64, f64), y1: &mut [f64]) -> Statistics {
+    let met = model.network().map_or_else(Statistics::default, |network| {
+        contact.resolve(network.obstacles(), network.inverse_masses(), (t, h), y1)
+    });
+    hold_pins(model.system(), t + h, y1);
+    met
+}
+
+/// Puts pins in their places at time t (s).
+fn hold_pins(system: &dyn ParticleSystem, t: f64, y: &mut [f64]) {
     if let Some(mechanics) = system.mechanics() {
         let (x, v) = y.split_at_mut(y.len() / 2);
-        mechanics.constrain(t, x, v);
+        place_pins(mechanics, t, x, v);
     }
 }
 

@@ -17,15 +17,15 @@ pub struct Moment {
     pub y: Vec<f64>,
     /// The springs that had broken, by the particles at their ends.
     pub torn: Vec<[usize; 2]>,
-    /// How spheres were on their way.
-    pub spheres: Vec<Path>,
+    /// Paths of the obstacles.
+    pub obstacles: Vec<Path>,
 }
 
 impl Moment {
     /// How much memory it takes (bytes).
     #[must_use]
     pub fn size(&self) -> usize {
-        size_of_val(&self.y[..]) + size_of_val(&self.torn[..]) + size_of_val(&self.spheres[..])
+        size_of_val(&self.y[..]) + size_of_val(&self.torn[..]) + size_of_val(&self.obstacles[..])
     }
 }
 
@@ -35,11 +35,13 @@ impl Simulation {
         (moment.time, moment.steps) = (self.time(), self.steps);
         moment.y.clone_from(&self.y);
         moment.torn.clear();
-        moment.spheres.clear();
+        moment.obstacles.clear();
         if let Some(network) = self.model.network() {
             moment.torn.extend(network.torn());
-            let spheres = network.spheres().iter();
-            moment.spheres.extend(spheres.map(|sphere| sphere.path));
+            let obstacles = network.obstacles().iter();
+            moment
+                .obstacles
+                .extend(obstacles.map(|obstacle| obstacle.path));
         }
     }
 
@@ -65,7 +67,7 @@ impl Simulation {
             ));
         }
         self.release();
-        self.release_sphere();
+        self.release_obstacle();
         self.y.copy_from_slice(y);
         (self.since, self.taken, self.steps) = (time, 0, steps);
         self.good.y.copy_from_slice(y);
@@ -78,8 +80,8 @@ impl Simulation {
             if network.torn() != moment.torn {
                 network.mend(whole, &moment.torn)?;
             }
-            for (k, path) in moment.spheres.iter().enumerate() {
-                network.lead_sphere(k, *path)?;
+            for (k, path) in moment.obstacles.iter().enumerate() {
+                network.lead_obstacle(k, *path)?;
             }
         }
         let pins = self.model.network().into_iter().flat_map(Network::pins);

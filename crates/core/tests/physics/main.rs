@@ -4,8 +4,9 @@
 mod common;
 
 mod buckling;
-mod colliders;
 mod constraints;
+mod contact;
 mod forces;
+mod friction;
 mod tearing;
 mod wind;

@@ -383,8 +383,8 @@ fn what_tore_after_a_moment_is_mended_there() {
     );
     for k in [12, 0, 9, 20, 3] {
         let (moment, network) = &moments[k];
-        run.grab_sphere(0).unwrap();
-        run.pull_sphere(Vector3::new(3.0, 3.0, 3.0));
+        run.grab_obstacle(0).unwrap();
+        run.pull_obstacle(Vector3::new(3.0, 3.0, 3.0));
         run.rewind(moment).unwrap();
         let mut again = Moment::default();
         run.record(&mut again);

@@ -1,6 +1,7 @@
 //! What is changed while it runs, and descriptions of runs as they are.
 
 use crate::common::scene;
+use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Network, Scene, Simulation, Vector3, integrators};
 use a3_scenes::Description;
 
@@ -157,8 +158,18 @@ fn a_run_goes_on_from_its_description() {
             network.scale_springs(stiffness, damping).unwrap();
             network.set_gravity(Vector3::new(0.1, -7.0, 0.0));
             network.set_drag(0.013).unwrap();
-            if !network.spheres().is_empty() {
-                network.resize_sphere(0, 1.25).unwrap();
+            if matches!(
+                network.obstacles(),
+                [
+                    Obstacle {
+                        shape: Shape::Sphere { .. },
+                        ..
+                    },
+                    ..
+                ]
+            ) {
+                let shape = Shape::Sphere { radius: 1.25 };
+                network.reshape_obstacle(0, shape).unwrap();
             }
         });
         if let Some(wind) = run.scene().wind {
@@ -231,7 +242,7 @@ fn paths_go_on_from_where_they_are() {
         for later in [0.0, 0.1, 0.4, 0.9, 3.0] {
             let place = |run: &Simulation, t: f64| {
                 let pin = network(run).pins().next().unwrap().1.at(t);
-                let sphere = network(run).spheres()[0].path.at(t);
+                let sphere = network(run).obstacles()[0].path.at(t);
                 [pin.position, pin.velocity, sphere.position, sphere.velocity]
             };
             let (a, b) = (place(&run, run.time() + later), place(&again, later));
@@ -267,9 +278,14 @@ buckling = { bending = 0.0001, compression = 10 }
     let (now, then) = (network(&run), network(&again));
     for later in [0.0, 0.7, 9.0] {
         let paths = |network: &Network, t: f64| {
-            let capsule = network.capsules()[0];
-            let ends = capsule.ends.map(|end| end + capsule.path.at(t).position);
-            [network.boxes()[0].path.at(t).position, ends[0], ends[1]]
+            let [cuboid, capsule] = network.obstacles() else {
+                panic!("{:?}", network.obstacles());
+            };
+            let Shape::Capsule { ends, .. } = capsule.shape else {
+                panic!("{capsule:?}");
+            };
+            let ends = ends.map(|end| end + capsule.path.at(t).position);
+            [cuboid.path.at(t).position, ends[0], ends[1]]
         };
         for (a, b) in paths(now, 1.5 + later).iter().zip(paths(then, later)) {
             assert!((a - b).norm() < 1e-12, "{later}: {a} {b}");

@@ -1,34 +1,31 @@
 //! Obstacles.
 
-use a3_core::colliders::{Capsule, Cuboid, Floor, Sphere};
-use a3_core::{Network, Vector3};
+use a3_core::contact::{Obstacle, Shape};
+use a3_core::{Network, Path, Vector3};
 
 use super::pins::path;
-use crate::check::{at, key_of, number, positive, vector};
-use crate::description::{BoxSpec, CapsuleSpec, Description, SphereSpec};
+use crate::check::{at, at_least, key_of, number, positive, vector};
+use crate::description::{BoxSpec, CapsuleSpec, Description, Floor, FloorSpec, SphereSpec};
 use crate::fault::Fault;
 
 /// Largest number of obstacles of one kind.
 const MAX_OBSTACLES: usize = 1000;
 
-/// Adds the obstacles of the description.
+/// Adds the obstacles of the description, of which the floor acts last.
 pub(super) fn add(description: &Description, network: &mut Network) -> Result<(), Fault> {
-    if let Some(height) = description.floor {
-        let height = number("floor", height)?;
-        network.set_floor(Floor { height });
-    }
     each("sphere", &description.sphere, |spec| {
-        network.add_sphere(sphere(spec)?);
-        Ok(())
+        at("radius", network.add_obstacle(sphere(spec)?))
     })?;
     each("box", &description.boxes, |spec| {
-        network.add_box(cuboid(spec)?);
-        Ok(())
+        at("size", network.add_obstacle(cuboid(spec)?))
     })?;
     each("capsule", &description.capsule, |spec| {
-        network.add_capsule(capsule(spec)?);
-        Ok(())
-    })
+        at("radius", network.add_obstacle(capsule(spec)?))
+    })?;
+    match &description.floor {
+        None => Ok(()),
+        Some(spec) => at("floor", network.add_obstacle(floor(spec)?)),
+    }
 }
 
 /// Adds each of the obstacles of a kind.
@@ -48,16 +45,18 @@ fn each<T>(
     Ok(())
 }
 
-fn sphere(spec: &SphereSpec) -> Result<Sphere, Fault> {
-    at("radius", positive("it", spec.radius))?;
+fn sphere(spec: &SphereSpec) -> Result<Obstacle, Fault> {
+    let radius = spec.radius;
+    at("radius", positive("it", radius))?;
     let center = vector("center", spec.center)?;
-    Ok(Sphere {
+    Ok(Obstacle {
+        shape: Shape::Sphere { radius },
         path: path(center, spec.sine.as_ref(), spec.shift.as_ref())?,
-        radius: spec.radius,
+        friction: friction(spec.friction)?,
     })
 }
 
-fn cuboid(spec: &BoxSpec) -> Result<Cuboid, Fault> {
+fn cuboid(spec: &BoxSpec) -> Result<Obstacle, Fault> {
     let center = vector("center", spec.center)?;
     let path = path(center, spec.sine.as_ref(), spec.shift.as_ref())?;
     let size = vector("size", spec.size)?;
@@ -65,12 +64,39 @@ fn cuboid(spec: &BoxSpec) -> Result<Cuboid, Fault> {
     for edge in spec.size {
         at("size", positive("each edge", edge))?;
     }
-    at("size", Cuboid::new(path, 0.5 * size, turn))
+    Ok(Obstacle {
+        shape: at("size", Shape::turned_box(0.5 * size, turn))?,
+        path,
+        friction: friction(spec.friction)?,
+    })
 }
 
-fn capsule(spec: &CapsuleSpec) -> Result<Capsule, Fault> {
+fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
     let (from, to) = (vector("from", spec.from)?, vector("to", spec.to)?);
     let path = path(from, spec.sine.as_ref(), spec.shift.as_ref())?;
-    let ends = [Vector3::zeros(), to - from];
-    at("radius", Capsule::new(path, ends, spec.radius))
+    Ok(Obstacle {
+        shape: Shape::Capsule {
+            ends: [Vector3::zeros(), to - from],
+            radius: spec.radius,
+        },
+        path,
+        friction: friction(spec.friction)?,
+    })
+}
+
+fn floor(spec: &Floor) -> Result<Obstacle, Fault> {
+    let (height, mu) = match *spec {
+        Floor::Height(height) => (number("floor", height)?, 0.0),
+        Floor::Table(FloorSpec { height, friction }) => (number("floor.height", height)?, friction),
+    };
+    Ok(Obstacle {
+        shape: Shape::Floor,
+        path: Path::Still(Vector3::new(0.0, height, 0.0)),
+        friction: friction(mu).map_err(|fault| fault.within("floor"))?,
+    })
+}
+
+fn friction(mu: f64) -> Result<f64, Fault> {
+    at("friction", at_least(0.0, "it", mu))?;
+    Ok(mu)
 }

@@ -3,6 +3,7 @@
 
 mod bodies;
 mod constraints;
+mod floor;
 mod forces;
 mod motion;
 mod obstacles;
@@ -14,6 +15,7 @@ use crate::fault::Fault;
 
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
+pub use floor::{Floor, FloorSpec};
 pub use forces::{BucklingSpec, SpringSpec, SwingSpec, WindSpec};
 pub use motion::{Pin, Shift, Sine, Spot, Triple};
 pub use obstacles::{BoxSpec, CapsuleSpec, SphereSpec};
@@ -42,8 +44,8 @@ pub struct Description {
     pub drag: Option<f64>,
     /// Viscous drag on each particle over the mean mass of a particle (1/s). An alternative is `drag`.
     pub drag_per_mass: Option<f64>,
-    /// Height of a level floor (m).
-    pub floor: Option<f64>,
+    /// Level floor: its height (m), or a table with `height` and `friction`.
+    pub floor: Option<Floor>,
     /// Largest stretch, in rest lengths, to which a hand pulls the springs of the particle it holds.
     pub reach: Option<f64>,
     /// Number of the particle whose path is drawn.

@@ -13,6 +13,9 @@ pub struct SphereSpec {
     pub center: Triple,
     /// Radius (m).
     pub radius: f64,
+    /// Coefficient of Coulomb friction; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_smooth")]
+    pub friction: f64,
     /// Oscillation of the sphere.
     #[serde(default)]
     pub sine: Option<Sine>,
@@ -32,6 +35,9 @@ pub struct BoxSpec {
     /// Rotation vector: its direction is the axis, its length the angle (rad).
     #[serde(default)]
     pub rotation: Option<Triple>,
+    /// Coefficient of Coulomb friction; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_smooth")]
+    pub friction: f64,
     /// Oscillation of the box.
     #[serde(default)]
     pub sine: Option<Sine>,
@@ -50,10 +56,18 @@ pub struct CapsuleSpec {
     pub to: Triple,
     /// Radius (m).
     pub radius: f64,
+    /// Coefficient of Coulomb friction; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_smooth")]
+    pub friction: f64,
     /// Oscillation of the capsule.
     #[serde(default)]
     pub sine: Option<Sine>,
     /// Displacement of the capsule, once.
     #[serde(default)]
     pub shift: Option<Shift>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn is_smooth(friction: &f64) -> bool {
+    *friction == 0.0
 }

@@ -1,12 +1,13 @@
 //! Knobs: all that can be tuned while a scene runs, in one table for the mouse and the keys.
 
-use a3_core::{Network, Vector3};
+use a3_core::Vector3;
+use a3_core::contact::Shape;
 use a3_render::Style;
 
 use super::dial::{Dial, DialScale, Turn};
 use super::values::{
-    damping, drag, gravity, gusts, network, own, solver, sphere, springs_of, step, stiffness,
-    switch,
+    damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
+    stiffness, switch,
 };
 use crate::session::{Action, Session, Tuning};
 
@@ -107,30 +108,33 @@ pub static KNOBS: &[Knob] = &[
         |session, _, on| session.change_all(|run| run.set_pinned(on != 0.0)),
     ),
     knob("sphere", sphere, |session, _, radius| {
-        let Some(first) = own(session).and_then(|own| own.spheres().first()) else {
+        let radii: Vec<_> = own(session).into_iter().flat_map(radii).collect();
+        let Some(&(_, first)) = radii.first() else {
             return;
         };
-        let factor = radius / first.radius;
-        let radii = own(session).into_iter().flat_map(Network::spheres);
-        let radii: Vec<_> = radii.map(|sphere| sphere.radius * factor).collect();
         session.adjust(|network| {
-            for (k, radius) in radii.iter().enumerate() {
-                let _ = network.resize_sphere(k, *radius);
+            for &(k, own) in &radii {
+                let radius = own * (radius / first);
+                let _ = network.reshape_obstacle(k, Shape::Sphere { radius });
             }
         });
     }),
     knob(
         "floor",
         |session, _| {
-            own(session)?.floor()?;
-            let there = network(session)?.floor().is_some();
+            floor(own(session)?)?;
+            let there = floor(network(session)?).is_some();
             Some(switch(there, true))
         },
         |session, _, on| {
-            let floor = own(session).and_then(Network::floor);
-            session.adjust(|network| match floor.filter(|_| on != 0.0) {
-                Some(floor) => network.set_floor(floor),
-                None => network.remove_floor(),
+            let own = own(session).and_then(floor).filter(|_| on != 0.0);
+            session.adjust(|network| {
+                if let Some((k, _)) = floor(network) {
+                    let _ = network.remove_obstacle(k);
+                }
+                if let Some((_, floor)) = own {
+                    let _ = network.add_obstacle(floor);
+                }
             });
         },
     ),

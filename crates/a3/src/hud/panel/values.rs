@@ -1,5 +1,6 @@
 //! The values that the knobs show.
 
+use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Control, Network, integrators};
 
 use super::dial::{Dial, DialScale, round_up, short};
@@ -143,8 +144,25 @@ pub fn gravity(session: &Session, _: usize) -> Option<Dial> {
     })
 }
 
+/// Spheres among the obstacles of a network: their numbers and radii (m).
+pub fn radii(network: &Network) -> impl Iterator<Item = (usize, f64)> {
+    let obstacles = network.obstacles().iter().enumerate();
+    obstacles.filter_map(|(k, obstacle)| match obstacle.shape {
+        Shape::Sphere { radius } => Some((k, radius)),
+        _ => None,
+    })
+}
+
+/// Floor of a network, and its number among the obstacles: the last of them.
+pub fn floor(network: &Network) -> Option<(usize, Obstacle)> {
+    let obstacles = network.obstacles().iter().copied().enumerate();
+    obstacles
+        .rev()
+        .find(|(_, obstacle)| obstacle.shape == Shape::Floor)
+}
+
 pub fn sphere(session: &Session, _: usize) -> Option<Dial> {
-    let radius = |network: &Network| network.spheres().first().map(|sphere| sphere.radius);
+    let radius = |network: &Network| radii(network).next().map(|(_, radius)| radius);
     let (own, value) = (radius(own(session)?)?, radius(network(session)?)?);
     Some(Dial {
         value,

@@ -1,4 +1,5 @@
-use a3_core::Control;
+use a3_core::contact::Shape;
+use a3_core::{Control, Path, Vector3};
 
 use super::{changed, dials, every_scene, opened, type_key};
 use crate::hud::panel::dial::Turn;
@@ -87,11 +88,19 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     assert_eq!(forces(&damped), before);
     let network = |session: &Session| session.first().model().network().unwrap().clone();
     turn(&mut session, "sphere", Turn::To(0.75));
-    assert_eq!(network(&session).spheres()[0].radius, 0.75);
+    let shapes = |session: &Session| {
+        let network = network(session);
+        let obstacles = network.obstacles().iter();
+        obstacles.map(|o| (o.shape, o.path)).collect::<Vec<_>>()
+    };
+    let own = shapes(&session);
+    assert_eq!(own[0].0, Shape::Sphere { radius: 0.75 });
     turn(&mut session, "floor", Turn::Toggle);
-    assert_eq!(network(&session).floor(), None);
+    assert_eq!(shapes(&session), own[..1]);
     turn(&mut session, "floor", Turn::Toggle);
-    assert_eq!(network(&session).floor().unwrap().height, -5.0);
+    assert_eq!(shapes(&session), own);
+    let floor = Path::Still(Vector3::new(0.0, -5.0, 0.0));
+    assert_eq!(own[1], (Shape::Floor, floor));
     turn(&mut session, "pins", Turn::Toggle);
     assert_eq!(network(&session).pins().count(), 0);
     turn(&mut session, "springs of", Turn::To(7.0));

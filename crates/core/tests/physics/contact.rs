@@ -1,6 +1,6 @@
-//! Obstacles: the nearest point of the surface, and what contact leaves of a velocity.
+//! Contact with obstacles: nearest points of surfaces, and what is left of velocities without and with friction.
 
-use a3_core::colliders::{Capsule, Cuboid};
+use a3_core::contact::{Obstacle, Shape, Step, resolve};
 use a3_core::{Mechanics, Network, Path, Vector3};
 use approx::assert_relative_eq;
 use nalgebra::Rotation3;
@@ -10,24 +10,41 @@ const HALVES: Vector3<f64> = Vector3::new(1.0, 0.6, 0.8);
 const TURN: Vector3<f64> = Vector3::new(0.4, -1.1, 0.7);
 const ENDS: [Vector3<f64>; 2] = [Vector3::new(-1.0, 0.2, 0.1), Vector3::new(0.7, -0.3, 0.9)];
 const RADIUS: f64 = 0.4;
+const CAPSULE: Shape = Shape::Capsule {
+    ends: ENDS,
+    radius: RADIUS,
+};
 
 fn with_box(path: Path) -> Network {
     let mut network = Network::new(vec![1.0]).unwrap();
-    network.add_box(Cuboid::new(path, HALVES, TURN).unwrap());
+    let shape = Shape::turned_box(HALVES, TURN).unwrap();
+    network.add_obstacle(Obstacle::smooth(shape, path)).unwrap();
     network
 }
 
 fn with_capsule(path: Path) -> Network {
     let mut network = Network::new(vec![1.0]).unwrap();
-    network.add_capsule(Capsule::new(path, ENDS, RADIUS).unwrap());
+    network
+        .add_obstacle(Obstacle::smooth(CAPSULE, path))
+        .unwrap();
     network
 }
 
 /// Where a particle is put, and what is left of its velocity.
-fn constrain(network: &Network, t: f64, x: Vector3<f64>, v: Vector3<f64>) -> [Vector3<f64>; 2] {
-    let (mut x, mut v) = (x, v);
-    network.constrain(t, x.as_mut_slice(), v.as_mut_slice());
-    [x, v]
+fn resolved(network: &Network, t: f64, x: Vector3<f64>, v: Vector3<f64>) -> [Vector3<f64>; 2] {
+    let mut y = [x.x, x.y, x.z, v.x, v.y, v.z];
+    let (y0, h) = (y, 0.01);
+    let (t, y0) = (t - h, &y0);
+    resolve(
+        network.obstacles(),
+        network.inverse_masses(),
+        &Step { t, h, y0 },
+        &mut y,
+    );
+    [
+        Vector3::from_column_slice(&y[..3]),
+        Vector3::from_column_slice(&y[3..]),
+    ]
 }
 
 /// Points through and around something.
@@ -45,7 +62,7 @@ fn a_particle_in_a_box_is_put_on_the_nearest_face_and_one_outside_stays() {
     let turn = Rotation3::from_scaled_axis(TURN);
     let mut inside = 0;
     for p in points() {
-        let [x, _] = constrain(&network, 0.0, p, Vector3::zeros());
+        let [x, _] = resolved(&network, 0.0, p, Vector3::zeros());
         let local = turn.inverse() * (p - CENTER);
         let gaps = HALVES - local.abs();
         if gaps.min() < 0.0 {
@@ -73,9 +90,9 @@ fn corners_and_edges_of_a_turned_box_are_sharp() {
         }
         seen += 1;
         let at = |scale: f64| CENTER + turn * (HALVES.component_mul(&signs) * scale);
-        let [outside, _] = constrain(&network, 0.0, at(1.0 + 1e-12), Vector3::zeros());
+        let [outside, _] = resolved(&network, 0.0, at(1.0 + 1e-12), Vector3::zeros());
         assert_eq!(outside, at(1.0 + 1e-12));
-        let [x, _] = constrain(&network, 0.0, at(0.99), Vector3::zeros());
+        let [x, _] = resolved(&network, 0.0, at(0.99), Vector3::zeros());
         // The thinnest of the sides is a hundredth of 0.6 away.
         let thinnest = (0..3)
             .filter(|axis| signs[*axis] != 0.0)
@@ -99,7 +116,7 @@ fn a_particle_in_a_capsule_is_put_on_the_nearest_point_and_one_outside_stays() {
     };
     let (mut inside, mut beyond) = (0, 0);
     for p in points() {
-        let [x, _] = constrain(&network, 0.0, p, Vector3::zeros());
+        let [x, _] = resolved(&network, 0.0, p, Vector3::zeros());
         let d = distance(p);
         if d >= RADIUS {
             assert_eq!(x, p);
@@ -130,7 +147,7 @@ fn contact_takes_the_inward_part_of_the_relative_velocity_and_nothing_else() {
             for sign in [1.0, -1.0] {
                 let k = k as f64;
                 let v = sign * Vector3::new(k.sin(), (1.7 * k).cos(), (2.3 * k).sin());
-                let [x, after] = constrain(&network, 1.0, p, velocity + v);
+                let [x, after] = resolved(&network, 1.0, p, velocity + v);
                 let normal = x - p;
                 // On the surface as good as already, there is no way to tell.
                 if normal.norm() < 1e-6 {
@@ -150,7 +167,7 @@ fn contact_takes_the_inward_part_of_the_relative_velocity_and_nothing_else() {
 #[test]
 fn what_has_no_nearest_point_is_put_somewhere_all_the_same() {
     let turn = Rotation3::from_scaled_axis(TURN);
-    let [x, v] = constrain(
+    let [x, v] = resolved(
         &with_box(Path::Still(CENTER)),
         0.0,
         CENTER,
@@ -170,8 +187,12 @@ fn what_has_no_nearest_point_is_put_somewhere_all_the_same() {
         ([Vector3::zeros(); 2], Vector3::y()),
     ] {
         let mut network = Network::new(vec![1.0]).unwrap();
-        network.add_capsule(Capsule::new(still, ends, RADIUS).unwrap());
-        let [x, v] = constrain(&network, 0.0, Vector3::zeros(), -expected);
+        let radius = RADIUS;
+        let shape = Shape::Capsule { ends, radius };
+        network
+            .add_obstacle(Obstacle::smooth(shape, still))
+            .unwrap();
+        let [x, v] = resolved(&network, 0.0, Vector3::zeros(), -expected);
         assert_relative_eq!(x, RADIUS * expected, epsilon = 1e-15);
         assert_relative_eq!(v, Vector3::zeros(), epsilon = 1e-15);
     }
@@ -181,24 +202,50 @@ fn what_has_no_nearest_point_is_put_somewhere_all_the_same() {
 fn obstacles_without_a_size_are_refused() {
     let path = Path::Still(CENTER);
     for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(Cuboid::new(path, Vector3::new(1.0, wrong, 1.0), TURN).is_err());
-        assert!(Capsule::new(path, ENDS, wrong).is_err());
+        assert!(Shape::turned_box(Vector3::new(1.0, wrong, 1.0), TURN).is_err());
+        for shape in [
+            Shape::Sphere { radius: wrong },
+            Shape::Capsule {
+                ends: ENDS,
+                radius: wrong,
+            },
+        ] {
+            let mut network = Network::new(vec![1.0]).unwrap();
+            let obstacle = Obstacle::smooth(shape, path);
+            assert!(network.add_obstacle(obstacle).is_err());
+            network
+                .add_obstacle(Obstacle::smooth(Shape::Floor, path))
+                .unwrap();
+            assert!(network.reshape_obstacle(0, shape).is_err());
+            assert_eq!(network.obstacles()[0].shape, Shape::Floor);
+        }
     }
     let nowhere = Vector3::new(0.0, f64::NAN, 0.0);
-    let error = Cuboid::new(path, HALVES, nowhere).unwrap_err().to_string();
+    let error = Shape::turned_box(HALVES, nowhere).unwrap_err().to_string();
     assert_eq!(
         error,
         "the turn of a box must be three finite numbers, not 0, NaN, 0"
     );
-    assert!(Capsule::new(path, [ENDS[0], nowhere], RADIUS).is_err());
+    for friction in [-0.1, f64::NAN, f64::INFINITY] {
+        let obstacle = Obstacle {
+            friction,
+            ..Obstacle::smooth(CAPSULE, path)
+        };
+        let mut network = Network::new(vec![1.0]).unwrap();
+        let error = network.add_obstacle(obstacle).unwrap_err().to_string();
+        assert!(error.starts_with("the friction of an obstacle must be"));
+    }
 }
 
 #[test]
 fn a_network_names_the_obstacles_it_pays_for() {
     let mut network = with_box(Path::Still(CENTER));
     assert_eq!(network.forces_in_use(), ["box"]);
-    assert_eq!(network.boxes()[0].half_extents, HALVES);
-    network.add_capsule(Capsule::new(Path::Still(CENTER), ENDS, RADIUS).unwrap());
+    let capsule = Obstacle::smooth(CAPSULE, Path::Still(CENTER));
+    network.add_obstacle(capsule).unwrap();
     assert_eq!(network.forces_in_use(), ["box", "capsule"]);
-    assert_eq!(network.capsules()[0].ends, ENDS);
+    assert_eq!(network.obstacles()[1], capsule);
+    network.remove_obstacle(0).unwrap();
+    assert_eq!(network.forces_in_use(), ["capsule"]);
+    assert!(network.remove_obstacle(1).is_err());
 }

@@ -1,0 +1,235 @@
+//! The phase after a step: particles out of obstacles, impulses, friction.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::obstacle::Obstacle;
+use super::shape::{Nearest, Shape, of_box, of_capsule, of_floor, of_sphere};
+use crate::path::Place;
+
+/// Gap before a step, as a share of the depth after it, up to which a particle counts as touching from the step's
+/// beginning: rounding errors are no gap.
+const TOUCHING: f64 = 1e-6;
+
+/// Step that has been taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// Time of its beginning (s).
+    pub t: f64,
+    /// Length (s).
+    pub h: f64,
+    /// State at its beginning, [x | v].
+    pub y0: &'a [f64],
+}
+
+/// What contact did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Number of contacts: of particles, once for each obstacle that they were put out of.
+    pub contacts: usize,
+    /// Sum of the magnitudes of their impulses (N s).
+    pub impulse: f64,
+    /// Depth to which a particle had moved into an obstacle during the step, at most (m).
+    pub depth: f64,
+    /// Share of the step after which that particle touched the obstacle, if both moved uniformly.
+    pub touched: f64,
+}
+
+/// Contact phase of a run, with its scratch.
+#[derive(Clone, Debug, Default)]
+pub struct Contact {
+    /// State at the beginning of the step, if there are obstacles.
+    y0: Vec<f64>,
+    last: Statistics,
+}
+
+impl Contact {
+    /// Phase with room for states of that length.
+    #[must_use]
+    pub fn new(dim: usize) -> Self {
+        Self {
+            y0: Vec::with_capacity(dim),
+            last: Statistics::default(),
+        }
+    }
+
+    /// Remembers the state that a step begins with, if obstacles are there to be met.
+    pub fn begin(&mut self, obstacles: &[Obstacle], y0: &[f64]) {
+        self.y0.clear();
+        if !obstacles.is_empty() {
+            self.y0.extend_from_slice(y0);
+        }
+    }
+
+    /// State that the step [began](Self::begin) with; empty without obstacles.
+    #[must_use]
+    pub fn y0(&self) -> &[f64] {
+        &self.y0
+    }
+
+    /// What the last step's contact did.
+    #[must_use]
+    pub fn last(&self) -> Statistics {
+        self.last
+    }
+
+    /// Resolves the contacts of the step of h (s) from time t (s) that ended in y1, as [`resolve`] does.
+    pub fn resolve(
+        &mut self,
+        obstacles: &[Obstacle],
+        inverse_masses: &[f64],
+        (t, h): (f64, f64),
+        y1: &mut [f64],
+    ) -> Statistics {
+        let step = Step { t, h, y0: &self.y0 };
+        self.last = resolve(obstacles, inverse_masses, &step, y1);
+        self.last
+    }
+}
+
+/// Puts the particles of y1 = [x | v], the end of a step, out of the obstacles, one obstacle after another, and takes
+/// from their velocities what contact and friction take. Pinned particles, whose inverse mass is 0, are left alone. Does
+/// nothing where nothing touches.
+///
+/// Units are m, s, kg. With obstacles, `step.y0` is as long as y1.
+pub fn resolve(
+    obstacles: &[Obstacle],
+    inverse_masses: &[f64],
+    step: &Step,
+    y1: &mut [f64],
+) -> Statistics {
+    let mut statistics = Statistics::default();
+    for obstacle in obstacles {
+        let met = Met {
+            x0: &step.y0[..3 * inverse_masses.len()],
+            inverse_masses,
+            friction: obstacle.friction,
+            before: obstacle.path.at(step.t),
+            after: obstacle.path.at(step.t + step.h),
+            // A floor moves nothing sideways.
+            axes: if obstacle.shape == Shape::Floor {
+                1..2
+            } else {
+                0..3
+            },
+        };
+        let statistics = &mut statistics;
+        match obstacle.shape {
+            Shape::Sphere { radius } => {
+                met.resolve(y1, statistics, |d| of_sphere(d, radius, Vector3::y));
+            }
+            Shape::Box { half_extents, axes } => {
+                met.resolve(y1, statistics, |d| of_box(d, half_extents, axes));
+            }
+            Shape::Capsule { ends, radius } => {
+                met.resolve(y1, statistics, |d| of_capsule(d, ends, radius));
+            }
+            Shape::Floor => met.resolve(y1, statistics, of_floor),
+        }
+    }
+    statistics
+}
+
+/// Obstacle as a step meets it.
+struct Met<'a> {
+    x0: &'a [f64],
+    inverse_masses: &'a [f64],
+    friction: f64,
+    /// Its place at the step's beginning, and at its end.
+    before: Place,
+    after: Place,
+    /// Axes along which it pushes.
+    axes: Range<usize>,
+}
+
+impl Met<'_> {
+    /// Resolves the contacts with a surface that looks from the obstacle's place to a particle, and answers from there
+    /// if the particle is inside.
+    fn resolve(
+        &self,
+        y1: &mut [f64],
+        statistics: &mut Statistics,
+        surface: impl Fn(Vector3<f64>) -> Option<Nearest>,
+    ) {
+        let n = self.inverse_masses.len();
+        let (x, v) = y1.split_at_mut(3 * n);
+        let c = self.after.position;
+        for i in 0..n {
+            let d = Vector3::new(x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
+            let Some(nearest) = surface(d) else {
+                continue;
+            };
+            if self.inverse_masses[i] == 0.0 {
+                continue;
+            }
+            let at = vector(x, n, i);
+            let velocity = vector(v, n, i) - self.after.velocity;
+            let outwards = velocity.dot(&nearest.normal);
+            let inwards = outwards.min(0.0);
+            for axis in self.axes.clone() {
+                x[axis * n + i] = c[axis] + nearest.point[axis];
+                v[axis * n + i] -= inwards * nearest.normal[axis];
+            }
+            // Where it would be if the obstacle had carried it along.
+            let carried = vector(self.x0, n, i) + (c - self.before.position);
+            let depth = nearest.normal.dot(&(nearest.point - d));
+            let approach = nearest.normal.dot(&(carried - at));
+            if self.friction > 0.0 {
+                let touching = if approach > depth * (1.0 + TOUCHING) {
+                    depth / approach
+                } else {
+                    1.0
+                };
+                let touched = carried + (at - carried) * (1.0 - touching);
+                let held = || match surface(touched - c) {
+                    Some(Nearest { point, .. }) => c + point,
+                    None => touched,
+                };
+                let slip = across(vector(x, n, i) - touched, nearest.normal);
+                set(
+                    x,
+                    n,
+                    i,
+                    match self.kept(slip, depth) {
+                        0.0 => held(),
+                        kept => vector(x, n, i) - slip * (1.0 - kept),
+                    },
+                );
+                let slip = across(velocity, nearest.normal);
+                let outwards = nearest.normal * outwards.max(0.0);
+                let along = slip * self.kept(slip, -inwards);
+                set(v, n, i, self.after.velocity + outwards + along);
+            }
+            statistics.contacts += 1;
+            let change = vector(v, n, i) - self.after.velocity - velocity;
+            statistics.impulse += change.norm() / self.inverse_masses[i];
+            let moved_in = depth.min(approach);
+            if moved_in > statistics.depth {
+                statistics.depth = moved_in;
+                statistics.touched = 1.0 - moved_in / approach;
+            }
+        }
+    }
+
+    /// Share of a slip along the surface that friction leaves, with what contact took or added along the normal.
+    fn kept(&self, slip: Vector3<f64>, normal: f64) -> f64 {
+        let (slip, most) = (slip.norm(), self.friction * normal);
+        if slip > most { 1.0 - most / slip } else { 0.0 }
+    }
+}
+
+/// Part of a vector at right angles to a unit normal.
+fn across(a: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
+    a - normal * a.dot(&normal)
+}
+
+fn vector(a: &[f64], n: usize, i: usize) -> Vector3<f64> {
+    Vector3::new(a[i], a[n + i], a[2 * n + i])
+}
+
+fn set(a: &mut [f64], n: usize, i: usize, to: Vector3<f64>) {
+    for axis in 0..3 {
+        a[axis * n + i] = to[axis];
+    }
+}

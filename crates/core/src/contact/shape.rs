@@ -1,0 +1,178 @@
+//! Shapes of obstacles, and the nearest points of their surfaces.
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, finite, positive};
+
+/// Shape of an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// All that is within a radius of the place.
+    Sphere {
+        /// Radius (m).
+        radius: f64,
+    },
+    /// Box around the place.
+    Box {
+        /// Half the length along each of the axes (m).
+        half_extents: Vector3<f64>,
+        /// Directions of the edges: unit vectors at right angles to one another.
+        axes: [Vector3<f64>; 3],
+    },
+    /// All that is within a radius of a line segment.
+    Capsule {
+        /// Ends of the segment, seen from the place (m).
+        ends: [Vector3<f64>; 2],
+        /// Radius (m).
+        radius: f64,
+    },
+    /// All that is lower than the place.
+    Floor,
+}
+
+impl Shape {
+    /// Box that is turned from the upright about the vector `turn` by its length (rad).
+    ///
+    /// # Errors
+    /// A half extent is not above 0, or a number is not finite.
+    pub fn turned_box(half_extents: Vector3<f64>, turn: Vector3<f64>) -> Result<Self, Error> {
+        finite("the turn of a box", turn)?;
+        // Rodrigues' formula.
+        let angle = turn.norm();
+        let (sin, cos) = libm::sincos(angle);
+        let about = if angle > 0.0 {
+            turn / angle
+        } else {
+            Vector3::zeros()
+        };
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()]
+            .map(|e| e * cos + about.cross(&e) * sin + about * (about.dot(&e) * (1.0 - cos)));
+        let shape = Self::Box { half_extents, axes };
+        shape.check()?;
+        Ok(shape)
+    }
+
+    /// Name as in scene files.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Sphere { .. } => "sphere",
+            Self::Box { .. } => "box",
+            Self::Capsule { .. } => "capsule",
+            Self::Floor => "floor",
+        }
+    }
+
+    /// # Errors
+    /// A radius or a half extent is not above 0, or a number is not finite.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        match self {
+            Self::Sphere { radius } => positive("a sphere's radius", *radius),
+            Self::Box { half_extents, axes } => {
+                let mut halves = half_extents.iter();
+                halves.try_for_each(|half| positive("half the extent of a box", *half))?;
+                axes.iter()
+                    .try_for_each(|axis| finite("an axis of a box", *axis))
+            }
+            Self::Capsule { ends, radius } => {
+                let mut ends = ends.iter();
+                ends.try_for_each(|end| finite("the end of a capsule", *end))?;
+                positive("a capsule's radius", *radius)
+            }
+            Self::Floor => Ok(()),
+        }
+    }
+}
+
+/// Nearest point of a surface (m), and the unit normal there.
+pub(super) struct Nearest {
+    pub point: Vector3<f64>,
+    pub normal: Vector3<f64>,
+}
+
+/// Nearest point of a sphere around the origin to a point d inside it. The centre is moved along `aside`.
+pub(super) fn of_sphere(
+    d: Vector3<f64>,
+    radius: f64,
+    aside: impl Fn() -> Vector3<f64>,
+) -> Option<Nearest> {
+    let squared = d.x * d.x + d.y * d.y + d.z * d.z;
+    if squared < radius * radius {
+        let distance = squared.sqrt();
+        let normal = if distance > 0.0 {
+            d / distance
+        } else {
+            aside()
+        };
+        Some(Nearest {
+            point: radius * normal,
+            normal,
+        })
+    } else {
+        None
+    }
+}
+
+/// Nearest point of a box around the origin to a point d inside it: on the nearest face.
+pub(super) fn of_box(
+    d: Vector3<f64>,
+    half_extents: Vector3<f64>,
+    axes: [Vector3<f64>; 3],
+) -> Option<Nearest> {
+    let local = axes.map(|axis| axis.dot(&d));
+    let depth = |k: usize| half_extents[k] - local[k].abs();
+    if !(0..3).all(|k| depth(k) > 0.0) {
+        return None;
+    }
+    let k = (1..3).fold(
+        0,
+        |k, other| if depth(other) < depth(k) { other } else { k },
+    );
+    let normal = if local[k] < 0.0 { -axes[k] } else { axes[k] };
+    Some(Nearest {
+        point: d + normal * depth(k),
+        normal,
+    })
+}
+
+/// Nearest point of a capsule to a point d inside it.
+pub(super) fn of_capsule(
+    d: Vector3<f64>,
+    [a, b]: [Vector3<f64>; 2],
+    radius: f64,
+) -> Option<Nearest> {
+    let axis = b - a;
+    let squared = axis.norm_squared();
+    let share = if squared > 0.0 {
+        ((d - a).dot(&axis) / squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let middle = a + share * axis;
+    let Nearest { point, normal } = of_sphere(d - middle, radius, || upwards(axis))?;
+    Some(Nearest {
+        point: middle + point,
+        normal,
+    })
+}
+
+/// Nearest point of a floor at height 0 to a point d below it.
+pub(super) fn of_floor(d: Vector3<f64>) -> Option<Nearest> {
+    (d.y < 0.0).then(|| Nearest {
+        point: Vector3::new(d.x, 0.0, d.z),
+        normal: Vector3::y(),
+    })
+}
+
+/// Unit vector across an axis that leads upwards most steeply; along x from an upright axis.
+fn upwards(axis: Vector3<f64>) -> Vector3<f64> {
+    let squared = axis.norm_squared();
+    if squared == 0.0 {
+        return Vector3::y();
+    }
+    [Vector3::y(), Vector3::x()]
+        .into_iter()
+        .map(|e| e - axis * (axis.dot(&e) / squared))
+        .find(|across| across.norm_squared() > 1e-6)
+        .map_or(Vector3::y(), |across| across.normalize())
+}

@@ -1,0 +1,62 @@
+//! Level floor of a scene: a height, or a table.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// Level floor: `floor = -1.0`, or `floor = { height = -1.0, friction = 0.4 }`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Floor {
+    /// Height of a smooth floor (m).
+    Height(f64),
+    /// Floor with friction.
+    Table(FloorSpec),
+}
+
+/// Level floor with friction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FloorSpec {
+    /// Height (m).
+    pub height: f64,
+    /// Coefficient of Coulomb friction on it; 0 if not given.
+    #[serde(default)]
+    pub friction: f64,
+}
+
+/// Written out, because an untagged enum does not say what is wrong with its table.
+impl<'de> Deserialize<'de> for Floor {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(HeightOrTable)
+    }
+}
+
+struct HeightOrTable;
+
+impl<'de> Visitor<'de> for HeightOrTable {
+    type Value = Floor;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a height (m), or a table with the keys `height` and `friction`")
+    }
+
+    fn visit_f64<E>(self, height: f64) -> Result<Floor, E> {
+        Ok(Floor::Height(height))
+    }
+
+    fn visit_i64<E>(self, height: i64) -> Result<Floor, E> {
+        Ok(Floor::Height(height as f64))
+    }
+
+    fn visit_u64<E>(self, height: u64) -> Result<Floor, E> {
+        Ok(Floor::Height(height as f64))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Floor, A::Error> {
+        FloorSpec::deserialize(MapAccessDeserializer::new(map)).map(Floor::Table)
+    }
+}
