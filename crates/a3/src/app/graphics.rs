@@ -15,25 +15,26 @@ use crate::session::{Readings, Session};
 use crate::{output, show};
 
 /// What became of a frame.
-pub enum Outcome {
-    /// The text wants to be drawn again after this time, if ever: it fades in.
+pub enum FrameOutcome {
+    /// The frame was drawn. The text must be drawn again after this time, if at all: it fades in.
     Drawn(Option<Duration>),
-    /// Not now: ask again at the next event, or soon.
+    /// The frame could not be drawn now. It may be at the next event, or soon.
     Skipped,
 }
 
+/// All that depends on the adapter.
 pub struct Graphics {
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
-    /// Of the view that the picture is drawn to. The text wants another.
+    /// Format of the view that the picture is drawn to. The text is drawn to another view.
     format: wgpu::TextureFormat,
     renderer: Renderer,
     targets: Targets,
-    /// Springs that had broken when each pane's topology was made.
+    /// Number of broken springs when the topology of each pane was made.
     tears: Vec<usize>,
-    text: Overlay,
+    overlay: Overlay,
     egui_winit: egui_winit::State,
-    /// The surface no longer has the size of the window.
+    /// Whether the window has another size than the surface.
     stale: bool,
     gpu: Gpu,
     window: Arc<Window>,
@@ -54,9 +55,9 @@ impl Graphics {
         config.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &config);
         let samples = window_samples(&gpu, format);
-        let text = Overlay::new(&gpu, config.format);
+        let overlay = Overlay::new(&gpu, config.format);
         let egui_winit = egui_winit::State::new(
-            text.context.clone(),
+            overlay.context.clone(),
             egui::ViewportId::ROOT,
             &window,
             Some(window.scale_factor() as f32),
@@ -67,7 +68,7 @@ impl Graphics {
             renderer: Renderer::new(&gpu, format, samples, &show::topology(session.first())),
             targets: Targets::new(&gpu, size, format, samples),
             tears: vec![],
-            text,
+            overlay,
             egui_winit,
             surface,
             config,
@@ -78,12 +79,12 @@ impl Graphics {
         })
     }
 
-    /// In px.
+    /// Size of the surface (px).
     pub fn size(&self) -> (u32, u32) {
         (self.config.width, self.config.height)
     }
 
-    /// Where the panes are.
+    /// The parts of the window that the panes fill.
     pub fn tiles(&self, session: &Session) -> Vec<Tile> {
         let size = panel::leaves(session, self.size(), self.scale());
         layout::tiles(session.panes.len(), size, self.scale())
@@ -94,31 +95,32 @@ impl Graphics {
         self.window.scale_factor() as f32
     }
 
-    /// The adapter in use.
+    /// Name of the adapter.
     pub fn adapter(&self) -> String {
         self.gpu.name()
     }
 
-    /// Lets the text see an event. Whether it kept it for itself.
+    /// Shows an event to egui, and returns whether egui keeps it for itself.
     pub fn on_event(&mut self, event: &winit::event::WindowEvent) -> bool {
         self.egui_winit
             .on_window_event(&self.window, event)
             .consumed
     }
 
-    /// The window has another size. Acted upon at the next frame, once for however many changes.
+    /// Notes that the window has another size. The surface follows at the next frame, once for however
+    /// many changes.
     pub fn resized(&mut self) {
         self.stale = true;
     }
 
-    /// The scene is another one.
+    /// Takes the topology of another scene.
     pub fn set_scene(&mut self, session: &Session) {
         self.renderer
             .set_topology(&self.gpu, &show::topology(session.first()));
         self.tears.clear();
     }
 
-    /// Leaves out what has torn.
+    /// Leaves torn springs and triangles out of the topology.
     fn tear(&mut self, session: &Session) {
         self.tears.resize(session.panes.len(), 0);
         for (k, (pane, tears)) in session.panes.iter().zip(&mut self.tears).enumerate() {
@@ -131,7 +133,7 @@ impl Graphics {
         }
     }
 
-    /// Breaks the device, to see what happens.
+    /// Breaks the device, for tests.
     pub fn lose_device(&self) {
         self.gpu.device.destroy();
     }
@@ -151,11 +153,11 @@ impl Graphics {
         }
     }
 
-    /// Draws the session to the window, if that can be.
-    pub fn frame(&mut self, session: &mut Session) -> Result<Outcome, GpuError> {
+    /// Draws the session to the window, if that is possible now.
+    pub fn frame(&mut self, session: &mut Session) -> Result<FrameOutcome, GpuError> {
         let inner = self.window.inner_size();
         if inner.width == 0 || inner.height == 0 {
-            return Ok(Outcome::Skipped);
+            return Ok(FrameOutcome::Skipped);
         }
         if self.stale {
             self.reconfigure();
@@ -166,16 +168,16 @@ impl Graphics {
                 // Configuring panics while a frame is alive.
                 drop(frame);
                 self.reconfigure();
-                return Ok(Outcome::Skipped);
+                return Ok(FrameOutcome::Skipped);
             }
             CurrentSurfaceTexture::Outdated => {
                 self.reconfigure();
-                return Ok(Outcome::Skipped);
+                return Ok(FrameOutcome::Skipped);
             }
             CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => {
-                return Ok(Outcome::Skipped);
+                return Ok(FrameOutcome::Skipped);
             }
-            // A lost device says Validation too; its own word for it comes from the check.
+            // A lost device may say Validation too: the check finds out.
             CurrentSurfaceTexture::Lost | CurrentSurfaceTexture::Validation => {
                 self.gpu.check()?;
                 return Err(GpuError::Lost);
@@ -202,7 +204,7 @@ impl Graphics {
         });
         self.renderer
             .draw(&mut self.targets.pass(&mut encoder, &view));
-        // The text's own code panics where it meets a device that has just been lost.
+        // egui's renderer panics on a device that has just been lost.
         self.gpu.check()?;
         let text_view = frame
             .texture
@@ -216,13 +218,13 @@ impl Graphics {
         self.gpu.check()?;
         if let Some(request) = request {
             panel::apply(session, request);
-            return Ok(Outcome::Drawn(Some(Duration::ZERO)));
+            return Ok(FrameOutcome::Drawn(Some(Duration::ZERO)));
         }
-        Ok(Outcome::Drawn(again))
+        Ok(FrameOutcome::Drawn(again))
     }
 
-    /// The text, in a second pass over the picture: what to submit before it, when it wants to be drawn again, and what a
-    /// hand in the panel wants.
+    /// Writes the text in a second pass over the picture. Returns the commands to submit before it, the
+    /// time after which it must be drawn again, and what the mouse asks of the panel.
     fn write_text(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -236,7 +238,7 @@ impl Graphics {
             ..Default::default()
         }));
         let mut request = None;
-        let mut output = self.text.lay_out(&self.gpu, input, |ctx| {
+        let mut output = self.overlay.lay_out(&self.gpu, input, |ctx| {
             hud::show(ctx, &session.panes, &session.readings);
             request = panel::show(ctx, session).or(request);
         });
@@ -248,12 +250,12 @@ impl Graphics {
             .map(|viewport| viewport.repaint_delay);
         let again = again.filter(|delay| *delay < Duration::from_mins(1));
         let size = (self.config.width, self.config.height);
-        let before = self.text.paint(&self.gpu, encoder, view, size, output);
+        let before = self.overlay.paint(&self.gpu, encoder, view, size, output);
         (before, again, request)
     }
 
-    /// Saves what is seen under the first free name: one pane without the text, several with what tells them apart.
-    /// Which name that was.
+    /// Saves a picture under the first free name, and returns the name: one pane without text, several
+    /// with the text that tells them apart.
     pub fn save_picture(&self, session: &mut Session) -> Result<String, Failure> {
         let size = self.size();
         let offscreen = Offscreen::new(&self.gpu, size).map_err(Failure::run)?;
@@ -276,8 +278,9 @@ impl Graphics {
     }
 }
 
-/// A processor that draws is kept from drawing four times: at 1280 x 720 on two cores, offscreen, 11 ms a frame instead of 43.
-/// Lines have smooth edges all the same, and pictures that are saved have them everywhere.
+/// Samples of a pixel in the window. A software adapter gets one: at 1280 x 720 on two cores a frame
+/// takes 11 ms offscreen instead of 43. Lines have smooth edges all the same, and saved pictures have
+/// them everywhere.
 fn window_samples(gpu: &Gpu, format: wgpu::TextureFormat) -> u32 {
     if gpu.is_software() {
         1
@@ -286,20 +289,20 @@ fn window_samples(gpu: &Gpu, format: wgpu::TextureFormat) -> u32 {
     }
 }
 
-/// The size of the window within what the device can do (px).
+/// The size of the window (px) within the limits of the device.
 fn clamped(gpu: &Gpu, window: &Window) -> (u32, u32) {
     let (size, limit) = (window.inner_size(), gpu.largest_side());
     (size.width.clamp(1, limit), size.height.clamp(1, limit))
 }
 
-/// An adapter that can draw to the window.
+/// Opens an adapter that can draw to the window.
 fn open(
     window: &Arc<Window>,
     display: &OwnedDisplayHandle,
 ) -> Result<(Gpu, wgpu::Surface<'static>), GpuError> {
     let mut result = Err(GpuError::no_adapter());
     for backends in Gpu::backends() {
-        // GL needs the handle of the display to present.
+        // GL needs the display's handle to present.
         let mut descriptor =
             wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display.clone()));
         descriptor.backends = backends;
@@ -315,8 +318,9 @@ fn open(
     result
 }
 
-/// Text wants a view of the surface that is not sRGB, the picture one that is: one texture with two views where the
-/// backend has that, one sRGB surface for both on GL. Returns the picture's format.
+/// Chooses the format of the surface, and returns that of the picture. The text needs a view that is not
+/// sRGB, the picture one that is: a texture with two views where the backend has them, and one sRGB
+/// surface for both on GL.
 fn choose_formats(
     gpu: &Gpu,
     surface: &wgpu::Surface,

@@ -1,10 +1,15 @@
-//! The window: events in, frames out.
+//! The window: events in, frames out. Nothing else knows winit.
 
+mod events;
+mod frame;
 mod graphics;
 mod keyboard;
+mod mouse;
 mod pick;
+mod pointer;
+mod start;
 mod state;
 mod status;
 mod watch;
 
-pub use state::{End, open};
+pub use start::{End, open};

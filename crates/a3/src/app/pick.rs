@@ -1,4 +1,4 @@
-//! From a place in the picture to a particle, and back to a place in the world.
+//! Picking: from a point of the picture to a particle or an obstacle, and back to a point of the scene.
 
 use a3_core::contact::Shape;
 use a3_core::{Simulation, Vector3};
@@ -6,33 +6,33 @@ use a3_render::Camera;
 
 use crate::show;
 
-/// What a hand takes hold of, by its number.
+/// What is picked, by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     Particle(usize),
     Obstacle(usize),
 }
 
-/// Hold of a particle or an obstacle: what keeps it under the pointer.
+/// The hold on a particle or an obstacle that keeps it under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
-    /// Its distance from the eye along the view (m).
+    /// Distance from the eye along the view (m).
     distance: f32,
-    /// From the pointer to the particle, as shares of the picture.
+    /// Vector from the pointer to the particle, as shares of the picture.
     offset: [f32; 2],
 }
 
 impl Grip {
-    /// Where the particle goes when the pointer is at that place: the camera's plane at the particle's depth.
+    /// The point (m) to which the particle goes with the pointer: on the camera's plane at its depth.
     pub fn target(&self, camera: &Camera, pointer: [f32; 2], aspect: f32) -> [f32; 3] {
         let at = [pointer[0] + self.offset[0], pointer[1] + self.offset[1]];
         camera.unproject(at, self.distance, aspect)
     }
 }
 
-/// Particle or sphere under the pointer, whichever is nearer to the eye. The particle: of the nearest triangle of
-/// a cloth that it hits the closest corner, else the one that is nearest on the screen within `reach`, as a share of
-/// the picture's height.
+/// The particle or the obstacle under the pointer, whichever is nearer to the eye. If a surface is hit, the
+/// particle is the closest corner of its nearest triangle; otherwise it is the one that is nearest on the
+/// screen within `reach`, a share of the picture's height.
 pub fn pick(
     simulation: &Simulation,
     camera: &Camera,
@@ -46,7 +46,7 @@ pub fn pick(
         camera.project([p.x as f32, p.y as f32, p.z as f32], aspect)
     };
     let places: Vec<_> = (0..simulation.particles()).map(project).collect();
-    // On the screen, in units of its height.
+    // Distance from the pointer, in heights of the picture.
     let gap = |at: [f32; 2]| ((at[0] - pointer[0]) * aspect).hypot(at[1] - pointer[1]);
     let on_surface = {
         show::whole_triangles(simulation)
@@ -98,7 +98,7 @@ pub fn pick(
     Some((target, Grip { distance, offset }))
 }
 
-/// Where the line of sight through the pointer meets a ball first.
+/// The first point (m) at which the line of sight through the pointer meets a ball.
 fn ball_hit(
     camera: &Camera,
     pointer: [f32; 2],
@@ -110,7 +110,7 @@ fn ball_hit(
     let (way, from) = ((far - near).normalize(), near - Vector3::from(center));
     let b = from.dot(&way);
     let root = (b * b - from.norm_squared() + radius * radius).sqrt();
-    // Outside NaN, and behind the eye below 0.
+    // A miss is NaN, and a ball behind the eye is below 0.
     let share = Some(-b - root).filter(|share| *share > 0.0)?;
     Some((near + share * way).into())
 }
@@ -159,7 +159,7 @@ mod tests {
         assert_eq!(pick(&simulation, &camera, [0.02, 0.02], 1.6, 0.03), None);
     }
 
-    /// The same particle at the same place of every pane.
+    /// The same particle is hit at the same place of every pane.
     #[test]
     fn panes_are_picked_in_alike() {
         let simulation = cloth();
@@ -183,7 +183,7 @@ mod tests {
         }
     }
 
-    /// The nearer one is hit: the sphere beside the cloth and below it, the cloth in front of the sphere.
+    /// The nearer one is hit: the sphere from beside the cloth and below, the cloth in front of it.
     #[test]
     fn a_sphere_is_picked_unless_cloth_is_in_front() {
         let scene = a3_scenes::find("mit-sphere").unwrap().build(None).unwrap();
@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(target, Target::Obstacle(0));
         assert_eq!(grip.offset.map(|o| (1e4 * o).round() as i32), [0, 0]);
         assert!((grip.distance - 8.0).abs() < 1e-3);
-        // Through the cloth, which lies at a height of 0.
+        // The line of sight meets the cloth first, which lies at a height of 0.
         let above = hit([1.0, 6.0, 2.0]).unwrap().0;
         assert!(matches!(above, Target::Particle(_)), "{above:?}");
     }

@@ -1,4 +1,4 @@
-//! For tests: what is on the screen, as lines of text on stderr.
+//! What is on the screen, as lines of text on stderr, for tests.
 
 use std::time::{Duration, Instant};
 
@@ -7,22 +7,25 @@ use a3_render::Tile;
 use super::graphics::Graphics;
 use crate::session::{Pane, Session};
 
-/// What was said, and when.
+/// The lines of status so far.
 #[derive(Default)]
 pub struct Status {
+    /// Number of frames drawn.
     pub frames: u64,
+    /// The last line, without what changes from frame to frame.
     state: String,
+    /// Time of the last line.
     said: Option<Instant>,
 }
 
 impl Status {
-    /// Says it, unless it was said just now.
+    /// Writes a line, unless nothing has changed and the last one is too recent.
     pub fn say(&mut self, session: &Session, graphics: &Graphics, visible: bool, devices: u32) {
         let run = session.first();
         let readings = &session.readings;
         let panes = &session.panes;
         let grabbed = run.grabbed().map_or("-".into(), |i| i.to_string());
-        // Where the grabbed particle is, in the pane and in the window.
+        // Position of the grabbed particle in the window (px).
         let place = |pane: &Pane, tile: Tile| {
             let p = pane.simulation.position(pane.simulation.grabbed()?);
             let point = [p.x as f32, p.y as f32, p.z as f32];

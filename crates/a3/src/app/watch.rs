@@ -1,13 +1,14 @@
-//! Files that are looked at now and then, to see whether they were saved.
+//! Files that are checked now and then, to see whether they were saved.
 
 use std::fs;
 use std::path::PathBuf;
 use std::time::{Duration, Instant, SystemTime};
 
-/// From one look to the next. Editors rename, truncate and write: looking is what works with all of them.
-const EVERY: Duration = Duration::from_millis(200);
+/// Time from one check to the next. Editors rename, truncate and write files: checking works with all of
+/// them.
+const INTERVAL: Duration = Duration::from_millis(200);
 
-/// What tells one version of a file from the next.
+/// Time of change and length, by which one version of a file differs from the next; `None` without a file.
 type Stamp = Option<(SystemTime, u64)>;
 
 /// The files of a scene.
@@ -18,27 +19,28 @@ pub struct Watch {
 }
 
 impl Watch {
+    /// Begins to watch files as they are now.
     pub fn new(files: Vec<PathBuf>) -> Self {
         Self {
             seen: files.iter().map(stamp).collect(),
             files,
-            next: Instant::now() + EVERY,
+            next: Instant::now() + INTERVAL,
         }
     }
 
-    /// When to look again.
+    /// Time of the next check.
     pub fn next(&self) -> Instant {
         self.next
     }
 
-    /// Whether any was saved since the last look, and is there.
+    /// Whether a file was saved since the last check, and all of them are there.
     pub fn changed(&mut self) -> bool {
         if Instant::now() < self.next {
             return false;
         }
-        self.next = Instant::now() + EVERY;
+        self.next = Instant::now() + INTERVAL;
         let now: Vec<_> = self.files.iter().map(stamp).collect();
-        // While it is being replaced, it is away for a moment.
+        // A file that is being replaced is absent for a moment.
         if now == self.seen || now.iter().any(Option::is_none) {
             return false;
         }
@@ -64,7 +66,7 @@ mod tests {
         fs::write(&path, "a").unwrap();
         let mut watch = Watch::new(vec![path.clone()]);
         let mut look = || {
-            sleep(EVERY + Duration::from_millis(20));
+            sleep(INTERVAL + Duration::from_millis(20));
             watch.changed()
         };
         assert!(!look());
