@@ -89,7 +89,13 @@ pub fn pick(
         let c = obstacle.path.at(simulation.time()).position;
         let c = [c.x as f32, c.y as f32, c.z as f32];
         let (at, distance) = camera.project(c, aspect)?;
-        let surface = ball_hit(camera, pointer, aspect, c, show::SHOWN * radius as f32)?;
+        let surface = ball_hit(
+            camera,
+            pointer,
+            aspect,
+            c,
+            show::DRAWN_RADIUS * radius as f32,
+        )?;
         let (_, depth) = camera.project(surface, aspect)?;
         Some((depth, Target::Obstacle(k), at, distance))
     });

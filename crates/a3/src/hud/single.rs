@@ -92,7 +92,7 @@ fn springs(ui: &mut Ui, simulation: &Simulation, i: usize) {
             for s in springs.iter().take(LISTED) {
                 let other = s.i + s.j - i;
                 let length = (simulation.position(i) - simulation.position(other)).norm();
-                ui.label(text(show::kind(s.kind)));
+                ui.label(text(show::kind_name(s.kind)));
                 ui.label(text(other.to_string()));
                 ui.label(text(digits(s.law.stiffness)));
                 ui.label(text(digits(s.law.rest_length)));

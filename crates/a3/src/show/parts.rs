@@ -1,24 +1,26 @@
-//! What of a scene is drawn as a surface, in which look, and what spring by spring.
+//! Parts of a scene: those that are drawn as a surface, with their looks, and springs that are drawn one
+//! by one.
 
 use std::sync::Arc;
 
 use a3_core::{Network, Simulation, Spring, SpringKind, Surface};
 use a3_render::{LOOKS, Topology};
 
-/// What changes only with the scene, or when something tears.
+/// Parts that change only with the scene or when something tears.
 #[derive(Default)]
 pub struct Parts {
     surface: Arc<Surface>,
-    /// Springs that had broken, once it was looked.
+    /// Number of broken springs when the parts were found, once they were.
     tears: Option<usize>,
-    /// Of each body.
+    /// Look of each body.
     looks: Vec<f32>,
+    /// Springs that are drawn one by one.
     loose: Vec<Spring>,
 }
 
 impl Parts {
-    /// Looks again if it has to.
-    pub fn look_at(&mut self, simulation: &Simulation) {
+    /// Finds the parts again if the scene is another one or something has torn.
+    pub fn update(&mut self, simulation: &Simulation) {
         let (surface, tears) = (&simulation.scene().surface, Some(simulation.tears()));
         let known = Arc::ptr_eq(surface, &self.surface);
         if known && tears == self.tears {
@@ -32,7 +34,7 @@ impl Parts {
         self.loose = springs.filter(|s| body(surface, s).is_none()).collect();
     }
 
-    /// Springs of particles without a surface, and those between bodies.
+    /// Springs of particles without a surface, and springs between bodies.
     pub fn loose(&self) -> &[Spring] {
         &self.loose
     }
@@ -49,7 +51,8 @@ impl Parts {
     }
 }
 
-/// Cloth in the first half of the looks, jelly, which is closed, in the second.
+/// A look for each body: in the first half of the looks for cloth, in the second for jelly, which is
+/// closed.
 fn looks(surface: &Surface) -> Vec<f32> {
     let mut edges: Vec<_> = surface
         .triangles
@@ -73,18 +76,20 @@ fn looks(surface: &Surface) -> Vec<f32> {
     surface.bodies.iter().enumerate().map(look).collect()
 }
 
-/// The body in whose surface both ends are.
+/// The body to whose surface both ends of the spring belong.
 fn body(surface: &Surface, spring: &Spring) -> Option<usize> {
     let [a, b] = [spring.i, spring.j].map(|i| surface.bodies.partition_point(|end| *end <= i));
     (a == b && a < surface.bodies.len()).then_some(a)
 }
 
+/// All springs.
 fn springs(simulation: &Simulation) -> impl Iterator<Item = Spring> {
     let network = simulation.model().network();
     network.into_iter().flat_map(Network::springs)
 }
 
-/// What stays the same from frame to frame until something tears. What has no surface is drawn by balls and coils instead.
+/// Triangles and wires, which stay the same from frame to frame until something tears. Parts without a
+/// surface are drawn by balls and coils instead.
 pub fn topology(simulation: &Simulation) -> Topology {
     let surface = &simulation.scene().surface;
     Topology {
@@ -120,7 +125,7 @@ mod tests {
     fn cloth_is_red_and_jelly_is_green() {
         for (scene, look, loose) in [("cloth", 0.0, 0), ("jelly", 4.0, 0), ("chain", 0.0, 3)] {
             let (simulation, mut parts) = (run(scene), Parts::default());
-            parts.look_at(&simulation);
+            parts.update(&simulation);
             let mut points = vec![[0.0; 4]; simulation.particles()];
             parts.paint(&mut points);
             assert!(points.iter().all(|p| p[3] == look), "{scene}");

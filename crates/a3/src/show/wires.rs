@@ -3,12 +3,14 @@
 use a3_core::{Constraint, Network, Vector3};
 use a3_render::Line;
 
-/// Pieces of a circle.
+use super::vectors::{perpendicular, to_f32};
+
+/// Straight pieces of a circle.
 const PIECES: usize = 96;
-/// A straight wire is drawn this far to both sides of its point (m).
+/// Length of a straight wire to either side of its point (m).
 const REACH: f64 = 20.0;
 
-/// Lines of the network's constraints. `at` is where a particle is drawn.
+/// Lines for the constraints of a network, with `at` for the points of particles (m).
 pub fn lines(
     network: &Network,
     at: impl Fn(usize) -> [f32; 3],
@@ -24,7 +26,7 @@ pub fn lines(
                 point, direction, ..
             } => {
                 let ends = [point - direction * REACH, point + direction * REACH];
-                let [a, b] = ends.map(super::to_f32);
+                let [a, b] = ends.map(to_f32);
                 vec![Line::new(a, b, 1.6, faint)]
             }
             Constraint::Circle {
@@ -42,12 +44,13 @@ pub fn lines(
         })
 }
 
+/// Lines of a circle.
 fn circle(center: Vector3<f64>, normal: Vector3<f64>, radius: f64, color: [f32; 4]) -> Vec<Line> {
-    let side = super::a_side(normal);
+    let side = perpendicular(normal);
     let other = normal.cross(&side);
     let place = |k: usize| {
         let (sin, cos) = (std::f64::consts::TAU * k as f64 / PIECES as f64).sin_cos();
-        super::to_f32(center + (side * cos + other * sin) * radius)
+        to_f32(center + (side * cos + other * sin) * radius)
     };
     (0..PIECES)
         .map(|k| Line::new(place(k), place(k + 1), 1.6, color))

@@ -1,0 +1,236 @@
+//! A run as a picture: balls, lines and triangles from particles, springs and obstacles.
+
+use a3_core::{Network, Simulation, SpringKind, Vector3};
+use a3_render::{Ball, Camera, Line, Picture, Solid, Style};
+
+use super::coil::coil;
+use super::colours::{ALARM, AMBER, INK, RED, STEEL, TEAL, VIOLET};
+use super::parts::Parts;
+use super::springs::springs_of;
+use super::trail::Trail;
+use super::vectors::to_f32;
+use super::{obstacles, wires};
+
+/// The most springs or particles without a surface that are drawn as coils and balls. More of them are
+/// drawn as lines and small balls: a coil is 170 lines.
+const MANY: usize = 60;
+
+/// Length of a pull that is drawn as the strongest, as a share of the scene's radius.
+const STRONG: f64 = 0.5;
+
+/// How a run is shown, and the buffers of its picture.
+pub struct Show {
+    /// Surface or wires.
+    pub style: Style,
+    /// The particle whose springs are highlighted.
+    pub springs_of: Option<usize>,
+    /// Whether floor and background are left out.
+    pub transparent: bool,
+    /// Point to which the hand pulls (m).
+    pub hand: Option<Vector3<f64>>,
+    /// The way of the trailing particle.
+    trail: Trail,
+    parts: Parts,
+    points: Vec<[f32; 4]>,
+    balls: Vec<Ball>,
+    solids: Vec<Solid>,
+    lines: Vec<Line>,
+    floor: Option<f32>,
+}
+
+impl Show {
+    /// Surfaces or wires, with the springs of one particle highlighted or of none.
+    pub fn new(wireframe: bool, springs_of: Option<usize>) -> Self {
+        Self {
+            style: if wireframe {
+                Style::Wireframe
+            } else {
+                Style::Shaded
+            },
+            springs_of,
+            transparent: false,
+            hand: None,
+            trail: Trail::default(),
+            parts: Parts::default(),
+            points: vec![],
+            balls: vec![],
+            solids: vec![],
+            lines: vec![],
+            floor: None,
+        }
+    }
+
+    /// Forgets the trail.
+    pub fn clear_trail(&mut self) {
+        self.trail.clear();
+    }
+
+    /// The points of the trail (m).
+    #[cfg(test)]
+    pub fn trail(&self) -> impl Iterator<Item = &[f32; 3]> {
+        self.trail.points()
+    }
+
+    /// Continues the trail to where the trailing particle is.
+    pub fn follow(&mut self, simulation: &Simulation) {
+        if let Some(i) = simulation.scene().trail {
+            let point = to_f32(simulation.position(i));
+            self.trail.add(simulation.time(), point);
+        }
+    }
+
+    /// Turns the state of the run into a picture.
+    pub fn compose(&mut self, simulation: &Simulation) {
+        let n = simulation.particles();
+        let (x, rest) = simulation.state().split_at(n);
+        let (y, z) = rest.split_at(n);
+        self.points.clear();
+        self.points.extend(
+            x.iter()
+                .zip(y)
+                .zip(z)
+                .map(|((x, y), z)| [*x as f32, *y as f32, *z as f32, 0.0]),
+        );
+        self.parts.update(simulation);
+        self.parts.paint(&mut self.points);
+        self.balls.clear();
+        self.solids.clear();
+        self.lines.clear();
+        self.floor = None;
+        if simulation.scene().trail.is_some() {
+            self.lines.extend(self.trail.lines(simulation.time(), TEAL));
+        }
+        self.draw_parts(simulation);
+        if let Some(network) = simulation.model().network() {
+            let time = simulation.time();
+            self.floor = obstacles::draw(network, time, &mut self.balls, &mut self.solids);
+        }
+        if let Some(i) = self.springs_of {
+            self.draw_springs_of(simulation, i);
+        }
+        if let Some(i) = simulation.grabbed() {
+            self.ball(i, 0.055, AMBER);
+            self.draw_pull(simulation, i);
+        }
+    }
+
+    /// The picture composed last, seen by `camera`.
+    pub fn picture(&self, camera: Camera, scale: f32) -> Picture<'_> {
+        Picture {
+            camera,
+            style: self.style,
+            scale,
+            points: &self.points,
+            balls: &self.balls,
+            solids: &self.solids,
+            lines: &self.lines,
+            floor: self.floor,
+            transparent: self.transparent,
+        }
+    }
+
+    /// The point of particle i (m).
+    fn at(&self, i: usize) -> [f32; 3] {
+        let [x, y, z, _] = self.points[i];
+        [x, y, z]
+    }
+
+    /// Draws a ball (m) at particle i.
+    fn ball(&mut self, i: usize, radius: f32, color: [f32; 4]) {
+        self.balls.push(Ball {
+            center: self.at(i),
+            radius,
+            color,
+        });
+    }
+
+    /// Draws springs and particles that have no surface: as coils and balls, or as lines and small balls
+    /// where there are many. Of bodies with a surface it draws the pins.
+    fn draw_parts(&mut self, simulation: &Simulation) {
+        let network = simulation.model().network();
+        let covered = simulation.scene().surface.particles();
+        for (i, _) in network.into_iter().flat_map(Network::pins) {
+            if i < covered {
+                self.ball(i, 0.032, INK);
+            }
+        }
+        let many = self
+            .parts
+            .loose()
+            .len()
+            .max(simulation.particles() - covered)
+            > MANY;
+        for spring in self.parts.loose() {
+            let ends = [spring.i, spring.j];
+            if many {
+                let [a, b] = ends.map(|i| self.at(i));
+                self.lines.push(Line::new(a, b, 1.6, STEEL));
+                continue;
+            }
+            let [a, b] = ends.map(|i| simulation.position(i));
+            let points = coil(a, b, spring);
+            self.lines.extend(
+                points
+                    .windows(2)
+                    .map(|ends| Line::new(ends[0], ends[1], 2.4, STEEL)),
+            );
+        }
+        if let Some(network) = network {
+            let points = &self.points;
+            let at = |i: usize| [points[i][0], points[i][1], points[i][2]];
+            self.lines.extend(wires::lines(network, at, STEEL));
+        }
+        for i in covered..simulation.particles() {
+            let pinned = network.is_some_and(|n| n.is_pinned(i)) && simulation.grabbed() != Some(i);
+            let (radius, color) = match (pinned, many) {
+                (true, false) => (0.045, INK),
+                (true, true) => (0.032, INK),
+                (false, false) => (0.085, RED),
+                (false, true) => (0.028, RED),
+            };
+            self.ball(i, radius, color);
+        }
+    }
+
+    /// Draws a line from the particle to the hand, thicker and redder the farther it is.
+    fn draw_pull(&mut self, simulation: &Simulation, i: usize) {
+        let Some(hand) = self.hand else { return };
+        let strength = (hand - simulation.position(i)).norm() / simulation.extent().1;
+        if strength < 0.01 {
+            return;
+        }
+        let share = (strength / STRONG).min(1.0) as f32;
+        let color = [0, 1, 2, 3].map(|k| AMBER[k] + share * (ALARM[k] - AMBER[k]));
+        let to = to_f32(hand);
+        self.lines
+            .push(Line::new(self.at(i), to, 2.0 + 6.0 * share, color));
+        self.balls.push(Ball {
+            center: to,
+            radius: 0.035,
+            color,
+        });
+    }
+
+    /// Highlights the springs of particle i.
+    fn draw_springs_of(&mut self, simulation: &Simulation, i: usize) {
+        // Bend springs lie over structural ones: the wide lines come first.
+        let mut springs = springs_of(simulation, i);
+        springs.sort_by_key(|spring| spring.kind != SpringKind::Bend);
+        for spring in springs {
+            let (width, color) = match spring.kind {
+                SpringKind::Structural => (4.0, AMBER),
+                SpringKind::Shear => (4.0, TEAL),
+                SpringKind::Bend => (8.0, VIOLET),
+            };
+            self.lines.push(Line::new(
+                self.at(spring.i),
+                self.at(spring.j),
+                width,
+                color,
+            ));
+            let other = spring.i + spring.j - i;
+            self.ball(other, 0.035, color);
+        }
+        self.ball(i, 0.06, AMBER);
+    }
+}

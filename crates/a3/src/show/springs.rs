@@ -1,0 +1,42 @@
+//! The springs of a particle, in words.
+
+use a3_core::{Simulation, Spring, SpringKind, SpringLaw};
+
+/// The springs attached to particle i.
+pub fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
+    simulation
+        .model()
+        .network()
+        .into_iter()
+        .flat_map(|n| n.springs_of(i))
+        .collect()
+}
+
+/// The name of a kind of springs.
+pub fn kind_name(kind: SpringKind) -> &'static str {
+    match kind {
+        SpringKind::Structural => "structural",
+        SpringKind::Shear => "shear",
+        SpringKind::Bend => "bend",
+    }
+}
+
+/// The springs attached to particle i as text, each in its own line.
+pub fn list_springs_of(simulation: &Simulation, i: usize) -> String {
+    let springs = springs_of(simulation, i);
+    let line = |s: &Spring| {
+        let kind = kind_name(s.kind);
+        let SpringLaw {
+            stiffness,
+            rest_length,
+            damping,
+        } = s.law;
+        let to = s.i + s.j - i;
+        format!(
+            "  {kind:<10}  to {to:>5}   k = {stiffness:.4} N/m   rest length {rest_length:.4} m   \
+             damping {damping:.4} N s/m\n"
+        )
+    };
+    let lines: String = springs.iter().map(line).collect();
+    format!("particle {i} has {} springs\n{lines}", springs.len())
+}
