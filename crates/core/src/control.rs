@@ -2,10 +2,13 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 /// Control of the steps of a run: their length, or the error that each of them may make.
 ///
 /// Every method takes steps of a fixed length. A tolerance is for adaptive methods, which estimate their error.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Control {
     /// Length of every step (s).
     Step(f64),

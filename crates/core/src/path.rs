@@ -1,6 +1,7 @@
 //! Where something that is led by the hand is, as a function of time.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// Position, velocity and acceleration of a point on a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,15 +27,18 @@ impl Place {
 }
 
 /// Path of a pin or of an obstacle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Path {
     /// Stays there.
-    Still(Vector3<f64>),
+    Still(#[serde(with = "crate::serial")] Vector3<f64>),
     /// `center + amplitude sin(rate t + phase)`.
     Sine {
         /// In m.
+        #[serde(with = "crate::serial")]
         center: Vector3<f64>,
         /// In m.
+        #[serde(with = "crate::serial")]
         amplitude: Vector3<f64>,
         /// In rad/s.
         rate: f64,
@@ -44,8 +48,10 @@ pub enum Path {
     /// From `from` at time `start` in a straight line to `to` at time `end`; at rest before and after.
     Line {
         /// In m.
+        #[serde(with = "crate::serial")]
         from: Vector3<f64>,
         /// In m.
+        #[serde(with = "crate::serial")]
         to: Vector3<f64>,
         /// In s.
         start: f64,

@@ -2,7 +2,7 @@
 //! time is shifted.
 
 use a3_core::contact::Shape;
-use a3_core::{Model, Network, Path};
+use a3_core::{Checkpoint, Model, Network, Path};
 
 use crate::description::{
     BucklingSpec, CapsuleSpec, Description, Floor, FloorSpec, Pin, Shift, Sine, SphereSpec,
@@ -73,16 +73,18 @@ impl Description {
         }
     }
 
-    /// Begins with the state y at time t (s), and with what pulls and stands in the way there: pins, spheres, floor, wind,
-    /// gravity and drag. Springs stay as they are described, but for those that have broken.
-    pub fn begin_with(&mut self, model: &Model, t: f64, y: &[f64]) {
-        let n = model.particles();
+    /// Begins with a run as it is `now`, by its method, and with what pulls and stands in the way there: pins, obstacles,
+    /// wind, gravity and drag. Springs stay as they are described, but for those that have broken. Hands let go.
+    pub fn begin_with(&mut self, model: &Model, now: &Checkpoint) {
+        let (n, t) = (model.particles(), now.time());
+        self.solver = Some(now.method.name.into());
+        self.step = Some(now.control.value());
         let rows = |part: &[f64]| {
             (0..n)
                 .map(|i| [part[i], part[n + i], part[2 * n + i]])
                 .collect()
         };
-        let mut parts = y.chunks_exact(3 * n);
+        let mut parts = now.y.chunks_exact(3 * n);
         self.state = Some(State {
             positions: parts.next().map(rows).unwrap_or_default(),
             velocities: parts.next().map(rows).unwrap_or_default(),
@@ -92,16 +94,16 @@ impl Description {
         };
         self.gravity = network.gravity().map(Into::into);
         (self.drag, self.drag_per_mass) = (network.drag(), None);
-        self.torn = network.torn().to_vec();
+        self.torn.clone_from(&now.torn);
         if let Some(wind) = &mut self.wind {
-            wind.on = network.wind().is_some();
+            wind.on = now.wind.is_some();
             wind.ahead += t;
         }
         self.write_obstacles(network, t);
         for pins in self.body_pins() {
             pins.clear();
         }
-        self.pin = pins(network, t);
+        self.pin = pins(now);
     }
 
     /// Writes the obstacles as they are at time t (s). Each kind is described in the order in which it was added; a floor
@@ -169,11 +171,16 @@ impl Description {
     }
 }
 
-/// The pins as they go on from time t (s): those that move alike together.
-fn pins(network: &Network, t: f64) -> Vec<Pin> {
+/// The pins as they go on from now: those that move alike together. One in the hand stays where it is, if it was pinned
+/// before.
+fn pins(now: &Checkpoint) -> Vec<Pin> {
     let mut pins: Vec<Pin> = vec![];
-    for (i, path) in network.pins() {
-        let (sine, shift) = motion(&path, t);
+    for &(i, path) in &now.pins {
+        let (sine, shift) = match now.grabbed.filter(|grabbed| grabbed.particle == i) {
+            None => motion(&path, now.time()),
+            Some(grabbed) if grabbed.was_pinned => (None, None),
+            Some(_) => continue,
+        };
         match pins
             .iter_mut()
             .find(|pin| pin.sine == sine && pin.shift == shift)

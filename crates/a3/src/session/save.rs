@@ -78,21 +78,7 @@ impl Session {
         }
         description.scale_springs(self.tuning.stiffness, self.tuning.damping);
         description.scale_wind(self.tuning.gusts);
-        description.begin_with(run.model(), run.time(), run.state());
-        // A particle that only the hand holds is free in the file.
-        if let Some(held) = run.grabbed() {
-            let own = run.scene().model.network();
-            let pinned = run.pinned() && own.is_some_and(|own| own.is_pinned(held));
-            for pin in &mut description.pin {
-                if pin.particles.contains(&held) {
-                    pin.shift = pin.shift.take().filter(|_| pin.particles.len() > 1);
-                    pin.particles.retain(|i| pinned || *i != held);
-                }
-            }
-            description.pin.retain(|pin| !pin.particles.is_empty());
-        }
-        description.solver = Some(run.method().name.into());
-        description.step = Some(run.control().value());
+        description.begin_with(run.model(), &run.moment());
         let triple = |p: nalgebra::Point3<f32>| [p.x, p.y, p.z].map(f64::from);
         description.camera = Some(Camera {
             eye: triple(self.camera.eye()),

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use a3_core::{Moment, Simulation};
+use a3_core::{Checkpoint, Simulation};
 
 /// Simulated time between two moments (s), and over all of them.
 const INTERVAL: f64 = 1.0 / 60.0;
@@ -21,12 +21,12 @@ pub struct Timeline {
 struct Entry {
     clock: f64,
     /// Of each run: none of what was lost then.
-    moments: Vec<Option<Moment>>,
+    moments: Vec<Option<Checkpoint>>,
 }
 
 impl Entry {
     fn size(&self) -> usize {
-        self.moments.iter().flatten().map(Moment::size).sum()
+        self.moments.iter().flatten().map(Checkpoint::size).sum()
     }
 }
 
@@ -71,9 +71,15 @@ impl Timeline {
         };
         let mut places = spare.map_or(vec![], |entry| entry.moments).into_iter();
         let moments = runs.map(|run| {
-            let mut moment = places.next().flatten().unwrap_or_default();
-            run.record(&mut moment);
-            Some(moment).filter(|_| run.blow_up().is_none())
+            let spare = places.next().flatten();
+            let moment = || match spare {
+                Some(mut moment) => {
+                    run.record(&mut moment);
+                    moment
+                }
+                None => run.moment(),
+            };
+            run.blow_up().is_none().then(moment)
         });
         let moments = moments.collect();
         self.moments.push_back(Entry { clock, moments });
@@ -144,7 +150,7 @@ mod tests {
         for k in 0..50 {
             timeline.keep(f64::from(k), false, [&large, &large].into_iter());
         }
-        let size = 2 * 8 * large.state().len();
+        let size = 2 * large.moment().size();
         assert_eq!(timeline.moments.len(), (MEMORY / size).min(21));
     }
 

@@ -5,12 +5,13 @@
 //! wind fields in cloth animations*, 2004.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use super::Wind;
 use crate::error::{Error, at_least};
 
 /// How air pushes at what is in its way.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Air {
     /// rho (kg/m3).
     pub density: f64,

@@ -3,17 +3,20 @@
 //! can be repeated. It pushes each particle alike, or it is the velocity of air that streams past triangles.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use super::Air;
 use crate::random::SplitMix;
 
 const WAVES: usize = 4;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Wave {
     /// In N, or m/s.
+    #[serde(with = "crate::serial")]
     amplitude: Vector3<f64>,
     /// In rad/m.
+    #[serde(with = "crate::serial")]
     number: Vector3<f64>,
     /// In rad/s.
     rate: f64,
@@ -29,8 +32,9 @@ impl Wave {
 }
 
 /// A breeze and four waves: forces on particles, or the velocity of the air.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wind {
+    #[serde(with = "crate::serial")]
     breeze: Vector3<f64>,
     waves: [Wave; WAVES],
     /// What blows on triangles.

@@ -1,8 +1,10 @@
 //! Steps of a pair's own choice: as long as its error estimate stays within the tolerance (Hairer, Norsett, Wanner,
 //! *Solving Ordinary Differential Equations I*, 1993, II.4).
 
+use serde::{Deserialize, Serialize};
+
 use super::Work;
-use super::embedded::{EmbeddedPair, Tableau};
+use super::embedded::{EmbeddedPair, PairStep, Tableau};
 use crate::error::{Error, positive};
 use crate::system::ParticleSystem;
 
@@ -66,7 +68,7 @@ fn root_mean_square(a: &[f64]) -> f64 {
 }
 
 /// A step that was taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Taken {
     /// Where it began (s).
     pub t: f64,
@@ -74,6 +76,16 @@ pub struct Taken {
     pub h: f64,
     /// What it cost, attempts that failed included.
     pub work: Work,
+}
+
+/// What an adaptive method remembers between steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AdaptiveState {
+    /// Length to try next (s); 0 before the first step.
+    next: f64,
+    last: Taken,
+    /// The last step, if the next one may go on from its end.
+    step: Option<PairStep>,
 }
 
 /// A pair with its tolerance. Beside scratch it remembers the length of its last step, as the first guess for the
@@ -103,6 +115,30 @@ impl Adaptive {
     #[must_use]
     pub fn last(&self) -> Taken {
         self.last
+    }
+
+    /// What the method remembers: all of it, or without the `stages` of the last step, after which it
+    /// [restarts](Self::restart).
+    #[must_use]
+    pub fn state(&self, stages: bool) -> AdaptiveState {
+        AdaptiveState {
+            next: self.next,
+            last: self.last,
+            step: (stages && self.goes_on).then(|| self.pair.last().clone()),
+        }
+    }
+
+    /// Goes on from what a method of the same pair remembered.
+    ///
+    /// # Errors
+    /// The state is of another pair or of another system; nothing changes then.
+    pub fn resume(&mut self, state: &AdaptiveState) -> Result<(), Error> {
+        if let Some(step) = &state.step {
+            self.pair.resume(step)?;
+        }
+        (self.next, self.last) = (state.next, state.last);
+        self.goes_on = state.step.is_some();
+        Ok(())
     }
 
     /// Tries a step of h (s) next.

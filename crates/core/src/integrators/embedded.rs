@@ -2,9 +2,10 @@
 //! estimate of its error from other weights, and a polynomial through the step (Hairer, Norsett, Wanner, *Solving
 //! Ordinary Differential Equations I*, 1993, II.4 to II.6).
 
-use super::adaptive::Scale;
 use pulp::{Arch, Simd, WithSimd};
+use serde::{Deserialize, Serialize};
 
+use super::adaptive::Scale;
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -36,13 +37,23 @@ const BLOCK: usize = 512;
 /// A pair at work: a method of fixed steps by itself, an adaptive one in the hands of [`Adaptive`](super::Adaptive).
 pub(super) struct EmbeddedPair {
     tableau: &'static Tableau,
-    k: Vec<Vec<f64>>,
+    /// State at which a stage is evaluated, and later the error estimate.
     stage: Vec<f64>,
-    /// The two ends of the step, and its length (s).
-    y0: Vec<f64>,
-    y1: Vec<f64>,
+    last: PairStep,
+}
+
+/// The last step of a pair, from which the next one goes on, and off which states within it are read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct PairStep {
+    /// Length of the step (s).
     h: f64,
-    /// Whether the polynomial's own stages have been computed for it.
+    /// State at the beginning.
+    y0: Vec<f64>,
+    /// State at the end.
+    y1: Vec<f64>,
+    /// Derivatives: of the stages, at the end, and of the polynomial's own stages.
+    k: Vec<Vec<f64>>,
+    /// Whether the polynomial's own stages have been computed.
     dense: bool,
 }
 
@@ -51,17 +62,40 @@ impl EmbeddedPair {
         let stages = tableau.stages.len() + 2 + tableau.extra.len();
         Self {
             tableau,
-            k: vec![vec![0.0; dim]; stages],
             stage: vec![0.0; dim],
-            y0: vec![0.0; dim],
-            y1: vec![0.0; dim],
-            h: 0.0,
-            dense: false,
+            last: PairStep {
+                h: 0.0,
+                y0: vec![0.0; dim],
+                y1: vec![0.0; dim],
+                k: vec![vec![0.0; dim]; stages],
+                dense: false,
+            },
         }
     }
 
+    /// The last step.
+    pub fn last(&self) -> &PairStep {
+        &self.last
+    }
+
+    /// Goes on after another step. Fails if the step is of another pair or of another system.
+    pub fn resume(&mut self, step: &PairStep) -> Result<(), Error> {
+        let stages = self.last.k.len();
+        if step.k.len() != stages {
+            return Err(Error::Invalid(format!(
+                "the last step has {} stages, and {stages} were expected",
+                step.k.len()
+            )));
+        }
+        for y in [&step.y0, &step.y1].into_iter().chain(&step.k) {
+            check_dim(self.dim(), y)?;
+        }
+        self.last.clone_from(step);
+        Ok(())
+    }
+
     pub fn dim(&self) -> usize {
-        self.y0.len()
+        self.last.y0.len()
     }
 
     pub fn exponent(&self) -> f64 {
@@ -70,33 +104,33 @@ impl EmbeddedPair {
 
     /// Where the step ends.
     pub fn end(&self) -> &[f64] {
-        &self.y1
+        &self.last.y1
     }
 
     /// Goes on from y, whose derivative is not known.
     pub fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
-        self.y0.copy_from_slice(y);
-        system.eval_f(t, y, &mut self.k[0]);
+        self.last.y0.copy_from_slice(y);
+        system.eval_f(t, y, &mut self.last.k[0]);
         Work::of(1)
     }
 
     /// Goes on from the end of the step, whose derivative is its last stage.
     pub fn go_on(&mut self) {
         let last = self.tableau.stages.len() + 1;
-        self.k.swap(0, last);
-        std::mem::swap(&mut self.y0, &mut self.y1);
+        self.last.k.swap(0, last);
+        std::mem::swap(&mut self.last.y0, &mut self.last.y1);
     }
 
     /// The derivative where the step begins.
     pub fn derivative(&self) -> &[f64] {
-        &self.k[0]
+        &self.last.k[0]
     }
 
     /// How fast that changes, from one step of Euler's method.
     pub fn second_derivative(&mut self, system: &dyn ParticleSystem, t: f64, h: f64) -> &[f64] {
-        let (first, rest) = self.k.split_at_mut(1);
+        let (first, rest) = self.last.k.split_at_mut(1);
         let (f0, f1) = (&first[0], &mut rest[0]);
-        super::scaled_sum(&mut self.stage, &self.y0, h, f0);
+        super::scaled_sum(&mut self.stage, &self.last.y0, h, f0);
         system.eval_f(t + h, &self.stage, f1);
         for (f1, f0) in f1.iter_mut().zip(f0) {
             *f1 = (*f1 - f0) / h;
@@ -107,13 +141,19 @@ impl EmbeddedPair {
     /// A step of h from where [`begin`](Self::begin) or [`go_on`](Self::go_on) left it.
     fn stages(&mut self, system: &dyn ParticleSystem, t: f64, h: f64) -> u64 {
         let tableau = self.tableau;
-        self.h = h;
-        self.dense = false;
+        self.last.h = h;
+        self.last.dense = false;
         for (i, (c, a)) in tableau.stages.iter().enumerate() {
-            combine(&mut self.stage, &self.y0, h, a, &self.k);
-            system.eval_f(t + c * h, &self.stage, &mut self.k[i + 1]);
+            combine(&mut self.stage, &self.last.y0, h, a, &self.last.k);
+            system.eval_f(t + c * h, &self.stage, &mut self.last.k[i + 1]);
         }
-        combine(&mut self.y1, &self.y0, h, tableau.weights, &self.k);
+        combine(
+            &mut self.last.y1,
+            &self.last.y0,
+            h,
+            tableau.weights,
+            &self.last.k,
+        );
         tableau.stages.len() as u64
     }
 
@@ -132,8 +172,8 @@ impl EmbeddedPair {
         }
         let mut error = |weights: &[f64]| {
             self.stage.fill(0.0);
-            add_combination(&mut self.stage, h, weights, &self.k);
-            scale.norm(&self.y0, &self.y1, &self.stage)
+            add_combination(&mut self.stage, h, weights, &self.last.k);
+            scale.norm(&self.last.y0, &self.last.y1, &self.stage)
         };
         let error = match self.tableau.errors {
             [fifth, third] => {
@@ -155,7 +195,7 @@ impl EmbeddedPair {
     /// The derivative at the step's end.
     fn finish(&mut self, system: &dyn ParticleSystem, t: f64) -> Work {
         let last = self.tableau.stages.len() + 1;
-        system.eval_f(t + self.h, &self.y1, &mut self.k[last]);
+        system.eval_f(t + self.last.h, &self.last.y1, &mut self.last.k[last]);
         Work::of(1)
     }
 
@@ -167,15 +207,15 @@ impl EmbeddedPair {
         theta: f64,
         out: &mut [f64],
     ) -> Work {
-        let (h, tableau) = (self.h, self.tableau);
+        let (h, tableau) = (self.last.h, self.tableau);
         let last = tableau.stages.len() + 1;
         let mut work = Work::default();
-        if !self.dense {
+        if !self.last.dense {
             for (i, (c, a)) in tableau.extra.iter().enumerate() {
-                combine(&mut self.stage, &self.y0, h, a, &self.k);
-                system.eval_f(t + c * h, &self.stage, &mut self.k[last + 1 + i]);
+                combine(&mut self.stage, &self.last.y0, h, a, &self.last.k);
+                system.eval_f(t + c * h, &self.stage, &mut self.last.k[last + 1 + i]);
             }
-            self.dense = true;
+            self.last.dense = true;
             work = Work::of(tableau.extra.len() as u64);
         }
         // y0 + theta (F0 + (1 - theta) (F1 + theta (F2 + (1 - theta) (F3 + ...)))): the factor of each term.
@@ -187,17 +227,13 @@ impl EmbeddedPair {
         let [p, q, r, rest @ ..] = factors;
         // F0 = y1 - y0, F1 = h k0 - F0, F2 = 2 F0 - h (k0 + k1).
         let (of_f0, of_k0, of_k1) = (p - q + 2.0 * r, h * (q - r), -h * r);
-        let ends = self
-            .y0
-            .iter()
-            .zip(&self.y1)
-            .zip(&self.k[0])
-            .zip(&self.k[last]);
+        let PairStep { y0, y1, k, .. } = &self.last;
+        let ends = y0.iter().zip(y1).zip(&k[0]).zip(&k[last]);
         for (out, (((y0, y1), k0), k1)) in out.iter_mut().zip(ends) {
             *out = y0 + of_f0 * (y1 - y0) + of_k0 * k0 + of_k1 * k1;
         }
         for (factor, weights) in rest.iter().zip(tableau.dense) {
-            add_combination(out, factor * h, weights, &self.k);
+            add_combination(out, factor * h, weights, &self.last.k);
         }
         work
     }
@@ -214,7 +250,7 @@ impl Integrator for EmbeddedPair {
         check_dim(self.dim(), y)?;
         let mut work = self.begin(system, t, y);
         work += Work::of(self.stages(system, t, h));
-        y.copy_from_slice(&self.y1);
+        y.copy_from_slice(&self.last.y1);
         Ok(work)
     }
 }

@@ -17,15 +17,17 @@ mod sweep;
 mod symplectic_euler;
 mod verlet;
 
+use serde::{Deserialize, Serialize};
+
 use crate::control::Control;
 use crate::error::{Error, positive};
 use crate::system::ParticleSystem;
 
-pub use adaptive::{Adaptive, Taken, Tolerance};
+pub use adaptive::{Adaptive, AdaptiveState, Taken, Tolerance};
 pub use embedded::Tableau;
 
 /// What a step cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Work {
     /// Evaluations of f(t, y), or of the forces.
     pub evaluations: u64,
@@ -181,6 +183,13 @@ impl Method {
         } else {
             Control::Step(value)
         }
+    }
+}
+
+/// Methods are the same if their names are.
+impl PartialEq for Method {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
     }
 }
 

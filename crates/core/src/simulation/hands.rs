@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::Simulation;
+use super::{Grabbed, Simulation};
 use crate::contact::Shape;
 use crate::error::Error;
 use crate::network::Network;
@@ -21,6 +21,20 @@ const PULL_REACH: f64 = 0.05;
 
 /// How short and how long a hand makes a rod, in lengths: what it does faster than the other end follows.
 const ROD: (f64, f64) = (0.95, 1.05);
+
+impl Grabbed {
+    /// Whether a spring attracts the particle, which constraints hold too: a pin would tear them.
+    fn is_attracted(&self, network: &Network) -> bool {
+        !self.was_pinned && network.is_held(self.particle)
+    }
+
+    /// Attracts the particle to its path, if it is not led as a pin.
+    pub(super) fn attract(&self, network: &mut Network) {
+        if self.is_attracted(network) {
+            network.draw(self.particle, self.path, 1.0 / PULL_TIME);
+        }
+    }
+}
 
 impl Simulation {
     pub(super) fn network_mut(&mut self) -> Option<&mut Network> {
@@ -101,7 +115,7 @@ impl Simulation {
     /// The grabbed particle.
     #[must_use]
     pub fn grabbed(&self) -> Option<usize> {
-        self.grabbed.map(|(i, _)| i)
+        self.grabbed.map(|grabbed| grabbed.particle)
     }
 
     /// Takes hold of particle i, and lets go of any other: it is a pin then; or, if it is free but for constraints, a spring
@@ -115,40 +129,44 @@ impl Simulation {
             return Ok(());
         };
         network.check_particle(i)?;
-        self.grabbed = Some((i, network.is_pinned(i)));
-        self.lead(i, Path::Still(self.position(i)));
+        let grabbed = Grabbed {
+            particle: i,
+            was_pinned: network.is_pinned(i),
+            path: Path::Still(self.position(i)),
+        };
+        self.lead(grabbed);
         Ok(())
     }
 
-    /// Leads the grabbed particle along `path`: as a pin, or, if it is free but for constraints, by a spring.
-    fn lead(&mut self, i: usize, path: Path) {
-        if self.draws(i) {
-            if let Some(network) = self.network_mut() {
-                network.draw(i, path, 1.0 / PULL_TIME);
-            }
-        } else {
-            self.pin(i, path);
+    /// Leads the grabbed particle along its path: as a pin, or, if it is free but for constraints, by a spring.
+    fn lead(&mut self, grabbed: Grabbed) {
+        self.grabbed = Some(grabbed);
+        if !self.attracts(&grabbed) {
+            self.pin(grabbed.particle, grabbed.path);
+        } else if let Some(network) = self.network_mut() {
+            grabbed.attract(network);
         }
     }
 
-    fn draws(&self, i: usize) -> bool {
-        self.model
-            .network()
-            .is_some_and(|network| network.is_held(i) && self.grabbed != Some((i, true)))
+    fn attracts(&self, grabbed: &Grabbed) -> bool {
+        let network = self.model.network();
+        network.is_some_and(|network| grabbed.is_attracted(network))
     }
 
     /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs or rods hold it back. A hand
     /// is strong and not almighty: it stretches a spring it holds as far as the scene allows, a rod hardly at all, and
     /// gets farther as the other end comes along.
     pub fn pull(&mut self, target: Vector3<f64>) {
-        let Some((i, _)) = self.grabbed else { return };
+        let Some(grabbed) = self.grabbed else { return };
+        let i = grabbed.particle;
         let from = self.position(i);
-        let target = if self.draws(i) {
+        let target = if self.attracts(&grabbed) {
             from + (target - from).cap_magnitude(PULL_REACH * self.radius)
         } else {
             self.within_reach(i, from, target)
         };
-        self.lead(i, self.way(from, target));
+        let path = self.way(from, target);
+        self.lead(Grabbed { path, ..grabbed });
     }
 
     /// The way of a hand that begins now.
@@ -185,10 +203,11 @@ impl Simulation {
 
     /// Lets go. A particle that was free keeps the speed of the hand; one that was pinned is pinned where it is.
     pub fn release(&mut self) {
-        let Some((i, was_pinned)) = self.grabbed.take() else {
+        let Some(grabbed) = self.grabbed.take() else {
             return;
         };
-        if was_pinned {
+        let i = grabbed.particle;
+        if grabbed.was_pinned {
             self.leave_pin(i);
         } else if let Some(network) = self.network_mut() {
             network.unpin(i);
@@ -207,9 +226,9 @@ impl Simulation {
         };
         network.check_particle(i)?;
         let pinned = network.is_pinned(i);
-        if let Some((_, was_pinned)) = self.grabbed.as_mut().filter(|(held, _)| *held == i) {
-            *was_pinned = !*was_pinned;
-            return Ok(*was_pinned);
+        if let Some(grabbed) = self.grabbed.as_mut().filter(|held| held.particle == i) {
+            grabbed.was_pinned = !grabbed.was_pinned;
+            return Ok(grabbed.was_pinned);
         }
         if !pinned {
             self.leave_pin(i);

@@ -1,10 +1,12 @@
 //! Scene x method x time.
 
+mod checkpoint;
 mod hands;
-mod moment;
+mod stepper;
 mod tuning;
 
-pub use moment::Moment;
+pub use checkpoint::{Checkpoint, Grabbed};
+use stepper::Stepper;
 
 use std::ops::Range;
 
@@ -13,7 +15,7 @@ use nalgebra::{DMatrixView, Vector3};
 use crate::contact::{Contact, Obstacle, Statistics};
 use crate::control::Control;
 use crate::error::{BlowUp, Cause, Error};
-use crate::integrators::{Adaptive, Integrator, Method, Tolerance, Work};
+use crate::integrators::{Method, Work};
 use crate::network::{Energy, Network};
 use crate::scene::{Model, Scene, bounds};
 use crate::system::{Mechanics, ParticleSystem, place_pins};
@@ -48,55 +50,15 @@ pub struct Simulation {
     swinging: bool,
     /// The swing's: while it swings, sin(rate t + phase); while it stands, sin(phase) (rad).
     swing_phase: f64,
-    /// The grabbed particle, and whether it was pinned before.
-    grabbed: Option<(usize, bool)>,
+    grabbed: Option<Grabbed>,
     grabbed_obstacle: Option<usize>,
     /// Whether the scene's pins hold nothing.
     unpinned: bool,
     blow_up: Option<BlowUp>,
-    good: Good,
+    /// The last state in shape, to go back to when a step fails.
+    good: Checkpoint,
     middle: Vector3<f64>,
     radius: f64,
-}
-
-/// What takes the steps.
-enum Stepper {
-    /// Steps of a fixed size.
-    Fixed(Box<dyn Integrator>),
-    /// Steps of its own choice, whose ends are no times that anyone asked for: the run looks ahead, and the state shown
-    /// is on the way to `end`.
-    Adaptive {
-        adaptive: Box<Adaptive>,
-        /// The state at the end of the last step.
-        end: Vec<f64>,
-        /// When that is (s), if the state and the system are still those that it was stepped from.
-        until: Option<f64>,
-    },
-}
-
-impl Stepper {
-    fn new(method: &Method, system: &dyn ParticleSystem, control: Control) -> Result<Self, Error> {
-        method.check_control(control)?;
-        let adaptive = match control {
-            Control::Step(_) => None,
-            Control::Tolerance(relative) => method.adaptive(system, Tolerance::new(relative)?),
-        };
-        Ok(match adaptive {
-            None => Self::Fixed(method.integrator(system)?),
-            Some(adaptive) => Self::Adaptive {
-                adaptive: Box::new(adaptive),
-                end: vec![0.0; system.dim()],
-                until: None,
-            },
-        })
-    }
-}
-
-/// The state to go back to when a step fails.
-struct Good {
-    y: Vec<f64>,
-    time: f64,
-    steps: u64,
 }
 
 impl Simulation {
@@ -124,12 +86,7 @@ impl Simulation {
         let (middle, radius) = bounds(&y[..3 * model.particles()]);
         let mut contact = Contact::new(dim);
         contact.begin(obstacles(&model), &y);
-        let good = Good {
-            y: y.clone(),
-            time: 0.0,
-            steps: 0,
-        };
-        Ok(Self {
+        let mut run = Self {
             scene,
             model,
             method,
@@ -147,10 +104,12 @@ impl Simulation {
             grabbed_obstacle: None,
             unpinned: false,
             blow_up: None,
-            good,
+            good: Checkpoint::empty(method, control),
             middle,
             radius,
-        })
+        };
+        run.keep_good();
+        Ok(run)
     }
 
     /// The scene as it was built.
@@ -345,9 +304,7 @@ impl Simulation {
             return Err(blow_up.into());
         }
         if self.beyond(GOOD, &self.y).is_none() {
-            self.good.y.copy_from_slice(&self.y);
-            self.good.time = self.time();
-            self.good.steps = self.steps;
+            self.keep_good();
         }
         Ok(())
     }
@@ -455,6 +412,7 @@ impl Simulation {
             && network.tear(&self.y[..self.y.len() / 2]) > 0
         {
             self.look_again();
+            self.refit();
         }
     }
 
@@ -477,12 +435,10 @@ impl Simulation {
             cause,
         };
         self.blow_up = Some(blow_up);
-        self.y.copy_from_slice(&self.good.y);
-        self.since = self.good.time;
-        self.taken = 0;
-        self.steps = self.good.steps;
-        self.look_again();
-        Err(blow_up.into())
+        let good = std::mem::replace(&mut self.good, Checkpoint::empty(self.method, self.control));
+        let result = self.go_back(&good);
+        self.good = good;
+        result.and(Err(blow_up.into()))
     }
 
     /// The first particle that is farther than this many radii from the middle, if there is one.

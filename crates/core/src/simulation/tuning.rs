@@ -15,7 +15,13 @@ impl Simulation {
             }
         }
         self.look_again();
-        // Methods make room for the forces they meet: an undamped kick has fewer stages. It was made for this system before.
+        self.refit();
+    }
+
+    /// Makes the integrator anew for the system as it is now: it makes room for the forces that it meets, and knows what
+    /// they cost.
+    pub(super) fn refit(&mut self) {
+        // The method served this system before.
         if let Stepper::Fixed(integrator) = &mut self.stepper
             && let Ok(other) = self.method.integrator(self.model.system())
         {
@@ -48,15 +54,15 @@ impl Simulation {
         if on {
             for (i, _) in own {
                 match &mut self.grabbed {
-                    Some((grabbed, was_pinned)) if *grabbed == i => *was_pinned = true,
+                    Some(grabbed) if grabbed.particle == i => grabbed.was_pinned = true,
                     _ => self.leave_pin(i),
                 }
             }
             return;
         }
         let held = self.grabbed();
-        if let Some((_, was_pinned)) = &mut self.grabbed {
-            *was_pinned = false;
+        if let Some(grabbed) = &mut self.grabbed {
+            grabbed.was_pinned = false;
         }
         if let Some(network) = self.network_mut() {
             let pins: Vec<_> = network.pins().map(|(i, _)| i).collect();

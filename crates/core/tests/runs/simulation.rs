@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::common::{method, scene, simulation};
 use a3_core::contact::{Obstacle, Shape};
 use a3_core::{
-    Cause, Control, Error, Model, Moment, Network, ParticleSystem, Path, Scene, Simulation, Vector3,
+    Cause, Checkpoint, Control, Error, Model, Network, ParticleSystem, Path, Scene, Simulation,
+    Vector3,
 };
 use approx::assert_relative_eq;
 
@@ -459,14 +460,6 @@ fn a_particle_is_pinned_and_let_go() {
     assert_eq!(simulation("simple", "rk4", 0.1).toggle_pin(0), Ok(false));
 }
 
-fn moment(run: &Simulation) -> Moment {
-    let mut moment = Moment::default();
-    run.record(&mut moment);
-    assert_eq!((moment.time, moment.steps), (run.time(), run.steps()));
-    assert_eq!(moment.y, run.state());
-    moment
-}
-
 #[test]
 fn a_rewound_run_repeats_itself() {
     for method in ["trapezoid", "verlet", "dop853"] {
@@ -478,11 +471,12 @@ fn a_rewound_run_repeats_itself() {
         let mut run = simulation("cloth", method, value);
         run.set_swinging(true);
         run.advance_to(0.5).unwrap();
-        let then = moment(&run);
+        let then = run.moment();
         run.advance_to(1.0).unwrap();
         let end = run.state().to_vec();
         run.rewind(&then).unwrap();
-        assert_eq!(moment(&run), then);
+        assert_eq!((run.time(), run.steps()), (then.time(), then.steps));
+        assert_eq!(run.state(), then.y);
         run.advance_to(1.0).unwrap();
         let worst = run.state().iter().zip(&end).map(|(a, b)| (a - b).abs());
         // An adaptive method chooses its steps anew.
@@ -496,7 +490,7 @@ fn a_rewound_run_repeats_itself() {
 fn rewinding_puts_pins_back_where_they_were_and_ends_a_blow_up() {
     let mut run = simulation("cloth", "trapezoid", 0.01);
     run.advance_to(0.2).unwrap();
-    let (corner, then) = (run.position(0), moment(&run));
+    let (corner, then) = (run.position(0), run.moment());
     run.grab(0).unwrap();
     run.pull(corner + Vector3::new(0.3, 0.2, 0.0));
     run.advance_to(0.4).unwrap();
@@ -506,7 +500,7 @@ fn rewinding_puts_pins_back_where_they_were_and_ends_a_blow_up() {
     assert_eq!(run.position(0), corner);
 
     let mut run = simulation("mit", "rk4", 0.05);
-    let start = moment(&run);
+    let start = run.moment();
     while run.take_steps(1).is_ok() {}
     run.rewind(&start).unwrap();
     assert!(run.blow_up().is_none() && run.take_steps(1).is_ok());
@@ -515,6 +509,6 @@ fn rewinding_puts_pins_back_where_they_were_and_ends_a_blow_up() {
     assert!(run.rewind(&broken).is_err());
     broken.y.pop();
     assert!(run.rewind(&broken).is_err());
-    let time = f64::NAN;
-    assert!(run.rewind(&Moment { time, ..start }).is_err());
+    let since = f64::NAN;
+    assert!(run.rewind(&Checkpoint { since, ..start }).is_err());
 }

@@ -182,7 +182,7 @@ fn a_run_goes_on_from_its_description() {
         let mut description = entry.description().unwrap();
         description.scale_springs(stiffness, damping);
         description.scale_wind(gusts);
-        description.begin_with(run.model(), run.time(), run.state());
+        description.begin_with(run.model(), &run.moment());
         let text = description.to_toml().unwrap();
         let read = Description::parse(&text).unwrap();
         assert_eq!(read, description, "{}", entry.name);
@@ -212,7 +212,7 @@ fn what_was_freed_is_described_as_free() {
     run.set_pinned(false);
     run.advance_to(0.1).unwrap();
     let mut description = a3_scenes::find("cloth").unwrap().description().unwrap();
-    description.begin_with(run.model(), run.time(), run.state());
+    description.begin_with(run.model(), &run.moment());
     let scene = description
         .build(None, &mut |_| Err("none".into()))
         .unwrap();
@@ -236,7 +236,7 @@ fn paths_go_on_from_where_they_are() {
         let mut run = start(build(&description), "rk4", 0.01);
         run.advance_to(time).unwrap();
         let mut now = description.clone();
-        now.begin_with(run.model(), run.time(), run.state());
+        now.begin_with(run.model(), &run.moment());
         let again = build(&Description::parse(&now.to_toml().unwrap()).unwrap());
         let again = start(again, "rk4", 0.01);
         for later in [0.0, 0.1, 0.4, 0.9, 3.0] {
@@ -273,7 +273,7 @@ buckling = { bending = 0.0001, compression = 10 }
     run.adjust(|network| network.scale_springs(3.0, 1.0).unwrap());
     run.advance_to(1.5).unwrap();
     description.scale_springs(3.0, 1.0);
-    description.begin_with(run.model(), run.time(), run.state());
+    description.begin_with(run.model(), &run.moment());
     let again = start(description.build(None, no_files).unwrap(), "rk4", 0.01);
     let (now, then) = (network(&run), network(&again));
     for later in [0.0, 0.7, 9.0] {

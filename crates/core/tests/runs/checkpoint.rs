@@ -1,0 +1,222 @@
+//! A run that was put down and taken up again goes on to the same bits.
+
+use a3_core::integrators::METHODS;
+use a3_core::{Checkpoint, Control, Method, Network, Path, Scene, Simulation, Vector3};
+
+use super::common::{described, method, scene, simulation};
+
+/// Something that is done to a run, and then steps.
+type Act = fn(&mut Simulation);
+
+/// Everything of a run that can be seen, to the bit.
+fn seen(run: &Simulation) -> String {
+    let network = run.model().network();
+    let pins: Vec<_> = network.into_iter().flat_map(Network::pins).collect();
+    let bits: Vec<_> = run.state().iter().map(|y| y.to_bits()).collect();
+    format!(
+        "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {pins:?} {bits:?}",
+        run.time().to_bits(),
+        run.steps(),
+        run.work(),
+        run.step_size(),
+        (run.method().name, run.control()),
+        (run.windy(), run.swinging(), run.pinned()),
+        run.grabbed(),
+        run.blow_up(),
+        network.map(Network::torn),
+    )
+}
+
+/// To JSON and back.
+fn through_text(checkpoint: &Checkpoint) -> Checkpoint {
+    let text = serde_json::to_string(checkpoint).unwrap();
+    let again = serde_json::from_str(&text).unwrap();
+    assert_eq!(checkpoint, &again);
+    again
+}
+
+/// A new run that goes on from where another one is.
+fn taken_up(scene: &Scene, run: &Simulation) -> Simulation {
+    let mut fresh = Simulation::new(scene.clone(), method("euler"), Control::Step(0.01)).unwrap();
+    fresh.restore(&through_text(&run.checkpoint())).unwrap();
+    fresh
+}
+
+/// Does one thing after the other to a run. After each it is put down, and goes on beside itself taken up again.
+fn check(scene: &Scene, method: &'static Method, control: Control, acts: &[Act]) {
+    let mut run = Simulation::new(scene.clone(), method, control).unwrap();
+    let mut others: Vec<Simulation> = vec![];
+    let alike = |run: &Simulation, others: &[Simulation], k: usize| {
+        for other in others {
+            assert!(
+                seen(run) == seen(other),
+                "{} by {} after {k}",
+                scene.name,
+                method.name
+            );
+        }
+    };
+    for (k, act) in acts.iter().enumerate() {
+        for run in std::iter::once(&mut run).chain(&mut others) {
+            act(run);
+            // Between the ends of an adaptive method's steps, and at one.
+            let _ = run.take_steps(2);
+            let _ = run.advance_to(run.time() + 0.013);
+        }
+        alike(&run, &others, k);
+        others.truncate(2);
+        others.insert(0, taken_up(scene, &run));
+        assert_eq!(run.checkpoint(), others[0].checkpoint());
+        // Within the step that was put down.
+        for run in std::iter::once(&mut run).chain(&mut others) {
+            let _ = run.advance_to(run.time() + 0.0017);
+        }
+        alike(&run, &others, k);
+        others.insert(0, taken_up(scene, &run));
+    }
+}
+
+const HANDS: &[Act] = &[
+    |_| (),
+    |run| run.set_wind(true),
+    |run| run.set_swinging(true),
+    |run| {
+        run.grab(run.particles() - 1).unwrap();
+        run.pull(run.position(run.particles() - 1) + Vector3::new(0.1, 0.05, 0.2));
+    },
+    |run| {
+        let _ = run.toggle_pin(run.particles() / 2);
+        let _ = run.grab_obstacle(0);
+        run.pull_obstacle(Vector3::new(0.5, -3.0, 0.0));
+    },
+    |run| run.set_pinned(false),
+    |run| run.release(),
+    |run| {
+        run.release_obstacle();
+        run.set_swinging(false);
+        run.set_pinned(true);
+    },
+    |run| run.set_wind(false),
+];
+
+#[test]
+fn every_scene_goes_on_by_every_method() {
+    for entry in a3_scenes::SCENES {
+        let scene = entry.build(None).unwrap();
+        for method in METHODS {
+            if method.check(scene.model.system()).is_ok() {
+                check(&scene, method, scene.default_control(method), HANDS);
+            }
+        }
+    }
+}
+
+#[test]
+fn fixed_steps_of_an_adaptive_method_stay_fixed() {
+    check(&scene("mit"), method("dopri5"), Control::Step(0.01), HANDS);
+}
+
+#[test]
+fn what_is_torn_stays_torn() {
+    let scene = described(
+        "tear = 1.2
+        gravity = [0, -9.81, 0]
+        [wind]
+        on = true
+        velocity = [3, 0, 1]
+        [[sphere]]
+        center = [0.5, -0.5, 0.4]
+        radius = 0.1
+        sine = { amplitude = [0, 0, 0.3], rate = 5 }
+        [[cloth]]
+        grid = [6, 5]
+        width = 1
+        mass = 0.01
+        stiffness = [20, 10, 5]
+        damping_ratio = 0.1
+        pin = [{ at = ['left'] }, { at = ['right'], shift = { by = [0.9, 0, 0], start = 0, end = 0.1 } }]",
+    );
+    let acts: &[Act] = &[|_| (), |_| (), |run| run.set_wind(false), |_| (), |_| ()];
+    for method in METHODS {
+        let control = method.control(if method.is_adaptive() { 1e-5 } else { 0.005 });
+        check(&scene, method, control, acts);
+        let mut run = Simulation::new(scene.clone(), method, control).unwrap();
+        run.advance_to(0.1).unwrap();
+        assert!(run.tears() > 5, "{}: {}", method.name, run.tears());
+    }
+}
+
+/// A run that blows up later goes back to the same state as the one that was put down.
+#[test]
+fn a_run_that_is_lost_later_is_lost_alike() {
+    let mut run = simulation("mit", "rk4", 0.05);
+    run.take_steps(3).unwrap();
+    let mut again = taken_up(run.scene(), &run);
+    while run.take_steps(1).is_ok() {}
+    while again.take_steps(1).is_ok() {}
+    assert!(run.blow_up().is_some() && seen(&run) == seen(&again));
+    // What is lost is put down as it was when it was in shape, and goes on.
+    let mut on = taken_up(run.scene(), &run);
+    assert_eq!((on.state(), on.blow_up()), (run.state(), None));
+    assert!(on.take_steps(1).is_ok());
+}
+
+/// A moment has all but the last step of an adaptive method: what goes on from it begins a new one.
+#[test]
+fn a_moment_is_small_and_goes_on() {
+    let mut run = simulation("cloth", "dop853", 1e-8);
+    run.advance_to(0.1).unwrap();
+    let mut moment = simulation("chain", "rk4", 0.01).moment();
+    run.record(&mut moment);
+    assert_eq!(moment, run.moment());
+    assert!(moment.size() < 8 * run.state().len() * 11 / 10 + 1000);
+    assert!(serde_json::to_string(&run.checkpoint()).unwrap().len() > 10 * 8 * run.state().len());
+    let mut again = simulation("cloth", "euler", 0.01);
+    again.restore(&moment).unwrap();
+    assert_eq!((again.state(), again.time()), (run.state(), run.time()));
+    run.advance_to(0.2).unwrap();
+    again.advance_to(0.2).unwrap();
+    let apart = run
+        .state()
+        .iter()
+        .zip(again.state())
+        .map(|(a, b)| (a - b).abs());
+    assert!(apart.fold(0.0, f64::max) < 1e-5);
+}
+
+#[test]
+fn checkpoints_that_do_not_fit_are_refused_and_change_nothing() {
+    let mut run = simulation("mit", "dopri5", 1e-4);
+    run.advance_to(0.1).unwrap();
+    let before = run.checkpoint();
+    let mut refuse = |change: &dyn Fn(&mut Checkpoint)| {
+        let mut broken = before.clone();
+        change(&mut broken);
+        assert!(run.restore(&broken).is_err());
+        assert_eq!(run.checkpoint(), before);
+    };
+    refuse(&|c| c.y.push(0.0));
+    refuse(&|c| c.y[0] = f64::NAN);
+    refuse(&|c| c.since = f64::INFINITY);
+    refuse(&|c| c.control = Control::Tolerance(-1.0));
+    refuse(&|c| c.method = method("rk4"));
+    refuse(&|c| c.pins.push((1_000_000, Path::Still(Vector3::zeros()))));
+    refuse(&|c| c.torn.push([0, 224]));
+    refuse(&|c| c.obstacles.push((7, Path::Still(Vector3::zeros()))));
+    refuse(&|c| c.grabbed_obstacle = Some(7));
+    refuse(&|c| c.ahead = Some((1.0, vec![])));
+    let other = simulation("mit", "dop853", 1e-6);
+    refuse(&|c| {
+        let mut run = simulation("mit", "dop853", 1e-6);
+        run.advance_to(0.01).unwrap();
+        c.adaptive = run.checkpoint().adaptive;
+    });
+    assert!(
+        run.restore(&simulation("chain", "rk4", 0.01).checkpoint())
+            .is_err()
+    );
+    run.restore(&other.checkpoint()).unwrap();
+    let text = serde_json::to_string(&before).unwrap();
+    let error = serde_json::from_str::<Checkpoint>(&text.replace("dopri5", "magic"));
+    assert!(error.unwrap_err().to_string().contains("no method magic"));
+}
