@@ -21,7 +21,7 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
     let scene = setup::scene(&options.what)?;
     let until = look_ahead(&scene, options.until, 1.0)?.ok_or_else(stopped)?;
     let reference = Reference::new(&scene, Frames::new(until), &interrupt::go_on)
-        .map_err(|e| Failure::run(format!("no reference: {e}")))?
+        .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))?
         .ok_or_else(stopped)?;
     let (found, goal) = match (options.error, options.budget) {
         (Some(error), _) => {
@@ -53,7 +53,7 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         }
         (None, Some(budget)) => (
             within(&scene, &reference, budget)?.ok_or_else(stopped)?,
-            format!("{budget} ms a frame"),
+            format!("{budget} ms per frame"),
         ),
         (None, None) => return Err(Failure::usage("give --error or --budget")),
     };

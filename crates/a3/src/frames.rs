@@ -25,7 +25,7 @@ impl FrameTimes {
     pub fn new(from: f64, until: f64, rate: f64) -> Result<Self, Failure> {
         if from > until {
             return Err(Failure::usage(format!(
-                "there is nothing to film: --from {from} is past --until {until}"
+                "there is nothing to film: --from {from} is later than --until {until}"
             )));
         }
         // The last frame may miss the end by no more than rounding.
@@ -77,13 +77,13 @@ impl Sequence {
     pub fn check(&self, count: usize) -> Result<(), Failure> {
         if self.after.contains('#') {
             return Err(Failure::usage(
-                "the # of a sequence stand side by side, as in cloth-####.png",
+                "the # of a sequence must be side by side, as in cloth-####.png",
             ));
         }
         let needed = count.to_string().len();
         if needed > self.digits {
             return Err(Failure::usage(format!(
-                "{count} frames have numbers of {needed} digits: that many # in the name"
+                "{count} frames need numbers of {needed} digits: put as many # in the name"
             )));
         }
         Ok(())

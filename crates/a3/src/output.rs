@@ -18,13 +18,13 @@ pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
             others => format!("{} or .", others.join(", .")),
         };
         return Err(Failure::usage(format!(
-            "{}: the file to write ends in .{others}{last}",
+            "{}: the name of the file must end in .{others}{last}",
             path.display(),
         )));
     }
     if path.is_dir() {
         return Err(Failure::run(format!(
-            "{}: is a folder, not a file",
+            "{}: this is a folder, not a file",
             path.display()
         )));
     }
@@ -66,9 +66,9 @@ pub fn say(text: &str) -> Result<(), Failure> {
 /// What became of a write to standard output.
 pub fn said(written: io::Result<()>) -> Result<(), Failure> {
     match written {
-        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::run(format!("standard output: not written: {e}")))
-        }
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Failure::run(format!(
+            "standard output could not be written: {e}"
+        ))),
         _ => Ok(()),
     }
 }
@@ -227,7 +227,7 @@ fn not_written(path: &Path, error: &io::Error) -> Failure {
     // The name of the temporary file is nobody's business.
     let why = error.to_string();
     let why = why.split(" at path").next().unwrap_or_default();
-    Failure::run(format!("{}: not written: {why}", path.display()))
+    Failure::run(format!("{}: could not be written: {why}", path.display()))
 }
 
 /// Eight-bit RGBA rows from the top, as PNG.

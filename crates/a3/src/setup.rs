@@ -12,7 +12,7 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     let what = &options.what;
     if options.watch && what.scene.path.is_none() {
         return Err(Failure::usage(
-            "--watch is for a scene of your own, as in `--scene flag.toml --watch`",
+            "--watch needs a scene file, as in `--scene flag.toml --watch`",
         ));
     }
     let solver = what.scene.solver_or(options.solver);
@@ -133,11 +133,11 @@ fn check_control(method: &Method, control: Control) -> Result<(), Failure> {
     }
     let (low, high) = (range.start(), range.end());
     Err(Failure::usage(match control {
-        Control::Step(step) => format!(
-            "a step is a number of seconds from {low} to {high}, such as 0.01, and not {step}"
-        ),
+        Control::Step(step) => {
+            format!("a step is a number of seconds from {low} to {high}, such as 0.01, not {step}")
+        }
         Control::Tolerance(tolerance) => format!(
-            "{} takes a relative tolerance from {low:e} to {high}, such as 1e-4, and not {tolerance}",
+            "{} takes a relative tolerance from {low:e} to {high}, such as 1e-4, not {tolerance}",
             method.name
         ),
     }))

@@ -72,7 +72,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     if let Some(path) = options.summary.as_deref() {
         if path == stdout && options.output == stdout {
             return Err(Failure::usage(
-                "standard output gets --output or --summary, not both",
+                "standard output can take either --output or --summary, not both",
             ));
         }
         if path != stdout {
@@ -113,7 +113,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
     if simulation.tears() > 0 && ["pc2", "glb"].iter().any(one_mesh) {
         eprintln!(
-            "{} springs broke, but {} has one mesh for all its frames: frames as .obj, such as torn-####.obj, have the holes",
+            "{} springs broke, but {} has one mesh for all its frames: a sequence such as torn-####.obj has the holes",
             simulation.tears(),
             options.output.display()
         );

@@ -93,14 +93,20 @@ impl fmt::Display for BlowUp {
                 write!(f, "particle {particle} is {distance:.0} m away")
             }
             Cause::NotFinite { particle } => {
-                write!(f, "particle {particle} is no longer a finite number")
+                write!(
+                    f,
+                    "the position or velocity of particle {particle} is not finite"
+                )
             }
             Cause::StepTooSmall { step } => {
-                write!(f, "no step meets the tolerance, not even {step:.1e} s")
+                write!(
+                    f,
+                    "no step meets the tolerance, not even one of {step:.1e} s"
+                )
             }
             Cause::NoConvergence { residual } => write!(
                 f,
-                "the step's equations were not solved, {residual:.1e} of the residual is left"
+                "the equations of the step were not solved (relative residual {residual:.1e})"
             ),
         }
     }
@@ -113,22 +119,22 @@ impl fmt::Display for Error {
             Self::NeedsMechanics { method } => {
                 write!(
                     f,
-                    "{method} needs forces and masses, and this system is first order"
+                    "{method} needs forces and masses, but this system is of first order"
                 )
             }
             Self::Dimension { expected, found } => {
                 write!(
                     f,
-                    "the state has {found} numbers, and {expected} were expected"
+                    "the state has {found} numbers, but the system needs {expected}"
                 )
             }
             Self::StepTooSmall { time, step } => write!(
                 f,
-                "no step meets the tolerance at t = {time:.4} s, not even {step:.1e} s: a larger tolerance would"
+                "no step meets the tolerance at t = {time:.4} s, not even one of {step:.1e} s: use a larger tolerance"
             ),
             Self::NoConvergence { residual } => write!(
                 f,
-                "the equations of the step were not solved: {residual:.1e} of the residual is left"
+                "the equations of the step were not solved (relative residual {residual:.1e})"
             ),
             Self::BlowUp(blow_up) => blow_up.fmt(f),
         }

@@ -21,7 +21,7 @@ impl Grid {
             Ok(Self { rows, cols })
         } else {
             Err(Error::Invalid(format!(
-                "a grid has at least 2x2 and at most {MAX_PARTICLES} particles in all, such as 20x20, and not {rows}x{cols}"
+                "a grid has at least 2x2 and at most {MAX_PARTICLES} particles in all, such as 20x20, not {rows}x{cols}"
             )))
         }
     }

@@ -159,7 +159,7 @@ impl Network {
         self.check_particle(j)?;
         if i == j {
             return Err(Error::Invalid(format!(
-                "a spring needs two ends, and this has {i} twice"
+                "a spring needs two different particles, not {i} twice"
             )));
         }
         Ok(())
@@ -386,7 +386,7 @@ impl Network {
         let (n, others) = (self.particles(), other.particles());
         if n != others {
             return Err(Error::Invalid(format!(
-                "springs of {others} particles are none for {n}"
+                "the springs of a network of {others} particles do not fit one of {n}"
             )));
         }
         self.sheet = other.sheet;

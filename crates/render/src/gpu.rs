@@ -33,21 +33,21 @@ impl fmt::Display for GpuError {
         match self {
             Self::NoAdapter(why) => write!(
                 f,
-                "no graphics adapter ({why}); without a GPU a software one will do: `apt install mesa-vulkan-drivers` \
+                "no graphics adapter ({why}); without a GPU, install a software adapter: `apt install mesa-vulkan-drivers` \
                  on Debian and Ubuntu, `dnf install mesa-vulkan-drivers` on Fedora"
             ),
-            Self::Device(why) => write!(f, "the graphics adapter does not open: {why}"),
+            Self::Device(why) => write!(f, "the graphics adapter cannot be opened: {why}"),
             Self::Size {
                 asked: (w, h),
                 limit,
             } => {
                 write!(
                     f,
-                    "a picture of {w}x{h} pixels is not possible here: each side has 1 to {limit}"
+                    "a picture of {w}x{h} pixels is not possible here: each side must have 1 to {limit} pixels"
                 )
             }
             Self::Lost => f.write_str("the graphics device was lost"),
-            Self::Refused(why) => write!(f, "the graphics device refused: {why}"),
+            Self::Refused(why) => write!(f, "the graphics device reported an error: {why}"),
         }
     }
 }
@@ -60,7 +60,7 @@ impl GpuError {
     pub fn no_adapter() -> Self {
         Self::NoAdapter(match std::env::var("WGPU_BACKEND") {
             Ok(backend) => format!("none for WGPU_BACKEND={backend}"),
-            Err(_) => "no driver answers".into(),
+            Err(_) => "no driver was found".into(),
         })
     }
 }
@@ -236,7 +236,7 @@ async fn named_adapter(
     };
     adapters.into_iter().find(fits).ok_or_else(|| {
         GpuError::NoAdapter(format!(
-            "WGPU_ADAPTER_NAME is {name}, and there are {names:?}"
+            "WGPU_ADAPTER_NAME is {name}, but the adapters are {names:?}"
         ))
     })
 }

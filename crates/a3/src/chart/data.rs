@@ -108,12 +108,14 @@ impl Data {
         };
         let wrong = |why: String| {
             Failure::run(format!(
-                "{}: not the data of a chart: {why}; give another name",
+                "{}: this file does not hold the data of a chart ({why}); give another name",
                 path.display()
             ))
         };
         if !there.is_file() || there.len() > LARGEST_FILE {
-            return Err(wrong("no file, or a huge one".into()));
+            return Err(wrong(
+                "it is not an ordinary file, or it is too large".into(),
+            ));
         }
         let text = fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
         if output::ends_in(path, "json") {

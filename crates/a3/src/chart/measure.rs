@@ -173,7 +173,7 @@ impl<'a> Study<'a> {
         if self.reference.is_none() {
             bar.say("reference  ".into());
             self.reference = Reference::new(&self.scene, self.frames, &interrupt::go_on)
-                .map_err(|e| Failure::run(format!("no reference: {e}")))?;
+                .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))?;
             bar.start();
             bar.say(format!("{:<10} ", method.name));
         }

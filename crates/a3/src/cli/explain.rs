@@ -38,7 +38,7 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         (ErrorKind::ValueValidation, _) if line.contains(UNKNOWN_SOLVER) => {
             let cli = Cli::command();
             let commands: Vec<_> = cli.get_subcommands().map(clap::Command::get_name).collect();
-            format!("{line}; the commands, which come first, {}", commands.join(", "))
+            format!("{line}; the commands are {}, and come first", commands.join(", "))
         }
         // The parser's own words end with what is right; those about a scene file begin with its name.
         (ErrorKind::ValueValidation, _) => match line.split_once("': ") {
@@ -50,16 +50,16 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         (ErrorKind::ArgumentConflict | ErrorKind::MissingRequiredArgument, _)
             if line.contains("--error") =>
         {
-            "choose takes either --error E, in m, or --budget MS, in ms a frame".into()
+            "choose takes either --error E (in m) or --budget MS (in ms per frame)".into()
         }
         (ErrorKind::ArgumentConflict, _) => {
-            "beside options there is a solver and a step, as in `a3 t 0.01`, or a command before all else".into()
+            "a command comes before everything else, as in `a3 chart --scene flag`; without one, there is a solver and a step, as in `a3 t 0.01`".into()
         }
         // clap takes -1e-3 for options, and -0.001 not.
         (ErrorKind::UnknownArgument, _) if line.contains("argument '-") && !line.contains("argument '--") => {
             format!("{line}; {}", step("").unwrap_err())
         }
         (_, Some(tip)) => format!("{line}; {tip}"),
-        (_, None) => format!("{line} (--help says more)"),
+        (_, None) => format!("{line}; --help explains the options"),
     }))
 }

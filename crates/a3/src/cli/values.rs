@@ -13,8 +13,8 @@ pub fn step(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(step) if (*TOLERANCES.start()..=LARGEST_STEP).contains(&step) => Ok(step),
         _ => Err(format!(
-            "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01, and the tolerance of an \
-             adaptive solver one from {:e} to {}",
+            "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01; the tolerance of an \
+             adaptive solver is a number from {:e} to {}",
             TOLERANCES.start(),
             TOLERANCES.end()
         )),
@@ -50,7 +50,7 @@ pub fn beginning(text: &str) -> Result<f64, String> {
 pub fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(rate) if (0.1..=1000.0).contains(&rate) => Ok(rate),
-        _ => Err("a rate is a number of frames a second from 0.1 to 1000, such as 30".into()),
+        _ => Err("a rate is a number of frames per second from 0.1 to 1000, such as 30".into()),
     }
 }
 

@@ -65,7 +65,7 @@ pub fn check(frames: FrameTimes) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::usage(format!(
-        "{} frames are too many for a .glb, which has at most {MOST}: a lower --fps, or a .pc2 or film-####.obj",
+        "{} frames are too many for a .glb, which has at most {MOST}: use a lower --fps, a .pc2, or film-####.obj",
         frames.count
     )))
 }

@@ -42,7 +42,7 @@ pub fn begin(
     if path == Path::new("-") {
         if options.fps.is_some() {
             return Err(Failure::usage(
-                "--fps needs a file: standard output gets the final state",
+                "--fps needs a file: standard output gets only the final state",
             ));
         }
         return Ok((last, Box::new(json::Json::to_stdout())));
@@ -74,7 +74,7 @@ pub fn begin(
         (Some("obj"), None) => {
             if options.fps.is_some() {
                 return Err(Failure::usage(
-                    "an .obj has one frame: --fps is for as many as cloth-####.obj",
+                    "an .obj has one frame: leave out --fps, or write a sequence such as cloth-####.obj",
                 ));
             }
             (last, Box::new(obj::Obj::One(path.into())))
@@ -94,7 +94,7 @@ fn check_size(bytes: f64, largest: f64) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::usage(format!(
-        "that would be {size:.1} GiB, and {largest} GiB is the most: a lower --fps or --until, or fewer particles"
+        "the file would have {size:.1} GiB, and at most {largest} GiB are allowed: use a lower --fps or --until, or fewer particles"
     )))
 }
 

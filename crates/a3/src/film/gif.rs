@@ -45,13 +45,16 @@ impl Gif {
     ) -> Result<Self, Failure> {
         let side = |side| {
             u16::try_from(side).map_err(|_| {
-                Failure::usage(format!("a GIF's sides are at most {} pixels", u16::MAX))
+                Failure::usage(format!(
+                    "the sides of a GIF must be at most {} pixels",
+                    u16::MAX
+                ))
             })
         };
         let (across, down) = (side(width)?, side(height)?);
         let encoder = Encoder::new(Draft::new(path)?, across, down, &[]);
-        let mut encoder =
-            encoder.map_err(|e| Failure::run(format!("{}: not written: {e}", path.display())))?;
+        let mut encoder = encoder
+            .map_err(|e| Failure::run(format!("{}: could not be written: {e}", path.display())))?;
         encoder
             .set_repeat(Repeat::Infinite)
             .map_err(|e| failure(&encoder, e))?;

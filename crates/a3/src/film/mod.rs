@@ -66,7 +66,7 @@ pub fn begin(options: &Render) -> Result<Option<TimedFilm>, Failure> {
         let gif = gif::Gif::new(path, size, delay, options.transparent)?;
         if (rate - asked).abs() > 1e-9 {
             eprintln!(
-                "a GIF's delays are whole hundredths of a second, 2 or more: {rate:.4} frames a second, not {asked}"
+                "the delays of a GIF are whole hundredths of a second, at least 2: the film has {rate:.4} frames per second, not {asked}"
             );
         }
         return Ok(Some((frames, Box::new(gif))));
@@ -74,7 +74,7 @@ pub fn begin(options: &Render) -> Result<Option<TimedFilm>, Failure> {
     if ends_in("mp4") {
         if options.transparent {
             return Err(Failure::usage(
-                "an MP4 is never transparent: a .gif, a .png or a sequence such as film-####.png is",
+                "an MP4 cannot be transparent: use a .gif, a .png or a sequence such as film-####.png",
             ));
         }
         return Ok(Some((

@@ -25,14 +25,14 @@ impl Mp4 {
         if width % 2 + height % 2 > 0 {
             let even = [width, height].map(|side| side + side % 2);
             return Err(Failure::usage(format!(
-                "the sides of an MP4 are even, and {width}x{height} is not: {}x{} is",
+                "the sides of an MP4 must be even, such as {}x{}, not {width}x{height}",
                 even[0], even[1]
             )));
         }
         let draft = Draft::new(path)?;
         let Some(beside) = draft.beside() else {
             return Err(Failure::run(format!(
-                "{}: is no ordinary file, and an MP4 needs one",
+                "{}: an MP4 can only be written to an ordinary file",
                 path.display()
             )));
         };
@@ -73,7 +73,7 @@ impl Mp4 {
                 "an MP4 is written by ffmpeg, which is not here: install it (apt install ffmpeg), or write a .gif or a \
                  sequence such as film-####.png",
             ),
-            _ => Failure::run(format!("ffmpeg does not start: {e}")),
+            _ => Failure::run(format!("ffmpeg could not be started: {e}")),
         })?;
         Ok(Self {
             draft: Some(draft),
@@ -90,9 +90,7 @@ impl Mp4 {
             .rewind()
             .and_then(|()| self.log.read_to_string(&mut said));
         let last = said.lines().rev().find(|line| !line.trim().is_empty());
-        let why = last
-            .filter(|_| read.is_ok())
-            .unwrap_or("it does not say why");
+        let why = last.filter(|_| read.is_ok()).unwrap_or("it gave no reason");
         Failure::run(format!("ffmpeg failed: {}", why.trim()))
     }
 }

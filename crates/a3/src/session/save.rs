@@ -21,7 +21,7 @@ impl Session {
         let particles = run.particles();
         if particles > MOST {
             return Err(format!(
-                "a scene file has at most {MOST} particles, and here are {particles}"
+                "a scene file has at most {MOST} particles, but this run has {particles}"
             ));
         }
         let folder = self.shown.source.path.as_deref().and_then(Path::parent);

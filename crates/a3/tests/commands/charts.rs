@@ -259,12 +259,12 @@ fn wrong_usage_is_one_line() {
         (vec!["chart", "--data", "x.txt"], ".csv or .json", 2),
         (
             vec!["chart", "--data", "bad.csv"],
-            "not the data of a chart",
+            "does not hold the data of a chart",
             1,
         ),
         (
             vec!["chart", "--data", "bad.json"],
-            "not the data of a chart",
+            "does not hold the data of a chart",
             1,
         ),
         (

@@ -81,7 +81,7 @@ fn a_choice_comes_with_its_command() {
         ],
     );
     assert!(
-        text.contains("5 ms a frame") && text.contains("run it:  a3 "),
+        text.contains("5 ms per frame") && text.contains("run it:  a3 "),
         "{text}"
     );
 }

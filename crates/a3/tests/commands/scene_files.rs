@@ -224,10 +224,7 @@ fn what_is_wrong_is_said_with_file_and_line() {
             || refused("line.toml").starts_with("error: line.toml:1")
     );
     let said = complaint(&a3(folder.path(), &["--scene", "cloth", "--watch"]), 2);
-    assert!(
-        said.contains("--watch is for a scene of your own"),
-        "{said}"
-    );
+    assert!(said.contains("--watch needs a scene file"), "{said}");
 }
 
 /// Charts of a file's scene do not go on from those of another with the same name.

@@ -102,7 +102,7 @@ impl Constraint {
                 positive("the length of a rod", length)?;
                 if i == j {
                     return Err(Error::Invalid(format!(
-                        "a rod needs two ends, and this has {i} twice"
+                        "a rod needs two different particles, not {i} twice"
                     )));
                 }
             }

@@ -128,7 +128,7 @@ impl Method {
             None if self.needs_mechanics => Err(Error::NeedsMechanics { method: self.name }),
             Some(mechanics) if self.implicit && mechanics.feedback().is_some() => {
                 Err(Error::Invalid(format!(
-                    "{} does not know constraints: an explicit solver does",
+                    "{} does not support constraints: use an explicit solver",
                     self.title
                 )))
             }

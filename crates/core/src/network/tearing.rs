@@ -15,7 +15,7 @@ impl Network {
     pub fn set_tear(&mut self, limit: Option<f64>) -> Result<(), Error> {
         if let Some(limit) = limit.filter(|limit| !limit.is_finite() || *limit <= 1.0) {
             return Err(Error::Invalid(format!(
-                "springs break at a finite number of times their rest length above 1, such as 2, and not {limit}"
+                "the stretch at which springs break must be a finite number above 1, such as 2, not {limit}"
             )));
         }
         self.tear = limit;

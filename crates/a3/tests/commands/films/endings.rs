@@ -24,7 +24,7 @@ fn films_that_cannot_be_are_refused_before_the_work() {
         (long("x.gif", &["--fps", "0"]), "such as 30"),
         (long("x.gif", &["--fps", "nan"]), "such as 30"),
         (long("x.gif", &["--from", "-1"]), "such as 2.5"),
-        (long("x.gif", &["--from", "2e6"]), "past --until"),
+        (long("x.gif", &["--from", "2e6"]), "later than --until"),
         (long("x.gif", &[]), "25000001 frames"),
         (long("x-##.png", &["--fps", "0.1"]), "6 digits"),
         (long("x-#-#.png", &["--fps", "0.1"]), "side by side"),
