@@ -74,7 +74,7 @@ pub(crate) fn one_of(
         (Some(_), Some(_)) => Err(Fault::not_both(a, b)),
         (None, None) => Err(Fault::new(
             "",
-            format!("needs one of the keys `{a}` and `{b}`"),
+            format!("one of the keys `{a}` and `{b}` is needed"),
         )),
     }
 }

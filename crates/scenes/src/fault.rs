@@ -162,10 +162,10 @@ fn explain(message: &str) -> String {
         message.starts_with("unknown field") || message.starts_with("unknown variant"),
         &quoted[..],
     ) {
-        let what = if message.starts_with("unknown field") {
-            "there is no key"
+        let (what, all) = if message.starts_with("unknown field") {
+            ("there is no key", "keys")
         } else {
-            "there is no"
+            ("there is no", "choices")
         };
         // Two neighbouring letters in the wrong order count as one slip.
         let likeness = |name: &str| strsim::normalized_damerau_levenshtein(unknown, name);
@@ -174,13 +174,16 @@ fn explain(message: &str) -> String {
             .map(|name| (likeness(name), *name))
             .filter(|(likeness, _)| *likeness > 0.55)
             .max_by(|a, b| a.0.total_cmp(&b.0));
-        let hint = nearest.map_or(String::new(), |(_, name)| {
-            format!("did you mean `{name}`? ")
-        });
-        return format!("{what} `{unknown}`: {hint}there are {}", known.join(", "));
+        let known = known.join(", ");
+        return match nearest {
+            Some((_, name)) => {
+                format!("{what} `{unknown}`; did you mean `{name}`? The {all} are {known}")
+            }
+            None => format!("{what} `{unknown}`; the {all} are {known}"),
+        };
     }
     if let (true, [missing, ..]) = (message.starts_with("missing field"), &quoted[..]) {
-        return format!("needs the key `{missing}`");
+        return format!("the key `{missing}` is missing");
     }
     message.to_owned()
 }

@@ -67,19 +67,23 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "spacing = 0.5",
         "spacng = 0.5",
-        "line 5: cloth.spacng: there is no key `spacng`: did you mean `spacing`? there are grid, ",
+        "line 5: cloth.spacng: there is no key `spacng`; did you mean `spacing`? The keys are grid, ",
     ),
     (
         "spacing = 0.5",
         "",
-        "line 3: cloth: needs one of the keys `width` and `spacing`",
+        "line 3: cloth: one of the keys `width` and `spacing` is needed",
     ),
     (
         "spacing = 0.5",
         "spacing = 0.5\nwidth = 1",
         "line 5: cloth.spacing: give either `width` or `spacing`",
     ),
-    ("grid = [3, 4]", "", "line 3: cloth: needs the key `grid`"),
+    (
+        "grid = [3, 4]",
+        "",
+        "line 3: cloth: the key `grid` is missing",
+    ),
     (
         "grid = [3, 4]",
         "grid = [1, 4]",
@@ -123,12 +127,12 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "at = [0, 2, 0]",
         "right = [0, 1, 0]",
-        "line 8: cloth.right: `right` and `down` must be at a right angle",
+        "line 8: cloth.right: `right` and `down` must be perpendicular",
     ),
     (
         "at = [0, 2, 0]",
         "pin = [{ at = [\"tpo\"] }]",
-        "line 8: cloth.pin.at: there is no `tpo`: did you mean `top`?",
+        "line 8: cloth.pin.at: there is no `tpo`; did you mean `top`?",
     ),
     (
         "at = [0, 2, 0]",
@@ -143,22 +147,22 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "at = [0, 2, 0]",
         "pin = [{}]",
-        "line 8: cloth.pin: pins nothing",
+        "line 8: cloth.pin: the pin holds nothing",
     ),
     (
         "gravity = [0, -9.81, 0]",
         "gravty = [0, 0, 0]",
-        "line 1: gravty: there is no key `gravty`: did you mean `gravity`?",
+        "line 1: gravty: there is no key `gravty`; did you mean `gravity`?",
     ),
     (
         "gravity = [0, -9.81, 0]",
         "solver = \"rk5\"",
-        "line 1: solver: there is no `rk5`: there are euler, ",
+        "line 1: solver: there is no `rk5`; the solvers are euler, ",
     ),
     (
         "gravity = [0, -9.81, 0]",
         "step = 0.1",
-        "line 1: step: a step needs the key `solver` too",
+        "line 1: step: a step also needs the key `solver`",
     ),
     (
         "gravity = [0, -9.81, 0]",
@@ -179,7 +183,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "gravity = [0, -9.81, 0]",
         "springs = [[0, 12, 1, 1, 0]]",
-        "line 1: springs: spring 0, counted from 0: 0 and 12 are no two particles of 0 to 11",
+        "line 1: springs: spring 0, counted from 0: 0 and 12 must be two different particles from 0 to 11",
     ),
     (
         "gravity = [0, -9.81, 0]",
@@ -264,7 +268,7 @@ fn the_second_of_a_kind_is_named_by_its_number() {
 
 #[test]
 fn nothing_at_all_is_said_to_be_too_little() {
-    assert!(said("").contains("there is nothing in the scene: it needs at least one of cloth"));
+    assert!(said("").contains("the scene is empty: it needs at least one of cloth"));
 }
 
 /// Sizes are looked at before memory is taken.
@@ -277,10 +281,10 @@ fn what_is_too_much_is_refused_at_once() {
         )
     };
     for (text, expected) in [
-        (jelly("[100000, 100000, 100000]"), "line 1: jelly: that makes"),
+        (jelly("[100000, 100000, 100000]"), "line 1: jelly: the scene would have"),
         (jelly("[9223372036854775807, 9223372036854775807, 3]"), "line 2: jelly.grid: "),
-        (jelly("[100, 100, 100]"), "line 1: jelly: that makes some 16000000 springs"),
-        ("[[chain]]\nparticles = 99999999999\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = 1".into(), "line 1: chain: that makes 99999999999 particles"),
+        (jelly("[100, 100, 100]"), "line 1: jelly: the scene would have some 16000000 springs"),
+        ("[[chain]]\nparticles = 99999999999\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = 1".into(), "line 1: chain: the scene would have 99999999999 particles"),
     ] {
         assert!(said(&text).starts_with(expected), "{}", said(&text));
     }
@@ -420,7 +424,7 @@ fn a_state_stands_for_that_of_the_bodies() {
         (scene.state[0], scene.state[12], scene.state[40]),
         (1.0, 2.0, 0.0)
     );
-    assert!(said(&of(11)).starts_with("line 1: state.positions: there are 11 for 12 particles"));
+    assert!(said(&of(11)).starts_with("line 1: state.positions: there are 11, but 12 particles"));
 }
 
 #[test]

@@ -195,11 +195,11 @@ pub struct Render {
 /// What counts as the error.
 #[derive(Clone, Copy, ValueEnum, PartialEq)]
 pub enum Error {
-    /// Positions: root mean square over the particles (m)
+    /// Positions, root mean square over the particles (m)
     Position,
     /// Total energy (J)
     Energy,
-    /// Lengths of the springs over their rest lengths: root mean square
+    /// Lengths of the springs over their rest lengths, root mean square
     Strain,
 }
 

@@ -11,19 +11,19 @@ const LONGEST_LINE: usize = 8 << 20;
 
 /// The bytes of an ordinary file that is not too long.
 pub fn read(path: &Path, longest: u64) -> Result<Vec<u8>, String> {
-    let meta = fs::metadata(path).map_err(|e| format!("not read: {e}"))?;
+    let meta = fs::metadata(path).map_err(|e| format!("it could not be read: {e}"))?;
     if !meta.is_file() {
-        return Err("it is no ordinary file".into());
+        return Err("it is not an ordinary file".into());
     }
-    let too_long = || format!("it is longer than {} MiB", longest >> 20);
+    let too_long = || format!("it is larger than {} MiB", longest >> 20);
     if meta.len() > longest {
         return Err(too_long());
     }
     let mut bytes = vec![];
-    let file = File::open(path).map_err(|e| format!("not read: {e}"))?;
+    let file = File::open(path).map_err(|e| format!("it could not be read: {e}"))?;
     file.take(longest + 1)
         .read_to_end(&mut bytes)
-        .map_err(|e| format!("not read: {e}"))?;
+        .map_err(|e| format!("it could not be read: {e}"))?;
     if bytes.len() as u64 > longest {
         return Err(too_long());
     }
@@ -32,8 +32,12 @@ pub fn read(path: &Path, longest: u64) -> Result<Vec<u8>, String> {
 
 /// The text of a scene file.
 pub fn read_text(path: &Path) -> Result<String, String> {
-    let text = String::from_utf8(read(path, LONGEST)?)
-        .map_err(|e| format!("it is no UTF-8 text: byte {}", e.utf8_error().valid_up_to()))?;
+    let text = String::from_utf8(read(path, LONGEST)?).map_err(|e| {
+        format!(
+            "it is not UTF-8 text: see byte {}",
+            e.utf8_error().valid_up_to()
+        )
+    })?;
     match text.lines().position(|line| line.len() > LONGEST_LINE) {
         Some(k) => Err(format!(
             "line {} is longer than {} MiB",
@@ -51,7 +55,7 @@ pub fn beside(scene: Option<&Path>, name: &str) -> Result<PathBuf, String> {
         .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     if !below || name.is_empty() {
         return Err(format!(
-            "`{name}` must be a path from the scene's folder downwards, without `..`"
+            "`{name}` must be in the scene's folder or below it, without `..`"
         ));
     }
     let folder = scene.and_then(Path::parent).unwrap_or(Path::new(""));

@@ -31,7 +31,7 @@ pub fn read(path: &Path) -> Result<Mesh, String> {
     };
     let bytes = files::read(path, LONGEST).map_err(named)?;
     // Both readers do sums with what a file says before they look at it.
-    let parsed = caught(|| parse(&bytes, path)).unwrap_or(Err("it is damaged".into()));
+    let parsed = caught(|| parse(&bytes, path)).unwrap_or(Err("the file is damaged".into()));
     let mesh = parsed.map_err(named)?;
     check(&mesh).map_err(named)?;
     Ok(mesh)
@@ -41,20 +41,20 @@ fn check(mesh: &Mesh) -> Result<(), String> {
     let n = mesh.positions.len();
     if n > MAX_PARTICLES || mesh.triangles.len() > 2 * MAX_PARTICLES {
         return Err(format!(
-            "it has {n} points and {} triangles, and a scene has at most {MAX_PARTICLES} particles",
+            "it has {n} points and {} triangles, but a scene has at most {MAX_PARTICLES} particles",
             mesh.triangles.len()
         ));
     }
     if let Some(i) = mesh.positions.iter().flatten().position(|x| !x.is_finite()) {
-        return Err(format!("point {} is not finite", i / 3));
+        return Err(format!("the position of point {} is not finite", i / 3));
     }
     if mesh.triangles.iter().flatten().any(|i| *i as usize >= n) {
         return Err(format!(
-            "a triangle has a corner past the last of {n} points"
+            "a triangle has a corner beyond the last of {n} points"
         ));
     }
     if mesh.triangles.is_empty() {
-        return Err("it has no triangles".into());
+        return Err("the file has no triangles".into());
     }
     Ok(())
 }
@@ -84,7 +84,7 @@ fn obj(bytes: &[u8], _: &Path) -> Result<Mesh, String> {
 }
 
 fn gltf(bytes: &[u8], path: &Path) -> Result<Mesh, String> {
-    let wrong = |e: &dyn std::fmt::Display| format!("no glTF: {e}");
+    let wrong = |e: &dyn std::fmt::Display| format!("this is not a valid glTF file: {e}");
     let mut file = gltf::Gltf::from_slice(bytes).map_err(|e| wrong(&e))?;
     let blob = file.blob.take();
     let mut buffers = vec![];
@@ -95,7 +95,7 @@ fn gltf(bytes: &[u8], path: &Path) -> Result<Mesh, String> {
                 Some(data) => {
                     let text = data
                         .split_once("base64,")
-                        .ok_or("its data are not base64")?
+                        .ok_or("its data is not base64")?
                         .1;
                     base64::engine::general_purpose::STANDARD
                         .decode(text)
@@ -129,7 +129,7 @@ fn add(
     depth: usize,
 ) -> Result<(), String> {
     if depth > 100 {
-        return Err("its nodes are more than 100 deep".into());
+        return Err("its nodes are nested more than 100 deep".into());
     }
     let own = node.transform().matrix();
     let matrix = above * nalgebra::Matrix4::from_fn(|row, col| f64::from(own[col][row]));

@@ -130,10 +130,10 @@ fn unknown(typed: &str) -> String {
         .map(|name| (strsim::normalized_damerau_levenshtein(typed, name), name))
         .filter(|(likeness, _)| *likeness > 0.55)
         .max_by(|a, b| a.0.total_cmp(&b.0));
-    let hint = near.map_or(String::new(), |(_, name)| format!("did you mean {name}? "));
+    let hint = near.map_or(String::new(), |(_, name)| format!("; did you mean {name}?"));
     let names: Vec<_> = names().collect();
     format!(
-        "{hint}the scenes are {}, and files that end in .toml or .json",
+        "the scenes are {}, or a file that ends in .toml or .json{hint}",
         names.join(", ")
     )
 }

@@ -83,7 +83,7 @@ impl Assembly {
             return Err(Fault::new(
                 key,
                 format!(
-                    "that makes {particles} particles, and a scene has at most {MAX_PARTICLES}"
+                    "the scene would have {particles} particles; at most {MAX_PARTICLES} are allowed"
                 ),
             ));
         }
@@ -93,7 +93,7 @@ impl Assembly {
             return Err(Fault::new(
                 key,
                 format!(
-                    "that makes some {springs} springs, and there are at most {MAX_SPRINGS} beside those of the first cloth"
+                    "the scene would have some {springs} springs; at most {MAX_SPRINGS} are allowed besides those of the first cloth"
                 ),
             ));
         }

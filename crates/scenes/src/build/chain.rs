@@ -13,7 +13,7 @@ impl Body for Chain {
         if self.particles < 2 {
             return Err(Fault::new(
                 "particles",
-                format!("a chain has at least 2, not {}", self.particles),
+                format!("a chain has at least 2 particles, not {}", self.particles),
             ));
         }
         Ok(Counts {
@@ -47,7 +47,7 @@ impl Body for Chain {
         assembly.masses.extend(vec![self.mass; n]);
         let links = (0..n - 1).map(|i| [i, i + 1]);
         if self.rigid {
-            at("rest_length", positive("that of a rod", rest_length))?;
+            at("rest_length", positive("the length of a rod", rest_length))?;
             assembly.rods.extend(links.map(|[i, j]| Constraint::Rod {
                 i: first + i,
                 j: first + j,
@@ -87,12 +87,15 @@ impl Body for Particles {
             if count != 0 && count != n {
                 return Err(Fault::new(
                     key,
-                    format!("there are {count} for {n} positions"),
+                    format!("there are {count}, but {n} positions"),
                 ));
             }
         }
         if n == 0 {
-            return Err(Fault::new("positions", "there must be at least one"));
+            return Err(Fault::new(
+                "positions",
+                "there must be at least one position",
+            ));
         }
         Ok(Counts {
             particles: n,
@@ -107,7 +110,10 @@ impl Body for Particles {
             (None, [_, ..]) => ("masses", self.masses.clone()),
             (Some(_), _) => return Err(Fault::not_both("mass", "masses")),
             (None, []) => {
-                return Err(Fault::new("", "needs one of the keys `mass` and `masses`"));
+                return Err(Fault::new(
+                    "",
+                    "one of the keys `mass` and `masses` is needed",
+                ));
             }
         };
         for m in &masses {

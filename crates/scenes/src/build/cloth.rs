@@ -78,10 +78,7 @@ impl Body for Cloth {
         let (right, down) = (self.axis("right")?, self.axis("down")?);
         if right.dot(&down).abs() > 1e-6 {
             let key = if self.down.is_some() { "down" } else { "right" };
-            return Err(Fault::new(
-                key,
-                "`right` and `down` must be at a right angle",
-            ));
+            return Err(Fault::new(key, "`right` and `down` must be perpendicular"));
         }
         let height = down * (spacing * (rows - 1) as f64);
         let top = match (self.at, self.foot) {

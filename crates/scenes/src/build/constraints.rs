@@ -61,7 +61,7 @@ fn constraint(
         }
         _ => Err(Fault::new(
             "",
-            "takes either `rod`, of two particles, or `particle` with one of `point`, `line`, `circle`, `sphere`",
+            "give either `rod` with two particles, or `particle` with one of `point`, `line`, `circle` and `sphere`",
         )),
     }
 }
@@ -90,7 +90,7 @@ fn wire(particle: usize, spec: &ConstraintSpec) -> Result<Constraint, Fault> {
             radius: sphere.radius,
         },
         _ => {
-            let why = "takes one of `point`, `line`, `circle`, `sphere`";
+            let why = "give one of `point`, `line`, `circle` and `sphere`";
             return Err(Fault::new("", why));
         }
     })

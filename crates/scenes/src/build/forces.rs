@@ -51,7 +51,10 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
     if key != "velocity" {
         for ((key, _), given) in AIR.iter().zip(coefficients) {
             if given.is_some() {
-                return Err(Fault::new(*key, "it is for a wind with a `velocity`"));
+                return Err(Fault::new(
+                    *key,
+                    "only a wind with a `velocity` has this key",
+                ));
             }
         }
         let factor = if key == "force" {

@@ -14,7 +14,7 @@ pub(super) fn springs(specs: &[SpringSpec], particles: usize) -> Result<Vec<Spri
             |why: String| Fault::new("springs", format!("spring {k}, counted from 0: {why}"));
         if i.max(j) >= particles || i == j {
             return Err(wrong(format!(
-                "{i} and {j} are no two particles of 0 to {}",
+                "{i} and {j} must be two different particles from 0 to {}",
                 particles - 1
             )));
         }

@@ -19,7 +19,7 @@ pub(super) struct LoadedMesh<'a> {
 impl Body for LoadedMesh<'_> {
     fn counts(&self) -> Result<Counts, Fault> {
         if self.mesh.triangles.is_empty() {
-            return Err(Fault::new("file", "it has no triangles"));
+            return Err(Fault::new("file", "the mesh has no triangles"));
         }
         Ok(Counts {
             particles: self.mesh.positions.len(),

@@ -88,7 +88,7 @@ impl Description {
         if self.circle.is_some() && network::bodies(self) > 0 {
             return Err(Fault::new(
                 "circle",
-                "it is of first order, and goes with no other body",
+                "a circle is a first-order system and must be the only body",
             ));
         }
         let n = model.particles();
@@ -137,7 +137,7 @@ impl Description {
                 let names: Vec<_> = integrators::METHODS.iter().map(|m| m.name).collect();
                 Fault::new(
                     "solver",
-                    format!("there is no `{name}`: there are {}", names.join(", ")),
+                    format!("there is no `{name}`; the solvers are {}", names.join(", ")),
                 )
             })?),
         };
@@ -147,7 +147,7 @@ impl Description {
             }
         }
         if self.step.is_some() && self.solver.is_none() {
-            return Err(Fault::new("step", "a step needs the key `solver` too"));
+            return Err(Fault::new("step", "a step also needs the key `solver`"));
         }
         let own = scene.solver.zip(self.step);
         scene.control = own.map(|(solver, step)| solver.control(step));

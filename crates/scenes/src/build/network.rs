@@ -83,7 +83,7 @@ fn assembled(
     if bodies(description) == 0 {
         return Err(Fault::new(
             "",
-            "there is nothing in the scene: it needs at least one of cloth, jelly, mesh, chain, particles, circle",
+            "the scene is empty: it needs at least one of cloth, jelly, mesh, chain, particles, circle",
         ));
     }
     let mut assembly = Assembly::default();

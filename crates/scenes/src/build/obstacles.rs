@@ -36,7 +36,7 @@ fn each<T>(
 ) -> Result<(), Fault> {
     let count = specs.len();
     if count > MAX_OBSTACLES {
-        let why = format!("there are at most {MAX_OBSTACLES}, not {count}");
+        let why = format!("at most {MAX_OBSTACLES} are allowed, not {count}");
         return Err(Fault::new(kind, why));
     }
     for (k, spec) in specs.iter().enumerate() {

@@ -43,7 +43,7 @@ fn pinned(
     if particles.is_empty() {
         return Err(Fault::new(
             "",
-            "pins nothing: it needs the key `at` or `particles`",
+            "the pin holds nothing: it needs the key `at` or `particles`",
         ));
     }
     particles

@@ -26,7 +26,7 @@ pub(super) fn write(given: &State, particles: usize, state: &mut [f64]) -> Resul
             continue;
         }
         if rows.len() != particles {
-            let why = format!("there are {} for {particles} particles", rows.len());
+            let why = format!("there are {}, but {particles} particles", rows.len());
             return Err(Fault::new(key, why));
         }
         for (i, row) in rows.iter().enumerate() {

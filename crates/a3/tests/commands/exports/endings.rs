@@ -28,9 +28,12 @@ fn exports_that_cannot_be_are_refused_before_the_work() {
         ),
         (
             long("1000x1000", "x.glb", &["--fps", "5"]),
-            "11.2 GiB, and 4 GiB",
+            "11.2 GiB, and at most 4 GiB",
         ),
-        (long("1000x1000", "x.pc2", &[]), "33.5 GiB, and 16 GiB"),
+        (
+            long("1000x1000", "x.pc2", &[]),
+            "33.5 GiB, and at most 16 GiB",
+        ),
         (long("1000x1000", "x.csv", &[]), "GiB"),
         (long("1000x1000", "x-####.obj", &[]), "GiB"),
         (long("1000x1000", "x.json", &["--fps", "30"]), "GiB"),
