@@ -1,9 +1,15 @@
 //! Contact of particles with obstacles: one phase after every step.
 //!
-//! A particle that ends a step inside an obstacle is put on the surface, and the part of its velocity that leads inwards
-//! is taken away. With friction, Coulomb's law limits what is taken of its motion along the surface, both of its
-//! velocity, |dv_t| <= mu |dv_n|, and of its way since it touched the surface, |dx_t| <= mu |dx_n|: what would move less
-//! than that stays where it is on the obstacle.
+//! A particle that ends a step inside an obstacle is put on the surface, and the part of its
+//! velocity that leads inwards is taken away. Coulomb friction then takes
+//!
+//! ```text
+//! |dv_t| <= mu |dv_n|    of its velocity along the surface,
+//! |dx_t| <= mu |dx_n|    of its displacement along the surface since it touched,
+//! ```
+//!
+//! both relative to the obstacle. A particle that would slip by less than that stays where it is on
+//! the obstacle: what rests does not creep.
 
 mod obstacle;
 mod resolve;

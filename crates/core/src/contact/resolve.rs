@@ -8,18 +8,19 @@ use super::obstacle::Obstacle;
 use super::shape::{Nearest, Shape, of_box, of_capsule, of_floor, of_sphere};
 use crate::path::Place;
 
-/// Gap before a step, as a share of the depth after it, up to which a particle counts as touching from the step's
-/// beginning: rounding errors are no gap.
+/// Gap before a step, as a share of the depth after it, up to which a particle counts as touching
+/// from the beginning of the step: rounding errors are no gap.
 const TOUCHING: f64 = 1e-6;
 
-/// Step that has been taken.
+/// Step that an integrator has taken.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
     /// Time of its beginning (s).
     pub t: f64,
     /// Length (s).
     pub h: f64,
-    /// State at its beginning, [x | v].
+    /// State at its beginning, [x | v], or nothing: then displacements are not known, friction
+    /// takes of velocities only, and the statistics have no depth.
     pub y0: &'a [f64],
 }
 
@@ -30,7 +31,7 @@ pub struct Statistics {
     pub contacts: usize,
     /// Sum of the magnitudes of their impulses (N s).
     pub impulse: f64,
-    /// Depth to which a particle had moved into an obstacle during the step, at most (m).
+    /// Largest depth to which a particle moved into an obstacle during the step (m).
     pub depth: f64,
     /// Share of the step after which that particle touched the obstacle, if both moved uniformly.
     pub touched: f64,
@@ -39,13 +40,12 @@ pub struct Statistics {
 /// Contact phase of a run, with its scratch.
 #[derive(Clone, Debug, Default)]
 pub struct Contact {
-    /// State at the beginning of the step, if there are obstacles.
     y0: Vec<f64>,
     last: Statistics,
 }
 
 impl Contact {
-    /// Phase with room for states of that length.
+    /// Contact phase with room for states of that length.
     #[must_use]
     pub fn new(dim: usize) -> Self {
         Self {
@@ -54,27 +54,28 @@ impl Contact {
         }
     }
 
-    /// Remembers the state that a step begins with, if obstacles are there to be met.
-    pub fn begin(&mut self, obstacles: &[Obstacle], y0: &[f64]) {
+    /// Remembers the state that a step begins with, if an obstacle has friction or, with
+    /// `look_back`, if there is one at all.
+    pub fn begin(&mut self, obstacles: &[Obstacle], y0: &[f64], look_back: bool) {
         self.y0.clear();
-        if !obstacles.is_empty() {
+        if obstacles.iter().any(|o| look_back || o.friction > 0.0) {
             self.y0.extend_from_slice(y0);
         }
     }
 
-    /// State that the step [began](Self::begin) with; empty without obstacles.
+    /// State that the step began with, as far as [`begin`](Self::begin) remembered it.
     #[must_use]
     pub fn y0(&self) -> &[f64] {
         &self.y0
     }
 
-    /// What the last step's contact did.
+    /// Statistics of the last step.
     #[must_use]
     pub fn last(&self) -> Statistics {
         self.last
     }
 
-    /// Resolves the contacts of the step of h (s) from time t (s) that ended in y1, as [`resolve`] does.
+    /// Resolves the contacts of a step of h (s) from time t (s) to y1, as [`resolve`] does.
     pub fn resolve(
         &mut self,
         obstacles: &[Obstacle],
@@ -82,17 +83,15 @@ impl Contact {
         (t, h): (f64, f64),
         y1: &mut [f64],
     ) -> Statistics {
-        let step = Step { t, h, y0: &self.y0 };
-        self.last = resolve(obstacles, inverse_masses, &step, y1);
+        let y0 = &self.y0;
+        self.last = resolve(obstacles, inverse_masses, &Step { t, h, y0 }, y1);
         self.last
     }
 }
 
-/// Puts the particles of y1 = [x | v], the end of a step, out of the obstacles, one obstacle after another, and takes
-/// from their velocities what contact and friction take. Pinned particles, whose inverse mass is 0, are left alone. Does
-/// nothing where nothing touches.
-///
-/// Units are m, s, kg. With obstacles, `step.y0` is as long as y1.
+/// Puts the particles of y1 = [x | v], the end of a step, out of the obstacles, one obstacle after
+/// another, and takes from their velocities what contact and friction take. Pinned particles, whose
+/// inverse mass (1/kg) is 0, are left alone. Does nothing where nothing touches.
 pub fn resolve(
     obstacles: &[Obstacle],
     inverse_masses: &[f64],
@@ -102,12 +101,12 @@ pub fn resolve(
     let mut statistics = Statistics::default();
     for obstacle in obstacles {
         let met = Met {
-            x0: &step.y0[..3 * inverse_masses.len()],
+            x0: step.y0.get(..3 * inverse_masses.len()),
             inverse_masses,
             friction: obstacle.friction,
             before: obstacle.path.at(step.t),
             after: obstacle.path.at(step.t + step.h),
-            // A floor moves nothing sideways.
+            // A smooth floor moves nothing sideways.
             axes: if obstacle.shape == Shape::Floor {
                 1..2
             } else {
@@ -133,19 +132,21 @@ pub fn resolve(
 
 /// Obstacle as a step meets it.
 struct Met<'a> {
-    x0: &'a [f64],
+    /// Positions of the particles at the beginning of the step, if they are known (m).
+    x0: Option<&'a [f64]>,
     inverse_masses: &'a [f64],
     friction: f64,
-    /// Its place at the step's beginning, and at its end.
+    /// Place of the obstacle at the beginning of the step.
     before: Place,
+    /// Place of the obstacle at the end of the step.
     after: Place,
-    /// Axes along which it pushes.
+    /// Axes along which contact without friction pushes.
     axes: Range<usize>,
 }
 
 impl Met<'_> {
-    /// Resolves the contacts with a surface that looks from the obstacle's place to a particle, and answers from there
-    /// if the particle is inside.
+    /// Resolves the contacts with a surface: a function of a particle's position, seen from the
+    /// obstacle's place, that answers from there if the particle is inside.
     fn resolve(
         &self,
         y1: &mut [f64],
@@ -171,31 +172,34 @@ impl Met<'_> {
                 x[axis * n + i] = c[axis] + nearest.point[axis];
                 v[axis * n + i] -= inwards * nearest.normal[axis];
             }
-            // Where it would be if the obstacle had carried it along.
-            let carried = vector(self.x0, n, i) + (c - self.before.position);
-            let depth = nearest.normal.dot(&(nearest.point - d));
-            let approach = nearest.normal.dot(&(carried - at));
+            if let Some(x0) = self.x0 {
+                // Where it would be if the obstacle had carried it along.
+                let carried = vector(x0, n, i) + (c - self.before.position);
+                let depth = nearest.normal.dot(&(nearest.point - d));
+                let approach = nearest.normal.dot(&(carried - at));
+                if self.friction > 0.0 {
+                    let share = if approach > depth * (1.0 + TOUCHING) {
+                        depth / approach
+                    } else {
+                        1.0
+                    };
+                    let touched = carried + (at - carried) * (1.0 - share);
+                    let slip = across(vector(x, n, i) - touched, nearest.normal);
+                    let kept = self.kept(slip, depth);
+                    let held = if kept > 0.0 {
+                        vector(x, n, i) - slip * (1.0 - kept)
+                    } else {
+                        surface(touched - c).map_or(touched, |nearest| c + nearest.point)
+                    };
+                    set(x, n, i, held);
+                }
+                let moved_in = depth.min(approach);
+                if moved_in > statistics.depth {
+                    statistics.depth = moved_in;
+                    statistics.touched = 1.0 - moved_in / approach;
+                }
+            }
             if self.friction > 0.0 {
-                let touching = if approach > depth * (1.0 + TOUCHING) {
-                    depth / approach
-                } else {
-                    1.0
-                };
-                let touched = carried + (at - carried) * (1.0 - touching);
-                let held = || match surface(touched - c) {
-                    Some(Nearest { point, .. }) => c + point,
-                    None => touched,
-                };
-                let slip = across(vector(x, n, i) - touched, nearest.normal);
-                set(
-                    x,
-                    n,
-                    i,
-                    match self.kept(slip, depth) {
-                        0.0 => held(),
-                        kept => vector(x, n, i) - slip * (1.0 - kept),
-                    },
-                );
                 let slip = across(velocity, nearest.normal);
                 let outwards = nearest.normal * outwards.max(0.0);
                 let along = slip * self.kept(slip, -inwards);
@@ -204,15 +208,11 @@ impl Met<'_> {
             statistics.contacts += 1;
             let change = vector(v, n, i) - self.after.velocity - velocity;
             statistics.impulse += change.norm() / self.inverse_masses[i];
-            let moved_in = depth.min(approach);
-            if moved_in > statistics.depth {
-                statistics.depth = moved_in;
-                statistics.touched = 1.0 - moved_in / approach;
-            }
         }
     }
 
-    /// Share of a slip along the surface that friction leaves, with what contact took or added along the normal.
+    /// Share of a slip along the surface that friction leaves, where contact changed so much along
+    /// the normal.
     fn kept(&self, slip: Vector3<f64>, normal: f64) -> f64 {
         let (slip, most) = (slip.norm(), self.friction * normal);
         if slip > most { 1.0 - most / slip } else { 0.0 }

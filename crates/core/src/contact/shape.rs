@@ -90,7 +90,8 @@ pub(super) struct Nearest {
     pub normal: Vector3<f64>,
 }
 
-/// Nearest point of a sphere around the origin to a point d inside it. The centre is moved along `aside`.
+/// Nearest point of a sphere around the origin to a point d inside it; to the centre, that in the
+/// direction of `aside`.
 pub(super) fn of_sphere(
     d: Vector3<f64>,
     radius: f64,

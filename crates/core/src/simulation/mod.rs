@@ -84,8 +84,7 @@ impl Simulation {
         }
         let y = scene.state.clone();
         let (middle, radius) = bounds(&y[..3 * model.particles()]);
-        let mut contact = Contact::new(dim);
-        contact.begin(obstacles(&model), &y);
+        let contact = Contact::new(dim);
         let mut run = Self {
             scene,
             model,
@@ -316,7 +315,7 @@ impl Simulation {
         let Stepper::Fixed(integrator) = &mut self.stepper else {
             return Ok(());
         };
-        self.contact.begin(obstacles(&self.model), &self.y);
+        self.contact.begin(obstacles(&self.model), &self.y, false);
         let cause = match integrator.step(system, t, h, &mut self.y) {
             Ok(work) => {
                 self.work += work;
@@ -354,7 +353,7 @@ impl Simulation {
         *until = None;
         let limit = SUNK * self.radius;
         let (cause, reached) = loop {
-            self.contact.begin(obstacles(&self.model), end);
+            self.contact.begin(obstacles(&self.model), end, true);
             let taken = match adaptive.advance(system, begin, end) {
                 Ok(taken) => taken,
                 Err(error) => break (Some(cause(error)?), begin),

@@ -1,4 +1,4 @@
-//! Contact with obstacles: nearest points of surfaces, and what is left of velocities without and with friction.
+//! Contact with obstacles: nearest points of surfaces, and what is left of velocities.
 
 use a3_core::contact::{Obstacle, Shape, Step, resolve};
 use a3_core::{Mechanics, Network, Path, Vector3};
