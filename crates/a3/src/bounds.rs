@@ -9,7 +9,8 @@ pub const LARGEST_STEP: f64 = 10.0;
 /// The smallest step (s).
 pub const SMALLEST_STEP: f64 = 1e-7;
 
-/// Relative tolerances of adaptive methods: larger ones promise nothing, smaller ones are lost in rounding.
+/// Relative tolerances of adaptive methods: larger ones promise nothing, smaller ones are lost in
+/// rounding.
 pub const TOLERANCES: RangeInclusive<f64> = 1e-13..=1.0;
 
 /// The steps (s) or the tolerances that a control of this kind may have.

@@ -1,8 +1,8 @@
-//! Panics of other people's code, which are errors here.
+//! Panics in the code of dependencies, turned into errors.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 
-/// What `work` makes, unless it panics: then nothing, and nothing is said.
+/// The result of `work`, or `None` if it panics. The panic writes no message.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Option<T> {
     let hook = take_hook();
     set_hook(Box::new(|_| {}));

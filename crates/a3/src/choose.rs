@@ -8,8 +8,9 @@ use a3_core::{Control, Method, Scene};
 use crate::chart::measure::time;
 use crate::chart::{describe, look_ahead, methods};
 use crate::cli::{Choose, What};
+use crate::failure::Failure;
 use crate::progress::Bar;
-use crate::{Failure, interrupt, list, output, setup};
+use crate::{interrupt, list, output, setup};
 
 /// Simulated time of a frame (s).
 const FRAME: f64 = 1.0 / 60.0;

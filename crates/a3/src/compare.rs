@@ -1,4 +1,4 @@
-//! `a3 compare --output`: several methods side by side in a picture.
+//! `a3 compare` with `--output`: several methods side by side in a picture.
 
 use std::path::Path;
 
@@ -10,9 +10,10 @@ use crate::hud::{self, digits};
 use crate::session::{Pane, Session};
 use crate::{output, painter, setup};
 
-/// Of a picture whose size is not asked for (px).
+/// Size of a picture for which none is given (px).
 pub const SIZE: (u32, u32) = (1280, 720);
 
+/// Runs the methods and writes their picture and table.
 pub fn run(options: &Compare) -> Result<(), Failure> {
     let mut session = setup::comparison(options)?;
     let (Some(path), Some(until)) = (&options.output, options.until) else {
@@ -25,14 +26,14 @@ pub fn run(options: &Compare) -> Result<(), Failure> {
     }
     output::check(path, &["png"])?;
     let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
-    // Before the work, not after: the device may not have pictures of this size.
+    // The device may not support pictures of this size: it is asked before the work begins.
     let offscreen = Offscreen::new(&gpu, options.size.unwrap_or(SIZE)).map_err(Failure::usage)?;
     session.run_to(until);
     output::say(&table(&session))?;
     save(&gpu, &offscreen, &mut session, path)
 }
 
-/// A line a method: what the picture says.
+/// A table of the methods: what the picture says about each.
 pub fn table(session: &Session) -> String {
     let head =
         "  solver        setting   time [s]    error [m]   evaluations/s   computing [ms/s]\n";
@@ -46,6 +47,7 @@ pub fn table(session: &Session) -> String {
         .collect()
 }
 
+/// The line of a method.
 fn line(pane: &Pane) -> String {
     let run = &pane.simulation;
     let start = format!("  {:<10}   {:>8}", run.method().name, run.control().value());
@@ -62,7 +64,7 @@ fn line(pane: &Pane) -> String {
     )
 }
 
-/// The session as it is now, as a picture in a file.
+/// Writes a picture of the session as it is now.
 pub fn save(
     gpu: &Gpu,
     offscreen: &Offscreen,
@@ -70,7 +72,7 @@ pub fn save(
     path: &Path,
 ) -> Result<(), Failure> {
     let size = offscreen.size();
-    // Text that shrinks with the picture could not be read.
+    // Text does not shrink with the picture: it could not be read.
     let scale = painter::scale(size).max(1.0);
     let (panes, readings) = (&mut session.panes, &session.readings);
     let pixels = hud::draw(gpu, offscreen, panes, session.camera, scale, readings)?;

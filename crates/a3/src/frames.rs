@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use crate::Failure;
+use crate::failure::Failure;
 
 /// Most frames of a run. More are taken for a mistake.
 const MOST: f64 = 1e6;
@@ -22,6 +22,7 @@ pub struct FrameTimes {
 }
 
 impl FrameTimes {
+    /// The frames of a film from `from` to `until` (s).
     pub fn new(from: f64, until: f64, rate: f64) -> Result<Self, Failure> {
         if from > until {
             return Err(Failure::usage(format!(

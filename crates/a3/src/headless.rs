@@ -1,4 +1,5 @@
-//! The window's job where there is no display: ten simulated seconds, a line a second, a picture at the end.
+//! The window's job where there is no display: ten simulated seconds with a line for each, and a
+//! picture at the end.
 
 use a3_core::Simulation;
 use a3_render::{Gpu, Offscreen};
@@ -8,9 +9,10 @@ use crate::failure::Failure;
 use crate::session::{Pane, Session};
 use crate::{output, progress};
 
+/// Simulated time (s).
 const SECONDS: u32 = 10;
 
-/// `why` there is no window, and what is done instead.
+/// Says `why` there is no window, and does its job without one.
 pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     eprintln!("{why}: simulating {SECONDS} seconds without a window.");
     let scene = session.first().scene().name.clone();
@@ -32,7 +34,7 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Simulates, and says a line a second.
+/// Simulates, and writes a line for each simulated second.
 fn tell(pane: &mut Pane) -> Result<(), Failure> {
     let Pane {
         simulation, show, ..
@@ -49,6 +51,7 @@ fn tell(pane: &mut Pane) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The line for the state as it is now.
 fn line(simulation: &Simulation) -> String {
     let number = |value: Option<f64>, digits: usize| {
         value.map_or("-".into(), |value| format!("{value:.digits$}"))

@@ -1,12 +1,14 @@
-//! `a3 scenes` and `a3 solvers`: what there is.
+//! `a3 scenes` and `a3 solvers`: lists of the built-in scenes and of the solvers.
 
 use a3_core::{Control, integrators};
 use a3_scenes::Description;
 
 use crate::cli::Scenes;
-use crate::{Failure, output};
+use crate::failure::Failure;
+use crate::output;
 
-/// Columns as wide as their widest cell; those whose heading starts with a space are right-aligned.
+/// A table with columns as wide as their widest cells. A column whose heading starts with a space
+/// is aligned to the right.
 pub fn table(rows: &[Vec<String>]) -> String {
     let headings = &rows[0];
     let width = |c: usize| {
@@ -36,6 +38,7 @@ pub fn table(rows: &[Vec<String>]) -> String {
         .collect()
 }
 
+/// Lists the scenes, or prints the file of one or the schema.
 pub fn scenes(options: &Scenes) -> Result<(), Failure> {
     if let Some(source) = &options.print {
         return output::say(source.text());
@@ -75,6 +78,7 @@ pub fn scenes(options: &Scenes) -> Result<(), Failure> {
     output::say(&table(&rows))
 }
 
+/// Lists the solvers.
 pub fn solvers() -> Result<(), Failure> {
     let heading = [
         "",

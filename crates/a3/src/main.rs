@@ -1,4 +1,4 @@
-//! a3: mass-spring systems in a window, and without one.
+//! a3: mass-spring systems in a window and without one.
 
 #![forbid(unsafe_code)]
 

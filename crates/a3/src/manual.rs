@@ -1,4 +1,4 @@
-//! `a3 man` and `a3 completions`: what the command line knows of itself, for man and for shells.
+//! `a3 man` and `a3 completions`: the definition of the command line, for man and for shells.
 
 use std::io;
 use std::path::Path;
@@ -8,16 +8,17 @@ use clap_complete::Shell;
 use clap_mangen::Man;
 
 use crate::cli::Cli;
-use crate::{Failure, output};
+use crate::failure::Failure;
+use crate::output;
 
-/// What this shell reads to complete what is typed.
+/// Prints a script by which the shell completes words.
 pub fn completions(shell: Shell) -> Result<(), Failure> {
     let mut script = vec![];
     clap_complete::generate(shell, &mut command(), "a3", &mut script);
     say(script)
 }
 
-/// One page with everything to standard output, or a page for each command into a folder.
+/// Prints one page with everything, or writes a page for each command into a folder.
 pub fn run(folder: Option<&Path>) -> Result<(), Failure> {
     let command = command();
     let Some(folder) = folder else {
@@ -40,14 +41,16 @@ pub fn run(folder: Option<&Path>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// With its names as they are in the end, and without `help`, which says no more than `--help`.
+/// The command line with its complete names, and without the command `help`, which says no more
+/// than
+/// `--help`.
 fn command() -> Command {
     let mut command = Cli::command().disable_help_subcommand(true);
     command.build();
     command
 }
 
-/// The page of the program, with a section for each command.
+/// Writes the page of the program, with a section for each command.
 fn whole(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
     let man = Man::new(command.clone());
     man.render_title(page)?;
@@ -65,7 +68,7 @@ fn whole(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
         }
         let name = command.get_bin_name().unwrap_or_default();
         page.extend(format!(".SH \"{name}\"\n").bytes());
-        // Below the command's name.
+        // The sections of a command stand below its name.
         page.extend(text(part)?.replace(".SH ", ".SS ").bytes());
     }
     man.render_version_section(page)
@@ -75,7 +78,7 @@ fn say(bytes: Vec<u8>) -> Result<(), Failure> {
     output::say(&text(bytes).map_err(Failure::run)?)
 }
 
-/// What follows the options is not extra.
+/// The text of a page, in which the section that follows the options is called notes.
 fn text(bytes: Vec<u8>) -> io::Result<String> {
     let text = String::from_utf8(bytes).map_err(io::Error::other)?;
     Ok(text.replace(".SH EXTRA", ".SH NOTES"))

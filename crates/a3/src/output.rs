@@ -1,4 +1,4 @@
-//! Files that are whole or absent.
+//! Writing files: each is complete or absent.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use crate::Failure;
+use crate::failure::Failure;
 use crate::interrupt::Temporary;
 
-/// `Ok` if the path ends as it should and its folder is there: said before the work, not after.
+/// `Ok` if the path has one of the extensions and its folder exists. Commands check before they work.
 pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     if !extensions.iter().any(|extension| ends_in(path, extension)) {
         let (last, others) = extensions.split_last().unwrap_or((&"", &[]));
@@ -40,12 +40,13 @@ pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     }
 }
 
-/// Whether that is its extension, in capitals or not.
+/// Whether the path has this extension, in lower or upper case.
 pub fn ends_in(path: &Path, extension: &str) -> bool {
     path.extension()
         .is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
+/// The folder of a file.
 fn folder(path: &Path) -> PathBuf {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.into(),
@@ -53,7 +54,7 @@ fn folder(path: &Path) -> PathBuf {
     }
 }
 
-/// Writes to standard output. A reader that has seen enough, such as `head`, is no failure.
+/// Writes to standard output. It is no failure if the reader closes it early, as `head` does.
 pub fn say(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
     said(
@@ -63,7 +64,7 @@ pub fn say(text: &str) -> Result<(), Failure> {
     )
 }
 
-/// What became of a write to standard output.
+/// The result of a write to standard output.
 pub fn said(written: io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Failure::run(format!(
@@ -73,12 +74,12 @@ pub fn said(written: io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// The first of a3-SCENE-1.png, a3-SCENE-2.png, ... that is not there yet.
+/// The first of the names a3-SCENE-1.png, a3-SCENE-2.png, ... that is free.
 pub fn free_picture_name(scene: &str) -> Result<String, Failure> {
     free_name("".as_ref(), scene, "png").map(|path| path.to_string_lossy().into_owned())
 }
 
-/// The first of a3-SCENE-1, a3-SCENE-2, ... with that extension that is not in the folder yet.
+/// The first of the names a3-SCENE-1, a3-SCENE-2, ... with an extension that is free in the folder.
 pub fn free_name(folder: &Path, scene: &str, extension: &str) -> Result<PathBuf, Failure> {
     (1..=9999)
         .map(|k| folder.join(format!("a3-{scene}-{k}.{extension}")))
@@ -105,35 +106,39 @@ pub fn write_with(
     draft.place()
 }
 
-/// A file in the making: beside its place until it is whole. One that is dropped leaves nothing behind. What is no
-/// ordinary file is written to as it is.
+/// A file that is being written: beside its place until it is complete. A draft that is dropped
+/// leaves nothing behind. A path that is no ordinary file, such as a device, is written to
+/// directly.
 pub struct Draft {
-    /// As it was asked for.
+    /// The path as it was given.
     path: PathBuf,
-    file: BufWriter<Sheet>,
+    file: BufWriter<Sink>,
 }
 
-enum Sheet {
-    /// With the place it is to go to.
+/// Where a draft is written.
+enum Sink {
+    /// A temporary file, and the place to which it will go.
     Beside {
         file: NamedTempFile,
         target: PathBuf,
         _temporary: Temporary,
     },
-    AsIs(File),
+    /// The path itself.
+    Direct(File),
 }
 
 impl Draft {
+    /// Begins a file.
     pub fn new(path: &Path) -> Result<Self, Failure> {
-        // A link stays one: what it leads to is replaced.
+        // A link stays a link: the file to which it leads is replaced.
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.into());
-        let sheet = match fs::metadata(&target) {
+        let sink = match fs::metadata(&target) {
             Ok(there) if !there.is_file() => {
                 let file = File::options().write(true).open(&target);
-                file.map(Sheet::AsIs)
+                file.map(Sink::Direct)
             }
             there => beside(&target, there.ok().map(|there| there.permissions())).map(|file| {
-                Sheet::Beside {
+                Sink::Beside {
                     _temporary: Temporary::new(file.path()),
                     file,
                     target,
@@ -142,37 +147,37 @@ impl Draft {
         };
         Ok(Self {
             path: path.into(),
-            file: BufWriter::new(sheet.map_err(|e| not_written(path, &e))?),
+            file: BufWriter::new(sink.map_err(|e| not_written(path, &e))?),
         })
     }
 
-    /// Where another program may write it; nowhere, if it is no ordinary file.
+    /// The path at which another program may write the draft, if it is an ordinary file.
     pub fn beside(&self) -> Option<&Path> {
         match self.file.get_ref() {
-            Sheet::Beside { file, .. } => Some(file.path()),
-            Sheet::AsIs(_) => None,
+            Sink::Beside { file, .. } => Some(file.path()),
+            Sink::Direct(_) => None,
         }
     }
 
-    /// It is whole.
+    /// Puts the complete file in its place.
     pub fn place(self) -> Result<(), Failure> {
         let path = self.path;
         let placed = self
             .file
             .into_inner()
             .map_err(io::IntoInnerError::into_error);
-        let placed = placed.and_then(|sheet| match sheet {
-            Sheet::Beside { file, target, .. } => {
+        let placed = placed.and_then(|sink| match sink {
+            Sink::Beside { file, target, .. } => {
                 file.as_file().sync_all()?;
                 file.persist(target).map_err(|e| e.error)?;
                 Ok(())
             }
-            Sheet::AsIs(_) => Ok(()),
+            Sink::Direct(_) => Ok(()),
         });
         placed.map_err(|e| not_written(&path, &e))
     }
 
-    /// What to say of a write that failed.
+    /// The failure of a write.
     pub fn failure(&self, error: &io::Error) -> Failure {
         not_written(&self.path, error)
     }
@@ -188,11 +193,11 @@ impl Write for Draft {
     }
 }
 
-impl Write for Sheet {
+impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
             Self::Beside { file, .. } => file.write(bytes),
-            Self::AsIs(file) => file.write(bytes),
+            Self::Direct(file) => file.write(bytes),
         }
     }
 
@@ -201,14 +206,14 @@ impl Write for Sheet {
     }
 }
 
-/// A new file with these permissions, or with those of any new one.
+/// A new file beside `path`, with these permissions or with those of any new file.
 fn beside(path: &Path, permissions: Option<fs::Permissions>) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".a3-");
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // Less what the umask takes.
+        // The umask takes permissions from these.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let file = builder.tempfile_in(folder(path))?;
@@ -218,19 +223,19 @@ fn beside(path: &Path, permissions: Option<fs::Permissions>) -> io::Result<Named
     Ok(file)
 }
 
-/// A file without a name, in the folder of one that is in the making.
+/// A file without a name, in the folder of `path`.
 pub fn scratch(path: &Path) -> Result<File, Failure> {
     tempfile::tempfile_in(folder(path)).map_err(|e| not_written(path, &e))
 }
 
 fn not_written(path: &Path, error: &io::Error) -> Failure {
-    // The name of the temporary file is nobody's business.
+    // The message does not show the name of the temporary file.
     let why = error.to_string();
     let why = why.split(" at path").next().unwrap_or_default();
     Failure::run(format!("{}: could not be written: {why}", path.display()))
 }
 
-/// Eight-bit RGBA rows from the top, as PNG.
+/// A PNG of pixels: rows from the top, with eight bits each of red, green, blue and opacity.
 pub fn png(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, Failure> {
     use image::ImageEncoder;
     let mut bytes = vec![];

@@ -9,18 +9,18 @@ use crate::show::{self, Show};
 /// Height of a picture (px) in which lines are drawn at one pixel per point.
 const POINTS: f32 = 720.0;
 
-/// Draws a run as often as asked, seen from where its scene wants it.
+/// Draws a run as often as needed, seen by the camera of its scene.
 pub struct Painter {
     gpu: Gpu,
     offscreen: Offscreen,
     renderer: Renderer,
-    /// Springs that had broken when the topology was made.
+    /// Number of broken springs when the topology was made.
     tears: usize,
     camera: Camera,
 }
 
 impl Painter {
-    /// For pictures of this run, of this size (px).
+    /// A painter for pictures of this run, of this size (px).
     pub fn new(simulation: &Simulation, size: (u32, u32)) -> Result<Self, Failure> {
         let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
         let offscreen = Offscreen::new(&gpu, size).map_err(Failure::usage)?;
@@ -35,7 +35,7 @@ impl Painter {
         })
     }
 
-    /// The run as it is now: rows from the top, four bytes a pixel.
+    /// A picture of the run as it is now: rows from the top, with four bytes for a pixel.
     pub fn draw(&mut self, show: &mut Show, simulation: &Simulation) -> Result<Vec<u8>, Failure> {
         if simulation.tears() != self.tears {
             self.tears = simulation.tears();

@@ -1,4 +1,4 @@
-//! A long run, with a bar on the terminal once it takes long.
+//! Long runs, with a progress bar on the terminal.
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -9,7 +9,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// Simulated time between two calls of `frame` (s).
 const FRAME: f64 = 1.0 / 60.0;
 
-/// Goes on to `until` (s) in whole steps, the last one shortened. Calls `frame` about sixty times a simulated second.
+/// Brings a simulation to `until` (s) in whole steps, the last one shortened, with a bar once it
+/// takes long. Calls `frame` about sixty times a simulated second.
 pub fn advance(
     simulation: &mut Simulation,
     until: f64,
@@ -34,7 +35,8 @@ pub fn advance(
     done.map(drop)
 }
 
-/// As [`advance`], without a bar, and only as long as `frame` says to go on. Whether it got there.
+/// Does what [`advance`] does without a bar, as long as `frame` returns true. Returns whether it
+/// got to the end.
 pub fn march(
     simulation: &mut Simulation,
     until: f64,
@@ -44,7 +46,8 @@ pub fn march(
     let step = control.step().unwrap_or(FRAME);
     let stride = (FRAME / step).floor().max(1.0);
     loop {
-        // Whole steps that end before the last one, which is whole too if only rounding says otherwise.
+        // Whole steps that end before the last one. If only rounding makes the last one shorter, it
+        // is whole too.
         let left = (until - simulation.time()) / step;
         let whole = (left - 1.0 - 1e-9).ceil().min(stride);
         if whole < 1.0 {
@@ -63,7 +66,7 @@ pub fn march(
     Ok(frame(simulation))
 }
 
-/// The bar of work that is measured in some unit, shown at once.
+/// A bar that is shown at once, for work in any unit.
 pub struct Bar {
     drawn: ProgressBar,
     expected: f64,
@@ -71,6 +74,7 @@ pub struct Bar {
 }
 
 impl Bar {
+    /// A bar for so much work.
     pub fn new(expected: f64) -> Self {
         let bar = new_bar();
         bar.enable_steady_tick(Duration::from_millis(250));
@@ -81,29 +85,30 @@ impl Bar {
         }
     }
 
-    /// So much more is done.
+    /// Notes that so much more work is done.
     pub fn advance(&self, work: f64) {
         self.done.set(self.done.get() + work);
         self.drawn
             .set_position((1000.0 * self.done.get() / self.expected) as u64);
     }
 
-    /// What is left is estimated from here on.
+    /// Estimates the time that is left from here on.
     pub fn start(&self) {
         self.drawn.reset_eta();
     }
 
-    /// What is being done.
+    /// Shows what is being done.
     pub fn say(&self, what: String) {
         self.drawn.set_message(what);
     }
 
+    /// Takes the bar away.
     pub fn clear(&self) {
         self.drawn.finish_and_clear();
     }
 }
 
-/// Draws to stderr, and nothing at all where that is no terminal.
+/// A bar on stderr. Where that is no terminal, nothing is drawn.
 fn new_bar() -> ProgressBar {
     let style = ProgressStyle::with_template("{msg}{wide_bar} {percent:>3} %  {eta} left");
     ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))

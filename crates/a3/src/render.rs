@@ -6,12 +6,14 @@ use crate::painter::Painter;
 use crate::show::{self, Show};
 use crate::{film, output, progress, setup};
 
+/// Runs the simulation and writes its picture or its film.
 pub fn run(options: &Render) -> Result<(), Failure> {
     let mut simulation = setup::simulation(&options.run)?;
     setup::check_particle(&simulation, options.springs_of)?;
     let (path, size) = (&options.output, options.size);
     output::check(path, &["png", "gif", "mp4"])?;
-    // Before the work, not after: there may be no ffmpeg, and the device may not have pictures of this size.
+    // There may be no ffmpeg, and the device may not support pictures of this size: both are
+    // checked before the work begins.
     let film = film::begin(options)?;
     let mut painter = Painter::new(&simulation, size)?;
     if let Some(i) = options.springs_of {

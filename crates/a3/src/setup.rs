@@ -64,7 +64,7 @@ pub fn simulation(options: &RunOptions) -> Result<Simulation, Failure> {
 
 /// The scene, with the wind and the swing that were asked for.
 pub fn scene(what: &What) -> Result<Scene, Failure> {
-    // Euler serves every scene.
+    // Euler's method serves every scene.
     let run = simulate(what, &integrators::METHODS[0], None)?;
     Ok(Scene {
         model: run.model().clone(),
@@ -106,7 +106,7 @@ fn simulate(
         )));
     }
     let mut simulation = Simulation::new(scene, solver, control).map_err(Failure::usage)?;
-    // Some scenes begin with wind.
+    // Without --wind the wind stays as it is: some scenes begin with it.
     if what.wind {
         simulation.set_wind(true);
     }

@@ -1,4 +1,4 @@
-//! `a3 simulate`: where a run ends or how it gets there, in files that other programs read.
+//! `a3 simulate`: the final state of a run, or all its frames, in files that other programs read.
 
 use std::path::Path;
 use std::time::Instant;
@@ -12,43 +12,44 @@ use crate::frames::Sequence;
 use crate::progress::{self, Bar};
 use crate::{export, interrupt, output, setup};
 
-/// What is known of a run when it is over.
+/// Summary of a run.
 #[derive(Serialize)]
 struct Summary {
     scene: String,
     solver: &'static str,
     frames: usize,
-    /// In s.
+    /// Simulated time (s).
     time: f64,
     steps: u64,
     evaluations: u64,
-    /// None for a system without forces.
+    /// Total energy; none for a system without forces.
     energy: Option<Energy>,
-    /// Length over rest length; none without springs.
+    /// Largest length over rest length of a spring; none without springs.
     largest_stretch: Option<f64>,
-    /// Springs that broke.
+    /// Number of springs that broke.
     torn: usize,
     /// Real time (s).
     wall_time: f64,
 }
 
-/// Total (J).
+/// Total energy (J).
 #[derive(Clone, Copy, Serialize)]
 struct Energy {
     begin: f64,
     end: f64,
-    /// From the beginning, either way.
+    /// Largest distance from the energy at the beginning.
     largest_drift: f64,
 }
 
-/// What a summary needs to see on the way.
+/// Energy and stretch on the way, for the summary.
 #[derive(Default)]
-struct Watch {
+struct Extremes {
     energy: Option<Energy>,
     stretch: Option<f64>,
 }
 
-impl Watch {
+impl Extremes {
+    /// Takes the values of the state as it is now.
     fn look(&mut self, simulation: &Simulation) {
         if let Some(total) = simulation.energy().map(|energy| energy.total()) {
             let energy = self.energy.get_or_insert(Energy {
@@ -65,6 +66,7 @@ impl Watch {
     }
 }
 
+/// Runs the simulation and writes its files.
 pub fn run(options: &Simulate) -> Result<(), Failure> {
     let begun = Instant::now();
     let mut simulation = setup::simulation(&options.run)?;
@@ -80,17 +82,17 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         }
     }
     let (frames, mut export) = export::begin(options, &simulation)?;
-    let mut watch = options.summary.is_some().then(Watch::default);
-    if let Some(watch) = &mut watch {
-        watch.look(&simulation);
+    let mut extremes = options.summary.is_some().then(Extremes::default);
+    if let Some(extremes) = &mut extremes {
+        extremes.look(&simulation);
     }
     interrupt::listen();
     let bar = Bar::new(options.run.end()?);
     for (k, time) in frames.times().enumerate() {
         let mut before = simulation.time();
         let reached = progress::march(&mut simulation, time, |simulation| {
-            if let Some(watch) = &mut watch {
-                watch.look(simulation);
+            if let Some(extremes) = &mut extremes {
+                extremes.look(simulation);
             }
             bar.advance(simulation.time() - before);
             before = simulation.time();
@@ -118,7 +120,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
             options.output.display()
         );
     }
-    let (Some(path), Some(watch)) = (&options.summary, watch) else {
+    let (Some(path), Some(extremes)) = (&options.summary, extremes) else {
         return Ok(());
     };
     let summary = Summary {
@@ -128,8 +130,8 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         time: simulation.time(),
         steps: simulation.steps(),
         evaluations: simulation.work().evaluations,
-        energy: watch.energy,
-        largest_stretch: watch.stretch,
+        energy: extremes.energy,
+        largest_stretch: extremes.stretch,
         torn: simulation.tears(),
         wall_time: begun.elapsed().as_secs_f64(),
     };
@@ -141,7 +143,8 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     }
 }
 
-/// What there is of a run that ended early. A file is whole or absent, and so is each one of a sequence.
+/// What an interrupted run has written: a file is complete or absent, and so is each file of a
+/// sequence.
 fn kept(path: &Path, done: usize, count: usize) -> String {
     if Sequence::of(path).is_some() && done > 0 {
         format!("{} has the first {done} of {count} frames", path.display())

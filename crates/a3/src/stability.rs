@@ -13,8 +13,9 @@ use a3_plot::{Region, StabilityRegions};
 
 use crate::chart::{describe, methods, style, write_picture};
 use crate::cli::Stability;
+use crate::failure::Failure;
 use crate::progress::Bar;
-use crate::{Failure, interrupt, list, output, setup};
+use crate::{interrupt, list, output, setup};
 
 /// The limits of a method.
 struct MethodLimits {

@@ -60,8 +60,8 @@ impl App {
         self.say_status();
     }
 
-    /// Time from one frame to the next: a little less than that of the monitor, because presenting a
-    /// frame waits for the rest, where it waits at all.
+    /// Time from one frame to the next: a little less than that of the monitor, because presenting
+    /// a frame waits for the rest, where it waits at all.
     fn frame_time(&self) -> Duration {
         let monitor = self
             .window

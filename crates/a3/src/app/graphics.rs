@@ -1,4 +1,5 @@
-//! The window's surface, the picture on it and the text over it. All of it can be dropped and made again.
+//! The window's surface, the picture on it and the text over it. All of it can be dropped and made
+//! again.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -107,8 +108,8 @@ impl Graphics {
             .consumed
     }
 
-    /// Notes that the window has another size. The surface follows at the next frame, once for however
-    /// many changes.
+    /// Notes that the window has another size. The surface follows at the next frame, once for
+    /// however many changes.
     pub fn resized(&mut self) {
         self.stale = true;
     }
@@ -223,8 +224,8 @@ impl Graphics {
         Ok(FrameOutcome::Drawn(again))
     }
 
-    /// Writes the text in a second pass over the picture. Returns the commands to submit before it, the
-    /// time after which it must be drawn again, and what the mouse asks of the panel.
+    /// Writes the text in a second pass over the picture. Returns the commands to submit before it,
+    /// the time after which it must be drawn again, and what the mouse asks of the panel.
     fn write_text(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -254,8 +255,8 @@ impl Graphics {
         (before, again, request)
     }
 
-    /// Saves a picture under the first free name, and returns the name: one pane without text, several
-    /// with the text that tells them apart.
+    /// Saves a picture under the first free name, and returns the name: one pane without text,
+    /// several with the text that tells them apart.
     pub fn save_picture(&self, session: &mut Session) -> Result<String, Failure> {
         let size = self.size();
         let offscreen = Offscreen::new(&self.gpu, size).map_err(Failure::run)?;
@@ -278,9 +279,9 @@ impl Graphics {
     }
 }
 
-/// Samples of a pixel in the window. A software adapter gets one: at 1280 x 720 on two cores a frame
-/// takes 11 ms offscreen instead of 43. Lines have smooth edges all the same, and saved pictures have
-/// them everywhere.
+/// Samples of a pixel in the window. A software adapter gets one: at 1280 x 720 on two cores a
+/// frame takes 11 ms offscreen instead of 43. Lines have smooth edges all the same, and saved
+/// pictures have them everywhere.
 fn window_samples(gpu: &Gpu, format: wgpu::TextureFormat) -> u32 {
     if gpu.is_software() {
         1
@@ -318,9 +319,9 @@ fn open(
     result
 }
 
-/// Chooses the format of the surface, and returns that of the picture. The text needs a view that is not
-/// sRGB, the picture one that is: a texture with two views where the backend has them, and one sRGB
-/// surface for both on GL.
+/// Chooses the format of the surface, and returns that of the picture. The text needs a view that
+/// is not sRGB, the picture one that is: a texture with two views where the backend has them, and
+/// one sRGB surface for both on GL.
 fn choose_formats(
     gpu: &Gpu,
     surface: &wgpu::Surface,

@@ -65,8 +65,8 @@ impl App {
         pick::pick(run, &self.session.camera, place, tile.aspect(), reach)
     }
 
-    /// The share of the timeline at which the pointer is, if the timeline is shown and the pointer no
-    /// farther from it than `margin` (points).
+    /// The share of the timeline at which the pointer is, if the timeline is shown and the pointer
+    /// no farther from it than `margin` (points).
     fn timeline_share(&self, margin: f32) -> Option<f32> {
         let graphics = self.graphics.as_ref()?;
         self.session.readings.rewound?;

@@ -1,4 +1,5 @@
-//! Picking: from a point of the picture to a particle or an obstacle, and back to a point of the scene.
+//! Picking: from a point of the picture to a particle or an obstacle, and back to a point of the
+//! scene.
 
 use a3_core::contact::Shape;
 use a3_core::{Simulation, Vector3};
@@ -23,16 +24,17 @@ pub struct Grip {
 }
 
 impl Grip {
-    /// The point (m) to which the particle goes with the pointer: on the camera's plane at its depth.
+    /// The point (m) to which the particle goes with the pointer: on the camera's plane at its
+    /// depth.
     pub fn target(&self, camera: &Camera, pointer: [f32; 2], aspect: f32) -> [f32; 3] {
         let at = [pointer[0] + self.offset[0], pointer[1] + self.offset[1]];
         camera.unproject(at, self.distance, aspect)
     }
 }
 
-/// The particle or the obstacle under the pointer, whichever is nearer to the eye. If a surface is hit, the
-/// particle is the closest corner of its nearest triangle; otherwise it is the one that is nearest on the
-/// screen within `reach`, a share of the picture's height.
+/// The particle or the obstacle under the pointer, whichever is nearer to the eye. If a surface is
+/// hit, the particle is the closest corner of its nearest triangle; otherwise it is the one that is
+/// nearest on the screen within `reach`, a share of the picture's height.
 pub fn pick(
     simulation: &Simulation,
     camera: &Camera,

@@ -63,8 +63,8 @@ impl Mouse {
         double
     }
 
-    /// Notes where the pointer goes. Beyond `reach` (px) from where the button was pressed, the click
-    /// becomes a drag.
+    /// Notes where the pointer goes. Beyond `reach` (px) from where the button was pressed, the
+    /// click becomes a drag.
     pub fn move_to(&mut self, pointer: [f32; 2], reach: f32) {
         let [x, y] = [0, 1].map(|k| pointer[k] - self.pressed_at[k]);
         self.still &= x.hypot(y) <= reach;

@@ -37,8 +37,8 @@ pub fn open(mut session: Session, status: bool, files: Vec<PathBuf>) -> Result<E
     }
 }
 
-/// The event loop. Without a display winit returns an error; without a library that it needs it panics,
-/// which is caught here.
+/// The event loop. Without a display winit returns an error; without a library that it needs it
+/// panics, which is caught here.
 fn event_loop() -> Result<EventLoop<()>, String> {
     match caught(EventLoop::new) {
         Some(Ok(event_loop)) => Ok(event_loop),

@@ -43,8 +43,8 @@ pub struct App {
 }
 
 impl App {
-    /// A session in a window that is yet to be opened. When one of `files` changes, its scene is loaded
-    /// again.
+    /// A session in a window that is yet to be opened. When one of `files` changes, its scene is
+    /// loaded again.
     pub fn new(
         session: Session,
         display: OwnedDisplayHandle,

@@ -4,11 +4,12 @@ use std::fs;
 use std::path::PathBuf;
 use std::time::{Duration, Instant, SystemTime};
 
-/// Time from one check to the next. Editors rename, truncate and write files: checking works with all of
-/// them.
+/// Time from one check to the next. Editors rename, truncate and write files: checking works with
+/// all of them.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Time of change and length, by which one version of a file differs from the next; `None` without a file.
+/// Time of change and length, by which one version of a file differs from the next; `None` without
+/// a file.
 type Stamp = Option<(SystemTime, u64)>;
 
 /// The files of a scene.

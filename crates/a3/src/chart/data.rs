@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use a3_core::accuracy::{Errors, Metric};
 use serde::{Deserialize, Serialize};
 
-use crate::{Failure, output};
+use crate::failure::Failure;
+use crate::output;
 
 /// Size of the largest data file that is read (bytes).
 const LARGEST_FILE: u64 = 64 << 20;

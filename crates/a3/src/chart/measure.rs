@@ -7,8 +7,9 @@ use a3_core::accuracy::{self, Frames, Metric, Outcome, Reference, ladder};
 use a3_core::{Control, Method, Model, Scene, Simulation};
 
 use super::data::{Data, Record, VERSION};
+use crate::failure::Failure;
+use crate::interrupt;
 use crate::progress::Bar;
-use crate::{Failure, interrupt};
 
 /// Most work of a run, in evaluations. A run that fails may take more.
 const MOST_EVALUATIONS: u64 = 60_000;

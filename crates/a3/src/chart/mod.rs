@@ -12,9 +12,10 @@ use a3_core::accuracy::{Horizon, Metric, horizon};
 use a3_core::{Method, Scene, integrators};
 use a3_plot::Figure;
 
-use crate::cli::{Chart, Error, What, Work};
+use crate::cli::{Chart, ErrorMeasure, What, WorkMeasure};
+use crate::failure::Failure;
 use crate::progress::Bar;
-use crate::{Failure, interrupt, output, setup};
+use crate::{interrupt, output, setup};
 use data::Data;
 use measure::{Study, stiffened};
 
@@ -29,7 +30,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     };
     output::check(&path, &["svg", "png"])?;
     let metric = metric(options.error);
-    let timed = options.work == Work::Seconds;
+    let timed = options.work == WorkMeasure::Seconds;
     if metric != Metric::Position && scene.model.network().is_none() {
         return Err(Failure::usage(format!(
             "the scene {} has neither energy nor springs: leave out --error",
@@ -124,11 +125,11 @@ pub fn methods(scene: &Scene, asked: &[&'static Method]) -> Result<Vec<&'static 
 }
 
 /// The metric that was asked for.
-pub fn metric(error: Error) -> Metric {
+pub fn metric(error: ErrorMeasure) -> Metric {
     match error {
-        Error::Position => Metric::Position,
-        Error::Energy => Metric::Energy,
-        Error::Strain => Metric::Strain,
+        ErrorMeasure::Position => Metric::Position,
+        ErrorMeasure::Energy => Metric::Energy,
+        ErrorMeasure::Strain => Metric::Strain,
     }
 }
 

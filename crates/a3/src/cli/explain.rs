@@ -8,12 +8,12 @@ use super::values::{UNKNOWN_SOLVER, step};
 use crate::failure::Failure;
 use crate::output;
 
-/// What is between the first quotes: the value that was refused.
+/// The refused value: the text between the first quotes.
 fn value_of(head: &str) -> &str {
     head.split('\'').nth(1).unwrap_or_default()
 }
 
-/// Help and version as clap prints them; anything else in one line.
+/// Prints help and version as clap does, and returns any mistake in one line.
 pub fn explain(error: &clap::Error) -> Result<(), Failure> {
     if matches!(
         error.kind(),
@@ -22,7 +22,7 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         return output::said(error.print());
     }
     let text = error.render().to_string();
-    // The first paragraph says it; usage and hints follow.
+    // The first paragraph is the error; usage and hints follow.
     let words: Vec<_> = text
         .lines()
         .take_while(|line| !line.is_empty())
@@ -40,7 +40,8 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
             let commands: Vec<_> = cli.get_subcommands().map(clap::Command::get_name).collect();
             format!("{line}; the commands are {}, and come first", commands.join(", "))
         }
-        // The parser's own words end with what is right; those about a scene file begin with its name.
+        // The parser's own words end with what is right; those about a scene file begin with its
+        // name.
         (ErrorKind::ValueValidation, _) => match line.split_once("': ") {
             Some((head, rest)) if head.contains(" '") && rest.starts_with(value_of(head)) => {
                 rest.into()
@@ -55,7 +56,7 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
         (ErrorKind::ArgumentConflict, _) => {
             "a command comes before everything else, as in `a3 chart --scene flag`; without one, there is a solver and a step, as in `a3 t 0.01`".into()
         }
-        // clap takes -1e-3 for options, and -0.001 not.
+        // clap takes -1e-3 for options, but not -0.001.
         (ErrorKind::UnknownArgument, _) if line.contains("argument '-") && !line.contains("argument '--") => {
             format!("{line}; {}", step("").unwrap_err())
         }

@@ -18,7 +18,8 @@ use values::{
 
 pub use explain::explain;
 
-/// Simulate cloth and other mass-spring systems, and measure how fast and how accurate each integrator is.
+/// Simulate cloth and other mass-spring systems, and measure how fast and how accurate each
+/// integrator is.
 #[derive(Parser)]
 #[command(version, args_conflicts_with_subcommands = true, max_term_width = 100)]
 #[command(
@@ -40,7 +41,8 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Simulate without a window and write the final state, or every frame: JSON, CSV, OBJ, PC2, GLB
+    /// Simulate without a window and write the final state, or every frame: JSON, CSV, OBJ, PC2,
+    /// GLB
     Simulate(Simulate),
     /// Simulate without a window and write a picture or a film: PNG, GIF, MP4
     Render(Render),
@@ -151,8 +153,8 @@ pub struct Simulate {
     /// Frames per second of outputs that have several; 30 by default
     #[arg(long, value_name = "N", value_parser = rate, allow_negative_numbers = true)]
     pub fps: Option<f64>,
-    /// File for a summary as JSON, or - for standard output: energy at the start and at the end, its
-    /// largest drift, largest stretch, steps, evaluations, real time
+    /// File for a summary as JSON, or - for standard output: energy at the start and at the end,
+    /// its largest drift, largest stretch, steps, evaluations, real time
     #[arg(long, value_name = "FILE.json")]
     pub summary: Option<PathBuf>,
 }
@@ -194,7 +196,7 @@ pub struct Render {
 
 /// What counts as the error.
 #[derive(Clone, Copy, ValueEnum, PartialEq)]
-pub enum Error {
+pub enum ErrorMeasure {
     /// Positions, root mean square over the particles (m)
     Position,
     /// Total energy (J)
@@ -205,7 +207,7 @@ pub enum Error {
 
 /// What counts as the cost.
 #[derive(Clone, Copy, ValueEnum, PartialEq)]
-pub enum Work {
+pub enum WorkMeasure {
     /// Computing time on this machine
     Seconds,
     /// Evaluations of the forces, the same on every machine
@@ -224,10 +226,10 @@ pub struct Chart {
     pub until: Option<f64>,
     /// What counts as the error
     #[arg(long, default_value = "position")]
-    pub error: Error,
+    pub error: ErrorMeasure,
     /// What counts as the cost
     #[arg(long, default_value = "seconds")]
-    pub work: Work,
+    pub work: WorkMeasure,
     /// Factors of the springs' stiffness, such as 1,10,100: the chart has a panel for each
     #[arg(long, value_name = "FACTORS", value_delimiter = ',', default_value = "1", value_parser = factor, allow_negative_numbers = true)]
     pub stiffness: Vec<f64>,
@@ -249,7 +251,8 @@ pub struct Stability {
     /// Solvers to examine, such as t,r,v; by default all that can run the scene
     #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = solver)]
     pub solvers: Vec<&'static Method>,
-    /// Step in seconds at which the picture shows the eigenvalues; by default one radian of the fastest motion
+    /// Step in seconds at which the picture shows the eigenvalues; by default one radian of the
+    /// fastest motion
     #[arg(long, value_name = "STEP", value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
     /// Picture to write, ending in .svg or .png; by default a3-stability-SCENE.svg
@@ -277,8 +280,8 @@ pub struct Choose {
 
 #[derive(Args)]
 pub struct Compare {
-    /// Two to four solvers by letter or name, each with its step in seconds or its tolerance, such as
-    /// e:0.05 r:0.05; by default the solver's own step
+    /// Two to four solvers by letter or name, each with its step in seconds or its tolerance, such
+    /// as e:0.05 r:0.05; by default the solver's own step
     #[arg(value_name = "SOLVER[:STEP]", value_parser = solver_and_step)]
     pub methods: Vec<(&'static Method, Option<f64>)>,
     #[command(flatten)]
@@ -302,10 +305,12 @@ pub struct RunOptions {
     /// Solver by letter or name, as `a3 solvers` lists them; by default the scene's own, or t
     #[arg(value_parser = solver)]
     pub solver: Option<&'static Method>,
-    /// Step in seconds, or relative tolerance of an adaptive solver (a, x, f); by default the solver's own
+    /// Step in seconds, or relative tolerance of an adaptive solver (a, x, f); by default the
+    /// solver's own
     #[arg(value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
-    /// Simulated seconds, by default the scene's own; the last step is shortened to end exactly there
+    /// Simulated seconds, by default the scene's own; the last step is shortened to end exactly
+    /// there
     #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true)]
     pub until: Option<f64>,
     #[command(flatten)]

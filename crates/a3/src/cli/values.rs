@@ -1,4 +1,5 @@
-//! Values of arguments: numbers within their ranges, sizes and solvers. An error says what is right.
+//! Values of arguments: numbers within their ranges, sizes and solvers. An error says what is
+//! right.
 
 use std::str::FromStr;
 
@@ -6,9 +7,10 @@ use a3_core::{Grid, Method, integrators};
 
 use crate::bounds::{LARGEST_STEP, SMALLEST_STEP, TOLERANCES};
 
-/// Beginning of the error of a name that is no solver's.
+/// Beginning of the error for a name that no solver has.
 pub const UNKNOWN_SOLVER: &str = "the solvers are";
 
+/// A step (s) or a tolerance.
 pub fn step(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(step) if (*TOLERANCES.start()..=LARGEST_STEP).contains(&step) => Ok(step),
@@ -21,6 +23,7 @@ pub fn step(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A solver, and its step or tolerance after a colon.
 pub fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), String> {
     match text.split_once(':') {
         Some((name, number)) => Ok((solver(name)?, Some(step(number)?))),
@@ -28,11 +31,13 @@ pub fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), Str
     }
 }
 
+/// The number of a particle.
 pub fn particle(text: &str) -> Result<usize, String> {
     text.parse()
         .map_err(|_| "a particle is a whole number from 0, such as 12".into())
 }
 
+/// The end of a run (s).
 pub fn until(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
@@ -40,6 +45,7 @@ pub fn until(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The beginning of a film (s).
 pub fn beginning(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
@@ -47,6 +53,7 @@ pub fn beginning(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Frames a second.
 pub fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(rate) if (0.1..=1000.0).contains(&rate) => Ok(rate),
@@ -54,6 +61,7 @@ pub fn rate(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The end of runs that are compared (s).
 pub fn horizon(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(time) if (0.01..=1000.0).contains(&time) => Ok(time),
@@ -61,6 +69,7 @@ pub fn horizon(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A factor of the stiffness.
 pub fn factor(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(factor) if (1e-6..=1e6).contains(&factor) => Ok(factor),
@@ -68,6 +77,7 @@ pub fn factor(text: &str) -> Result<f64, String> {
     }
 }
 
+/// An error of positions (m).
 pub fn error(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(error) if (1e-12..=10.0).contains(&error) => Ok(error),
@@ -75,6 +85,7 @@ pub fn error(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Computing time for a frame (ms).
 pub fn budget(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(budget) if (1e-4..=1e5).contains(&budget) => Ok(budget),
@@ -82,6 +93,7 @@ pub fn budget(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Width and height of a chart (px).
 pub fn picture_size(text: &str) -> Result<(u32, u32), String> {
     match pair(text) {
         Some((w, h)) if (320..=8000).contains(&w) && (240..=8000).contains(&h) => Ok((w, h)),
@@ -91,6 +103,7 @@ pub fn picture_size(text: &str) -> Result<(u32, u32), String> {
     }
 }
 
+/// A solver, by its letter or its name.
 pub fn solver(text: &str) -> Result<&'static Method, String> {
     integrators::find(text).ok_or_else(|| {
         let names: Vec<_> = integrators::METHODS
@@ -107,11 +120,13 @@ fn pair<T: FromStr>(text: &str) -> Option<(T, T)> {
     Some((a.parse().ok()?, b.parse().ok()?))
 }
 
+/// Rows and columns of a cloth.
 pub fn grid(text: &str) -> Result<Grid, String> {
     let (rows, cols) = pair(text).ok_or("a grid is ROWSxCOLS, such as 20x30")?;
     Grid::new(rows, cols).map_err(|e| e.to_string())
 }
 
+/// Width and height of a picture (px).
 pub fn size(text: &str) -> Result<(u32, u32), String> {
     match pair(text) {
         Some((w, h)) if w > 0 && h > 0 => Ok((w, h)),

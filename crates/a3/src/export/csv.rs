@@ -5,7 +5,7 @@ use std::path::Path;
 use a3_core::Simulation;
 
 use super::Export;
-use crate::Failure;
+use crate::failure::Failure;
 use crate::output::Draft;
 
 /// Approximate size of a row (bytes).

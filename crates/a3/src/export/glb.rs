@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use super::geometry::{Geometry, positions};
 use super::{Export, rows};
-use crate::Failure;
+use crate::failure::Failure;
 use crate::frames::FrameTimes;
 use crate::output::{self, Draft};
 

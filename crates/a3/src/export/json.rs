@@ -7,7 +7,7 @@ use a3_core::Simulation;
 use serde::{Serialize, Serializer};
 
 use super::Export;
-use crate::Failure;
+use crate::failure::Failure;
 use crate::output::{self, Draft};
 
 /// Approximate size of a particle (bytes).

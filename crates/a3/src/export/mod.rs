@@ -13,8 +13,9 @@ use std::path::Path;
 use a3_core::Simulation;
 
 use crate::cli::Simulate;
+use crate::failure::Failure;
 use crate::frames::{FrameTimes, Sequence};
-use crate::{Failure, output};
+use crate::output;
 
 /// Default frames a second.
 const RATE: f64 = 30.0;

@@ -7,8 +7,9 @@ use a3_core::Simulation;
 
 use super::Export;
 use super::geometry::{Geometry, positions};
+use crate::failure::Failure;
 use crate::frames::Sequence;
-use crate::{Failure, output};
+use crate::output;
 
 /// One OBJ file of the final state, or a numbered file for each frame.
 pub enum Obj {

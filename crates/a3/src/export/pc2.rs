@@ -14,8 +14,9 @@ use a3_core::Simulation;
 use super::Export;
 use super::geometry::positions;
 use super::{obj, rows};
+use crate::failure::Failure;
+use crate::frames::FrameTimes;
 use crate::output::{self, Draft};
-use crate::{Failure, frames::FrameTimes};
 
 /// A `PointCache2` file in the making, with its mesh.
 pub struct Pc2 {

@@ -9,7 +9,7 @@ use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 
 use super::Film;
 use super::palette::Palette;
-use crate::Failure;
+use crate::failure::Failure;
 use crate::output::Draft;
 
 /// The shortest delay that players obey (1/100 s).

@@ -9,11 +9,12 @@ use std::path::Path;
 use a3_core::Simulation;
 
 use crate::cli::Render;
+use crate::failure::Failure;
 use crate::frames::{FrameTimes, Sequence};
 use crate::painter::Painter;
 use crate::progress::{self, Bar};
 use crate::show::Show;
-use crate::{Failure, interrupt, output};
+use crate::{interrupt, output};
 
 /// Default frames a second: of a GIF, whose delays are whole hundredths of a second, and of others.
 const RATE: (f64, f64) = (25.0, 30.0);

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 use super::Film;
-use crate::Failure;
+use crate::failure::Failure;
 use crate::output::Draft;
 
 /// An MP4 in the making, which `ffmpeg` writes to a temporary file beside the target.

@@ -1,15 +1,16 @@
-//! Text from egui to a texture, of a window or not.
+//! egui's text and shapes, drawn over a picture.
 
 use a3_render::Gpu;
 
-/// What lays text out, and what draws it.
+/// egui's layout and its renderer.
 pub struct Overlay {
+    /// The layout.
     pub context: egui::Context,
     renderer: egui_wgpu::Renderer,
 }
 
 impl Overlay {
-    /// For views of this format.
+    /// An overlay for views of this format.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         Self {
             context: egui::Context::default(),
@@ -21,7 +22,7 @@ impl Overlay {
         }
     }
 
-    /// Lays out what `contents` writes.
+    /// Lays out what `contents` writes, and takes new textures to the GPU.
     pub fn lay_out(
         &mut self,
         gpu: &Gpu,
@@ -29,7 +30,7 @@ impl Overlay {
         mut contents: impl FnMut(&egui::Context),
     ) -> egui::FullOutput {
         let mut output = self.context.run_ui(input, |ui| contents(ui.ctx()));
-        // Dropping what is not drained panics.
+        // egui panics if a change of textures is dropped before it is drained.
         for (id, deltas) in output.textures_delta.set.drain() {
             for delta in deltas {
                 self.renderer
@@ -39,7 +40,8 @@ impl Overlay {
         output
     }
 
-    /// Draws it over what is in `view`, of `size` (px). What to submit before the encoder's own.
+    /// Draws the layout over a `view` of `size` (px), and returns the commands to submit before
+    /// those of the encoder.
     pub fn paint(
         &mut self,
         gpu: &Gpu,
@@ -79,7 +81,7 @@ impl Overlay {
         before
     }
 
-    /// The same without a window: `scale` pixels per point.
+    /// Lays out and draws without a window, at `scale` pixels per point.
     pub fn write(
         &mut self,
         gpu: &Gpu,
@@ -100,7 +102,7 @@ impl Overlay {
             root.native_pixels_per_point = Some(scale);
             input
         };
-        // The first pass measures, in the next ones it fades in.
+        // The first pass measures; in the next ones the text fades in.
         let mut output = self.lay_out(gpu, input(0.0), &mut contents);
         for pass in 1..3 {
             output.textures_delta.free.drain().for_each(drop);

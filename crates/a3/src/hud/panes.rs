@@ -36,7 +36,8 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     for (k, (pane, rect)) in panes.iter().zip(rects).enumerate() {
         within(ctx, &format!("pane {k}"), rect, |ui| {
             let low = rect.height() < LOW;
-            // Narrow, so that it hides little; in a low pane wide, so that it fits.
+            // The sheet is narrow, so that it hides little; in a low pane it is wide, so that it
+            // fits.
             let narrow = (0.42 * rect.width()).max(210.0).min(rect.width());
             ui.set_max_width(if low { rect.width() } else { narrow });
             Frame::new()
@@ -102,8 +103,8 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
         });
 }
 
-/// Writes the readings of a pane: each in its own line, or in a low pane the most important ones, some
-/// of them side by side.
+/// Writes the readings of a pane: each in its own line, or in a low pane the most important ones,
+/// some of them side by side.
 fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let run = &pane.simulation;
     ui.label(title(run.method().title).size(14.0));

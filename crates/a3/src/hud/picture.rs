@@ -9,7 +9,8 @@ use crate::failure::Failure;
 use crate::session::{Pane, Readings};
 use crate::show;
 
-/// Panes as they are now, several of them with the text over them.
+/// A picture of the panes as they are now, with the text if there are several: rows from the top,
+/// with four bytes for a pixel.
 pub fn draw(
     gpu: &Gpu,
     offscreen: &Offscreen,
@@ -23,7 +24,7 @@ pub fn draw(
     let topology = show::topology(&panes[0].simulation);
     let mut renderer = Renderer::new(gpu, OFFSCREEN_FORMAT, samples, &topology);
     for (k, pane) in panes.iter_mut().enumerate() {
-        // Each tears in its own way.
+        // Each run tears in its own way.
         if k > 0
             && pane
                 .simulation

@@ -12,7 +12,8 @@ use crate::show;
 /// The most springs that are listed.
 const LISTED: usize = 12;
 
-/// Writes the readings, a blow-up, the message and the springs of a particle, and names the key for help.
+/// Writes the readings, a blow-up, the message and the springs of a particle, and names the key for
+/// help.
 pub fn show(ctx: &Context, pane: &Pane, readings: &Readings) {
     column(ctx, "run", Align2::LEFT_TOP, [MARGIN, MARGIN], |ui| {
         ui.set_max_width(ui.available_width().min(460.0));

@@ -7,8 +7,8 @@ use super::style::{column, sheet};
 use super::{panes, single, timeline};
 use crate::session::{Pane, Readings};
 
-/// Writes all text over the picture. Sheets stand below one another, and the help stands alone, so that
-/// nothing overlaps in however small a window.
+/// Writes all text over the picture. Sheets stand below one another, and the help stands alone, so
+/// that nothing overlaps in however small a window.
 pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
     match panes {
         [pane] if !readings.help => single::show(ctx, pane, readings),

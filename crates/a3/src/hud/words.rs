@@ -43,8 +43,8 @@ pub fn steps(simulation: &Simulation) -> Option<String> {
         .map(|_| format!("{} ms, {rejections} rejected", digits(1e3 * step)))
 }
 
-/// The largest stable step and the share of it that the step is, in green while there is room, amber
-/// near it, and red past it.
+/// The largest stable step and the share of it that the step is, in green while there is room,
+/// amber near it, and red past it.
 pub fn limit(pane: &Pane) -> Option<(String, Color32)> {
     let limit = pane.limit.limit()?;
     if limit.step.is_infinite() {

@@ -1,4 +1,5 @@
-//! Reading the files of a scene: ordinary ones, of limited length, from the scene's folder downwards.
+//! Reading the files of a scene: ordinary files of limited length, from the scene's folder
+//! downwards.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -9,7 +10,7 @@ const LONGEST: u64 = 16 << 20;
 /// The longest line of a scene file (bytes): a longer one was not written by hand.
 const LONGEST_LINE: usize = 8 << 20;
 
-/// The bytes of an ordinary file that is not too long.
+/// The bytes of an ordinary file with at most `longest` bytes.
 pub fn read(path: &Path, longest: u64) -> Result<Vec<u8>, String> {
     let meta = fs::metadata(path).map_err(|e| format!("it could not be read: {e}"))?;
     if !meta.is_file() {
@@ -48,7 +49,7 @@ pub fn read_text(path: &Path) -> Result<String, String> {
     }
 }
 
-/// The path of a file that a scene names: beside the scene, or in a folder beside it.
+/// The path of a file that a scene names: beside the scene or in a folder beside it.
 pub fn beside(scene: Option<&Path>, name: &str) -> Result<PathBuf, String> {
     let below = Path::new(name)
         .components()

@@ -1,4 +1,4 @@
-//! Scenes as JSON: particles and springs, one by one, with states that the motion is known to reach.
+//! Scenes as JSON: a list of particles and springs, with states that the motion is known to reach.
 
 use a3_scenes::{Description, Particles, Pin};
 use serde::Deserialize;
@@ -21,13 +21,14 @@ struct Listed {
     velocities: Vec<[f64; 3]>,
     #[serde(default)]
     springs: Vec<(usize, usize, f64, f64, f64)>,
-    /// What others computed: not needed to run it.
+    /// Results of other programs, which a run does not need.
     #[serde(rename = "error_bound")]
     _error_bound: Option<f64>,
     #[serde(rename = "states")]
     _states: Option<IgnoredAny>,
 }
 
+/// The description of the scene in a JSON text.
 pub fn parse(text: &str) -> Result<Description, String> {
     let listed: Listed = serde_json::from_str(text).map_err(|e| {
         let why = e.to_string();

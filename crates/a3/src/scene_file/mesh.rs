@@ -10,10 +10,10 @@ use base64::Engine;
 use super::files;
 use crate::caught::caught;
 
-/// The longest file of a mesh, or of what belongs to one (bytes).
+/// The longest file of a mesh or of its buffers (bytes).
 const LONGEST: u64 = 128 << 20;
 
-/// The triangles of all its objects.
+/// The triangles of all objects in a file.
 pub fn read(path: &Path) -> Result<Mesh, String> {
     let extension = path
         .extension()
@@ -30,13 +30,14 @@ pub fn read(path: &Path) -> Result<Mesh, String> {
         }
     };
     let bytes = files::read(path, LONGEST).map_err(named)?;
-    // Both readers do sums with what a file says before they look at it.
+    // Both readers compute with the numbers of a file before they check them, and may panic.
     let parsed = caught(|| parse(&bytes, path)).unwrap_or(Err("the file is damaged".into()));
     let mesh = parsed.map_err(named)?;
     check(&mesh).map_err(named)?;
     Ok(mesh)
 }
 
+/// `Ok` if the mesh is complete and not too large.
 fn check(mesh: &Mesh) -> Result<(), String> {
     let n = mesh.positions.len();
     if n > MAX_PARTICLES || mesh.triangles.len() > 2 * MAX_PARTICLES {
@@ -59,6 +60,7 @@ fn check(mesh: &Mesh) -> Result<(), String> {
     Ok(())
 }
 
+/// The mesh in an OBJ file.
 fn obj(bytes: &[u8], _: &Path) -> Result<Mesh, String> {
     let options = tobj::LoadOptions {
         triangulate: true,
@@ -66,7 +68,7 @@ fn obj(bytes: &[u8], _: &Path) -> Result<Mesh, String> {
         ignore_lines: true,
         ..tobj::LoadOptions::default()
     };
-    // Colours are nobody's business here.
+    // Materials are not needed.
     let no_materials = |_: &Path| Err(tobj::LoadError::GenericFailure);
     let (models, _) = tobj::load_obj_buf(&mut BufReader::new(bytes), &options, no_materials)
         .map_err(|e| format!("no OBJ: {e}"))?;
@@ -83,6 +85,7 @@ fn obj(bytes: &[u8], _: &Path) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
+/// The mesh in a glTF file.
 fn gltf(bytes: &[u8], path: &Path) -> Result<Mesh, String> {
     let wrong = |e: &dyn std::fmt::Display| format!("this is not a valid glTF file: {e}");
     let mut file = gltf::Gltf::from_slice(bytes).map_err(|e| wrong(&e))?;
@@ -120,7 +123,7 @@ fn gltf(bytes: &[u8], path: &Path) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
-/// The triangles of a node and of those below it.
+/// Adds the triangles of a node and of those below it.
 fn add(
     node: &gltf::Node,
     above: nalgebra::Matrix4<f64>,

@@ -1,4 +1,4 @@
-//! A scene as it was asked for: by name, or in a file.
+//! Scenes as they are asked for: by name or by file.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -9,19 +9,21 @@ use a3_scenes::Description;
 use super::files::{beside, read_text};
 use super::{listed, mesh};
 
-/// A scene as it was asked for.
+/// A scene, by name or in a file.
 #[derive(Clone)]
 pub struct Source {
-    /// As typed: a name of the table, or a path.
+    /// The name or the path, as it was typed.
     pub typed: String,
-    /// Where it was read, if it is a file.
+    /// The path, if the scene is in a file.
     pub path: Option<PathBuf>,
+    /// The description in the text.
     pub description: Arc<Description>,
+    /// The text of the file, also of a built-in scene.
     text: Arc<str>,
 }
 
 impl Source {
-    /// The scene of that name, or in that file.
+    /// Finds a scene by its name or its file, and reads it.
     pub fn find(typed: &str) -> Result<Self, String> {
         if let Some(entry) = a3_scenes::find(typed) {
             return Ok(Self {
@@ -62,7 +64,7 @@ impl Source {
         })
     }
 
-    /// The scene, with this grid of its cloth or with its own.
+    /// Builds the scene, with this grid of its cloth or with its own.
     pub fn build(&self, grid: Option<Grid>) -> Result<Scene, String> {
         let mut mesh = |name: &str| {
             let file = beside(self.path.as_deref(), name)?;
@@ -77,7 +79,8 @@ impl Source {
         })
     }
 
-    /// The solver that was asked for, or the scene's own, or the explicit trapezoid, which serves every scene.
+    /// The solver that was asked for, or else the scene's own, or else the explicit trapezoid,
+    /// which serves every scene.
     pub fn solver_or(&self, asked: Option<&'static Method>) -> &'static Method {
         let own = || integrators::find(self.description.solver.as_deref()?);
         asked
@@ -86,18 +89,19 @@ impl Source {
             .unwrap_or(&integrators::METHODS[0])
     }
 
-    /// What its file says, whoever wrote it.
+    /// The text of the file.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// What tells it from other scenes: the name, and of a file what it makes of its meshes too.
+    /// A text by which the scene differs from others: its name, and for a file a hash of its text
+    /// and its state, which depends on its meshes.
     pub fn fingerprint(&self, scene: &Scene) -> String {
         if self.path.is_none() {
             return scene.name.clone();
         }
         let state = scene.state.iter().flat_map(|y| y.to_le_bytes());
-        // FNV-1a: no secret, and the same everywhere.
+        // FNV-1a, which is the same on every platform.
         let hash = self
             .text
             .bytes()
@@ -108,7 +112,7 @@ impl Source {
         format!("{} {hash:016x}", scene.name)
     }
 
-    /// The files it depends on: its own and its meshes'.
+    /// The files on which the scene depends: its own and those of its meshes.
     pub fn files(&self) -> Vec<PathBuf> {
         let meshes = self.description.mesh.iter();
         let meshes = meshes.filter_map(|mesh| beside(self.path.as_deref(), &mesh.file).ok());
@@ -116,7 +120,7 @@ impl Source {
     }
 }
 
-/// `FILE:LINE: what`, as compilers say it, where there is a line.
+/// An error with its place: `FILE:LINE: error` if it names a line, as compilers write it.
 fn place(file: &str, why: &str) -> String {
     match why.strip_prefix("line ") {
         Some(rest) => format!("{file}:{rest}"),
@@ -124,6 +128,7 @@ fn place(file: &str, why: &str) -> String {
     }
 }
 
+/// The error of an unknown name.
 fn unknown(typed: &str) -> String {
     let names = || a3_scenes::SCENES.iter().map(|entry| entry.name);
     let near = names()

@@ -20,8 +20,8 @@ const SLOWEST: i32 = 6;
 const LADDER: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
 
 impl Session {
-    /// Does an action, except those that need the window, and returns whether another scene is shown. A
-    /// solver is for the pane `at`, all else for every pane.
+    /// Does an action, except those that need the window, and returns whether another scene is
+    /// shown. A solver is for the pane `at`, all else for every pane.
     pub fn act(&mut self, action: Action, at: usize) -> bool {
         match action {
             Action::NextScene => {
@@ -173,9 +173,9 @@ impl Session {
         }
     }
 
-    /// Loads the scene again from its file, and returns whether that was possible; if not, a message
-    /// says why, and all goes on. Camera, solvers and steps stay as they are, unless the file says
-    /// others than before.
+    /// Loads the scene again from its file, and returns whether that was possible; if not, a
+    /// message says why, and all goes on. Camera, solvers and steps stay as they are, unless the
+    /// file says others than before.
     pub fn reload(&mut self) -> bool {
         let loaded = Source::find(&self.asked.source.typed);
         let loaded = loaded.and_then(|source| Ok((source.build(self.asked.grid)?, source)));

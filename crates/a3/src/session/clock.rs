@@ -36,8 +36,8 @@ impl Session {
         }
     }
 
-    /// Brings all panes to a simulated time (s) in short slices, so that none is ahead of the others
-    /// when the budget of real time is over before.
+    /// Brings all panes to a simulated time (s) in short slices, so that none is ahead of the
+    /// others when the budget of real time is over before.
     pub(super) fn advance(&mut self, until: f64, budget: Duration, reference_budget: Duration) {
         self.keep(false);
         let (begun, start) = (Instant::now(), self.clock);

@@ -39,8 +39,8 @@ impl Session {
         self.change_all(|run| run.adjust(&change));
     }
 
-    /// Brings several panes to the same time exactly, by a shorter step where need be, so that a hand
-    /// acts on all of them at once.
+    /// Brings several panes to the same time exactly, by a shorter step where need be, so that a
+    /// hand acts on all of them at once.
     pub(super) fn align(&mut self) {
         if self.panes.len() < 2 {
             return;

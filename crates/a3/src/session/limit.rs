@@ -7,8 +7,8 @@ use a3_core::{Control, Method, Simulation};
 
 /// The least time from one estimate to the next.
 const INTERVAL: Duration = Duration::from_millis(250);
-/// The least time from one estimate to the next, over the time that the estimate took: estimates take
-/// two percent of the time at most.
+/// The least time from one estimate to the next, over the time that the estimate took: estimates
+/// take two percent of the time at most.
 const IDLE: u32 = 50;
 /// Simulated time (s) for which a step was seen to hold before it is said to hold.
 const HOLDING: f64 = 10.0;
@@ -84,8 +84,8 @@ impl LimitWatch {
     }
 }
 
-/// The longest step (s) below a limit that was seen to hold: not every method is limited by the fastest
-/// motion.
+/// The longest step (s) below a limit that was seen to hold: not every method is limited by the
+/// fastest motion.
 fn would_hold(run: &Simulation, limit: f64) -> f64 {
     let deadline = Instant::now() + PATIENCE;
     let mut step = rounded(0.9 * limit);
@@ -131,7 +131,8 @@ mod tests {
         ] {
             assert_eq!(rounded(most), expected);
         }
-        // Euler's method is limited by slow motion without damping, of which the fastest motion knows nothing.
+        // Euler's method is limited by slow motion without damping, of which the fastest motion
+        // knows nothing.
         let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
         let euler = integrators::find("euler").unwrap();
         let mut run = Simulation::new(scene.clone(), euler, Control::Step(0.02)).unwrap();

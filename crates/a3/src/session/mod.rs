@@ -1,5 +1,5 @@
-//! Runs that keep up with real time, without a window: one run or several side by side, their common
-//! time, the hands that pull at them, the reference, the timeline, and the actions of keys.
+//! Runs that keep up with real time, without a window: one run or several side by side, their
+//! common time, the hands that pull at them, the reference, the timeline, and the actions of keys.
 
 mod acts;
 mod clock;

@@ -92,7 +92,8 @@ impl Pane {
         self.simulation.control().step().unwrap_or(PORTION)
     }
 
-    /// Brings the run to `time` (s) exactly, however long that takes. A blow-up is shown from then on.
+    /// Brings the run to `time` (s) exactly, however long that takes. A blow-up is shown from then
+    /// on.
     pub fn run_to(&mut self, time: f64) {
         let (begun, mut aside) = (Instant::now(), Duration::ZERO);
         let show = &mut self.show;

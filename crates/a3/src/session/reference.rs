@@ -141,8 +141,8 @@ impl ReferenceRun {
         }
     }
 
-    /// Goes on to `time` (s) exactly, however long that takes, and takes the errors of the panes at that
-    /// time.
+    /// Goes on to `time` (s) exactly, however long that takes, and takes the errors of the panes at
+    /// that time.
     pub fn run_to(&mut self, time: f64, panes: &mut [Pane]) {
         // A blow-up is found by `reach`, through `follow`.
         let _ = progress::advance(&mut self.simulation, time, |_| {});

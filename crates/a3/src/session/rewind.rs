@@ -6,8 +6,8 @@ use super::reference::ReferenceRun;
 use super::state::Session;
 
 impl Session {
-    /// Pauses and goes `by` kept moments on, or back if it is negative. The runs go on from the moment
-    /// that is shown.
+    /// Pauses and goes `by` kept moments on, or back if it is negative. The runs go on from the
+    /// moment that is shown.
     pub fn scrub(&mut self, by: isize) {
         self.pause_to_scrub();
         if self.timeline.go(by) {

@@ -32,8 +32,8 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Takes a sample if the last one is old enough. Samples of a later time are dropped: time may go
-    /// back.
+    /// Takes a sample if the last one is old enough. Samples of a later time are dropped: time may
+    /// go back.
     pub fn take(
         &mut self,
         run: &Simulation,

@@ -14,8 +14,8 @@ use crate::output;
 const MOST: usize = 100_000;
 
 impl Session {
-    /// Writes the run of pane `at` under the first free name, beside the file of its scene if there is
-    /// one, and returns that name.
+    /// Writes the run of pane `at` under the first free name, beside the file of its scene if there
+    /// is one, and returns that name.
     pub fn write_scene(&self, at: usize) -> Result<String, String> {
         let run = &self.panes[at.min(self.panes.len() - 1)].simulation;
         let particles = run.particles();

@@ -48,8 +48,8 @@ impl Timeline {
         self.shown = None;
     }
 
-    /// Keeps the states at `clock` (s), if the last ones are old enough, or at once with `now`. What came after the
-    /// moment that is shown did not happen.
+    /// Keeps the states at `clock` (s), if the last ones are old enough, or at once with `now`.
+    /// What came after the moment that is shown did not happen.
     pub fn keep<'r>(&mut self, clock: f64, now: bool, runs: impl Iterator<Item = &'r Simulation>) {
         if let Some(k) = self.shown.take() {
             self.moments.truncate(k + 1);

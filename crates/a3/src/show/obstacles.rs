@@ -10,8 +10,8 @@ use super::vectors::{perpendicular, to_f32};
 /// Drawn radius of a sphere or a capsule, as a share of its radius.
 pub const DRAWN_RADIUS: f32 = 0.965;
 
-/// Draws the obstacles where they are at `time` (s), and returns the height of the floor (m) if there is
-/// one.
+/// Draws the obstacles where they are at `time` (s), and returns the height of the floor (m) if
+/// there is one.
 pub fn draw(
     network: &Network,
     time: f64,

@@ -1,5 +1,5 @@
-//! Parts of a scene: those that are drawn as a surface, with their looks, and springs that are drawn one
-//! by one.
+//! Parts of a scene: those that are drawn as a surface, with their looks, and springs that are
+//! drawn one by one.
 
 use std::sync::Arc;
 
@@ -51,8 +51,8 @@ impl Parts {
     }
 }
 
-/// A look for each body: in the first half of the looks for cloth, in the second for jelly, which is
-/// closed.
+/// A look for each body: in the first half of the looks for cloth, in the second for jelly, which
+/// is closed.
 fn looks(surface: &Surface) -> Vec<f32> {
     let mut edges: Vec<_> = surface
         .triangles
@@ -88,8 +88,8 @@ fn springs(simulation: &Simulation) -> impl Iterator<Item = Spring> {
     network.into_iter().flat_map(Network::springs)
 }
 
-/// Triangles and wires, which stay the same from frame to frame until something tears. Parts without a
-/// surface are drawn by balls and coils instead.
+/// Triangles and wires, which stay the same from frame to frame until something tears. Parts
+/// without a surface are drawn by balls and coils instead.
 pub fn topology(simulation: &Simulation) -> Topology {
     let surface = &simulation.scene().surface;
     Topology {

@@ -11,8 +11,8 @@ use super::trail::Trail;
 use super::vectors::to_f32;
 use super::{obstacles, wires};
 
-/// The most springs or particles without a surface that are drawn as coils and balls. More of them are
-/// drawn as lines and small balls: a coil is 170 lines.
+/// The most springs or particles without a surface that are drawn as coils and balls. More of them
+/// are drawn as lines and small balls: a coil is 170 lines.
 const MANY: usize = 60;
 
 /// Length of a pull that is drawn as the strongest, as a share of the scene's radius.
@@ -144,8 +144,8 @@ impl Show {
         });
     }
 
-    /// Draws springs and particles that have no surface: as coils and balls, or as lines and small balls
-    /// where there are many. Of bodies with a surface it draws the pins.
+    /// Draws springs and particles that have no surface: as coils and balls, or as lines and small
+    /// balls where there are many. Of bodies with a surface it draws the pins.
     fn draw_parts(&mut self, simulation: &Simulation) {
         let network = simulation.model().network();
         let covered = simulation.scene().surface.particles();

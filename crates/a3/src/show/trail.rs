@@ -25,8 +25,8 @@ impl Trail {
         self.0.iter().map(|(_, point)| point)
     }
 
-    /// Adds the point (m) where the particle is at `time` (s). Points of later times are dropped: time may
-    /// go back.
+    /// Adds the point (m) where the particle is at `time` (s). Points of later times are dropped:
+    /// time may go back.
     pub fn add(&mut self, time: f64, point: [f32; 3]) {
         while self.0.back().is_some_and(|(last, _)| *last > time) {
             self.0.pop_back();

@@ -32,8 +32,8 @@ pub struct Dial {
 pub enum Turn {
     /// To the nearest value of the scale.
     To(f64),
-    /// Up or down by a step of the scale. With `other` the step is ten times finer, or for whole numbers
-    /// ten times coarser.
+    /// Up or down by a step of the scale. With `other` the step is ten times finer, or for whole
+    /// numbers ten times coarser.
     By { up: bool, other: bool },
     /// The other way for a switch; to the scene's own value for all else.
     Toggle,
@@ -99,7 +99,8 @@ impl DialScale {
                 short((rung(value / step, 1e-3) * step).clamp(*from, *to), 6)
             }
             Self::Log { from, to } => {
-                // Rounding to three digits moves a value by up to a fifth of a hundredth of a decade.
+                // Rounding to three digits moves a value by up to a fifth of a hundredth of a
+                // decade.
                 let (rungs, hair) = if other { (100.0, 0.25) } else { (10.0, 0.025) };
                 let next = 10_f64.powf(rung(value.log10() * rungs, hair) / rungs);
                 short(next, 3).clamp(*from, *to)

@@ -79,7 +79,8 @@ impl Screen {
         .collect()
     }
 
-    /// Presses and lets go of the left button at one place, or from one to another: what that does to the session.
+    /// Presses and lets go of the left button at one place, or from one to another: what that does
+    /// to the session.
     pub fn click(&mut self, session: &mut Session, from: Pos2, to: Pos2) {
         let button = |pos, pressed| Event::PointerButton {
             pos,
