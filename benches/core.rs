@@ -21,6 +21,7 @@ fn cloth(name: &str, side: usize) -> Scene {
         .unwrap()
         .build(Some(Grid::new(side, side).unwrap()))
         .unwrap()
+        .scene
 }
 
 fn network(scene: &Scene) -> &Network {
@@ -135,7 +136,7 @@ fn forces_of_a_list(c: &mut Criterion) {
 fn evaluation(c: &mut Criterion) {
     let mut group = c.benchmark_group("evaluation");
     for entry in a3_scenes::SCENES {
-        let scene = entry.build(None).unwrap();
+        let scene = entry.build(None).unwrap().scene;
         let system = scene.model.system();
         let mut dydt = vec![0.0; system.dim()];
         group.bench_function(entry.name, |b| {
@@ -163,7 +164,8 @@ fn rods(c: &mut Criterion) {
         );
         let scene = Description::parse(&text)
             .and_then(|description| description.build(None, &mut |_| Err("no mesh".into())))
-            .unwrap();
+            .unwrap()
+            .scene;
         let mut run = Simulation::new(
             scene,
             integrators::find("rk4").unwrap(),
@@ -185,7 +187,7 @@ fn rods(c: &mut Criterion) {
 fn steps(c: &mut Criterion) {
     for entry in a3_scenes::SCENES {
         let mut group = c.benchmark_group(format!("step/{}", entry.name));
-        let scene = entry.build(None).unwrap();
+        let scene = entry.build(None).unwrap().scene;
         for method in integrators::METHODS {
             step(&mut group, &scene, method);
         }

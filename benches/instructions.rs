@@ -79,7 +79,7 @@ fn count(kernel: &str, times: u64) -> Option<u64> {
 fn cloth(name: &str) -> Scene {
     let grid = Grid::new(32, 32).expect("a grid");
     let entry = a3_scenes::find(name).expect("a scene");
-    entry.build(Some(grid)).expect("a cloth")
+    entry.build(Some(grid)).expect("a cloth").scene
 }
 
 fn network(scene: &Scene) -> &Network {

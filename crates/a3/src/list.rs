@@ -57,11 +57,11 @@ pub fn scenes(options: &Scenes) -> Result<(), Failure> {
     ];
     let mut rows = vec![heading.map(String::from).to_vec()];
     for entry in a3_scenes::SCENES {
-        let scene = entry.build(None).map_err(Failure::run)?;
+        let scene = entry.build(None).map_err(Failure::run)?.scene;
         let network = scene.model.network();
         rows.push(vec![
             entry.name.into(),
-            scene.grid.map_or("-".into(), |grid| {
+            scene.grid().map_or("-".into(), |grid| {
                 format!("{}x{}", grid.rows(), grid.cols())
             }),
             scene.model.particles().to_string(),

@@ -4,7 +4,7 @@ use a3_core::Simulation;
 use a3_render::{Camera, Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer};
 
 use crate::failure::Failure;
-use crate::show::{self, Show};
+use crate::show::Show;
 
 /// Height of a picture (px) in which lines are drawn at one pixel per point.
 const POINTS: f32 = 720.0;
@@ -21,15 +21,15 @@ pub struct Painter {
 
 impl Painter {
     /// A painter for pictures of this run, of this size (px).
-    pub fn new(simulation: &Simulation, size: (u32, u32)) -> Result<Self, Failure> {
+    pub fn new(show: &Show, simulation: &Simulation, size: (u32, u32)) -> Result<Self, Failure> {
         let gpu = pollster::block_on(Gpu::headless()).map_err(Failure::run)?;
         let offscreen = Offscreen::new(&gpu, size).map_err(Failure::usage)?;
         let samples = gpu.samples(OFFSCREEN_FORMAT);
-        let topology = show::topology(simulation);
+        let topology = show.topology(simulation);
         Ok(Self {
             renderer: Renderer::new(&gpu, OFFSCREEN_FORMAT, samples, &topology),
             tears: simulation.tears(),
-            camera: show::camera(simulation),
+            camera: show.camera(),
             offscreen,
             gpu,
         })
@@ -39,7 +39,7 @@ impl Painter {
     pub fn draw(&mut self, show: &mut Show, simulation: &Simulation) -> Result<Vec<u8>, Failure> {
         if simulation.tears() != self.tears {
             self.tears = simulation.tears();
-            let topology = show::topology(simulation);
+            let topology = show.topology(simulation);
             self.renderer.set_topology_of(&self.gpu, 0, &topology);
         }
         show.compose(simulation);

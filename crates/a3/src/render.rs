@@ -8,19 +8,19 @@ use crate::{film, output, progress, setup};
 
 /// Runs the simulation and writes its picture or its film.
 pub fn run(options: &Render) -> Result<(), Failure> {
-    let mut simulation = setup::simulation(&options.run)?;
+    let (mut simulation, presentation) = setup::simulation(&options.run)?;
     setup::check_particle(&simulation, options.springs_of)?;
     let (path, size) = (&options.output, options.size);
     output::check(path, &["png", "gif", "mp4"])?;
     // There may be no ffmpeg, and the device may not support pictures of this size: both are
     // checked before the work begins.
     let film = film::begin(options)?;
-    let mut painter = Painter::new(&simulation, size)?;
+    let mut show = Show::new(presentation, options.wireframe, options.springs_of);
+    show.transparent = options.transparent;
+    let mut painter = Painter::new(&show, &simulation, size)?;
     if let Some(i) = options.springs_of {
         output::say(&show::list_springs_of(&simulation, i))?;
     }
-    let mut show = Show::new(options.wireframe, options.springs_of);
-    show.transparent = options.transparent;
     if let Some(film) = film {
         return film::shoot(&mut simulation, &mut show, &mut painter, film, path);
     }

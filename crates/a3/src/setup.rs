@@ -1,6 +1,9 @@
 //! From arguments to what they ask for: scenes, simulations and sessions.
 
+use std::sync::Arc;
+
 use a3_core::{Control, Method, Scene, Simulation, integrators};
+use a3_scenes::{Presentation, Setup};
 
 use crate::bounds;
 use crate::cli::{Compare, RunOptions, What, WindowOptions};
@@ -16,14 +19,15 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
         ));
     }
     let solver = what.scene.solver_or(options.solver);
-    let simulation = simulate(what, solver, options.step)?;
+    let setup = build(what)?;
+    let simulation = simulate(what, &setup, solver, options.step)?;
     check_particle(&simulation, options.springs_of)?;
     let beginning = Beginning {
         wireframe: options.look.wireframe,
         paused: options.look.paused,
         springs_of: options.springs_of,
     };
-    Session::new(origin(what), vec![simulation], &beginning)
+    Session::new(origin(what), setup, vec![simulation], &beginning)
 }
 
 /// The session of a comparison.
@@ -35,17 +39,18 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         )));
     }
     let what = &options.what;
+    let setup = build(what)?;
     let simulations = options
         .methods
         .iter()
-        .map(|(solver, step)| simulate(what, solver, *step))
+        .map(|(solver, step)| simulate(what, &setup, solver, *step))
         .collect::<Result<_, Failure>>()?;
     let beginning = Beginning {
         wireframe: options.look.wireframe,
         paused: options.look.paused,
         springs_of: None,
     };
-    Session::new(origin(what), simulations, &beginning)
+    Session::new(origin(what), setup, simulations, &beginning)
 }
 
 /// Where the scene is from.
@@ -56,16 +61,18 @@ fn origin(what: &What) -> Origin {
     }
 }
 
-/// The simulation of a run without a window.
-pub fn simulation(options: &RunOptions) -> Result<Simulation, Failure> {
+/// The simulation of a run without a window, and what of it is shown.
+pub fn simulation(options: &RunOptions) -> Result<(Simulation, Arc<Presentation>), Failure> {
     let what = &options.what;
-    simulate(what, what.scene.solver_or(options.solver), options.step)
+    let (setup, solver) = (build(what)?, what.scene.solver_or(options.solver));
+    let simulation = simulate(what, &setup, solver, options.step)?;
+    Ok((simulation, setup.presentation))
 }
 
 /// The scene, with the wind and the swing that were asked for.
 pub fn scene(what: &What) -> Result<Scene, Failure> {
     // Euler's method serves every scene.
-    let run = simulate(what, &integrators::METHODS[0], None)?;
+    let run = simulate(what, &build(what)?, &integrators::METHODS[0], None)?;
     Ok(Scene {
         model: run.model().clone(),
         state: run.state().to_vec(),
@@ -73,13 +80,19 @@ pub fn scene(what: &What) -> Result<Scene, Failure> {
     })
 }
 
+/// The scene with its presentation and its defaults.
+fn build(what: &What) -> Result<Setup, Failure> {
+    what.scene.build(what.grid).map_err(Failure::usage)
+}
+
 /// A simulation by this solver, with its own step or tolerance unless one is given.
 fn simulate(
     what: &What,
+    setup: &Setup,
     solver: &'static Method,
     step: Option<f64>,
 ) -> Result<Simulation, Failure> {
-    let scene = what.scene.build(what.grid).map_err(Failure::usage)?;
+    let scene = &setup.scene;
     for (asked, there, option) in [
         (what.wind, scene.wind.is_some(), "wind"),
         (what.swing, scene.swing.is_some(), "swing"),
@@ -91,7 +104,7 @@ fn simulate(
             )));
         }
     }
-    let own = || scene.default_control(solver);
+    let own = || setup.defaults.control_of(solver);
     let control = step.map_or_else(own, |value| solver.control(value));
     check_control(solver, control)?;
     if let Err(e) = solver.check(scene.model.system()) {
@@ -105,7 +118,7 @@ fn simulate(
             scene.name
         )));
     }
-    let mut simulation = Simulation::new(scene, solver, control).map_err(Failure::usage)?;
+    let mut simulation = Simulation::new(scene.clone(), solver, control).map_err(Failure::usage)?;
     // Without --wind the wind stays as it is: some scenes begin with it.
     if what.wind {
         simulation.set_wind(true);

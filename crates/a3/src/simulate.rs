@@ -69,7 +69,7 @@ impl Extremes {
 /// Runs the simulation and writes its files.
 pub fn run(options: &Simulate) -> Result<(), Failure> {
     let begun = Instant::now();
-    let mut simulation = setup::simulation(&options.run)?;
+    let (mut simulation, presentation) = setup::simulation(&options.run)?;
     let stdout = Path::new("-");
     if let Some(path) = options.summary.as_deref() {
         if path == stdout && options.output == stdout {
@@ -81,7 +81,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
             output::check(path, &["json"])?;
         }
     }
-    let (frames, mut export) = export::begin(options, &simulation)?;
+    let (frames, mut export) = export::begin(options, &simulation, &presentation)?;
     let mut extremes = options.summary.is_some().then(Extremes::default);
     if let Some(extremes) = &mut extremes {
         extremes.look(&simulation);

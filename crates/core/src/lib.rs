@@ -60,7 +60,6 @@ mod serial;
 mod simulation;
 mod spring;
 pub mod stability;
-mod surface;
 mod system;
 #[cfg(test)]
 mod testing;
@@ -75,10 +74,9 @@ pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
 pub use network::{Energy, Network};
 pub use path::{Path, Place};
-pub use scene::{FirstOrder, Model, Scene, Swing, View};
+pub use scene::{FirstOrder, Model, Scene, Swing};
 pub use simulation::{Checkpoint, Grabbed, Simulation};
 pub use spring::{Spring, SpringKind, SpringLaw};
-pub use surface::Surface;
 pub use system::{Coupling, Matrix, Mechanics, ParticleSystem};
 
 /// The example of the README, compiled as a test of documentation.

@@ -1,26 +1,23 @@
-//! Scenes. A scene is data: a model, the state it starts from, and what a hand or an eye needs.
+//! Scenes: a model, the state it starts from, and what a run of it can be disturbed by.
 
 use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::control::Control;
-use crate::elements::Wind;
+use crate::elements::{Sheet, Wind};
 use crate::grid::Grid;
-use crate::integrators::Method;
 use crate::network::Network;
-use crate::surface::Surface;
 use crate::system::ParticleSystem;
 
-/// A first-order system that can be shared with its runs.
+/// First-order system that runs share.
 pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
 
-/// What is simulated.
+/// Model of a scene.
 #[derive(Clone)]
 pub enum Model {
-    /// Any y' = f(t, y) whose state is n x 3 positions, column-major.
+    /// Any system y' = f(t, y) whose state is n x 3 positions in column-major order.
     FirstOrder(FirstOrder),
-    /// Masses and springs.
+    /// Network of masses and springs.
     Network(Box<Network>),
 }
 
@@ -34,7 +31,7 @@ impl Model {
         }
     }
 
-    /// The masses and springs, if it has any.
+    /// The network of masses and springs, if it is one.
     #[must_use]
     pub fn network(&self) -> Option<&Network> {
         match self {
@@ -51,109 +48,63 @@ impl Model {
     }
 }
 
-/// How pins swing: to and fro by `amplitude`, at `rate`.
+/// Swing of all pins together: a displacement of `amplitude sin(rate t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swing {
-    /// In m.
+    /// Amplitude (m).
     pub amplitude: Vector3<f64>,
-    /// In rad/s.
+    /// Angular frequency (rad/s).
     pub rate: f64,
 }
 
-/// Where an eye looks from, and at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// In m.
-    pub eye: Vector3<f64>,
-    /// In m.
-    pub target: Vector3<f64>,
-}
-
-/// A model with the state it starts from.
+/// A model, the state it starts from, and what a run of it can be disturbed by.
 #[derive(Clone)]
 pub struct Scene {
-    /// As in the table, or in its file.
+    /// Name, for messages and files.
     pub name: String,
-    /// What is simulated.
+    /// Model that is simulated.
     pub model: Model,
-    /// y at t = 0.
+    /// State y at t = 0.
     pub state: Vec<f64>,
-    /// The grid of its cloth.
-    pub grid: Option<Grid>,
-    /// What is drawn as a surface.
-    pub surface: Arc<Surface>,
-    /// What key `s` does to the pins.
+    /// Swing that the pins can be set to.
     pub swing: Option<Swing>,
-    /// What key `d` lets blow.
+    /// Wind that can be turned on.
     pub wind: Option<Wind>,
-    /// The particle whose way is drawn.
-    pub trail: Option<usize>,
-    /// Where to look from.
-    pub view: View,
-    /// A method's default step times this holds: less than 1 for a cloth finer than its own grid.
-    pub step_scale: f64,
-    /// The method to begin with, if the scene says one.
-    pub solver: Option<&'static Method>,
-    /// Its step or tolerance.
-    pub control: Option<Control>,
-    /// How long it is run where no one says (s).
-    pub duration: Option<f64>,
-    /// A hand stretches the springs it holds to this many times their rest length, and then waits for the other end.
-    /// Less than 10 only where more would blow up a run that otherwise holds.
+    /// Largest stretch, in rest lengths, to which a hand pulls the springs of the particle it holds.
     pub reach: f64,
 }
 
 impl Scene {
-    /// A model and the state it starts from, without surface, hands and wind, seen from the front and a little from the
-    /// right and from above.
+    /// A scene without swing and wind, and with a hand that reaches ten rest lengths.
     #[must_use]
     pub fn new(name: impl Into<String>, model: Model, state: Vec<f64>) -> Self {
-        let (target, radius) = bounds(&state[..(3 * model.particles()).min(state.len())]);
-        let eye = target + Vector3::new(0.5, 0.15, 1.0).normalize() * (2.8 * radius);
         Self {
             name: name.into(),
             model,
             state,
-            grid: None,
-            surface: Arc::default(),
             swing: None,
             wind: None,
-            trail: None,
-            view: View { eye, target },
-            step_scale: 1.0,
-            solver: None,
-            control: None,
-            duration: None,
             reach: 10.0,
         }
     }
 
-    /// The middle of the smallest upright box around the particles at t = 0 (m), and the distance of the farthest from it
-    /// (m), at least 1.
+    /// Grid of the cloth, if there is one.
     #[must_use]
-    pub fn extent(&self) -> (Vector3<f64>, f64) {
-        bounds(&self.state[..3 * self.model.particles()])
+    pub fn grid(&self) -> Option<Grid> {
+        let sheet = self.model.network().and_then(Network::sheet);
+        sheet.map(Sheet::grid)
     }
 
-    /// The method's step on this scene to two digits, as one would type it, or its tolerance: the scene's own, or the
-    /// method's default.
+    /// Centre of the bounding box of the particles at t = 0 (m), and the distance of the farthest
+    /// particle from it (m), at least 1.
     #[must_use]
-    pub fn default_control(&self, method: &Method) -> Control {
-        let own = self.control.filter(|_| {
-            self.solver
-                .is_some_and(|solver| std::ptr::eq(solver, method))
-        });
-        match own.unwrap_or(method.default_control) {
-            Control::Step(step) if self.step_scale != 1.0 => {
-                let step = step * self.step_scale;
-                Control::Step(format!("{step:.1e}").parse().unwrap_or(step))
-            }
-            control => control,
-        }
+    pub fn extent(&self) -> (Vector3<f64>, f64) {
+        bounds(&self.state[..(3 * self.model.particles()).min(self.state.len())])
     }
 }
 
-/// The middle of the smallest upright box around the particles, and the distance of the farthest from it, at least 1.
+/// Centre of the bounding box of positions x (m), and the distance of the farthest of them from it
+/// (m), at least 1.
 pub(crate) fn bounds(x: &[f64]) -> (Vector3<f64>, f64) {
     let n = x.len() / 3;
     let range = |axis: usize| {

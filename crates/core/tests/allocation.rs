@@ -43,12 +43,14 @@ fn the_counter_counts() {
 fn no_step_allocates() {
     for entry in a3_scenes::SCENES {
         for method in integrators::METHODS {
-            let Ok(mut run) =
-                Simulation::new(entry.build(None).unwrap(), method, method.default_control)
-            else {
+            let Ok(mut run) = Simulation::new(
+                entry.build(None).unwrap().scene,
+                method,
+                method.default_control,
+            ) else {
                 assert!(
                     method
-                        .check(entry.build(None).unwrap().model.system())
+                        .check(entry.build(None).unwrap().scene.model.system())
                         .is_err()
                 );
                 continue;
@@ -65,7 +67,7 @@ fn no_step_allocates() {
 #[test]
 fn no_step_in_the_air_allocates_but_the_first() {
     for method in integrators::METHODS {
-        let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
+        let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         if let Model::Network(network) = &mut scene.model {
             let grid = network.sheet().unwrap().grid();
             network.set_triangles(grid.triangles()).unwrap();
@@ -107,7 +109,7 @@ fn constraints_allocate_nothing() {
 fn no_step_that_tears_nothing_allocates() {
     for name in ["cloth", "chain"] {
         for method in integrators::METHODS {
-            let mut scene = a3_scenes::find(name).unwrap().build(None).unwrap();
+            let mut scene = a3_scenes::find(name).unwrap().build(None).unwrap().scene;
             if let Model::Network(network) = &mut scene.model {
                 network.set_tear(Some(1e3)).unwrap();
             }
@@ -122,7 +124,7 @@ fn no_step_that_tears_nothing_allocates() {
 #[test]
 fn no_step_after_an_adjustment_allocates() {
     for method in integrators::METHODS {
-        let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
+        let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         let own = scene.model.network().unwrap().clone();
         if let Model::Network(network) = &mut scene.model {
             network.scale_springs(1.0, 0.0).unwrap();

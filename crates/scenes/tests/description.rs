@@ -2,10 +2,10 @@
 
 use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Grid, Model, Path, Scene, SpringKind, Vector3};
-use a3_scenes::{Description, Fault, Mesh, SCENES, find};
+use a3_scenes::{Description, Fault, Mesh, SCENES, Setup, find};
 
 /// A built-in scene, with this grid or its own.
-fn scene(name: &str, grid: Option<[usize; 2]>) -> Scene {
+fn scene(name: &str, grid: Option<[usize; 2]>) -> Setup {
     let grid = grid.map(|[rows, cols]| Grid::new(rows, cols).unwrap());
     find(name).unwrap().build(grid).unwrap()
 }
@@ -28,9 +28,13 @@ fn mesh(name: &str) -> Result<Mesh, String> {
     }
 }
 
-fn build(text: &str) -> Result<Scene, Fault> {
+fn set_up(text: &str) -> Result<Setup, Fault> {
     let built = Description::parse(text).and_then(|d| d.build(None, &mut mesh));
     built.map_err(|fault| fault.locate(text))
+}
+
+fn build(text: &str) -> Result<Scene, Fault> {
+    set_up(text).map(|setup| setup.scene)
 }
 
 /// What is said of a text that is wrong.
@@ -349,12 +353,13 @@ particles = [0]
 "
     );
     // At the root, before the tables.
-    let scene = build(&format!("springs = [[11, 27, 2, 1, 0]]\n{text}")).unwrap();
+    let setup = set_up(&format!("springs = [[11, 27, 2, 1, 0]]\n{text}")).unwrap();
+    let (scene, surface) = (setup.scene, &setup.presentation.surface);
     let network = scene.model.network().unwrap();
     assert_eq!(network.particles(), 12 + 4 + 8 + 4 + 3 + 2);
-    assert_eq!(scene.surface.bodies, [12, 16, 24, 28]);
-    assert_eq!(scene.surface.triangles.len(), 12 + 2 + 12 + 2);
-    assert!(scene.surface.triangles.iter().flatten().all(|i| *i < 28));
+    assert_eq!(surface.bodies, [12, 16, 24, 28]);
+    assert_eq!(surface.triangles.len(), 12 + 2 + 12 + 2);
+    assert!(surface.triangles.iter().flatten().all(|i| *i < 28));
     let masses = network.masses();
     assert_eq!(
         (masses[0], masses[12], masses[16], masses[31]),
@@ -397,14 +402,14 @@ fn every_cloth_has_its_springs() {
 #[test]
 fn another_grid_is_the_same_cloth() {
     let (coarse, fine) = (scene("cloth", None), scene("cloth", Some([39, 39])));
-    let mass = |scene: &Scene| {
-        let network = scene.model.network().unwrap();
+    let mass = |setup: &Setup| {
+        let network = setup.scene.model.network().unwrap();
         // Border particles stand for half a cell too much.
-        network.masses()[0] * ((scene.grid.unwrap().cols() - 1) as f64).powi(2)
+        network.masses()[0] * ((setup.scene.grid().unwrap().cols() - 1) as f64).powi(2)
     };
     assert!((mass(&coarse) - mass(&fine)).abs() < 1e-9);
-    assert!((fine.step_scale - 0.5).abs() < 1e-12);
-    assert!(scene("mit", Some([30, 30])).step_scale == 1.0);
+    assert!((fine.defaults.step_scale - 0.5).abs() < 1e-12);
+    assert!(scene("mit", Some([30, 30])).defaults.step_scale == 1.0);
 }
 
 #[test]

@@ -12,8 +12,8 @@ use winit::window::Window;
 use crate::failure::Failure;
 use crate::hud::panel::{self, Request};
 use crate::hud::{self, Overlay, layout};
+use crate::output;
 use crate::session::{Readings, Session};
-use crate::{output, show};
 
 /// What became of a frame.
 pub enum FrameOutcome {
@@ -66,7 +66,7 @@ impl Graphics {
             Some(gpu.largest_side() as usize),
         );
         Ok(Self {
-            renderer: Renderer::new(&gpu, format, samples, &show::topology(session.first())),
+            renderer: Renderer::new(&gpu, format, samples, &session.panes[0].topology()),
             targets: Targets::new(&gpu, size, format, samples),
             tears: vec![],
             overlay,
@@ -117,7 +117,7 @@ impl Graphics {
     /// Takes the topology of another scene.
     pub fn set_scene(&mut self, session: &Session) {
         self.renderer
-            .set_topology(&self.gpu, &show::topology(session.first()));
+            .set_topology(&self.gpu, &session.panes[0].topology());
         self.tears.clear();
     }
 
@@ -128,7 +128,7 @@ impl Graphics {
             let now = pane.simulation.tears();
             if *tears != now {
                 *tears = now;
-                let topology = show::topology(&pane.simulation);
+                let topology = pane.topology();
                 self.renderer.set_topology_of(&self.gpu, k, &topology);
             }
         }

@@ -143,7 +143,7 @@ mod tests {
     use a3_core::{Control, Model, integrators};
 
     fn cloth() -> Simulation {
-        let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         Simulation::new(scene, integrators::find("t").unwrap(), Control::Step(0.01)).unwrap()
     }
 
@@ -194,7 +194,11 @@ mod tests {
     /// The nearer one is hit: the sphere from beside the cloth and below, the cloth in front of it.
     #[test]
     fn a_sphere_is_picked_unless_cloth_is_in_front() {
-        let scene = a3_scenes::find("mit-sphere").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("mit-sphere")
+            .unwrap()
+            .build(None)
+            .unwrap()
+            .scene;
         let run =
             Simulation::new(scene, integrators::find("t").unwrap(), Control::Step(0.001)).unwrap();
         let hit = |eye: [f32; 3]| {

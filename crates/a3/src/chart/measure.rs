@@ -45,7 +45,7 @@ impl<'a> Study<'a> {
         methods: &'a [&'static Method],
         (metric, timed): (Metric, bool),
     ) -> Self {
-        let grid = scene.grid;
+        let grid = scene.grid();
         let blank = Record {
             version: VERSION.into(),
             scene: name.into(),

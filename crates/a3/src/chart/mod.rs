@@ -169,7 +169,7 @@ pub fn look_ahead(
 /// The scene in words: its name, its grid, and what is switched on.
 pub fn describe(what: &What, scene: &Scene) -> String {
     let grid = scene
-        .grid
+        .grid()
         .map_or(String::new(), |g| format!(" {} × {}", g.rows(), g.cols()));
     let wind = if what.wind { ", wind" } else { "" };
     let swing = if what.swing { ", swing" } else { "" };

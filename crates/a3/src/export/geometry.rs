@@ -2,6 +2,7 @@
 //! particles without one.
 
 use a3_core::{Network, Simulation};
+use a3_scenes::Surface;
 
 use crate::show::whole_triangles;
 
@@ -20,8 +21,8 @@ pub struct Geometry {
 
 impl Geometry {
     /// The geometry of the scene as it is now.
-    pub fn of(simulation: &Simulation) -> Self {
-        let covered = simulation.scene().surface.particles();
+    pub fn of(surface: &Surface, simulation: &Simulation) -> Self {
+        let covered = surface.particles();
         let network = simulation.model().network();
         let springs = network.into_iter().flat_map(Network::springs);
         Self {

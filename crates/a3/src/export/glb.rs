@@ -7,6 +7,7 @@ use std::io::{self, Seek, Write};
 use std::path::Path;
 
 use a3_core::Simulation;
+use a3_scenes::Surface;
 use serde_json::{Value, json};
 
 use super::geometry::{Geometry, positions};
@@ -52,11 +53,9 @@ struct Binary {
 }
 
 /// Size of the binary chunk (bytes).
-pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
+pub fn size(surface: &Surface, simulation: &Simulation, frames: FrameTimes) -> f64 {
     let (n, count) = (simulation.particles() as f64, frames.count as f64);
-    24.0 * n * count
-        + 12.0 * simulation.scene().surface.triangles.len() as f64
-        + 4.0 * count * count
+    24.0 * n * count + 12.0 * surface.triangles.len() as f64 + 4.0 * count * count
 }
 
 /// Refuses too many frames.
@@ -72,12 +71,17 @@ pub fn check(frames: FrameTimes) -> Result<(), Failure> {
 
 impl Glb {
     /// A file for these frames of the simulation.
-    pub fn new(path: &Path, simulation: &Simulation, frames: FrameTimes) -> Result<Self, Failure> {
+    pub fn new(
+        path: &Path,
+        surface: &Surface,
+        simulation: &Simulation,
+        frames: FrameTimes,
+    ) -> Result<Self, Failure> {
         let draft = Draft::new(path)?;
         let file = output::scratch(path)?;
         Ok(Self {
             draft,
-            geometry: Geometry::of(simulation),
+            geometry: Geometry::of(surface, simulation),
             frames,
             scene: simulation.scene().name.clone(),
             binary: Binary {

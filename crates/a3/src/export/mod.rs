@@ -9,8 +9,10 @@ mod pc2;
 
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::Arc;
 
 use a3_core::Simulation;
+use a3_scenes::Presentation;
 
 use crate::cli::Simulate;
 use crate::failure::Failure;
@@ -37,7 +39,13 @@ pub trait Export {
 pub fn begin(
     options: &Simulate,
     simulation: &Simulation,
+    presentation: &Arc<Presentation>,
 ) -> Result<(FrameTimes, Box<dyn Export>), Failure> {
+    let surface = &presentation.surface;
+    let obj = |files| obj::Obj {
+        presentation: presentation.clone(),
+        files,
+    };
     let (path, until) = (options.output.as_path(), options.run.end()?);
     let last = FrameTimes::new(until, until, RATE)?;
     if path == Path::new("-") {
@@ -60,17 +68,31 @@ pub fn begin(
         }
         (Some("pc2"), _) => {
             let frames = check(pc2::size(simulation, several), LARGEST.0)?;
-            (frames, Box::new(pc2::Pc2::new(path, simulation, frames)?))
+            (
+                frames,
+                Box::new(pc2::Pc2::new(
+                    path,
+                    presentation.clone(),
+                    simulation,
+                    frames,
+                )?),
+            )
         }
         (Some("glb"), _) => {
             glb::check(several)?;
-            let frames = check(glb::size(simulation, several), LARGEST.1)?;
-            (frames, Box::new(glb::Glb::new(path, simulation, frames)?))
+            let frames = check(glb::size(surface, simulation, several), LARGEST.1)?;
+            (
+                frames,
+                Box::new(glb::Glb::new(path, surface, simulation, frames)?),
+            )
         }
         (Some("obj"), Some(sequence)) => {
             sequence.check(several.count)?;
-            let frames = check(obj::size(simulation) * several.count as f64, LARGEST.0)?;
-            (frames, Box::new(obj::Obj::Many(sequence, 0)))
+            let frames = check(
+                obj::size(surface, simulation) * several.count as f64,
+                LARGEST.0,
+            )?;
+            (frames, Box::new(obj(obj::Files::Many(sequence, 0))))
         }
         (Some("obj"), None) => {
             if options.fps.is_some() {
@@ -78,7 +100,7 @@ pub fn begin(
                     "an .obj has one frame: leave out --fps, or write a sequence such as cloth-####.obj",
                 ));
             }
-            (last, Box::new(obj::Obj::One(path.into())))
+            (last, Box::new(obj(obj::Files::One(path.into()))))
         }
         _ if options.fps.is_some() => {
             let frames = check(json::ROW * particles * several.count as f64, LARGEST.0)?;

@@ -2,8 +2,10 @@
 
 use std::io::{self, Write};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use a3_core::Simulation;
+use a3_scenes::{Presentation, Surface};
 
 use super::Export;
 use super::geometry::{Geometry, positions};
@@ -11,8 +13,14 @@ use crate::failure::Failure;
 use crate::frames::Sequence;
 use crate::output;
 
+/// OBJ files in the making.
+pub struct Obj {
+    pub presentation: Arc<Presentation>,
+    pub files: Files,
+}
+
 /// One OBJ file of the final state, or a numbered file for each frame.
-pub enum Obj {
+pub enum Files {
     /// The file of the final state.
     One(PathBuf),
     /// The numbered files, and how many of them are written.
@@ -21,14 +29,16 @@ pub enum Obj {
 
 impl Export for Obj {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        let path = match self {
-            Self::One(path) => path.clone(),
-            Self::Many(sequence, count) => {
+        let path = match &mut self.files {
+            Files::One(path) => path.clone(),
+            Files::Many(sequence, count) => {
                 *count += 1;
                 sequence.file(*count - 1)
             }
         };
-        output::write_with(&path, |file| write(file, simulation))
+        output::write_with(&path, |file| {
+            write(file, &self.presentation.surface, simulation)
+        })
     }
 
     fn finish(self: Box<Self>) -> Result<(), Failure> {
@@ -37,8 +47,8 @@ impl Export for Obj {
 }
 
 /// Approximate size of a file (bytes).
-pub fn size(simulation: &Simulation) -> f64 {
-    let geometry = Geometry::of(simulation);
+pub fn size(surface: &Surface, simulation: &Simulation) -> f64 {
+    let geometry = Geometry::of(surface, simulation);
     let (vertices, normals) = (simulation.particles(), geometry.covered);
     let (faces, lines) = (geometry.triangles.len(), geometry.lines.len());
     36.0 * vertices as f64 + 37.0 * normals as f64 + 42.0 * faces as f64 + 16.0 * lines as f64
@@ -46,8 +56,8 @@ pub fn size(simulation: &Simulation) -> f64 {
 
 /// Writes the current state: `v` of all particles, `vn` and `f` of surfaces as far as they are not
 /// torn, and `l` and `p` of particles without a surface.
-pub fn write(file: &mut dyn Write, simulation: &Simulation) -> io::Result<()> {
-    let geometry = Geometry::of(simulation);
+pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io::Result<()> {
+    let geometry = Geometry::of(surface, simulation);
     let positions = positions(simulation);
     writeln!(file, "# a3: t = {} s, in m, y is up", simulation.time())?;
     writeln!(file, "o {}", simulation.scene().name)?;

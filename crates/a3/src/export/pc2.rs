@@ -8,8 +8,10 @@
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use a3_core::Simulation;
+use a3_scenes::Presentation;
 
 use super::Export;
 use super::geometry::positions;
@@ -22,6 +24,7 @@ use crate::output::{self, Draft};
 pub struct Pc2 {
     draft: Draft,
     mesh: Draft,
+    presentation: Arc<Presentation>,
     /// Whether the mesh is still to be written.
     first: bool,
     /// The names of the file and of its mesh.
@@ -35,7 +38,12 @@ pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
 
 impl Pc2 {
     /// A file for these frames of the simulation.
-    pub fn new(path: &Path, simulation: &Simulation, frames: FrameTimes) -> Result<Self, Failure> {
+    pub fn new(
+        path: &Path,
+        presentation: Arc<Presentation>,
+        simulation: &Simulation,
+        frames: FrameTimes,
+    ) -> Result<Self, Failure> {
         let mesh = path.with_extension("obj");
         output::check(&mesh, &["obj"])?;
         let mut draft = Draft::new(path)?;
@@ -43,6 +51,7 @@ impl Pc2 {
         Ok(Self {
             draft,
             mesh: Draft::new(&mesh)?,
+            presentation,
             first: true,
             names: (path.into(), mesh),
         })
@@ -62,7 +71,8 @@ fn header(file: &mut dyn Write, points: usize, samples: usize) -> io::Result<()>
 impl Export for Pc2 {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         if std::mem::take(&mut self.first) {
-            obj::write(&mut self.mesh, simulation).map_err(|e| self.mesh.failure(&e))?;
+            let surface = &self.presentation.surface;
+            obj::write(&mut self.mesh, surface, simulation).map_err(|e| self.mesh.failure(&e))?;
         }
         let written = rows(&mut self.draft, &positions(simulation));
         written.map_err(|e| self.draft.failure(&e))

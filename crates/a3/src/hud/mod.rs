@@ -78,9 +78,9 @@ mod tests {
     }
 
     pub fn pane(scene: &str, method: &str, step: f64) -> Pane {
-        let scene = a3_scenes::find(scene).unwrap().build(None).unwrap();
+        let setup = a3_scenes::find(scene).unwrap().build(None).unwrap();
         let method = integrators::find(method).unwrap();
-        let simulation = Simulation::new(scene, method, method.control(step)).unwrap();
-        Pane::new(simulation, Show::new(false, None))
+        let simulation = Simulation::new(setup.scene, method, method.control(step)).unwrap();
+        Pane::new(simulation, Show::new(setup.presentation, false, None))
     }
 }

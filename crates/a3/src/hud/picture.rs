@@ -7,7 +7,6 @@ use super::overlay::Overlay;
 use super::text;
 use crate::failure::Failure;
 use crate::session::{Pane, Readings};
-use crate::show;
 
 /// A picture of the panes as they are now, with the text if there are several: rows from the top,
 /// with four bytes for a pixel.
@@ -21,7 +20,7 @@ pub fn draw(
 ) -> Result<Vec<u8>, Failure> {
     let size = offscreen.size();
     let samples = gpu.samples(OFFSCREEN_FORMAT);
-    let topology = show::topology(&panes[0].simulation);
+    let topology = panes[0].topology();
     let mut renderer = Renderer::new(gpu, OFFSCREEN_FORMAT, samples, &topology);
     for (k, pane) in panes.iter_mut().enumerate() {
         // Each run tears in its own way.
@@ -32,7 +31,7 @@ pub fn draw(
                 .network()
                 .is_some_and(|n| n.tear_limit().is_some())
         {
-            renderer.set_topology_of(gpu, k, &show::topology(&pane.simulation));
+            renderer.set_topology_of(gpu, k, &pane.topology());
         }
         pane.show.compose(&pane.simulation);
     }

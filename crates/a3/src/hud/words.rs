@@ -22,7 +22,7 @@ pub fn digits(number: f64) -> String {
 /// The scene's name, and its grid if it has one.
 pub fn scene(simulation: &Simulation) -> String {
     let scene = simulation.scene();
-    let grid = scene.grid.map_or(String::new(), |grid| {
+    let grid = scene.grid().map_or(String::new(), |grid| {
         format!("  {} × {}", grid.rows(), grid.cols())
     });
     format!("{}{grid}", scene.name)

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use a3_core::{Grid, Method, Scene, integrators};
-use a3_scenes::Description;
+use a3_scenes::{Description, Setup};
 
 use super::files::{beside, read_text};
 use super::{listed, mesh};
@@ -65,7 +65,7 @@ impl Source {
     }
 
     /// Builds the scene, with this grid of its cloth or with its own.
-    pub fn build(&self, grid: Option<Grid>) -> Result<Scene, String> {
+    pub fn build(&self, grid: Option<Grid>) -> Result<Setup, String> {
         let mut mesh = |name: &str| {
             let file = beside(self.path.as_deref(), name)?;
             mesh::read(&file)

@@ -1,7 +1,8 @@
 //! The actions of keys on a session.
 
-use a3_core::{Error, Method, Scene, Simulation, integrators};
+use a3_core::{Error, Method, Simulation, integrators};
 use a3_render::Style;
+use a3_scenes::Setup;
 
 use super::clock::KEY_BUDGET;
 use super::keys::Action;
@@ -84,7 +85,7 @@ impl Session {
             },
             Action::LongerStep => self.set_steps(true),
             Action::ShorterStep => self.set_steps(false),
-            Action::Camera => self.camera = show::camera(self.first()),
+            Action::Camera => self.camera = self.panes[0].show.camera(),
             Action::Panel => self.panel.open = !self.panel.open,
             Action::WriteScene => match self.write_scene(at) {
                 Ok(name) => self.say(format!("wrote {name}")),
@@ -103,7 +104,7 @@ impl Session {
         let control = if method.is_adaptive() == run.method().is_adaptive() {
             run.control()
         } else {
-            run.scene().default_control(method)
+            self.defaults.control_of(method)
         };
         match pane.simulation.set_method(method, control) {
             Ok(()) => {
@@ -161,12 +162,12 @@ impl Session {
         } else {
             Source::find(name)
         };
-        let scene = source.and_then(|source| Ok((source.build(grid)?, source)));
-        match scene {
-            Ok((scene, source)) => {
+        let setup = source.and_then(|source| Ok((source.build(grid)?, source)));
+        match setup {
+            Ok((setup, source)) => {
                 self.shown = Origin { source, grid };
-                self.camera = show::camera_of(&scene);
-                self.set_scene(&scene);
+                self.camera = show::camera(&setup.presentation);
+                self.set_scene(&setup);
                 self.scene_number = next;
             }
             Err(why) => self.say(why),
@@ -179,7 +180,7 @@ impl Session {
     pub fn reload(&mut self) -> bool {
         let loaded = Source::find(&self.asked.source.typed);
         let loaded = loaded.and_then(|source| Ok((source.build(self.asked.grid)?, source)));
-        let (scene, source) = match loaded {
+        let (setup, source) = match loaded {
             Ok(loaded) => loaded,
             Err(why) => {
                 self.warn(why);
@@ -188,23 +189,23 @@ impl Session {
         };
         let (new, old) = (&source.description, &self.asked.source.description);
         if new.camera != old.camera {
-            self.camera = show::camera_of(&scene);
+            self.camera = show::camera(&setup.presentation);
         }
         let run = (new.solver != old.solver || new.step != old.step)
-            .then_some(scene.solver)
+            .then_some(setup.defaults.solver)
             .flatten();
         self.say(format!("loaded {} again", source.typed));
         self.asked.source = source;
         self.shown = self.asked.clone();
         self.scene_number = 0;
         let (windy, swinging) = (self.first().windy(), self.first().swinging());
-        self.set_scene(&scene);
+        self.set_scene(&setup);
         self.do_to_all(|run| {
             run.set_wind(windy);
             run.set_swinging(swinging);
         });
         if let Some(method) = run {
-            let control = scene.default_control(method);
+            let control = setup.defaults.control_of(method);
             for pane in &mut self.panes {
                 if let Err(why) = pane.simulation.set_method(method, control) {
                     self.readings.message = Some(why.to_string());
@@ -217,10 +218,11 @@ impl Session {
     }
 
     /// Begins another scene, with the same solvers and steps where they serve it.
-    fn set_scene(&mut self, scene: &Scene) {
+    fn set_scene(&mut self, setup: &Setup) {
         let mut said = None;
         let mut start = |pane: &Pane| {
-            let start = |method| Simulation::new(scene.clone(), method, pane.simulation.control());
+            let start =
+                |method| Simulation::new(setup.scene.clone(), method, pane.simulation.control());
             // Heun serves every scene.
             start(pane.wanted).or_else(|why| {
                 said = Some(format!("{why}: the explicit trapezoid steps in"));
@@ -230,9 +232,10 @@ impl Session {
         let simulations: Result<Vec<_>, Error> = self.panes.iter().map(&mut start).collect();
         match simulations {
             Ok(simulations) => {
-                self.tuning = Tuning::of(scene);
+                self.tuning = Tuning::of(setup.scene.clone());
+                self.defaults = setup.defaults;
                 for (pane, simulation) in self.panes.iter_mut().zip(simulations) {
-                    pane.set_simulation(simulation);
+                    pane.set_simulation(simulation, setup.presentation.clone());
                 }
                 // The panes could be built, so the reference can.
                 self.reference = ReferenceRun::new(&self.panes).ok().flatten();

@@ -133,7 +133,7 @@ mod tests {
         }
         // Euler's method is limited by slow motion without damping, of which the fastest motion
         // knows nothing.
-        let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         let euler = integrators::find("euler").unwrap();
         let mut run = Simulation::new(scene.clone(), euler, Control::Step(0.02)).unwrap();
         assert!(run.advance_to(10.0).is_err());
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn the_limit_follows_the_method_and_the_cloth() {
-        let scene = a3_scenes::find("mit").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("mit").unwrap().build(None).unwrap().scene;
         let method = |name| integrators::find(name).unwrap();
         let mut run = Simulation::new(scene, method("rk4"), Control::Step(0.01)).unwrap();
         let mut watch = LimitWatch::default();

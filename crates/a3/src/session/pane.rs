@@ -1,8 +1,11 @@
 //! A pane: one run of the session, and what is known of it.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use a3_core::{Method, Simulation};
+use a3_render::Topology;
+use a3_scenes::Presentation;
 
 use super::limit::LimitWatch;
 use super::samples::Samples;
@@ -63,6 +66,11 @@ impl Pane {
             counted: (simulation.time(), simulation.work().total(), Duration::ZERO),
             simulation,
         }
+    }
+
+    /// The triangles and wires of the surface.
+    pub fn topology(&self) -> Topology {
+        self.show.topology(&self.simulation)
     }
 
     /// Whether the run goes on: it is not lost.
@@ -162,11 +170,10 @@ impl Pane {
     }
 
     /// Goes on with another scene.
-    pub fn set_simulation(&mut self, simulation: Simulation) {
+    pub fn set_simulation(&mut self, simulation: Simulation, presentation: Arc<Presentation>) {
         self.simulation = simulation;
-        self.show.clear_trail();
+        self.show.set_presentation(presentation);
         self.samples.clear();
-        self.show.springs_of = None;
         (self.error, self.cost) = (None, None);
         self.limit = LimitWatch::default();
         self.restart_cost();

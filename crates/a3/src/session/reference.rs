@@ -162,11 +162,15 @@ mod tests {
 
     #[test]
     fn one_that_never_keeps_up_is_stopped_until_the_next_reset() {
-        let scene = a3_scenes::find("chain").unwrap().build(None).unwrap();
+        let setup = a3_scenes::find("chain").unwrap().build(None).unwrap();
         let pane = |method: &str| {
             let method = integrators::find(method).unwrap();
-            let simulation = Simulation::new(scene.clone(), method, Control::Step(0.01)).unwrap();
-            Pane::new(simulation, Show::new(false, None))
+            let simulation =
+                Simulation::new(setup.scene.clone(), method, Control::Step(0.01)).unwrap();
+            Pane::new(
+                simulation,
+                Show::new(setup.presentation.clone(), false, None),
+            )
         };
         assert!(ReferenceRun::new(&[pane("t")]).ok().unwrap().is_none());
         let go = |panes: &mut [Pane], time| {

@@ -87,7 +87,11 @@ mod tests {
 
     #[test]
     fn twenty_seconds_are_remembered_ten_times_a_second() {
-        let scene = a3_scenes::find("pendulum").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("pendulum")
+            .unwrap()
+            .build(None)
+            .unwrap()
+            .scene;
         let mut run =
             Simulation::new(scene, integrators::find("r").unwrap(), Control::Step(0.01)).unwrap();
         let mut kept = Samples::default();

@@ -108,20 +108,21 @@ mod tests {
     fn check(session: &Session, path: &Path) {
         let source = Source::find(path.to_str().unwrap()).unwrap();
         let run = session.first();
-        let scene = source.build(None).unwrap();
+        let setup = source.build(None).unwrap();
+        let (scene, defaults) = (setup.scene, setup.defaults);
         let name = &run.scene().name;
         assert_eq!(&scene.name, name);
         assert_eq!(
-            scene.solver.map(|solver| solver.name),
+            defaults.solver.map(|solver| solver.name),
             Some(run.method().name)
         );
-        assert_eq!(scene.control, Some(run.control()));
+        assert_eq!(defaults.control, Some(run.control()));
         let again = Simulation::new(scene, run.method(), run.control()).unwrap();
         assert_eq!(again.state(), run.state(), "{name}");
         for (a, b) in forces(run).into_iter().zip(forces(&again)) {
             assert!((a - b).abs() <= 1e-12 * a.abs().max(1.0), "{name}: {a} {b}");
         }
-        let eye = crate::show::camera_of(again.scene()).eye();
+        let eye = crate::show::camera(&setup.presentation).eye();
         assert!((eye - session.camera.eye()).norm() < 1e-4);
         let pins = |run: &Simulation| {
             let network = run.model().network();
@@ -186,7 +187,7 @@ mod tests {
             let text = std::fs::read_to_string(written(&session, folder.path())).unwrap();
             assert!(text.starts_with(&format!("# The scene {} as it was at t = ", entry.name)));
             let source = Source::find(folder.path().join("scene.toml").to_str().unwrap()).unwrap();
-            let scene = source.build(None).unwrap();
+            let scene = source.build(None).unwrap().scene;
             let network = scene.model.network();
             assert!(network.is_none_or(|network| !network.is_pinned(last)));
             session.release();
@@ -219,7 +220,7 @@ mod tests {
         let path = written(&session, folder.path());
         check(&session, &path);
         let again = Source::find(path.to_str().unwrap()).unwrap();
-        let again = again.build(None).unwrap();
+        let again = again.build(None).unwrap().scene;
         assert_eq!(again.model.network().unwrap().torn(), torn);
     }
 

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use a3_core::Simulation;
 use a3_render::Camera;
+use a3_scenes::{Defaults, Setup};
 
 use super::meter::Meter;
 use super::origin::Origin;
@@ -40,6 +41,8 @@ pub struct Session {
     pub readings: Readings,
     /// State of the panel.
     pub panel: PanelState,
+    /// How the scene is run unless one says otherwise.
+    pub defaults: Defaults,
     /// Changes that the panel made to the scene.
     pub tuning: Tuning,
     /// The scene that was asked for, to come back to.
@@ -63,24 +66,30 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session on these runs, at least one, of the scene from `origin`.
+    /// A session on these runs, at least one, of the scene from `origin`, which was built as `setup`.
     pub fn new(
         origin: Origin,
+        setup: Setup,
         simulations: Vec<Simulation>,
         beginning: &Beginning,
     ) -> Result<Self, Failure> {
         let panes: Vec<_> = simulations
             .into_iter()
-            .map(|run| Pane::new(run, Show::new(beginning.wireframe, beginning.springs_of)))
+            .map(|run| {
+                let presentation = setup.presentation.clone();
+                let show = Show::new(presentation, beginning.wireframe, beginning.springs_of);
+                Pane::new(run, show)
+            })
             .collect();
         Ok(Self {
-            camera: show::camera(&panes[0].simulation),
+            camera: show::camera(&setup.presentation),
             readings: Readings {
                 paused: beginning.paused,
                 ..Readings::default()
             },
             panel: PanelState::default(),
-            tuning: Tuning::of(panes[0].simulation.scene()),
+            defaults: setup.defaults,
+            tuning: Tuning::of(setup.scene),
             shown: origin.clone(),
             scene_number: a3_scenes::SCENES
                 .iter()

@@ -133,7 +133,7 @@ mod tests {
     fn run(rows: usize) -> Simulation {
         let entry = a3_scenes::find("cloth").unwrap();
         let grid = a3_core::Grid::new(rows, rows).unwrap();
-        let scene = entry.build(Some(grid)).unwrap();
+        let scene = entry.build(Some(grid)).unwrap().scene;
         Simulation::new(scene, integrators::find("t").unwrap(), Control::Step(0.01)).unwrap()
     }
 
@@ -168,7 +168,7 @@ mod tests {
 
     #[test]
     fn what_is_lost_has_no_moment() {
-        let scene = a3_scenes::find("mit").unwrap().build(None).unwrap();
+        let scene = a3_scenes::find("mit").unwrap().build(None).unwrap().scene;
         let mut run =
             Simulation::new(scene, integrators::find("e").unwrap(), Control::Step(0.05)).unwrap();
         let mut timeline = Timeline::default();

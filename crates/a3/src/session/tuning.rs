@@ -17,9 +17,9 @@ pub struct Tuning {
 
 impl Tuning {
     /// An untuned scene.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn of(scene: Scene) -> Self {
         Self {
-            own: scene.clone(),
+            own: scene,
             stiffness: 1.0,
             damping: 1.0,
             gusts: 1.0,

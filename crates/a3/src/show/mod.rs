@@ -12,7 +12,7 @@ mod view;
 mod wires;
 
 pub use obstacles::DRAWN_RADIUS;
-pub use parts::{topology, whole_triangles};
+pub use parts::whole_triangles;
 pub use picture::Show;
 pub use springs::{kind_name, list_springs_of, springs_of};
-pub use view::{camera, camera_of};
+pub use view::camera;

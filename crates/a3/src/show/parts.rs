@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
-use a3_core::{Network, Simulation, Spring, SpringKind, Surface};
+use a3_core::{Network, Simulation, Spring, SpringKind};
 use a3_render::{LOOKS, Topology};
+use a3_scenes::{Presentation, Surface};
 
 /// Parts that change only with the scene or when something tears.
 #[derive(Default)]
 pub struct Parts {
-    surface: Arc<Surface>,
+    presentation: Arc<Presentation>,
     /// Number of broken springs when the parts were found, once they were.
     tears: Option<usize>,
     /// Look of each body.
@@ -20,16 +21,16 @@ pub struct Parts {
 
 impl Parts {
     /// Finds the parts again if the scene is another one or something has torn.
-    pub fn update(&mut self, simulation: &Simulation) {
-        let (surface, tears) = (&simulation.scene().surface, Some(simulation.tears()));
-        let known = Arc::ptr_eq(surface, &self.surface);
+    pub fn update(&mut self, presentation: &Arc<Presentation>, simulation: &Simulation) {
+        let (surface, tears) = (&presentation.surface, Some(simulation.tears()));
+        let known = Arc::ptr_eq(presentation, &self.presentation);
         if known && tears == self.tears {
             return;
         }
         if !known || self.tears.is_none() {
             self.looks = looks(surface);
         }
-        (self.surface, self.tears) = (surface.clone(), tears);
+        (self.presentation, self.tears) = (presentation.clone(), tears);
         let springs = springs(simulation);
         self.loose = springs.filter(|s| body(surface, s).is_none()).collect();
     }
@@ -42,7 +43,7 @@ impl Parts {
     /// Gives each particle of a body its look.
     pub fn paint(&self, points: &mut [[f32; 4]]) {
         let mut start = 0;
-        for (look, &end) in self.looks.iter().zip(&self.surface.bodies) {
+        for (look, &end) in self.looks.iter().zip(&self.presentation.surface.bodies) {
             for point in &mut points[start..end] {
                 point[3] = *look;
             }
@@ -90,8 +91,7 @@ fn springs(simulation: &Simulation) -> impl Iterator<Item = Spring> {
 
 /// Triangles and wires, which stay the same from frame to frame until something tears. Parts
 /// without a surface are drawn by balls and coils instead.
-pub fn topology(simulation: &Simulation) -> Topology {
-    let surface = &simulation.scene().surface;
+pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
     Topology {
         points: simulation.particles(),
         triangles: whole_triangles(simulation).collect(),
@@ -104,11 +104,10 @@ pub fn topology(simulation: &Simulation) -> Topology {
 
 /// The triangles of the surface that are not torn.
 pub fn whole_triangles(simulation: &Simulation) -> impl Iterator<Item = [u32; 3]> {
-    let torn = simulation.model().network().filter(|n| n.tears() > 0);
-    let triangles = simulation.scene().surface.triangles.iter().copied();
-    triangles.filter(move |corners| {
-        torn.is_none_or(|network| network.is_whole(corners.map(|i| i as usize)))
-    })
+    let network = simulation.model().network();
+    network
+        .into_iter()
+        .flat_map(|network| network.triangles().iter().copied())
 }
 
 #[cfg(test)]
@@ -116,16 +115,18 @@ mod tests {
     use super::*;
     use a3_core::{Control, integrators};
 
-    fn run(scene: &str) -> Simulation {
-        let scene = a3_scenes::find(scene).unwrap().build(None).unwrap();
-        Simulation::new(scene, integrators::find("t").unwrap(), Control::Step(0.01)).unwrap()
+    fn run(scene: &str) -> (Simulation, Arc<Presentation>) {
+        let setup = a3_scenes::find(scene).unwrap().build(None).unwrap();
+        let (method, control) = (integrators::find("t").unwrap(), Control::Step(0.01));
+        let simulation = Simulation::new(setup.scene, method, control).unwrap();
+        (simulation, setup.presentation)
     }
 
     #[test]
     fn cloth_is_red_and_jelly_is_green() {
         for (scene, look, loose) in [("cloth", 0.0, 0), ("jelly", 4.0, 0), ("chain", 0.0, 3)] {
-            let (simulation, mut parts) = (run(scene), Parts::default());
-            parts.update(&simulation);
+            let ((simulation, presentation), mut parts) = (run(scene), Parts::default());
+            parts.update(&presentation, &simulation);
             let mut points = vec![[0.0; 4]; simulation.particles()];
             parts.paint(&mut points);
             assert!(points.iter().all(|p| p[3] == look), "{scene}");
@@ -155,6 +156,7 @@ mod tests {
             i,
             j,
             ..run("chain")
+                .0
                 .model()
                 .network()
                 .unwrap()

@@ -1,15 +1,18 @@
 //! A run as a picture: balls, lines and triangles from particles, springs and obstacles.
 
+use std::sync::Arc;
+
 use a3_core::{Network, Simulation, SpringKind, Vector3};
-use a3_render::{Ball, Camera, Line, Picture, Solid, Style};
+use a3_render::{Ball, Camera, Line, Picture, Solid, Style, Topology};
+use a3_scenes::Presentation;
 
 use super::coil::coil;
 use super::colours::{ALARM, AMBER, INK, RED, STEEL, TEAL, VIOLET};
-use super::parts::Parts;
+use super::parts::{self, Parts};
 use super::springs::springs_of;
 use super::trail::Trail;
 use super::vectors::to_f32;
-use super::{obstacles, wires};
+use super::{obstacles, view, wires};
 
 /// The most springs or particles without a surface that are drawn as coils and balls. More of them
 /// are drawn as lines and small balls: a coil is 170 lines.
@@ -20,6 +23,8 @@ const STRONG: f64 = 0.5;
 
 /// How a run is shown, and the buffers of its picture.
 pub struct Show {
+    /// What of the scene is shown, and from where.
+    presentation: Arc<Presentation>,
     /// Surface or wires.
     pub style: Style,
     /// The particle whose springs are highlighted.
@@ -40,8 +45,13 @@ pub struct Show {
 
 impl Show {
     /// Surfaces or wires, with the springs of one particle highlighted or of none.
-    pub fn new(wireframe: bool, springs_of: Option<usize>) -> Self {
+    pub fn new(
+        presentation: Arc<Presentation>,
+        wireframe: bool,
+        springs_of: Option<usize>,
+    ) -> Self {
         Self {
+            presentation,
             style: if wireframe {
                 Style::Wireframe
             } else {
@@ -60,6 +70,28 @@ impl Show {
         }
     }
 
+    /// Shows another scene in the same way.
+    pub fn set_presentation(&mut self, presentation: Arc<Presentation>) {
+        self.presentation = presentation;
+        self.springs_of = None;
+        self.clear_trail();
+    }
+
+    /// The camera that the scene is first seen by.
+    pub fn camera(&self) -> Camera {
+        view::camera(&self.presentation)
+    }
+
+    /// Whether the scene has a surface.
+    pub fn has_surface(&self) -> bool {
+        !self.presentation.surface.triangles.is_empty()
+    }
+
+    /// Triangles and wires, which stay the same from frame to frame until something tears.
+    pub fn topology(&self, simulation: &Simulation) -> Topology {
+        parts::topology(&self.presentation.surface, simulation)
+    }
+
     /// Forgets the trail.
     pub fn clear_trail(&mut self) {
         self.trail.clear();
@@ -73,7 +105,7 @@ impl Show {
 
     /// Continues the trail to where the trailing particle is.
     pub fn follow(&mut self, simulation: &Simulation) {
-        if let Some(i) = simulation.scene().trail {
+        if let Some(i) = self.presentation.trail {
             let point = to_f32(simulation.position(i));
             self.trail.add(simulation.time(), point);
         }
@@ -91,13 +123,13 @@ impl Show {
                 .zip(z)
                 .map(|((x, y), z)| [*x as f32, *y as f32, *z as f32, 0.0]),
         );
-        self.parts.update(simulation);
+        self.parts.update(&self.presentation, simulation);
         self.parts.paint(&mut self.points);
         self.balls.clear();
         self.solids.clear();
         self.lines.clear();
         self.floor = None;
-        if simulation.scene().trail.is_some() {
+        if self.presentation.trail.is_some() {
             self.lines.extend(self.trail.lines(simulation.time(), TEAL));
         }
         self.draw_parts(simulation);
@@ -148,7 +180,7 @@ impl Show {
     /// balls where there are many. Of bodies with a surface it draws the pins.
     fn draw_parts(&mut self, simulation: &Simulation) {
         let network = simulation.model().network();
-        let covered = simulation.scene().surface.particles();
+        let covered = self.presentation.surface.particles();
         for (i, _) in network.into_iter().flat_map(Network::pins) {
             if i < covered {
                 self.ball(i, 0.032, INK);

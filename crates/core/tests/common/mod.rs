@@ -12,7 +12,7 @@ pub fn method(name: &str) -> &'static Method {
 }
 
 pub fn scene(name: &str) -> Scene {
-    a3_scenes::find(name).unwrap().build(None).unwrap()
+    a3_scenes::find(name).unwrap().build(None).unwrap().scene
 }
 
 /// That of a scene file's text.
@@ -20,6 +20,7 @@ pub fn described(text: &str) -> Scene {
     a3_scenes::Description::parse(text)
         .and_then(|d| d.build(None, &mut |_| Err("no mesh".into())))
         .unwrap()
+        .scene
 }
 
 pub fn scene_with_grid(name: &str, rows: usize, cols: usize) -> Scene {
@@ -27,6 +28,7 @@ pub fn scene_with_grid(name: &str, rows: usize, cols: usize) -> Scene {
         .unwrap()
         .build(Some(Grid::new(rows, cols).unwrap()))
         .unwrap()
+        .scene
 }
 
 /// A run of a built-in scene: in steps of `value` (s), or to that tolerance with an adaptive method.

@@ -60,7 +60,7 @@ fn references_agree_with_themselves() {
         .iter()
         .filter(|entry| entry.name != "flag")
     {
-        let scene = entry.build(None).unwrap();
+        let scene = entry.build(None).unwrap().scene;
         let horizon = horizon(&scene, GO_ON).unwrap().unwrap();
         let reference = reference(&scene, horizon.until);
         println!(
@@ -159,7 +159,7 @@ fn the_choice_is_the_best() {
     // A search of all methods on the jelly and in the air takes minutes.
     let entries = a3_scenes::SCENES.iter();
     for entry in entries.filter(|entry| !["flag", "jelly"].contains(&entry.name)) {
-        let scene = entry.build(None).unwrap();
+        let scene = entry.build(None).unwrap().scene;
         let horizon = horizon(&scene, GO_ON).unwrap().unwrap();
         let reference = reference(&scene, horizon.until.min(1.0));
         let mut runs: Vec<(f64, f64)> = vec![];

@@ -175,10 +175,7 @@ fn falling(side: usize, omega: f64) -> Scene {
         network.pin(corner, Path::Still(at)).unwrap();
     }
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
-    Scene {
-        grid: Some(grid),
-        ..Scene::new("falling", Model::Network(Box::new(network)), state)
-    }
+    Scene::new("falling", Model::Network(Box::new(network)), state)
 }
 
 #[test]

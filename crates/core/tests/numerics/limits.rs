@@ -222,7 +222,7 @@ fn the_circle_has_one_mode() {
 #[test]
 fn a_scene_of_any_shape_has_a_spectrum() {
     for entry in a3_scenes::SCENES {
-        let scene = entry.build(None).unwrap();
+        let scene = entry.build(None).unwrap().scene;
         let modes = spectrum(scene.model.system(), 0.0, &scene.state);
         assert!(!modes.is_empty(), "{}", entry.name);
         for m in integrators::METHODS {

@@ -24,7 +24,7 @@ fn shaken(state: &[f64], by: f64) -> Vec<f64> {
 
 fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
     let of_scenes = a3_scenes::SCENES.iter().filter_map(|entry| {
-        let scene = entry.build(None).unwrap();
+        let scene = entry.build(None).unwrap().scene;
         let Model::Network(mut network) = scene.model else {
             return None;
         };
@@ -37,7 +37,7 @@ fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
     });
     let buckling = (0..2).map(|k| {
         let scene = scene_with_grid("cloth", 6, 7);
-        let grid = scene.grid.unwrap();
+        let grid = scene.grid().unwrap();
         let mut network = Network::new(vec![0.02; grid.particles()]).unwrap();
         for row in 0..6 {
             for col in 0..5 {
@@ -63,7 +63,7 @@ fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
         let scene = scene_with_grid(name, 6, 7);
         let mut network = scene.model.network().unwrap().clone();
         network
-            .set_triangles(scene.grid.unwrap().triangles())
+            .set_triangles(scene.grid().unwrap().triangles())
             .unwrap();
         let air = Air::new(1.2, 1.1, 0.7).unwrap();
         let wind = Wind::on_triangles(3, Vector3::new(1.0, 0.5, 4.0), air);
@@ -75,7 +75,7 @@ fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
 #[test]
 fn evaluating_twice_gives_the_same_bits() {
     for entry in a3_scenes::SCENES {
-        let scene = entry.build(None).unwrap();
+        let scene = entry.build(None).unwrap().scene;
         let system = scene.model.system();
         let y = shaken(&scene.state, 0.1);
         let mut a = vec![f64::NAN; y.len()];

@@ -175,7 +175,7 @@ fn cloth_pulled_by_a_hand_tears_stays_finite_and_is_mended_by_a_reset() {
         assert_eq!(network.springs().count() + tears, all);
         assert!(network.springs().all(|s| !network.is_torn(s.i, s.j)));
         let triangles = network.triangles();
-        let grid = run.scene().grid.unwrap();
+        let grid = run.scene().grid().unwrap();
         let whole: Vec<_> = grid.triangles().filter(|t| network.is_whole(*t)).collect();
         assert!(triangles.len() < 2 * 19 * 19 - 5);
         assert!(triangles.iter().map(|t| t.map(|i| i as usize)).eq(whole));

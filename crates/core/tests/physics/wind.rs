@@ -150,12 +150,11 @@ fn gusts_are_felt_where_the_triangle_is() {
 /// The cloth, let go of, in air.
 fn flying(wind: &Wind) -> Scene {
     let mut scene = scene_with_grid("cloth", 9, 11);
+    let grid = scene.grid().unwrap();
     let Model::Network(network) = &mut scene.model else {
         panic!("masses and springs")
     };
-    network
-        .set_triangles(scene.grid.unwrap().triangles())
-        .unwrap();
+    network.set_triangles(grid.triangles()).unwrap();
     scene.wind = Some(*wind);
     scene
 }
@@ -163,10 +162,10 @@ fn flying(wind: &Wind) -> Scene {
 #[test]
 fn still_air_slows_what_moves_and_never_drives_it() {
     let mut scene = flying(&calm(DRAG, 0.0));
+    let grid = scene.grid().unwrap();
     let Model::Network(network) = &mut scene.model else {
         panic!("masses and springs")
     };
-    let grid = scene.grid.unwrap();
     let n = grid.particles();
     let mut free = Network::new(network.masses().to_vec()).unwrap();
     free.set_sheet(*network.sheet().unwrap()).unwrap();
@@ -291,7 +290,7 @@ fn air_and_triangles_that_make_no_sense_are_refused() {
 
 #[test]
 fn without_triangles_there_is_nothing_to_blow_on() {
-    let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap();
+    let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
     let mut network = scene.model.network().unwrap().clone();
     let n = network.particles();
     let (x, v) = scene.state.split_at(3 * n);

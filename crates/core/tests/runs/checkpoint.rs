@@ -102,10 +102,15 @@ const HANDS: &[Act] = &[
 #[test]
 fn every_scene_goes_on_by_every_method() {
     for entry in a3_scenes::SCENES {
-        let scene = entry.build(None).unwrap();
+        let setup = entry.build(None).unwrap();
         for method in METHODS {
-            if method.check(scene.model.system()).is_ok() {
-                check(&scene, method, scene.default_control(method), HANDS);
+            if method.check(setup.scene.model.system()).is_ok() {
+                check(
+                    &setup.scene,
+                    method,
+                    setup.defaults.control_of(method),
+                    HANDS,
+                );
             }
         }
     }

@@ -16,11 +16,12 @@ fn lattice(grid: [usize; 3]) -> Scene {
         .unwrap()
         .build(None, none)
         .unwrap()
+        .scene
 }
 
 /// Six times the volume within a surface is the sum of a . (b x c) over its triangles.
 fn volume(run: &Simulation) -> f64 {
-    let triangles = run.scene().surface.triangles.iter();
+    let triangles = run.model().network().unwrap().triangles().iter();
     let spat = triangles.map(|t| {
         let [a, b, c] = t.map(|i| run.position(i as usize));
         a.dot(&b.cross(&c))
@@ -71,7 +72,7 @@ fn springs_are_at_rest_at_first() {
 fn the_skin_is_closed_and_faces_outwards() {
     let scene = lattice([3, 4, 5]);
     let mut edges = BTreeMap::new();
-    for &[a, b, c] in &scene.surface.triangles {
+    for &[a, b, c] in scene.model.network().unwrap().triangles() {
         for edge in [[a, b], [b, c], [c, a]] {
             *edges.entry(edge).or_insert(0) += 1;
         }

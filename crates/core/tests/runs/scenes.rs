@@ -32,7 +32,7 @@ fn cloth_springs_are_counted_by_kind() {
 fn cloth_springs_join_the_right_particles() {
     let (rows, cols) = (4, 6);
     let scene = scene_with_grid("mit", rows, cols);
-    let grid = scene.grid.unwrap();
+    let grid = scene.grid().unwrap();
     let place = |k: usize| (k / cols, k % cols);
     for spring in scene.model.network().unwrap().springs() {
         let ((i, j), (k, l)) = (place(spring.i), place(spring.j));
@@ -69,7 +69,7 @@ fn grids_that_make_no_sense_are_refused() {
 fn default_controls_hold_everywhere() {
     for entry in a3_scenes::SCENES {
         for method in integrators::METHODS {
-            let scene = entry.build(None).unwrap();
+            let scene = entry.build(None).unwrap().scene;
             let serves = method.check(scene.model.system()).is_ok();
             let run = Simulation::new(scene, method, method.default_control);
             assert_eq!(run.is_ok(), serves);
@@ -95,12 +95,13 @@ fn default_controls_hold_everywhere() {
 fn default_controls_hold_on_other_grids() {
     for (rows, cols) in [(8, 8), (40, 40), (60, 20), (20, 60)] {
         for method in integrators::METHODS {
-            let scene = scene_with_grid("cloth", rows, cols);
+            let grid = Grid::new(rows, cols).unwrap();
+            let setup = a3_scenes::find("cloth").unwrap().build(Some(grid)).unwrap();
             let control = match method.default_control {
-                Control::Step(step) => Control::Step(step * scene.step_scale),
+                Control::Step(step) => Control::Step(step * setup.defaults.step_scale),
                 Control::Tolerance(_) => method.default_control,
             };
-            let mut run = Simulation::new(scene, method, control).unwrap();
+            let mut run = Simulation::new(setup.scene, method, control).unwrap();
             run.advance_to(2.0)
                 .unwrap_or_else(|e| panic!("{} on {rows}x{cols}: {e}", method.name));
             assert!(

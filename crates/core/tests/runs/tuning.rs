@@ -153,7 +153,7 @@ fn pins_are_freed_and_hold_again_where_they_are() {
 fn a_run_goes_on_from_its_description() {
     for entry in a3_scenes::SCENES {
         let (stiffness, damping, gusts) = (1.7, 0.6, 1.3);
-        let mut run = start(entry.build(None).unwrap(), "rk4", 0.005);
+        let mut run = start(entry.build(None).unwrap().scene, "rk4", 0.005);
         run.adjust(|network| {
             network.scale_springs(stiffness, damping).unwrap();
             network.set_gravity(Vector3::new(0.1, -7.0, 0.0));
@@ -186,7 +186,7 @@ fn a_run_goes_on_from_its_description() {
         let text = description.to_toml().unwrap();
         let read = Description::parse(&text).unwrap();
         assert_eq!(read, description, "{}", entry.name);
-        let scene = read.build(None, &mut |_| Err("none".into())).unwrap();
+        let scene = read.build(None, &mut |_| Err("none".into())).unwrap().scene;
         let mut again = start(scene, "rk4", 0.005);
 
         assert_eq!(again.state(), run.state(), "{}", entry.name);
@@ -215,7 +215,8 @@ fn what_was_freed_is_described_as_free() {
     description.begin_with(run.model(), &run.moment());
     let scene = description
         .build(None, &mut |_| Err("none".into()))
-        .unwrap();
+        .unwrap()
+        .scene;
     assert_eq!(scene.model.network().unwrap().pins().count(), 0);
 }
 
@@ -230,6 +231,7 @@ fn paths_go_on_from_where_they_are() {
         description
             .build(None, &mut |_| Err("none".into()))
             .unwrap()
+            .scene
     };
     let description = Description::parse(text).unwrap();
     for time in [0.2, 1.0, 2.0] {
@@ -269,12 +271,20 @@ buckling = { bending = 0.0001, compression = 10 }
 ";
     let no_files = &mut |_: &str| Err(String::new());
     let mut description = Description::parse(text).unwrap();
-    let mut run = start(description.build(None, no_files).unwrap(), "rk4", 0.01);
+    let mut run = start(
+        description.build(None, no_files).unwrap().scene,
+        "rk4",
+        0.01,
+    );
     run.adjust(|network| network.scale_springs(3.0, 1.0).unwrap());
     run.advance_to(1.5).unwrap();
     description.scale_springs(3.0, 1.0);
     description.begin_with(run.model(), &run.moment());
-    let again = start(description.build(None, no_files).unwrap(), "rk4", 0.01);
+    let again = start(
+        description.build(None, no_files).unwrap().scene,
+        "rk4",
+        0.01,
+    );
     let (now, then) = (network(&run), network(&again));
     for later in [0.0, 0.7, 9.0] {
         let paths = |network: &Network, t: f64| {

@@ -1,11 +1,12 @@
 //! Assembly of the bodies of a scene: their particles, numbered through, and what joins them.
 
 use a3_core::elements::{Buckling, Sheet};
-use a3_core::{Constraint, Grid, MAX_PARTICLES, Path, Spring, Surface, Vector3};
+use a3_core::{Constraint, MAX_PARTICLES, Path, Spring, Vector3};
 
 use super::pins::pins;
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
+use crate::surface::Surface;
 
 /// Largest number of springs that belong to no grid.
 const MAX_SPRINGS: usize = 1 << 23;
@@ -39,8 +40,6 @@ pub(super) struct Assembly {
     pub velocities: Vec<Vector3<f64>>,
     /// Springs of the first cloth.
     pub sheet: Option<Sheet>,
-    /// Grid of the first cloth.
-    pub grid: Option<Grid>,
     pub surface: Surface,
     pub springs: Vec<Spring>,
     pub strips: Vec<Buckling>,

@@ -108,7 +108,7 @@ impl Body for Cloth {
         assembly.add_surface(first, grid.triangles().map(|t| t.map(|i| i as u32)));
         assembly.add_strips(first, strips);
         if first == 0 {
-            (assembly.sheet, assembly.grid) = (Some(sheet), Some(grid));
+            assembly.sheet = Some(sheet);
         } else {
             assembly.add_springs(first, sheet.springs());
         }

@@ -17,12 +17,14 @@ mod state;
 
 use std::sync::Arc;
 
-use a3_core::{Grid, Model, Scene, Surface, Swing, View, integrators};
+use a3_core::{Grid, Model, Scene, Swing, integrators};
 
 use crate::check::{at, at_least, number, positive, vector};
 use crate::description::Description;
 use crate::fault::Fault;
 use crate::mesh::Mesh;
+use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
+use crate::surface::Surface;
 use circle::Circling;
 use network::NetworkParts;
 
@@ -36,7 +38,7 @@ impl Description {
         &self,
         grid: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
-    ) -> Result<Scene, Fault> {
+    ) -> Result<Setup, Fault> {
         let Some(grid) = grid else {
             return self.assemble(mesh);
         };
@@ -54,35 +56,35 @@ impl Description {
         let mut other = self.clone();
         other.cloth[0].grid = [grid.rows(), grid.cols()];
         let spacing = other.cloth[0].checked_spacing().map_err(in_cloth)?;
-        let mut scene = other.assemble(mesh)?;
-        scene.step_scale = (spacing / own_spacing).min(1.0);
+        let mut setup = other.assemble(mesh)?;
+        setup.defaults.step_scale = (spacing / own_spacing).min(1.0);
         // A larger cloth is seen from farther away, in proportion.
         if let Ok(own) = self.assemble(mesh) {
-            let (was, small) = own.extent();
-            let (is, large) = scene.extent();
+            let (was, small) = own.scene.extent();
+            let (is, large) = setup.scene.extent();
             let zoom = (large / small).max(1.0);
-            for point in [&mut scene.view.eye, &mut scene.view.target] {
+            let Viewpoint { eye, target } = &mut Arc::make_mut(&mut setup.presentation).viewpoint;
+            for point in [eye, target] {
                 *point = is + (*point - was) * zoom;
             }
         }
-        Ok(scene)
+        Ok(setup)
     }
 
-    fn assemble(&self, mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>) -> Result<Scene, Fault> {
-        let (model, mut state, surface, grid) = match &self.circle {
+    fn assemble(&self, mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>) -> Result<Setup, Fault> {
+        let (model, mut state, surface) = match &self.circle {
             Some(circle) => {
                 let start = vector("circle.start", circle.start)?;
                 let model = Model::FirstOrder(Arc::new(Circling));
-                (model, start.as_slice().to_vec(), Surface::default(), None)
+                (model, start.as_slice().to_vec(), Surface::default())
             }
             None => {
                 let NetworkParts {
                     network,
                     state,
                     surface,
-                    grid,
                 } = network::build(self, mesh)?;
-                (Model::Network(Box::new(network)), state, surface, grid)
+                (Model::Network(Box::new(network)), state, surface)
             }
         };
         if self.circle.is_some() && network::bodies(self) > 0 {
@@ -99,16 +101,11 @@ impl Description {
             return Err(Fault::no_particle("trail", trail, n));
         }
         let mut scene = Scene::new(self.name.clone().unwrap_or_default(), model, state);
-        (scene.grid, scene.surface, scene.trail) = (grid, surface.into(), self.trail);
-        if let Some(camera) = &self.camera {
-            scene.view = View {
-                eye: vector("camera.eye", camera.eye)?,
-                target: vector("camera.target", camera.target)?,
-            };
-            if scene.view.eye == scene.view.target {
-                return Err(Fault::new("camera.eye", "it must not be at the target"));
-            }
-        }
+        let presentation = Presentation {
+            viewpoint: self.viewpoint(&scene)?,
+            surface,
+            trail: self.trail,
+        };
         if let Some(reach) = self.reach {
             at("reach", at_least(1.0, "it", reach))?;
             scene.reach = reach;
@@ -125,13 +122,29 @@ impl Description {
                 network.set_wind(scene.wind);
             }
         }
-        self.set_defaults(&mut scene)?;
-        Ok(scene)
+        Ok(Setup {
+            scene,
+            presentation: Arc::new(presentation),
+            defaults: self.defaults()?,
+        })
     }
 
-    /// Sets the solver, its control and the duration.
-    fn set_defaults(&self, scene: &mut Scene) -> Result<(), Fault> {
-        scene.solver = match self.solver.as_deref() {
+    /// The camera of the description, or else one that sees the whole scene.
+    fn viewpoint(&self, scene: &Scene) -> Result<Viewpoint, Fault> {
+        let Some(camera) = &self.camera else {
+            return Ok(Viewpoint::of(scene));
+        };
+        let eye = vector("camera.eye", camera.eye)?;
+        let target = vector("camera.target", camera.target)?;
+        if eye == target {
+            return Err(Fault::new("camera.eye", "it must not be at the target"));
+        }
+        Ok(Viewpoint { eye, target })
+    }
+
+    /// The solver, its control and the duration.
+    fn defaults(&self) -> Result<Defaults, Fault> {
+        let solver = match self.solver.as_deref() {
             None => None,
             Some(name) => Some(integrators::find(name).ok_or_else(|| {
                 let names: Vec<_> = integrators::METHODS.iter().map(|m| m.name).collect();
@@ -149,9 +162,12 @@ impl Description {
         if self.step.is_some() && self.solver.is_none() {
             return Err(Fault::new("step", "a step also needs the key `solver`"));
         }
-        let own = scene.solver.zip(self.step);
-        scene.control = own.map(|(solver, step)| solver.control(step));
-        scene.duration = self.duration;
-        Ok(())
+        let own = solver.zip(self.step);
+        Ok(Defaults {
+            solver,
+            control: own.map(|(solver, step)| solver.control(step)),
+            duration: self.duration,
+            ..Defaults::default()
+        })
     }
 }

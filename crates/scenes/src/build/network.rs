@@ -1,6 +1,6 @@
 //! The network of a description: bodies, pins, constraints, forces and obstacles.
 
-use a3_core::{Grid, Network, Surface, Vector3};
+use a3_core::{Network, Vector3};
 
 use super::assembly::{Assembly, Body};
 use super::mesh_cloth::LoadedMesh;
@@ -9,14 +9,13 @@ use crate::check::{at, key_of};
 use crate::description::Description;
 use crate::fault::Fault;
 use crate::mesh::Mesh;
+use crate::surface::Surface;
 
 /// A network with the state it starts from, and what of it is drawn as a surface.
 pub(super) struct NetworkParts {
     pub network: Network,
     pub state: Vec<f64>,
     pub surface: Surface,
-    /// Grid of the first cloth.
-    pub grid: Option<Grid>,
 }
 
 /// Number of bodies, without the circle.
@@ -71,7 +70,6 @@ pub(super) fn build(
         network,
         state,
         surface: assembly.surface,
-        grid: assembly.grid,
     })
 }
 

@@ -1,8 +1,9 @@
 //! Built-in scenes: files like those that users write, in one table.
 
-use a3_core::{Error, Grid, Scene};
+use a3_core::{Error, Grid};
 
 use crate::description::Description;
+use crate::setup::Setup;
 
 /// Built-in scene.
 #[derive(Debug)]
@@ -26,7 +27,7 @@ impl SceneEntry {
     ///
     /// # Errors
     /// The scene has no grid, and one is given.
-    pub fn build(&self, grid: Option<Grid>) -> Result<Scene, Error> {
+    pub fn build(&self, grid: Option<Grid>) -> Result<Setup, Error> {
         let no_files = &mut |name: &str| Err(format!("{name}: built-in scenes have no files"));
         Ok(self.description()?.build(grid, no_files)?)
     }

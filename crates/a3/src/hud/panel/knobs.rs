@@ -146,7 +146,7 @@ pub static KNOBS: &[Knob] = &[
     knob(
         "wires",
         |session, _| {
-            let drawn = !session.first().scene().surface.triangles.is_empty();
+            let drawn = session.panes[0].show.has_surface();
             let wires = session.panes[0].show.style == Style::Wireframe;
             drawn.then(|| switch(wires, false))
         },

@@ -65,7 +65,7 @@ pub fn step(session: &Session, at: usize) -> Option<Dial> {
     };
     Some(Dial {
         value: run.control().value(),
-        own: session.tuning.own.default_control(run.method()).value(),
+        own: session.defaults.control_of(run.method()).value(),
         scale: DialScale::Log { from, to },
         words,
     })

@@ -36,7 +36,7 @@ fn write(folder: &Path, scene: &str, output: &str, more: &[&str]) -> String {
 
 /// The same run by the library, at the times of its frames.
 fn run(scene: &str, mut frame: impl FnMut(usize, &Simulation)) {
-    let scene = a3_scenes::find(scene).unwrap().build(None).unwrap();
+    let scene = a3_scenes::find(scene).unwrap().build(None).unwrap().scene;
     let method = integrators::find("r").unwrap();
     let mut simulation = Simulation::new(scene, method, Control::Step(0.007)).unwrap();
     for k in 0..COUNT {
@@ -60,7 +60,8 @@ fn positions(simulation: &Simulation) -> Vec<[f32; 3]> {
 }
 
 fn triangles(simulation: &Simulation) -> Vec<[u32; 3]> {
-    simulation.scene().surface.triangles.clone()
+    let network = simulation.scene().model.network();
+    network.map_or(vec![], |network| network.triangles().to_vec())
 }
 
 /// Normals by the textbook: cross products of two sides, which are as long as the areas, summed over the triangles around.
