@@ -1,0 +1,92 @@
+//! Blow-ups: how a lost run is noticed, and what it goes back to.
+
+use std::ops::Range;
+
+use super::{Checkpoint, Simulation};
+use crate::error::{BlowUp, Cause, Error};
+
+/// Distance from the scene's middle, in its radii, at which a particle is lost.
+const LOST: f64 = 100.0;
+
+/// Distance, in radii, within which all particles of a state are that one goes back to: still a picture of the scene.
+const GOOD: f64 = 3.0;
+
+impl Simulation {
+    /// The cause of a blow-up, if a particle of y is lost.
+    pub(super) fn lost(&self, y: &[f64]) -> Option<Cause> {
+        self.beyond(LOST, y)
+    }
+
+    /// Remembers the state if it is in shape.
+    ///
+    /// # Errors
+    /// The run blew up earlier.
+    pub(super) fn keep(&mut self) -> Result<(), Error> {
+        if let Some(blow_up) = self.blow_up {
+            return Err(blow_up.into());
+        }
+        if self.beyond(GOOD, &self.y).is_none() {
+            self.keep_good();
+        }
+        Ok(())
+    }
+
+    /// Counts a step that ends at `time` (s). After a blow-up, goes back to the last state in shape.
+    pub(super) fn judge(&mut self, cause: Option<Cause>, time: f64) -> Result<(), Error> {
+        self.steps += 1;
+        let Some(cause) = cause else { return Ok(()) };
+        let blow_up = BlowUp {
+            method: self.method.title,
+            control: self.control,
+            step: self.steps,
+            time,
+            cause,
+        };
+        self.blow_up = Some(blow_up);
+        let good = std::mem::replace(&mut self.good, Checkpoint::empty(self.method, self.control));
+        let result = self.go_back(&good);
+        self.good = good;
+        result.and(Err(blow_up.into()))
+    }
+
+    /// The first particle that is farther than this many radii from the middle, or not finite, if there is one.
+    fn beyond(&self, radii: f64, y: &[f64]) -> Option<Cause> {
+        let n = self.particles();
+        let (x, v) = y.split_at(3 * n);
+        let c = self.middle;
+        let limit = (radii * self.radius).powi(2);
+        let squared = |i: usize| {
+            (x[i] - c.x).powi(2) + (x[n + i] - c.y).powi(2) + (x[2 * n + i] - c.z).powi(2)
+        };
+        // By blocks without a branch inside. Written so that NaN, which compares as false, is lost too.
+        let near = |block: Range<usize>| block.fold(true, |near, i| near & (squared(i) <= limit));
+        if !(0..n)
+            .step_by(64)
+            .all(|start| near(start..n.min(start + 64)))
+        {
+            let particle = (0..n).find(|&i| !near(i..i + 1))?;
+            let distance = squared(particle).sqrt();
+            return Some(if distance.is_finite() {
+                Cause::Away { particle, distance }
+            } else {
+                Cause::NotFinite { particle }
+            });
+        }
+        // Multiplying by zero leaves zero, unless the number is not finite.
+        if v.iter().map(|v| v * 0.0).sum::<f64>() == 0.0 {
+            return None;
+        }
+        v.iter()
+            .position(|v| !v.is_finite())
+            .map(|k| Cause::NotFinite { particle: k % n })
+    }
+}
+
+/// The cause of a blow-up by a step that failed; other errors are handed on.
+pub(super) fn blow_up_by(error: Error) -> Result<Cause, Error> {
+    match error {
+        Error::StepTooSmall { step, .. } => Ok(Cause::StepTooSmall { step }),
+        Error::NoConvergence { residual } => Ok(Cause::NoConvergence { residual }),
+        error => Err(error),
+    }
+}

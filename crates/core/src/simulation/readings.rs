@@ -1,0 +1,147 @@
+//! Readings of a run: its state, time, cost, energy and extent.
+
+use nalgebra::{DMatrixView, Vector3};
+
+use super::{Simulation, Stepper};
+use crate::contact::Statistics;
+use crate::control::Control;
+use crate::error::BlowUp;
+use crate::integrators::{Method, Work};
+use crate::network::{Energy, Network};
+use crate::scene::{Model, Scene};
+
+impl Simulation {
+    /// The scene as it was built.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The model as it is now: pins led, wind on or off, springs broken.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The method.
+    #[must_use]
+    pub fn method(&self) -> &'static Method {
+        self.method
+    }
+
+    /// The step or the tolerance.
+    #[must_use]
+    pub fn control(&self) -> Control {
+        self.control
+    }
+
+    /// The step (s): the fixed one, or the last one under a tolerance, if there was one yet.
+    #[must_use]
+    pub fn step_size(&self) -> Option<f64> {
+        match &self.stepper {
+            Stepper::Fixed(_) => self.control.step(),
+            Stepper::Adaptive { adaptive, .. } => Some(adaptive.last().h).filter(|h| *h > 0.0),
+        }
+    }
+
+    /// Simulated time (s).
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.since + self.taken as f64 * self.control.step().unwrap_or(0.0)
+    }
+
+    /// Steps taken since the beginning.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Cost of these steps.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Contact during the last step.
+    #[must_use]
+    pub fn contact(&self) -> Statistics {
+        self.contact.last()
+    }
+
+    /// The state y: of a network [x | v], in m and m/s.
+    #[must_use]
+    pub fn state(&self) -> &[f64] {
+        &self.y
+    }
+
+    /// Number of particles.
+    #[must_use]
+    pub fn particles(&self) -> usize {
+        self.model.particles()
+    }
+
+    /// Positions (m), n x 3.
+    #[must_use]
+    pub fn positions(&self) -> DMatrixView<'_, f64> {
+        let n = self.particles();
+        DMatrixView::from_slice(&self.y[..3 * n], n, 3)
+    }
+
+    /// Position of particle i (m).
+    #[must_use]
+    pub fn position(&self, i: usize) -> Vector3<f64> {
+        let n = self.particles();
+        Vector3::new(self.y[i], self.y[n + i], self.y[2 * n + i])
+    }
+
+    /// Velocities (m/s), column-major: of a mechanical scene from its state, of a first-order one from f.
+    #[must_use]
+    pub fn velocities(&self) -> Vec<f64> {
+        if self.model.network().is_some() {
+            return self.y[self.y.len() / 2..].to_vec();
+        }
+        let mut v = vec![0.0; self.y.len()];
+        self.model.system().eval_f(self.time(), &self.y, &mut v);
+        v
+    }
+
+    /// The energy (J), if the scene has forces.
+    #[must_use]
+    pub fn energy(&self) -> Option<Energy> {
+        let (x, v) = self.y.split_at(self.y.len() / 2);
+        self.model.network().map(|network| network.energy(x, v))
+    }
+
+    /// Height of the lowest particle (m).
+    #[must_use]
+    pub fn lowest(&self) -> f64 {
+        self.positions().column(1).min()
+    }
+
+    /// Length over rest length of the most stretched structural spring, if there are springs.
+    #[must_use]
+    pub fn largest_stretch(&self) -> Option<f64> {
+        let x = &self.y[..3 * self.particles()];
+        self.model
+            .network()
+            .map(|network| network.largest_stretch(x))
+    }
+
+    /// Number of springs that have broken.
+    #[must_use]
+    pub fn tears(&self) -> usize {
+        self.model.network().map_or(0, Network::tears)
+    }
+
+    /// The middle of the scene as it began, and the distance of its farthest particle from there, at least 1 (m).
+    #[must_use]
+    pub fn extent(&self) -> (Vector3<f64>, f64) {
+        (self.middle, self.radius)
+    }
+
+    /// The blow-up by which the run was lost, if it was.
+    #[must_use]
+    pub fn blow_up(&self) -> Option<BlowUp> {
+        self.blow_up
+    }
+}

@@ -1,0 +1,209 @@
+//! Steps of a run: fixed ones, and those of an adaptive method, which looks ahead of the time shown.
+
+use super::blow_up::blow_up_by;
+use super::{Simulation, Stepper};
+use crate::contact::{Contact, Obstacle, Statistics};
+use crate::control::Control;
+use crate::error::Error;
+use crate::network::Network;
+use crate::scene::Model;
+use crate::system::{Mechanics, ParticleSystem, place_pins};
+
+/// An adaptive method's step takes no particle farther into an obstacle than this share of the scene's radius, so that
+/// states between its ends do not sink visibly ...
+const SUNK: f64 = 1e-3;
+
+/// ... unless it is shorter than this (s).
+const SHORT: f64 = 1e-6;
+
+impl Simulation {
+    /// Takes `count` steps. When one of them blows up, the state is again the last at the beginning of such a call
+    /// that was still in shape, and no more steps are taken until [`reset`](Self::reset).
+    ///
+    /// # Errors
+    /// The run blew up, now or earlier.
+    pub fn take_steps(&mut self, count: u64) -> Result<(), Error> {
+        self.keep()?;
+        for _ in 0..count {
+            if let Control::Step(step) = self.control {
+                self.step_by(step)?;
+                self.taken += 1;
+            } else {
+                let until = self.look_ahead()?;
+                self.show(until);
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes on to `time` (s) exactly, if it is not past it: the last step is shortened.
+    ///
+    /// An adaptive method steps past it instead, and the state is read off its step's polynomial: a frame costs no clipped
+    /// step, and how often one looks changes nothing. A step that blows up is treated as by
+    /// [`take_steps`](Self::take_steps).
+    ///
+    /// # Errors
+    /// The run blew up, now or earlier; or `time` is not finite.
+    pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
+        if !time.is_finite() {
+            return Err(Error::Invalid(format!(
+                "the end must be a finite number of seconds, not {time}"
+            )));
+        }
+        self.keep()?;
+        while self.time() < time {
+            let Control::Step(step) = self.control else {
+                let until = self.look_ahead()?;
+                self.show(until.min(time));
+                continue;
+            };
+            let left = time - self.time();
+            // A last sliver of a rounding error's size is no step of its own.
+            if left > step * (1.0 + 1e-9) {
+                self.step_by(step)?;
+                self.taken += 1;
+            } else {
+                self.step_by(left)?;
+                self.since = time;
+                self.taken = 0;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes one step of h (s) with what follows it: contact, the search for a blow-up, and tearing.
+    fn step_by(&mut self, h: f64) -> Result<(), Error> {
+        let t = self.time();
+        let system = self.model.system();
+        let Stepper::Fixed(integrator) = &mut self.stepper else {
+            return Ok(());
+        };
+        self.contact.begin(obstacles(&self.model), &self.y, false);
+        let cause = match integrator.step(system, t, h, &mut self.y) {
+            Ok(work) => {
+                self.work += work;
+                settle(&self.model, &mut self.contact, (t, h), &mut self.y);
+                self.lost(&self.y)
+            }
+            Err(error) => Some(blow_up_by(error)?),
+        };
+        self.judge(cause, t + h)?;
+        self.tear();
+        Ok(())
+    }
+
+    /// Makes an adaptive method's step reach past the time shown. Returns its end (s).
+    fn look_ahead(&mut self) -> Result<f64, Error> {
+        let now = self.time();
+        let system = self.model.system();
+        let Stepper::Adaptive {
+            adaptive,
+            end,
+            until,
+        } = &mut self.stepper
+        else {
+            return Ok(now);
+        };
+        let begin = match *until {
+            Some(until) if until > now => return Ok(until),
+            Some(until) => until,
+            None => {
+                end.copy_from_slice(&self.y);
+                adaptive.restart();
+                now
+            }
+        };
+        *until = None;
+        let limit = SUNK * self.radius;
+        let (cause, reached) = loop {
+            self.contact.begin(obstacles(&self.model), end, true);
+            let taken = match adaptive.advance(system, begin, end) {
+                Ok(taken) => taken,
+                Err(error) => break (Some(blow_up_by(error)?), begin),
+            };
+            self.work += taken.work;
+            let met = settle(&self.model, &mut self.contact, (begin, taken.h), end);
+            if met.depth > limit && taken.h > SHORT {
+                // Again, to just after the touch.
+                end.copy_from_slice(self.contact.y0());
+                adaptive.restart();
+                let share = met.touched + (1.0 - met.touched) * 0.5 * limit / met.depth;
+                adaptive.try_first(taken.h * share);
+                self.work.rejections += 1;
+                continue;
+            }
+            if met.depth > 0.0 {
+                // Under a constant force the depth grows with the square of the step.
+                adaptive.try_at_most(taken.h * 0.9 * (limit / met.depth).sqrt());
+            }
+            let reached = begin + taken.h;
+            *until = Some(reached);
+            let Stepper::Adaptive { end, .. } = &self.stepper else {
+                return Ok(now);
+            };
+            break (self.lost(end), reached);
+        };
+        self.judge(cause, reached)?;
+        Ok(reached)
+    }
+
+    /// Shows the state at a time (s) up to the end of an adaptive method's step: between its ends as its polynomial has
+    /// it, with pins in their places.
+    fn show(&mut self, time: f64) {
+        let system = self.model.system();
+        if let Stepper::Adaptive {
+            adaptive,
+            end,
+            until,
+        } = &mut self.stepper
+        {
+            if *until == Some(time) {
+                self.y.copy_from_slice(end);
+            } else {
+                self.work += adaptive.interpolate(system, time, &mut self.y);
+                hold_pins(system, time, &mut self.y);
+            }
+            self.since = time;
+            self.tear();
+        }
+    }
+
+    /// Breaks what is stretched too far in the state shown.
+    fn tear(&mut self) {
+        if let Model::Network(network) = &mut self.model
+            && network.tear(&self.y[..self.y.len() / 2]) > 0
+        {
+            self.look_again();
+            self.refit();
+        }
+    }
+
+    /// Forgets the last step of an adaptive method: the state or the system is no longer the one that it began with.
+    pub(super) fn look_again(&mut self) {
+        if let Stepper::Adaptive { until, .. } = &mut self.stepper {
+            *until = None;
+        }
+    }
+}
+
+/// Obstacles of the model.
+fn obstacles(model: &Model) -> &[Obstacle] {
+    model.network().map_or(&[], Network::obstacles)
+}
+
+/// What follows a step of h (s) from t (s) to y1: particles leave obstacles, and pins are in their places.
+fn settle(model: &Model, contact: &mut Contact, (t, h): (f64, f64), y1: &mut [f64]) -> Statistics {
+    let met = model.network().map_or_else(Statistics::default, |network| {
+        contact.resolve(network.obstacles(), network.inverse_masses(), (t, h), y1)
+    });
+    hold_pins(model.system(), t + h, y1);
+    met
+}
+
+/// Puts pins in their places at time t (s).
+fn hold_pins(system: &dyn ParticleSystem, t: f64, y: &mut [f64]) {
+    if let Some(mechanics) = system.mechanics() {
+        let (x, v) = y.split_at_mut(y.len() / 2);
+        place_pins(mechanics, t, x, v);
+    }
+}
