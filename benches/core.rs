@@ -9,9 +9,10 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use a3_core::{
-    Control, Grid, Mechanics, Model, Network, Scene, Sheet, Simulation, Spring, integrators,
+    Control, Grid, Linearized, Mechanics, Model, Network, Scene, Sheet, Simulation, Spring,
+    integrators,
 };
-use a3_scenes::Description;
+use a3_scenes::{Description, Mesh};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 
 const SIDES: [usize; 7] = [8, 16, 32, 64, 128, 256, 512];
@@ -132,6 +133,99 @@ fn forces_of_a_list(c: &mut Criterion) {
     group.finish();
 }
 
+/// The cloth of 100 x 100 particles alone and with other elements beside it, and what has about as many particles.
+fn mixed() -> Vec<(&'static str, Scene)> {
+    const SIDE: usize = 100;
+    let pure = cloth("cloth", SIDE);
+    let changed = |change: &dyn Fn(&mut Network)| {
+        let mut scene = pure.clone();
+        if let Model::Network(network) = &mut scene.model {
+            change(network);
+        }
+        scene
+    };
+    let described = |text: &str, mesh: &Mesh| {
+        Description::parse(text)
+            .and_then(|description| description.build(None, &mut |_| Ok(mesh.clone())))
+            .unwrap()
+            .scene
+    };
+    let grid = Grid::new(71, 72).unwrap();
+    let place = |i: usize| [(i % 72) as f64 / 72.0, (i / 72) as f64 / 71.0, 0.0];
+    let mesh = Mesh {
+        positions: (0..grid.particles()).map(place).collect(),
+        triangles: grid.triangles().map(|t| t.map(|i| i as u32)).collect(),
+    };
+    let spring = network(&pure).springs().next().unwrap();
+    let i = SIDE * SIDE / 2;
+    let half = |at: f64| {
+        format!(
+            "[[cloth]]
+            grid = [{}, {SIDE}]
+            width = 4
+            density = 0.2
+            stiffness = [20, 10, 5]
+            damping_ratio = 0.02
+            at = [0, 0, {at}]
+            pin = [{{ at = ['top-left', 'top-right'] }}]",
+            SIDE / 2
+        )
+    };
+    let two = format!(
+        "gravity = [0, -9.81, 0]\ndrag_per_mass = 0.3\n{}\n{}",
+        half(0.0),
+        half(1.0)
+    );
+    let jelly = "[[jelly]]
+        grid = [21, 22, 22]
+        size = [1, 1, 1]
+        mass = 0.05
+        stiffness = [200, 125, 85]
+        damping_ratio = 0.1
+        at = [0, 0, 0]";
+    let of_mesh = "[[mesh]]
+        file = 'mesh.obj'
+        density = 0.2
+        stiffness = [50, 10]
+        damping_ratio = 0.02";
+    vec![
+        ("cloth", pure.clone()),
+        (
+            "cloth and one spring",
+            changed(&|network| {
+                let far = Spring {
+                    j: SIDE * SIDE - 1,
+                    ..spring
+                };
+                network.add_spring(far).unwrap();
+            }),
+        ),
+        ("two cloths", described(&two, &mesh)),
+        (
+            "cloth with one torn spring",
+            changed(&|network| network.break_springs(&[[i, i + 1]]).unwrap()),
+        ),
+        ("jelly", described(jelly, &mesh)),
+        ("mesh of 10,000 triangles", described(of_mesh, &mesh)),
+    ]
+}
+
+/// Forces and steps of networks of several elements. Throughput is in springs.
+fn elements(c: &mut Criterion) {
+    for (name, scene) in mixed() {
+        let network = network(&scene);
+        let (x, v) = scene.state.split_at(scene.state.len() / 2);
+        let mut f = vec![0.0; x.len()];
+        let mut group = c.benchmark_group(format!("elements/{name}"));
+        group.throughput(Throughput::Elements(network.springs().count() as u64));
+        group.bench_function("forces", |b| {
+            b.iter(|| network.forces(0.0, black_box(x), black_box(v), &mut f));
+        });
+        step(&mut group, &scene, integrators::find("rk4").unwrap());
+        group.finish();
+    }
+}
+
 /// One evaluation of all forces of every scene.
 fn evaluation(c: &mut Criterion) {
     let mut group = c.benchmark_group("evaluation");
@@ -240,7 +334,7 @@ criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20).warm_up_time(std::time::Duration::from_millis(300))
         .measurement_time(std::time::Duration::from_secs(1));
-    targets = forces, forces_of_a_list, evaluation, rods, steps, steps_by_size
+    targets = forces, forces_of_a_list, elements, evaluation, rods, steps, steps_by_size
 }
 
 fn main() {
@@ -256,8 +350,8 @@ fn ratios(begun: SystemTime) {
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/criterion"),
         PathBuf::from,
     );
-    let mean = |group: &str, kernel: &str, side: usize| -> Option<f64> {
-        let file = home.join(format!("{group}/{kernel}/{side}/new/estimates.json"));
+    let mean = |path: String| -> Option<f64> {
+        let file = home.join(path).join("new/estimates.json");
         let fresh = file.metadata().ok()?.modified().ok()? >= begun;
         let text = std::fs::read_to_string(file).ok().filter(|_| fresh)?;
         let estimates: serde_json::Value = serde_json::from_str(&text).ok()?;
@@ -275,7 +369,8 @@ fn ratios(begun: SystemTime) {
         ),
     ] {
         for side in SIDES {
-            let found = mean(group, kernel, side).zip(mean(group, plain, side));
+            let mean = |kernel| mean(format!("{group}/{kernel}/{side}"));
+            let found = mean(kernel).zip(mean(plain));
             if let Some((kernel, plain)) = found {
                 let grid = Grid::new(side, side).unwrap();
                 let springs = Sheet::new(grid, 1.0, [1.0; 3], 0.0)
@@ -288,6 +383,20 @@ fn ratios(begun: SystemTime) {
                     plain / kernel
                 );
             }
+        }
+    }
+    for what in ["forces", "rk4"] {
+        let mut pure = None;
+        for (name, scene) in mixed() {
+            let Some(time) = mean(format!("elements_{name}/{what}")) else {
+                continue;
+            };
+            let speed = 1e3 * network(&scene).springs().count() as f64 / time;
+            let pure = *pure.get_or_insert(speed);
+            println!(
+                "{what:<7} {name:<28} {speed:>6.0} million springs/s, {:>4.2} times the cloth alone",
+                speed / pure
+            );
         }
     }
 }

@@ -7,7 +7,7 @@
 use std::hint::black_box;
 use std::process::{Command, ExitCode};
 
-use a3_core::{Grid, Integrator, Mechanics, Network, Scene, integrators};
+use a3_core::{Grid, Integrator, Linearized, Network, Scene, integrators};
 
 /// What is counted: on a cloth of 32 x 32 particles, in thousands of instructions at most.
 const LIMITS: [(&str, u64); 9] = [

@@ -2,10 +2,10 @@
 
 use crate::error::Error;
 
-/// The most particles a scene may have: 2048 x 2048.
+/// Largest number of particles of a scene: 2048 x 2048.
 pub const MAX_PARTICLES: usize = 2048 * 2048;
 
-/// rows x cols particles, numbered row by row.
+/// Grid of rows x cols particles, numbered row by row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
     rows: usize,
@@ -13,8 +13,10 @@ pub struct Grid {
 }
 
 impl Grid {
+    /// A grid of so many rows and columns.
+    ///
     /// # Errors
-    /// Less than 2 x 2, or more than [`MAX_PARTICLES`] in all.
+    /// There are less than 2 rows or columns, or more than [`MAX_PARTICLES`] in all.
     pub fn new(rows: usize, cols: usize) -> Result<Self, Error> {
         let fits = rows.checked_mul(cols).is_some_and(|n| n <= MAX_PARTICLES);
         if rows >= 2 && cols >= 2 && fits {
@@ -44,7 +46,7 @@ impl Grid {
         self.rows * self.cols
     }
 
-    /// The number of the particle in row i and column j.
+    /// Number of the particle in row i and column j.
     #[must_use]
     #[doc(alias = "indexOf")]
     pub fn index_of(&self, i: usize, j: usize) -> usize {
@@ -52,7 +54,8 @@ impl Grid {
         i * self.cols + j
     }
 
-    /// Two triangles a cell, wound alike, all cut along the same diagonal: smooth shading shows where it alternates.
+    /// Two triangles for each cell, in the same winding order, all cut along the same diagonal:
+    /// smooth shading would show where it alternates.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> {
         let grid = *self;
         (0..grid.rows - 1).flat_map(move |i| {

@@ -43,10 +43,12 @@
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
+mod columns;
 pub mod constraints;
 pub mod contact;
 mod control;
 pub mod elements;
+mod energy;
 mod error;
 mod grid;
 pub mod integrators;
@@ -64,20 +66,26 @@ mod system;
 #[cfg(test)]
 mod testing;
 mod threads;
+mod work;
 
 pub use constraints::Constraint;
 pub use control::Control;
-pub use elements::Sheet;
+pub use elements::{Element, Sheet};
+pub use energy::Energy;
 pub use error::{BlowUp, Cause, Error};
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
-pub use network::{Energy, Network};
+pub use network::Network;
 pub use path::{Path, Place};
+pub use rows::{Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
 pub use scene::{FirstOrder, Model, Scene, Swing};
 pub use simulation::{Checkpoint, Grabbed, Simulation};
 pub use spring::{Spring, SpringKind, SpringLaw};
-pub use system::{Coupling, Matrix, Mechanics, ParticleSystem};
+pub use system::{
+    AxialCoupling, BlockCoupling, Coupling, Linearized, Matrix, Mechanics, ParticleSystem,
+    Splitting,
+};
 
 /// The example of the README, compiled as a test of documentation.
 #[cfg(doctest)]

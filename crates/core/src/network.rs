@@ -1,8 +1,9 @@
-//! Particles, springs, pins, and only the forces that a scene asked for.
+//! Particles, pins, constraints, and only those forces that a scene asks for.
 
-mod held;
+mod constrained;
 mod mechanics;
 mod obstacles;
+mod springs;
 mod tearing;
 
 use std::ops::Range;
@@ -12,13 +13,11 @@ use nalgebra::Vector3;
 
 use crate::constraints::Constraints;
 use crate::contact::Obstacle;
-use crate::elements::Sheet;
-use crate::elements::air::OnTriangles;
-use crate::elements::buckling::{Buckling, Strip};
-use crate::elements::{ending::Ending, gravity, springs, wind::Wind};
+use crate::elements::force::check_particle;
+use crate::elements::{Airflow, Drag, Element, Gravity, Sheet, Wind};
+use crate::energy::Energy;
 use crate::error::{Error, at_least, positive};
 use crate::path::Path;
-use crate::spring::{Spring, SpringKind, SpringLaw};
 
 /// A particle led along a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,65 +26,35 @@ struct Pin {
     path: Path,
 }
 
-/// A spring from where a hand is to a free particle, critically damped: -m (w2 (x - p) + 2 w (v - p')).
-#[derive(Clone, Debug)]
-struct Hand {
-    particle: usize,
-    path: Path,
-    /// w (1/s).
-    frequency: f64,
-}
-
-/// Energy by kind (J). Gravity's is zero at the origin.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Energy {
-    /// m v2 / 2
-    pub kinetic: f64,
-    /// k (L - r)2 / 2, and that of arcs
-    pub elastic: f64,
-    /// -m g . x
-    pub gravitational: f64,
-}
-
-impl Energy {
-    /// The sum.
-    #[must_use]
-    pub fn total(&self) -> f64 {
-        self.kinetic + self.elastic + self.gravitational
-    }
-}
-
-/// Particles and springs. Gravity, drag, wind and obstacles are absent until asked for, and cost nothing then.
+/// Particles, and the elements and constraints that act on them. What is not asked for costs
+/// nothing.
 #[derive(Clone, Debug)]
 pub struct Network {
     masses: Vec<f64>,
-    /// One over that of each particle, if they are all the same.
-    same: Option<f64>,
-    /// 0 where pinned.
+    /// One over the mass of each particle (1/kg), if all masses are the same.
+    uniform_inverse_mass: Option<f64>,
+    /// One over the mass of each particle (1/kg), 0 where it is pinned.
     inverse_masses: Vec<f64>,
-    sheet: Option<Sheet>,
-    list: Vec<Spring>,
-    strips: Vec<Strip>,
+    /// Pins in the order of their particles.
+    pins: Vec<Pin>,
+    constraints: Constraints,
+    /// Elements in the order of their kinds, and those of one kind as they were added.
+    elements: Vec<Element>,
+    /// The particles that are in no sheet.
+    single: Vec<Range<usize>>,
+    triangles: Arc<[[u32; 3]]>,
     /// The length over rest length at which springs break.
     tear: Option<f64>,
-    /// The ends of those that have, in order.
+    /// Pairs of particles between which springs have broken, in order.
     torn: Vec<[usize; 2]>,
-    /// In the order of their particles.
-    pins: Vec<Pin>,
-    gravity: Option<Vector3<f64>>,
-    drag: Option<f64>,
-    wind: Option<Wind>,
-    triangles: Arc<[[u32; 3]]>,
-    constraints: Constraints,
-    hand: Option<Hand>,
     obstacles: Vec<Obstacle>,
 }
 
 impl Network {
-    /// Free particles of these masses (kg), and nothing else yet.
+    /// Free particles of these masses (kg), without any force.
     ///
     /// # Errors
-    /// There is none, or a mass is not a finite number above 0.
+    /// There is no particle, or a mass is not a finite number above 0.
     pub fn new(masses: Vec<f64>) -> Result<Self, Error> {
         if masses.is_empty() {
             return Err(Error::Invalid(
@@ -97,23 +66,18 @@ impl Network {
         }
         Ok(Self {
             inverse_masses: masses.iter().map(|m| 1.0 / m).collect(),
-            same: masses
+            uniform_inverse_mass: masses
                 .iter()
                 .all(|&m| m == masses[0])
                 .then(|| 1.0 / masses[0]),
-            masses,
-            sheet: None,
-            list: vec![],
-            strips: vec![],
+            pins: vec![],
+            constraints: Constraints::default(),
+            elements: vec![],
+            single: std::iter::once(0..masses.len()).collect(),
+            triangles: Arc::default(),
             tear: None,
             torn: vec![],
-            pins: vec![],
-            gravity: None,
-            drag: None,
-            wind: None,
-            triangles: Arc::default(),
-            constraints: Constraints::default(),
-            hand: None,
+            masses,
             obstacles: vec![],
         })
     }
@@ -130,79 +94,61 @@ impl Network {
         &self.masses
     }
 
+    /// `Ok` if particle i exists.
+    ///
     /// # Errors
     /// There is no particle i.
     pub fn check_particle(&self, i: usize) -> Result<(), Error> {
-        let n = self.particles();
-        if i < n {
-            Ok(())
-        } else {
-            Err(Error::Invalid(format!(
-                "there is no particle {i}: they are numbered 0 to {}",
-                n - 1
-            )))
+        check_particle(i, self.particles())
+    }
+
+    /// Adds an element, after those of its kind.
+    ///
+    /// # Errors
+    /// A particle that it names does not exist, or a particle would be in two sheets.
+    pub fn add(&mut self, element: impl Into<Element>) -> Result<(), Error> {
+        let element = element.into();
+        element.force().check(self.particles())?;
+        if let Element::Sheet(sheet) = &element {
+            let new = sheet.particles();
+            let overlaps = |old: Range<usize>| old.start < new.end && new.start < old.end;
+            if self.sheets().any(|sheet| overlaps(sheet.particles())) {
+                return Err(Error::Invalid(format!(
+                    "particles {} to {} cannot all be in a new sheet: some are in one already",
+                    new.start,
+                    new.end - 1
+                )));
+            }
         }
-    }
-
-    /// Adds one spring.
-    ///
-    /// # Errors
-    /// An end does not exist, or both are the same.
-    pub fn add_spring(&mut self, spring: Spring) -> Result<(), Error> {
-        self.check_ends(spring.i, spring.j)?;
-        self.list.push(spring);
+        self.insert(element);
         Ok(())
     }
 
-    fn check_ends(&self, i: usize, j: usize) -> Result<(), Error> {
-        self.check_particle(i)?;
-        self.check_particle(j)?;
-        if i == j {
-            return Err(Error::Invalid(format!(
-                "a spring needs two different particles, not {i} twice"
-            )));
-        }
-        Ok(())
+    fn insert(&mut self, element: Element) {
+        let rank = element.rank();
+        let place = self.elements.partition_point(|e| e.rank() <= rank);
+        self.elements.insert(place, element);
+        let mut sheets: Vec<_> = self.sheets().map(Sheet::particles).collect();
+        sheets.sort_by_key(|particles| particles.start);
+        let ends = sheets.iter().map(|particles| particles.end);
+        let starts = sheets.iter().map(|particles| particles.start);
+        let (from, to) = (
+            std::iter::once(0).chain(ends),
+            starts.chain([self.particles()]),
+        );
+        let between = from.zip(to).map(|(from, to)| from..to);
+        self.single = between.filter(|particles| !particles.is_empty()).collect();
     }
 
-    /// Adds a bend spring that buckles, in place of one that does not.
-    ///
-    /// # Errors
-    /// An end does not exist, or both are the same; a number is negative or not finite; the rest length or the stiffness
-    /// against bending is 0, or the compression stiffness less than 4 pi2 `k_b` / r3.
-    pub fn add_buckling(&mut self, buckling: Buckling) -> Result<(), Error> {
-        self.check_ends(buckling.i, buckling.j)?;
-        self.strips.push(Strip::new(buckling)?);
-        Ok(())
+    /// The elements, in the order of their kinds.
+    #[must_use]
+    pub fn elements(&self) -> &[Element] {
+        &self.elements
     }
 
-    /// The bend springs that buckle.
-    pub fn buckling(&self) -> impl Iterator<Item = Buckling> {
-        self.strips.iter().map(|strip| strip.of)
-    }
-
-    /// Adds springs in whatever order, and keeps all in the order of their ends: neighbours in memory are then used one
-    /// after another.
-    ///
-    /// # Errors
-    /// As [`add_spring`](Self::add_spring), for the first that cannot be: none after it is added.
-    pub fn add_springs(&mut self, springs: impl IntoIterator<Item = Spring>) -> Result<(), Error> {
-        let added = springs
-            .into_iter()
-            .try_for_each(|spring| self.add_spring(spring));
-        self.list
-            .sort_by_key(|Spring { i, j, .. }| (*i.min(j), *i.max(j)));
-        added
-    }
-
-    /// Holds the first particles together as a sheet.
-    ///
-    /// # Errors
-    /// The sheet has more particles than there are.
-    pub fn set_sheet(&mut self, sheet: Sheet) -> Result<(), Error> {
-        self.check_particle(sheet.grid().particles() - 1)?;
-        self.sheet = Some(sheet);
-        Ok(())
+    /// The sheets.
+    pub fn sheets(&self) -> impl Iterator<Item = &Sheet> {
+        self.elements.iter().filter_map(Element::sheet)
     }
 
     /// Leads particle i along `path` from now on, whether it was pinned before or not.
@@ -251,45 +197,70 @@ impl Network {
         self.inverse_masses[i] == 0.0
     }
 
-    /// Asks for gravity g (m/s2).
-    pub fn set_gravity(&mut self, g: Vector3<f64>) {
-        self.gravity = (g != Vector3::zeros()).then_some(g);
+    /// Takes the place of all elements of a kind.
+    fn replace(&mut self, is: impl Fn(&Element) -> bool, by: Option<Element>) {
+        self.elements.retain(|element| !is(element));
+        if let Some(element) = by {
+            self.insert(element);
+        }
     }
 
-    /// g (m/s2), if asked for.
+    /// Sets gravity g (m/s2); zero means none.
+    pub fn set_gravity(&mut self, g: Vector3<f64>) {
+        let gravity = (g != Vector3::zeros()).then_some(Gravity(g).into());
+        self.replace(|element| matches!(element, Element::Gravity(_)), gravity);
+    }
+
+    /// Gravity g (m/s2), if there is any.
     #[must_use]
     pub fn gravity(&self) -> Option<Vector3<f64>> {
-        self.gravity
+        self.elements.iter().find_map(|element| match element {
+            Element::Gravity(Gravity(g)) => Some(*g),
+            _ => None,
+        })
     }
 
-    /// Asks for viscous drag -c v, c in kg/s, on each particle.
+    /// Sets the coefficient c (kg/s) of viscous drag -c v on each particle; zero means none.
     ///
     /// # Errors
     /// c is negative or not finite.
     pub fn set_drag(&mut self, c: f64) -> Result<(), Error> {
         at_least(0.0, "the drag", c)?;
-        self.drag = (c > 0.0).then_some(c);
+        let drag = (c > 0.0).then_some(Drag(c).into());
+        self.replace(|element| matches!(element, Element::Drag(_)), drag);
         Ok(())
     }
 
-    /// c (kg/s), if asked for.
+    /// Coefficient c (kg/s) of viscous drag, if there is any.
     #[must_use]
     pub fn drag(&self) -> Option<f64> {
-        self.drag
+        self.elements.iter().find_map(|element| match element {
+            Element::Drag(Drag(c)) => Some(*c),
+            _ => None,
+        })
     }
 
-    /// Lets wind blow, or calms it.
+    /// Lets wind blow on particles or on triangles, or calms it.
     pub fn set_wind(&mut self, wind: Option<Wind>) {
-        self.wind = wind;
+        let element = wind.map(|wind| match wind.air() {
+            Some(air) => Airflow { wind, air }.into(),
+            None => wind.into(),
+        });
+        let is = |element: &Element| matches!(element, Element::Wind(_) | Element::Airflow(_));
+        self.replace(is, element);
     }
 
     /// The wind, if it blows.
     #[must_use]
     pub fn wind(&self) -> Option<&Wind> {
-        self.wind.as_ref()
+        self.elements.iter().find_map(|element| match element {
+            Element::Wind(wind) | Element::Airflow(Airflow { wind, .. }) => Some(wind),
+            _ => None,
+        })
     }
 
-    /// Spans triangles between particles, for [wind](Wind::on_triangles) to blow on, in place of those there were.
+    /// Spans triangles between particles, for [wind](Wind::on_triangles) to blow on, in place of
+    /// earlier ones.
     ///
     /// # Errors
     /// A corner does not exist.
@@ -311,168 +282,58 @@ impl Network {
         &self.triangles
     }
 
-    /// The wind at time t, if it blows on triangles.
-    fn air(&self, t: f64) -> Option<OnTriangles<'_>> {
-        let wind = self.wind.as_ref()?;
-        Some(OnTriangles {
-            wind,
-            air: wind.air()?,
-            t,
-            triangles: &self.triangles,
-        })
-    }
-
-    /// The wind, if it pushes particles.
-    fn push(&self) -> Option<&Wind> {
-        self.wind.as_ref().filter(|wind| wind.air().is_none())
-    }
-
-    /// The sheet, if there is one.
-    #[must_use]
-    pub fn sheet(&self) -> Option<&Sheet> {
-        self.sheet.as_ref()
-    }
-
-    /// Every spring by itself, those of the sheet first; none that buckles.
-    pub fn springs(&self) -> impl Iterator<Item = Spring> {
-        self.sheet
-            .iter()
-            .flat_map(Sheet::springs)
-            .chain(self.list.iter().copied())
-    }
-
-    /// The springs attached to particle i, those that buckle as they are while straight.
-    pub fn springs_of(&self, i: usize) -> impl Iterator<Item = Spring> {
-        self.springs()
-            .chain(self.strips.iter().map(Strip::straight))
-            .filter(move |s| s.i == i || s.j == i)
-    }
-
-    /// Makes every spring so many times as stiff, and damps it by the root of that more: its damping ratio stays.
-    ///
-    /// # Errors
-    /// The factor is not a finite number above 0.
-    pub fn scale_stiffness(&mut self, factor: f64) -> Result<(), Error> {
-        self.scale_springs(factor, factor.sqrt())
-    }
-
-    /// Makes every spring so many times as stiff, and so many times as damped.
-    ///
-    /// # Errors
-    /// The factor of the stiffness is not a finite number above 0, or that of the damping not one of at least 0.
-    pub fn scale_springs(&mut self, stiffness: f64, damping: f64) -> Result<(), Error> {
-        positive("the factor of the stiffness", stiffness)?;
-        at_least(0.0, "the factor of the damping", damping)?;
-        let sheet = self.sheet.iter_mut().flat_map(Sheet::laws_mut);
-        let list = self.list.iter_mut().map(|spring| &mut spring.law);
-        for law in sheet.chain(list) {
-            law.stiffness *= stiffness;
-            law.damping *= damping;
-        }
-        for Strip { of, .. } in &mut self.strips {
-            of.bending *= stiffness;
-            of.compression *= stiffness;
-            of.tension *= stiffness;
-            of.damping *= damping;
-        }
-        Ok(())
-    }
-
-    /// Takes over the springs of another network of the same particles. Those that have broken here stay broken.
-    ///
-    /// # Errors
-    /// The other has not as many particles.
-    pub fn copy_springs(&mut self, other: &Self) -> Result<(), Error> {
-        let (n, others) = (self.particles(), other.particles());
-        if n != others {
-            return Err(Error::Invalid(format!(
-                "the springs of a network of {others} particles do not fit one of {n}"
-            )));
-        }
-        self.sheet = other.sheet;
-        self.list.clone_from(&other.list);
-        self.strips.clone_from(&other.strips);
-        self.leave_out_torn();
-        Ok(())
-    }
-
-    fn laws(&self) -> impl Iterator<Item = SpringLaw> {
-        self.sheet
-            .iter()
-            .flat_map(|sheet| *sheet.laws())
-            .chain(self.list.iter().map(|s| s.law))
-    }
-
     /// Names of the forces and obstacles this network pays for.
     #[must_use]
     pub fn forces_in_use(&self) -> Vec<&'static str> {
-        let met = |name: &str| {
-            let mut obstacles = self.obstacles.iter();
-            obstacles.any(|obstacle| obstacle.shape.name() == name)
+        let mut names = vec![];
+        let mut list = |used: bool, name| {
+            if used && !names.contains(&name) {
+                names.push(name);
+            }
         };
-        [
-            (self.laws().next().is_some(), "springs"),
-            (!self.strips.is_empty(), "buckling"),
-            (self.springs_damped(), "spring damping"),
-            (self.gravity.is_some(), "gravity"),
-            (self.drag.is_some(), "drag"),
-            (self.wind.is_some(), "wind"),
-            (self.is_constrained(), "constraints"),
-            (met("sphere"), "sphere"),
-            (met("box"), "box"),
-            (met("capsule"), "capsule"),
-            (met("floor"), "floor"),
-            (self.tear.is_some(), "tearing"),
-        ]
-        .into_iter()
-        .filter_map(|(used, name)| used.then_some(name))
-        .collect()
-    }
-
-    /// Whether any spring is.
-    fn springs_damped(&self) -> bool {
-        self.laws().any(|law| law.damping > 0.0)
-            || self.strips.iter().any(|strip| strip.of.damping > 0.0)
-    }
-
-    /// The springs' part of the force (N).
-    pub fn spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.evaluate(x, v, f, &Ending::default());
+        let (elastic, others): (Vec<_>, Vec<_>) = self
+            .elements
+            .iter()
+            .partition(|element| element.is_elastic());
+        for element in &elastic {
+            list(
+                element.force().cost().couplings > 0.0,
+                element.force().name(),
+            );
+        }
+        let damped = elastic
+            .iter()
+            .any(|element| element.force().reads_velocity());
+        list(damped, "spring damping");
+        for element in others {
+            list(true, element.force().name());
+        }
+        list(self.is_constrained(), "constraints");
+        for name in ["sphere", "box", "capsule", "floor"] {
+            let mut obstacles = self.obstacles.iter();
+            list(
+                obstacles.any(|obstacle| obstacle.shape.name() == name),
+                name,
+            );
+        }
+        list(self.tear.is_some(), "tearing");
+        names
     }
 
     /// The energy in the state (x, v). Drag, damping and wind have none.
     #[must_use]
     pub fn energy(&self, x: &[f64], v: &[f64]) -> Energy {
-        let n = self.particles();
-        let kinetic = v
-            .chunks_exact(n)
-            .map(|v| {
-                v.iter()
-                    .zip(&self.masses)
-                    .map(|(v, m)| 0.5 * m * v * v)
-                    .sum::<f64>()
-            })
-            .sum();
-        let straight = self.springs().map(|spring| springs::energy(&spring, x));
-        let buckled = self.strips.iter().map(|strip| springs::energy(strip, x));
-        let elastic = straight.chain(buckled).sum();
-        let gravitational = self
-            .gravity
-            .map_or(0.0, |g| gravity::energy(g, &self.masses, x));
-        Energy {
-            kinetic,
-            elastic,
-            gravitational,
+        let of_axis = |v: &[f64]| -> f64 {
+            let of_one = |(v, m): (&f64, &f64)| 0.5 * m * v * v;
+            v.iter().zip(&self.masses).map(of_one).sum()
+        };
+        let mut energy = Energy {
+            kinetic: v.chunks_exact(self.particles()).map(of_axis).sum(),
+            ..Energy::default()
+        };
+        for element in &self.elements {
+            energy += element.force().energy(&self.at(0.0, x, v));
         }
-    }
-
-    /// Length over rest length of the structural spring that is stretched most; 1 if there is none.
-    #[must_use]
-    pub fn largest_stretch(&self, x: &[f64]) -> f64 {
-        self.springs()
-            .filter(|s| s.kind == SpringKind::Structural && s.law.rest_length > 0.0)
-            .map(|s| springs::length(x, &s) / s.law.rest_length)
-            .reduce(f64::max)
-            .unwrap_or(1.0)
+        energy
     }
 }

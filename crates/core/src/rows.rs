@@ -1,107 +1,232 @@
-//! Particles in rows of which only those next to one another act on each other: a whole step can then go over them once,
-//! all of its stages a few rows apart, and what it needs in between stays in the cache.
+//! Particles in rows of which only near ones act on each other. A whole step can then go over them
+//! once, all of its stages a few rows apart: what it needs in between stays in the cache.
 
 use std::array;
 use std::ops::Range;
 
-use crate::elements::sheet::kernel as sheet;
-
-/// How far springs reach, in rows.
-pub(crate) const REACH: usize = 2;
-/// Numbers beside a column on either side: the longest vector, and zeros for springs that are not there.
+/// Largest distance of rows that act on each other.
+pub const REACH: usize = 2;
+/// Numbers beside a column on either side: as many as the longest vector has, for particles that
+/// are not there.
 pub(crate) const PAD: usize = 8;
 
-/// What is evaluated.
+/// The terms that a stage evaluates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// y' = \[v | F / m\].
-    All,
-    /// v' = F / m, x standing still, without the forces that a drift carries.
-    Kick,
-    /// v' = F / m, x standing still, where drifts carry none.
-    Push,
+pub enum Terms {
+    /// All of y' = \[v | F / m\].
+    Motion,
+    /// v' = F / m of the forces that no drift carries (see [`Splitting`](crate::Splitting)), x
+    /// standing still.
+    KickForces,
+    /// v' = F / m of all forces, x standing still: drifts carry none.
+    AllForces,
 }
 
-/// A stage of a step, that of an explicit Runge-Kutta method over `h` whose stages read only the one before them.
+/// A stage of a step: that of an explicit Runge-Kutta method over h whose stages read only the one
+/// before them, k = f(t, stage), sum + b k, and y + c k for the next one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stage {
-    pub(crate) part: Part,
-    /// When it evaluates (s), and when the next one does: the end of the step after the last one.
-    pub(crate) t: f64,
-    pub(crate) until: f64,
-    /// Whether it is the method's first: y is then where the stage is.
-    pub(crate) first: bool,
-    /// How far its k goes into the sum of all (s).
-    pub(crate) b: f64,
-    /// How far the next stage follows it (s); none after the last one.
-    pub(crate) c: Option<f64>,
-    /// How long a drift follows (s).
-    pub(crate) drift: f64,
+    /// The terms that it evaluates.
+    pub terms: Terms,
+    /// Time of its evaluation (s).
+    pub t: f64,
+    /// Time of the next stage's evaluation, or of the end of the step after the last one (s).
+    pub until: f64,
+    /// Whether it is the method's first one: the sum then begins with the stage.
+    pub first: bool,
+    /// Weight b of its k in the sum (s).
+    pub b: f64,
+    /// Weight c of its k in the next stage (s). After the last one there is none, and the sum is
+    /// the new state.
+    pub c: Option<f64>,
+    /// Length of the drift that follows (s).
+    pub drift: f64,
 }
 
-/// What a step keeps of some rows: y as it was, the sum of what the stages found, and y of the stage under way.
+/// Some particles of a system that stand in rows, numbered row by row, and that no others act on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Patch {
+    /// Number of its first particle in the system.
+    pub first: usize,
+    /// Number of rows.
+    pub rows: usize,
+    /// Particles in a row.
+    pub cols: usize,
+}
+
+impl Patch {
+    /// Number of particles.
+    #[must_use]
+    pub fn particles(&self) -> usize {
+        self.rows * self.cols
+    }
+
+    /// Numbers of the particles in a row.
+    #[must_use]
+    pub fn row(&self, row: usize) -> Range<usize> {
+        self.first + row * self.cols..self.first + (row + 1) * self.cols
+    }
+}
+
+/// A system whose particles all stand in rows and feel those at most [`REACH`] rows away, and no
+/// others. Its steps in a sweep must be those by whole arrays to the last bit.
+pub trait Rows: Sync {
+    /// Number of patches, which do not act on one another.
+    fn patches(&self) -> usize;
+
+    /// The patch of a number; each particle is in one of them.
+    fn patch(&self, patch: usize) -> Patch;
+
+    /// Columns of numbers that each stage keeps from row to row.
+    fn kept_columns(&self) -> usize;
+
+    /// Numbers that a sweep shares among all rows and stages.
+    fn shared_numbers(&self) -> usize {
+        0
+    }
+
+    /// Prepares the scratch of a sweep over some rows of a patch.
+    fn begin(&self, patch: usize, scratch: &mut SweepScratch);
+
+    /// Takes the stage's row through a drift of h from time t, to where pins are at t + h.
+    fn drift(
+        &self,
+        patch: usize,
+        terms: Terms,
+        times: (f64, f64),
+        row: usize,
+        registers: &mut Registers,
+    );
+
+    /// Takes rows of a patch through stage `number` of the sweep and the drift that follows it, to
+    /// where pins are at the end. Rows come in their order, from some row on: the first [`REACH`]
+    /// of them may come out wrong unless they are the first of the patch. Rows up to [`REACH`]
+    /// below them are still in the stage, those above no more.
+    fn advance(
+        &self,
+        patch: usize,
+        number: usize,
+        stage: &Stage,
+        rows: Range<usize>,
+        registers: &mut Registers,
+        scratch: &mut SweepScratch,
+    );
+}
+
+/// The numbers of some rows during a step, six columns each, x y z of positions and of velocities:
+/// y as it was, the sum over the stages, and the stage under way.
 pub struct Registers {
     pub(crate) y: Window,
     pub(crate) sum: Window,
     pub(crate) stage: Window,
 }
 
-/// A system whose rows of particles feel those up to two rows away, and no others.
-pub trait Rows: Sync {
-    /// Number of rows.
-    fn rows(&self) -> usize;
-
-    /// Particles in a row.
-    fn cols(&self) -> usize;
-
-    /// Prepares a sweep from some row on, with what is there now.
-    fn begin(&self, sweep: &mut Sweep);
-
-    /// Takes a row through a drift of h from time t.
-    fn drift(&self, part: Part, t: f64, h: f64, row: usize, registers: &mut Registers);
-
-    /// Takes rows through a stage, that of such a number in the sweep, in their order, each after the one above it: the first two of a sweep come out wrong
-    /// unless they are the system's first. Reads up to two rows below them.
-    fn advance(
-        &self,
-        number: usize,
-        stage: &Stage,
-        rows: Range<usize>,
-        registers: &mut Registers,
-        sweep: &mut Sweep,
-    );
-}
-
-/// What rows hand on to those below them, stage by stage, and what they all read.
-pub struct Sweep {
-    /// Of the springs.
-    pub(crate) laws: Window,
-    /// A row for each stage.
-    pub(crate) found: Window,
-    /// Of a row.
-    pub(crate) wind: Window,
-}
-
 impl Registers {
+    /// Registers of `depth` rows at a time.
+    pub(crate) fn new(depth: usize, cols: usize) -> Self {
+        let window = || Window::new(depth, 6, cols);
+        Self {
+            y: window(),
+            sum: window(),
+            stage: window(),
+        }
+    }
+
     /// Begins another method where the stage has arrived.
     pub(crate) fn begin(&mut self, row: usize) {
         self.y.row_mut(row).copy_from_slice(self.stage.row(row));
     }
-}
 
-impl Sweep {
-    /// For rows of so many particles.
-    pub(crate) fn new(stages: usize, cols: usize) -> Self {
-        Self {
-            laws: Window::new(1, 1, sheet::LAWS),
-            found: Window::new(stages, sheet::FOUND, cols),
-            wind: Window::new(1, 3, cols),
+    /// Columns of a row of the stage under way.
+    #[must_use]
+    pub fn stage(&self, row: usize) -> [&[f64]; 6] {
+        array::from_fn(|column| self.stage.column(row, column))
+    }
+
+    /// Columns of a row of the stage under way.
+    pub fn stage_mut(&mut self, row: usize) -> [&mut [f64]; 6] {
+        self.stage.columns_mut(row)
+    }
+
+    /// Takes a row to the next stage by its accelerations (m/s2), by axis, without the drift.
+    pub fn advance(&mut self, stage: &Stage, row: usize, accelerations: [&[f64]; 3]) {
+        let moves = stage.terms == Terms::Motion;
+        for column in if moves { 0 } else { 3 }..6 {
+            for (i, a) in accelerations[column % 3].iter().enumerate() {
+                let k = if column < 3 {
+                    self.stage.column(row, 3 + column)[i]
+                } else {
+                    *a
+                };
+                let now = self.stage.column(row, column)[i];
+                let before = if stage.first {
+                    now
+                } else {
+                    self.sum.column(row, column)[i]
+                };
+                let after = stage.b.mul_add(k, before);
+                self.stage.column_mut(row, column)[i] = match stage.c {
+                    None => after,
+                    Some(c) => {
+                        self.sum.column_mut(row, column)[i] = after;
+                        c.mul_add(k, self.y.column(row, column)[i])
+                    }
+                };
+            }
         }
     }
 }
 
-/// Some rows of a matrix that has more: row r is where row r + depth will be. Each is so many columns of numbers, with
-/// zeros before and after, at places that suit the processor's vectors.
+/// Numbers that the rows of a sweep hand on to those below them, stage by stage, and that they all
+/// read.
+pub struct SweepScratch {
+    pub(crate) shared: Window,
+    /// A row for each stage.
+    pub(crate) kept: Window,
+    /// Addends to the forces on one row, by axis.
+    pub(crate) addends: Window,
+}
+
+impl SweepScratch {
+    /// Scratch for rows of so many particles.
+    pub(crate) fn new(system: &dyn Rows, stages: usize, cols: usize) -> Self {
+        Self {
+            shared: Window::new(1, 1, system.shared_numbers()),
+            kept: Window::new(stages, system.kept_columns(), cols),
+            addends: Window::new(1, 3, cols),
+        }
+    }
+
+    /// Numbers shared by all rows and stages.
+    #[must_use]
+    pub fn shared(&self) -> &[f64] {
+        self.shared.column(0, 0)
+    }
+
+    /// Numbers shared by all rows and stages.
+    pub fn shared_mut(&mut self) -> &mut [f64] {
+        self.shared.column_mut(0, 0)
+    }
+
+    /// A column of numbers, one for each particle of a row, that a stage keeps from row to row.
+    pub fn kept_mut(&mut self, number: usize, column: usize) -> &mut [f64] {
+        self.kept.column_mut(number, column)
+    }
+
+    /// Columns of forces on a row that are added to those of its own, by axis.
+    pub(crate) fn addends_mut(&mut self) -> [&mut [f64]; 3] {
+        let [x, y, z, ..] = self.addends.columns_mut(0);
+        [x, y, z]
+    }
+
+    /// Sets all that stages keep to zero.
+    pub fn clear_kept(&mut self) {
+        self.kept.data.fill(0.0);
+    }
+}
+
+/// Some rows of a matrix that has more: row r is where row r + depth will be. Each is so many
+/// columns of numbers, with zeros before and after, at places that suit the processor's vectors.
 pub(crate) struct Window {
     data: Vec<f64>,
     start: usize,
@@ -115,7 +240,7 @@ impl Window {
     pub fn new(depth: usize, columns: usize, cols: usize) -> Self {
         let stride = stride(cols);
         let data = vec![0.0; depth * columns * stride + PAD];
-        // Of eight numbers, a cache line.
+        // At a multiple of eight numbers, a cache line.
         let start = data.as_ptr().align_offset(PAD * size_of::<f64>()).min(PAD);
         Self {
             data,
@@ -125,11 +250,6 @@ impl Window {
             stride,
             cols,
         }
-    }
-
-    /// Sets all to zero.
-    pub fn clear(&mut self) {
-        self.data.fill(0.0);
     }
 
     #[inline]
@@ -145,13 +265,14 @@ impl Window {
         &self.data[self.place(row)]
     }
 
+    /// All columns of a row, and what is beside them.
     #[inline]
     pub fn row_mut(&mut self, row: usize) -> &mut [f64] {
         let place = self.place(row);
         &mut self.data[place]
     }
 
-    /// Three rows after one another, of which there have to be so many.
+    /// Three rows after one another, in a window that is at least as deep.
     #[inline]
     pub fn three_mut(&mut self, row: usize) -> [&mut [f64]; 3] {
         let places = [self.place(row), self.place(row + 1), self.place(row + 2)];
@@ -160,7 +281,8 @@ impl Window {
             .expect("rows of a window that is three deep are three")
     }
 
-    /// Fills a column of a row, and the vector that it ends in with zeros: a state that was lost may have left others.
+    /// Fills a column of a row, and the vector that it ends in with zeros: a state that was lost
+    /// may have left others.
     pub fn load(&mut self, row: usize, column: usize, from: &[f64]) {
         let (stride, cols) = (self.stride, self.cols);
         let to = &mut self.row_mut(row)[column * stride + PAD..][..cols.next_multiple_of(PAD)];
@@ -168,11 +290,14 @@ impl Window {
         to[cols..].fill(0.0);
     }
 
-    /// The six columns of a row.
+    /// The first six columns of a row.
     pub fn columns_mut(&mut self, row: usize) -> [&mut [f64]; 6] {
         let (stride, cols) = (self.stride, self.cols);
         let mut columns = self.row_mut(row).chunks_exact_mut(stride);
-        array::from_fn(|_| &mut columns.next().unwrap_or_default()[PAD..PAD + cols])
+        array::from_fn(|_| match columns.next() {
+            Some(column) => &mut column[PAD..PAD + cols],
+            None => &mut [],
+        })
     }
 
     /// A column of a row.
@@ -181,6 +306,7 @@ impl Window {
         &self.row(row)[column * self.stride + PAD..][..self.cols]
     }
 
+    /// A column of a row.
     #[inline]
     pub fn column_mut(&mut self, row: usize, column: usize) -> &mut [f64] {
         let (stride, cols) = (self.stride, self.cols);
@@ -188,8 +314,8 @@ impl Window {
     }
 }
 
-/// From one column of so many numbers to the next: an odd number of cache lines, because the processor takes numbers that
-/// are a power of two apart for one another.
+/// Numbers from one column of so many to the next: an odd number of cache lines, because the
+/// processor takes numbers that are a power of two apart for one another.
 pub(crate) const fn stride(cols: usize) -> usize {
     ((cols.div_ceil(PAD) + 2) | 1) * PAD
 }

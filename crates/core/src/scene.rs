@@ -88,11 +88,10 @@ impl Scene {
         }
     }
 
-    /// Grid of the cloth, if there is one.
+    /// Grid of the first cloth, if there is one.
     #[must_use]
     pub fn grid(&self) -> Option<Grid> {
-        let sheet = self.model.network().and_then(Network::sheet);
-        sheet.map(Sheet::grid)
+        self.model.network()?.sheets().next().map(Sheet::grid)
     }
 
     /// Centre of the bounding box of the particles at t = 0 (m), and the distance of the farthest

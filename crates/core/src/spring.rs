@@ -1,31 +1,33 @@
-//! Springs: what they are for, how they answer, and where they are.
+//! Springs: their kinds, their laws and their ends.
 
 use crate::error::{Error, at_least};
 
-/// What a spring is for.
+/// The purpose of a spring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpringKind {
-    /// Holds neighbours together; drawn in the wireframe.
+    /// A spring that holds neighbours together; drawn in the wireframe.
     Structural,
-    /// Keeps a cell square.
+    /// A spring that keeps a cell square.
     Shear,
-    /// Keeps a row straight.
+    /// A spring that keeps a row straight.
     #[doc(alias = "flex")]
     Bend,
 }
 
-/// How a spring answers to its length L and rate of stretch L': pulls with k (L - r) + c L'.
+/// The law of a spring of length L and rate of stretch L': it pulls with k (L - r) + c L'.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLaw {
-    /// k (N/m).
+    /// Stiffness k (N/m).
     pub stiffness: f64,
-    /// r (m).
+    /// Rest length r (m).
     pub rest_length: f64,
-    /// c, along the spring (N s/m).
+    /// Damping c along the spring (N s/m).
     pub damping: f64,
 }
 
 impl SpringLaw {
+    /// A law of stiffness k (N/m), rest length r (m) and damping c (N s/m).
+    ///
     /// # Errors
     /// A number is negative or not finite.
     pub fn new(stiffness: f64, rest_length: f64, damping: f64) -> Result<Self, Error> {
@@ -38,17 +40,23 @@ impl SpringLaw {
             damping,
         })
     }
+
+    /// Multiplies stiffness and damping.
+    pub(crate) fn scale(&mut self, stiffness: f64, damping: f64) {
+        self.stiffness *= stiffness;
+        self.damping *= damping;
+    }
 }
 
 /// One spring between particles i and j.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
-    /// What it is for.
+    /// Its purpose.
     pub kind: SpringKind,
-    /// One end.
+    /// Particle at one end.
     pub i: usize,
-    /// The other end.
+    /// Particle at the other end.
     pub j: usize,
-    /// How it answers.
+    /// Its law.
     pub law: SpringLaw,
 }

@@ -1,4 +1,6 @@
-//! What an integrator sees: flat arrays of which only the length changes.
+//! What an integrator sees: flat arrays of which only the length changes. Beside the one small
+//! trait that a system must implement there are views that it may offer, each for some methods:
+//! [`Splitting`], [`Linearized`] and [`Rows`].
 
 use crate::path::Place;
 use crate::rows::Rows;
@@ -14,48 +16,15 @@ pub trait ParticleSystem {
     #[doc(alias = "evalF")]
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]);
 
-    /// Its rows, if its particles stand in rows that only hold on to those next to them.
+    /// View of a system whose particles stand in rows and act on near rows alone, if it is one.
     fn rows(&self) -> Option<&dyn Rows> {
         None
     }
 
-    /// The second-order structure, if the system has one.
+    /// Second-order structure, if the system has one.
     fn mechanics(&self) -> Option<&dyn Mechanics> {
         None
     }
-}
-
-/// How two particles hold one another, to first order. With d = xi - xj and u = d/|d|,
-/// dFi = -(along u uT + across (1 - u uT)) dd - damping u uT dd', and dFj is its opposite.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coupling {
-    /// One end.
-    pub i: usize,
-    /// The other end.
-    pub j: usize,
-    /// u
-    pub direction: [f64; 3],
-    /// Stiffness along u (N/m).
-    pub along: f64,
-    /// Stiffness across it (N/m): negative where it pushes.
-    pub across: f64,
-    /// Along u (N s/m).
-    pub damping: f64,
-}
-
-/// A = M + a (C + D) + a2 K at x, as the [couplings](Mechanics::couplings) make it.
-#[derive(Clone, Copy, Debug)]
-pub struct Matrix<'a> {
-    /// Where it is (m).
-    pub x: &'a [f64],
-    /// In s.
-    pub a: f64,
-    /// Whether stiffness across compressed springs counts as none.
-    pub clamped: bool,
-    /// The diagonal: masses, and a times the drag (kg).
-    pub masses: &'a [f64],
-    /// 1, or 0 where a particle is pinned: nothing is wanted there.
-    pub free: &'a [f64],
 }
 
 /// M x'' = F(t, x, v). Its state is y = [x | v], and it is a [`ParticleSystem`] through that.
@@ -63,40 +32,57 @@ pub struct Matrix<'a> {
 /// Each of x, v and F holds n x 3 numbers in column-major order: all x, then all y, then all z.
 /// Units are m, kg, s.
 pub trait Mechanics {
-    /// One over the mass of each particle (1/kg); 0 pins a particle.
+    /// Inverse mass of each particle (1/kg); 0 pins a particle.
     fn inverse_masses(&self) -> &[f64];
 
     /// Writes F(t, x, v) (N) to `f`, on pinned particles too.
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
 
-    /// Writes F(t, x, v) / m (m/s2) to `a`: nothing for pinned particles.
+    /// Writes F(t, x, v) / m (m/s2) to `a`: 0 for pinned particles.
     fn accelerations(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
         self.forces(t, x, v, a);
-        self.divide_by_masses(a);
+        divide_by_masses(self.inverse_masses(), a);
     }
 
-    /// Makes accelerations of forces.
-    fn divide_by_masses(&self, f: &mut [f64]) {
-        let inverse_masses = self.inverse_masses();
-        for column in f.chunks_exact_mut(inverse_masses.len()) {
-            for (f, w) in column.iter_mut().zip(inverse_masses) {
-                *f *= w;
-            }
-        }
-    }
+    /// Visits each pinned particle with its place at time t (s). By default there are none.
+    fn pins(&self, _t: f64, _visit: &mut dyn FnMut(usize, Place)) {}
 
-    /// As [`ParticleSystem::rows`].
+    /// View for methods that step row by row. Without it, they step by whole arrays.
     fn rows(&self) -> Option<&dyn Rows> {
         None
     }
 
-    /// The natural frequency (1/s) with which errors of constraints are taken back, if the forces hold any. What they do for
-    /// that, [`force_differential`](Self::force_differential) and [`couplings`](Self::couplings) leave out: methods
-    /// that solve with these do not serve then.
-    fn feedback(&self) -> Option<f64> {
+    /// View for methods that kick and drift. Without it, they kick with all forces, twice as if
+    /// these read v, and drift freely.
+    fn splitting(&self) -> Option<&dyn Splitting> {
         None
     }
 
+    /// View for implicit methods and for stability. Without it, they take differences of F.
+    fn linearized(&self) -> Option<&dyn Linearized> {
+        None
+    }
+}
+
+/// The forces of a system in two parts: those that a drift carries exactly, and those that kick.
+pub trait Splitting {
+    /// Writes the forces (N) that [`drift`](Self::drift) does not carry to `f`.
+    fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
+
+    /// Whether [`kick_forces`](Self::kick_forces) depend on v. If not, a kick takes one evaluation,
+    /// and otherwise two.
+    fn kick_reads_velocity(&self) -> bool {
+        true
+    }
+
+    /// Moves x and v from t to t + h by the exact flow of x' = v, v' = the part of F / m that
+    /// [`kick_forces`](Self::kick_forces) leave out. Pinned particles arrive at their places at t +
+    /// h.
+    fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]);
+}
+
+/// The forces of a system to first order, for methods that solve with them.
+pub trait Linearized: Mechanics {
     /// Writes dF = dF/dx dx + dF/dv dv to `df`, without forming a matrix.
     fn force_differential(
         &self,
@@ -108,45 +94,103 @@ pub trait Mechanics {
         df: &mut [f64],
     );
 
-    /// Visits the pairs of particles that hold one another, always in the same order: dF/dx and dF/dv by their
-    /// symmetric parts, for methods that solve with them. Without any, nothing.
-    fn couplings(&self, _x: &[f64], _visit: &mut dyn FnMut(Coupling)) {}
+    /// Visits the pairs of particles that act on each other, always in the same order: dF/dx and
+    /// dF/dv by their symmetric parts. With `clamped`, every stiffness is positive semi-definite:
+    /// the matrix of an implicit step is then positive definite.
+    fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
 
-    /// Writes A p to `out`, if that is faster than coupling by coupling; if not, does nothing and says so.
-    fn multiply(&self, _matrix: &Matrix, _p: &[f64], _out: &mut [f64]) -> bool {
-        false
+    /// Writes to `out` the product with p of the diagonal of the matrix and of as many couplings as
+    /// the system multiplies faster than one by one, which are the first [`Coupling::Axial`] ones;
+    /// their number. With 0, the default, nothing is written, and all couplings are multiplied one
+    /// by one.
+    fn multiply(&self, _matrix: &Matrix, _p: &[f64], _out: &mut [f64]) -> usize {
+        0
     }
 
-    /// How many times as fast the forces are as they would be coupling by coupling: what linear algebra is priced by.
+    /// Time that the forces would take coupling by coupling over the time that they take: the
+    /// prices of linear algebra are relative to the former.
     fn speed(&self) -> f64 {
         1.0
     }
 
-    /// -dF/dv of each particle by itself: viscous drag (kg/s).
+    /// Coefficient of viscous drag (kg/s), -dF/dv of each particle by itself, which is in no
+    /// coupling.
     fn drag_coefficient(&self) -> f64 {
         0.0
     }
 
-    /// Visits each pinned particle with the place it has at time t. Without any, nothing.
-    fn pins(&self, _t: f64, _visit: &mut dyn FnMut(usize, Place)) {}
-
-    /// The forces less the part that [`drift`](Self::drift) carries: what a splitting method kicks with.
-    fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.forces(t, x, v, f);
+    /// Natural frequency w (1/s) with which forces take errors of constraints back, C'' = -w2 C - 2
+    /// w C' (Baumgarte), if they hold any. The differential and the couplings leave the forces of
+    /// constraints out: implicit methods refuse then.
+    fn baumgarte_frequency(&self) -> Option<f64> {
+        None
     }
+}
 
-    /// Whether [`kick_forces`](Self::kick_forces) depend on v. If not, a kick costs one evaluation instead of two.
-    fn kick_reads_velocity(&self) -> bool {
-        true
-    }
+/// Coupling of two particles, to first order. With d = xi - xj it adds dFi = -(K dd + C dd'), and
+/// the opposite to dFj.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Coupling {
+    /// A coupling along the line between the particles.
+    Axial(AxialCoupling),
+    /// A coupling by any symmetric matrices.
+    Block(BlockCoupling),
+}
 
-    /// Moves x and v from t to t + h by the exact flow of x' = v, v' = the part that
-    /// [`kick_forces`](Self::kick_forces) left out. Pinned particles arrive at their place of t + h.
-    fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
-        for (x, v) in x.iter_mut().zip(&*v) {
-            *x += h * v;
+/// Coupling of two particles along the line between them. With u = d / |d|, K = along u uT + across
+/// (1 - u uT), and C = damping u uT.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxialCoupling {
+    /// Particle at one end.
+    pub i: usize,
+    /// Particle at the other end.
+    pub j: usize,
+    /// Direction u, or 0 for particles at the same place.
+    pub direction: [f64; 3],
+    /// Stiffness along u (N/m).
+    pub along: f64,
+    /// Stiffness across u (N/m): negative where the particles push each other apart.
+    pub across: f64,
+    /// Damping along u (N s/m).
+    pub damping: f64,
+}
+
+/// Coupling of two particles by symmetric 3 x 3 matrices, each given by its xx, yy, zz, xy, xz and
+/// yz.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlockCoupling {
+    /// Particle at one end.
+    pub i: usize,
+    /// Particle at the other end.
+    pub j: usize,
+    /// K (N/m).
+    pub stiffness: [f64; 6],
+    /// C (N s/m).
+    pub damping: [f64; 6],
+}
+
+/// The matrix A = M + a (C + D) + a2 K of an implicit step, from the
+/// [couplings](Linearized::couplings) at x and from the drag D.
+#[derive(Clone, Copy, Debug)]
+pub struct Matrix<'a> {
+    /// Positions (m).
+    pub x: &'a [f64],
+    /// Length a of the step (s).
+    pub a: f64,
+    /// Whether couplings are clamped.
+    pub clamped: bool,
+    /// Diagonal of M + a D for each particle (kg).
+    pub masses: &'a [f64],
+    /// Factor of each particle's part of the product: 1, or 0 where it is pinned.
+    pub free: &'a [f64],
+}
+
+/// Makes accelerations of forces.
+pub(crate) fn divide_by_masses(inverse_masses: &[f64], f: &mut [f64]) {
+    for column in f.chunks_exact_mut(inverse_masses.len()) {
+        for (f, w) in column.iter_mut().zip(inverse_masses) {
+            *f *= w;
         }
-        place_pins(self, t + h, x, v);
     }
 }
 

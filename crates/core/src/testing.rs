@@ -20,7 +20,7 @@ pub(crate) fn cloth(grid: Grid, damping_time: f64) -> Scene {
     }
     let mut network = Network::new(vec![0.02; n]).unwrap();
     let sheet = Sheet::new(grid, SPACING, [50.0, 25.0, 12.5], damping_time).unwrap();
-    network.set_sheet(sheet).unwrap();
+    network.add(sheet).unwrap();
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
     network.set_drag(0.006).unwrap();
     for corner in [0, cols - 1] {

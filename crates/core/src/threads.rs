@@ -1,11 +1,13 @@
-//! Rows over threads, where there are enough of them. Whoever computes a row computes the same bits.
+//! Rows over threads, where there are enough of them. Whoever computes a row computes the same
+//! bits.
 
 use std::ops::Range;
 
-/// Particles that a thread has at least: with fewer, waking it costs more than it saves (docs/performance.md).
+/// Least number of particles of a thread: with fewer, waking it costs more than it saves
+/// (docs/performance.md).
 const GRAIN: usize = 2048;
 
-/// Threads for so many particles. None is started for a system that has too few for two.
+/// Number of threads for so many particles. None is started for a system that has too few for two.
 pub(crate) fn threads(particles: usize) -> usize {
     match particles / GRAIN {
         0 | 1 => 1,
@@ -13,10 +15,10 @@ pub(crate) fn threads(particles: usize) -> usize {
     }
 }
 
-/// Some columns of rows.
+/// Columns of a matrix whose rows are split among threads.
 pub(crate) type Columns<'a, const N: usize> = [&'a mut [f64]; N];
 
-/// What comes before an index in each of the columns, which are left with the rest.
+/// Splits off what comes before an index in each of the columns.
 pub(crate) fn split_off<'a, const N: usize>(
     columns: &mut Columns<'a, N>,
     at: usize,
@@ -26,7 +28,7 @@ pub(crate) fn split_off<'a, const N: usize>(
         .map(|column| column.split_off_mut(..at).unwrap_or_default())
 }
 
-/// Runs over rows of so many particles in as many bands, each with its part of the columns.
+/// Runs over rows of so many particles in bands, each with its part of the columns.
 pub(crate) fn fork<const N: usize>(
     bands: usize,
     rows: Range<usize>,

@@ -69,7 +69,7 @@ fn no_step_in_the_air_allocates_but_the_first() {
     for method in integrators::METHODS {
         let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         if let Model::Network(network) = &mut scene.model {
-            let grid = network.sheet().unwrap().grid();
+            let grid = network.sheets().next().unwrap().grid();
             network.set_triangles(grid.triangles()).unwrap();
         }
         let air = Air::new(1.2, 1.2, 0.5).unwrap();

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use a3_core::stability::{LargestMode, Limit, Mode, largest_step, spectrum};
-use a3_core::{Control, Method, Simulation};
+use a3_core::{Control, Mechanics, Method, Simulation};
 
 /// The least time from one estimate to the next.
 const INTERVAL: Duration = Duration::from_millis(250);
@@ -55,10 +55,10 @@ impl LimitWatch {
             run.state()
         };
         let system = run.model().system();
-        self.mode = match system.mechanics() {
-            Some(mechanics) => {
+        self.mode = match system.mechanics().and_then(Mechanics::linearized) {
+            Some(linearized) => {
                 let (x, _) = y.split_at(y.len() / 2);
-                self.fastest.estimate(mechanics, run.time(), x)
+                self.fastest.estimate(linearized, run.time(), x)
             }
             None => spectrum(system, run.time(), y).first().copied(),
         };

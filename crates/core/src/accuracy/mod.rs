@@ -6,7 +6,7 @@ mod ladder;
 mod reference;
 
 use crate::control::Control;
-use crate::elements::springs;
+use crate::elements::force::distance;
 use crate::error::{BlowUp, Error};
 use crate::integrators::{Method, Work};
 use crate::network::Network;
@@ -72,7 +72,7 @@ impl Snapshot {
         let positions = run.state()[..3 * run.particles()].to_vec();
         let strains = run.model().network().map_or(vec![], |network| {
             structural(network)
-                .map(|s| springs::length(&positions, &s) / s.law.rest_length)
+                .map(|s| distance(&positions, s.i, s.j) / s.law.rest_length)
                 .collect()
         });
         Self {

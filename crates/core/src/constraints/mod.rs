@@ -1,35 +1,34 @@
-//! Constrained dynamics: C(x) = 0 is held by forces J^T lambda, J = dC/dx, that do no work where C does not move. Of a
-//! particle that is free the acceleration is a = W (Q + J^T lambda), with the inverse masses W and all other forces Q; of a
-//! pin it is that of its path. So that C'' = J a + J' v = -ks C - kd C', which takes back what a step missed,
-//! J W J^T lambda = -J' v - J (W Q + apin) - ks C - kd C'. Andrew Witkin, *Physically Based Modeling: Constrained Dynamics*,
-//! SIGGRAPH course notes.
+//! Constrained dynamics: C(x) = 0 is held by forces J^T lambda, J = dC/dx, that do no work where C
+//! does not move. The acceleration of a free particle is a = W (Q + J^T lambda), with the inverse
+//! masses W and all other forces Q; that of a pin is the one of its path, apin. The multipliers
+//! solve C'' = J a + J' v = -ks C - kd C', which takes back what a step missed, or
+//! J W J^T lambda = -(J' v + J (W Q + apin) + ks C + kd C').
+//! Andrew Witkin, *Physically Based Modeling: Constrained Dynamics*, SIGGRAPH course notes.
 //!
-//! Each row of C is a distance (m), and each row of J a unit vector, and its opposite at the other end of a rod.
+//! Each row of C is a distance (m), and each row of J a unit vector, and its opposite at the other
+//! end of a rod.
 
+mod pool;
 mod solve;
-
-use std::cell::RefCell;
 
 use nalgebra::Vector3;
 
 use crate::error::{Error, positive};
+use pool::Pool;
 use solve::{Row, Scratch};
 
-/// Nearer than this, in radii, to the centre of a circle or a sphere there is no way out of it to be told.
+/// Nearer than this, in radii, to the centre of a circle or a sphere there is no way out of it to
+/// be told.
 const CENTER: f64 = 1e-12;
 
-thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
-}
-
-/// What holds particles where they belong, without springs.
+/// A constraint on the positions of one or two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constraint {
     /// A particle stays at a point.
     Point {
         /// The particle.
         particle: usize,
-        /// In m.
+        /// The point (m).
         position: Vector3<f64>,
     },
     /// A particle slides along a straight line.
@@ -38,42 +37,42 @@ pub enum Constraint {
         particle: usize,
         /// A point of the line (m).
         point: Vector3<f64>,
-        /// Of any length but 0.
+        /// Direction, of any length but 0.
         direction: Vector3<f64>,
     },
     /// A particle slides along a circle: a bead on a wire.
     Circle {
         /// The particle.
         particle: usize,
-        /// In m.
+        /// Centre (m).
         center: Vector3<f64>,
-        /// Of the circle's plane, of any length but 0.
+        /// Normal of the circle's plane, of any length but 0.
         normal: Vector3<f64>,
-        /// In m.
+        /// Radius (m).
         radius: f64,
     },
     /// A particle slides over a sphere, and does not leave it.
     Sphere {
         /// The particle.
         particle: usize,
-        /// In m.
+        /// Centre (m).
         center: Vector3<f64>,
-        /// In m.
+        /// Radius (m).
         radius: f64,
     },
     /// Two particles stay as far from one another: a rigid rod without mass.
     Rod {
-        /// One end.
+        /// Particle at one end.
         i: usize,
-        /// The other end.
+        /// Particle at the other end.
         j: usize,
-        /// In m.
+        /// Length (m).
         length: f64,
     },
 }
 
 impl Constraint {
-    /// Its particles: of a rod there are two.
+    /// Its particle, and the other one of a rod.
     #[must_use]
     pub fn ends(&self) -> (usize, Option<usize>) {
         match *self {
@@ -85,7 +84,7 @@ impl Constraint {
         }
     }
 
-    /// The same with directions of length 1, or what is wrong with its numbers.
+    /// The same constraint with directions of length 1, or an error if its numbers make no sense.
     fn checked(self) -> Result<Self, Error> {
         match self {
             Self::Point { position, .. } => finite("a constraint's point", position)?,
@@ -116,8 +115,8 @@ impl Constraint {
         Ok(unit)
     }
 
-    /// Visits its equations, always as many, where its first particle is at x and moves with v: of a rod relative to the
-    /// second one.
+    /// Visits its equations, always as many, where its first particle is at x and moves with v;
+    /// those of a rod relative to its second particle.
     fn equations(&self, x: Vector3<f64>, v: Vector3<f64>, mut visit: impl FnMut(Equation)) {
         match *self {
             Self::Point { position, .. } => {
@@ -150,13 +149,13 @@ impl Constraint {
     }
 }
 
-/// C = 0, where it is looked at.
+/// An equation C = 0 in a state.
 struct Equation {
-    /// J, of the first particle.
+    /// Gradient J by the position of the first particle.
     gradient: Vector3<f64>,
-    /// C (m).
+    /// Error C (m).
     value: f64,
-    /// J' v (m/s2).
+    /// Change J' v of the gradient (m/s2).
     bend: f64,
 }
 
@@ -191,67 +190,74 @@ impl Equation {
 /// All constraints of a network.
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints {
-    list: Vec<Constraint>,
-    /// The particles that are held, each once, and of each constraint where its own are among them, from 1 on: 0 is a
-    /// particle that nothing moves. What forces take is then a matter of the constraints, not of the whole network.
-    held: Vec<usize>,
+    all: Vec<Constraint>,
+    /// The particles that are held, each once: evaluations take time by their number, not by that
+    /// of all particles.
+    particles: Vec<usize>,
+    /// For each constraint the places of its particles among these, from 1 on; 0 is a particle that
+    /// nothing moves.
     ends: Vec<[usize; 2]>,
+    /// Number of equations.
     rows: usize,
-    /// In 1/s.
-    feedback: f64,
+    /// Natural frequency (1/s) with which errors are taken back.
+    baumgarte_frequency: f64,
+    /// Scratch of evaluations, no part of the value.
+    scratch: Pool,
 }
 
 impl Default for Constraints {
     fn default() -> Self {
         Self {
-            list: vec![],
-            held: vec![],
+            all: vec![],
+            particles: vec![],
             ends: vec![],
             rows: 0,
-            feedback: 10.0,
+            baumgarte_frequency: 10.0,
+            scratch: Pool::default(),
         }
     }
 }
 
 impl Constraints {
-    /// Adds one whose particles exist.
+    /// Adds a constraint whose particles exist.
     pub fn add(&mut self, constraint: Constraint) -> Result<(), Error> {
         let constraint = constraint.checked()?;
         let (first, second) = constraint.ends();
         let mut end = |particle| {
-            let known = self.held.iter().position(|held| *held == particle);
+            let known = self.particles.iter().position(|held| *held == particle);
             1 + known.unwrap_or_else(|| {
-                self.held.push(particle);
-                self.held.len() - 1
+                self.particles.push(particle);
+                self.particles.len() - 1
             })
         };
         self.ends.push([end(first), second.map_or(0, end)]);
         constraint.equations(Vector3::zeros(), Vector3::zeros(), |_| self.rows += 1);
-        self.list.push(constraint);
-        // The thread that makes a network steps it, as a rule: not even its first step allocates then.
-        SCRATCH.with_borrow_mut(|scratch| scratch.reserve(self.rows, self.held.len() + 1));
+        self.all.push(constraint);
+        self.scratch.reserve(self.rows, self.particles.len() + 1);
         Ok(())
     }
 
-    pub fn list(&self) -> &[Constraint] {
-        &self.list
+    /// All constraints, in the order in which they were added.
+    pub fn all(&self) -> &[Constraint] {
+        &self.all
     }
 
-    /// In 1/s.
-    pub fn feedback(&self) -> f64 {
-        self.feedback
+    /// Natural frequency (1/s) with which errors are taken back.
+    pub fn baumgarte_frequency(&self) -> f64 {
+        self.baumgarte_frequency
     }
 
-    pub fn set_feedback(&mut self, feedback: f64) -> Result<(), Error> {
-        positive("the feedback of constraints", feedback)?;
-        self.feedback = feedback;
+    /// Sets the natural frequency (1/s) with which errors are taken back.
+    pub fn set_baumgarte_frequency(&mut self, w: f64) -> Result<(), Error> {
+        positive("the feedback of constraints", w)?;
+        self.baumgarte_frequency = w;
         Ok(())
     }
 
-    /// The largest |C| (m).
+    /// The largest error |C| (m).
     pub fn error(&self, x: &[f64]) -> Option<f64> {
         let mut largest = None;
-        for constraint in &self.list {
+        for constraint in &self.all {
             let (first, second) = constraint.ends();
             let from = second.map_or_else(Vector3::zeros, |j| vector(x, j));
             constraint.equations(vector(x, first) - from, Vector3::zeros(), |equation| {
@@ -261,7 +267,8 @@ impl Constraints {
         largest
     }
 
-    /// Adds J^T lambda (N) to all other forces: on pinned particles too, whose accelerations (m/s2) are asked for.
+    /// Adds J^T lambda (N) to all other forces: on pinned particles too, whose accelerations (m/s2)
+    /// are asked for.
     pub fn add_forces(
         &self,
         inverse_masses: &[f64],
@@ -269,7 +276,7 @@ impl Constraints {
         [x, v]: [&[f64]; 2],
         f: &mut [f64],
     ) {
-        SCRATCH.with_borrow_mut(|scratch| {
+        self.scratch.lend(|scratch| {
             let Scratch {
                 weights,
                 vectors,
@@ -280,13 +287,14 @@ impl Constraints {
             rows.clear();
             weights.push(0.0);
             vectors.push(Vector3::zeros());
-            for &i in &self.held {
+            for &i in &self.particles {
                 let w = inverse_masses[i];
                 weights.push(w);
                 vectors.push(if w == 0.0 { pin(i) } else { vector(f, i) * w });
             }
-            let (ks, kd) = (self.feedback * self.feedback, 2.0 * self.feedback);
-            for (constraint, &[first, second]) in self.list.iter().zip(&self.ends) {
+            let w = self.baumgarte_frequency;
+            let (ks, kd) = (w * w, 2.0 * w);
+            for (constraint, &[first, second]) in self.all.iter().zip(&self.ends) {
                 let relative = |a: &[f64]| match constraint.ends() {
                     (i, Some(j)) => vector(a, i) - vector(a, j),
                     (i, None) => vector(a, i),
@@ -307,7 +315,7 @@ impl Constraints {
             solve::solve(rows, weights, vectors);
             solve::transpose(rows, |row| row.multiplier, vectors);
             let n = f.len() / 3;
-            for (&i, force) in self.held.iter().zip(&vectors[1..]) {
+            for (&i, force) in self.particles.iter().zip(&vectors[1..]) {
                 for axis in 0..3 {
                     f[axis * n + i] += force[axis];
                 }
@@ -316,13 +324,13 @@ impl Constraints {
     }
 }
 
-/// Of particle i.
+/// The row of particle i.
 fn vector(a: &[f64], i: usize) -> Vector3<f64> {
     let n = a.len() / 3;
     Vector3::new(a[i], a[n + i], a[2 * n + i])
 }
 
-/// Two unit vectors across a third and one another.
+/// Two unit vectors, at right angles to a third and to one another.
 fn normals(direction: Vector3<f64>) -> [Vector3<f64>; 2] {
     let mut axis = Vector3::zeros();
     axis[direction.iamin()] = 1.0;

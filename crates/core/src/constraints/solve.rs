@@ -1,31 +1,35 @@
-//! A lambda = b with A = J W J^T, from the rows of J and without A, by conjugate residuals: conjugate gradients' sister,
-//! which takes the same products with A, and makes |b - A lambda| least at each step. Where rows depend on one another A is
-//! singular, and it finds one of the solutions; where they contradict one another there is none, and it finds what
-//! comes nearest, while conjugate gradients would go to infinity. Rows are scaled so that the diagonal of A is 1.
+//! A lambda = b with A = J W J^T, from the rows of J and without A, by conjugate residuals:
+//! conjugate gradients' sister, which takes the same products with A, and makes |b - A lambda|
+//! least at each step. Where rows depend on one another A is singular, and it finds one of the
+//! solutions; where they contradict one another there is none, and it finds what comes nearest,
+//! while conjugate gradients would go to infinity. Rows are scaled so that the diagonal of A is 1.
 
 use nalgebra::Vector3;
 
-/// What is left of b in the span of the rows, relative to all of it: rounding takes as much.
+/// Residual at which the iteration ends, relative to b: rounding leaves as much.
 const TOLERANCE: f64 = 1e-15;
-/// Iterations that are taken at most, per row: one would be enough without rounding.
+/// Largest number of iterations per row: one would be enough without rounding.
 const MOST: usize = 4;
 
-/// A row of J, and of the vectors of as many numbers.
+/// A row of J, with its component of each vector of the iteration.
+#[derive(Debug)]
 pub(super) struct Row {
-    /// Its particles: the second one's part of the row is the opposite of the first one's.
+    /// Places of its particles: the second one's part of the row is the opposite of the first
+    /// one's.
     ends: [usize; 2],
     gradient: Vector3<f64>,
-    /// lambda
+    /// Multiplier lambda.
     pub multiplier: f64,
-    /// r = b - A lambda
+    /// Residual r = b - A lambda.
     residual: f64,
-    /// p, and A p
+    /// Direction p, and its image A p.
     direction: f64,
     image: f64,
 }
 
 impl Row {
-    /// Scaled. `weight` is that of both ends (1/kg): without any, no force can do what is wanted, and the row is left out.
+    /// A row, scaled. `weight` is the sum of the inverse masses of both ends (1/kg): with 0, no
+    /// force can do what is wanted, and the row is left out.
     pub fn new(ends: [usize; 2], gradient: Vector3<f64>, weight: f64, wanted: f64) -> Self {
         let diagonal = weight * gradient.norm_squared();
         let scale = if diagonal > 0.0 {
@@ -44,8 +48,9 @@ impl Row {
     }
 }
 
-/// What an evaluation needs: weights (1/kg) and vectors of the particles that are held, and the rows.
-#[derive(Default)]
+/// Scratch of an evaluation: inverse masses (1/kg) and vectors of the particles that are held, and
+/// the rows.
+#[derive(Debug, Default)]
 pub(super) struct Scratch {
     pub weights: Vec<f64>,
     pub vectors: Vec<Vector3<f64>>,
@@ -53,7 +58,7 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// Makes room for so many.
+    /// Makes room for so many rows and particles.
     pub fn reserve(&mut self, rows: usize, particles: usize) {
         self.weights.clear();
         self.vectors.clear();
@@ -64,7 +69,7 @@ impl Scratch {
     }
 }
 
-/// out = J^T of the numbers that `of` reads off the rows.
+/// Writes J^T to out, times the vector whose numbers `of` reads off the rows.
 pub(super) fn transpose(rows: &[Row], of: impl Fn(&Row) -> f64, out: &mut [Vector3<f64>]) {
     out.fill(Vector3::zeros());
     for row in rows {
@@ -75,7 +80,7 @@ pub(super) fn transpose(rows: &[Row], of: impl Fn(&Row) -> f64, out: &mut [Vecto
     }
 }
 
-/// Finds the multipliers, from zero. `u` is scratch.
+/// Finds the multipliers, beginning with zero. `u` is scratch.
 pub(super) fn solve(rows: &mut [Row], weights: &[f64], u: &mut [Vector3<f64>]) {
     let all: f64 = rows.iter().map(|row| row.residual * row.residual).sum();
     let mut last = f64::INFINITY;

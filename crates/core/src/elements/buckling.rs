@@ -1,69 +1,168 @@
-//! Bend springs that buckle. A strip of rest length r whose ends are closer together than that is an arc of this length:
-//! its curvature kappa has L / r = sinc(kappa r / 2), sinc x = sin x / x, its energy is `k_b` kappa2 r / 2, and so it pulls
-//! with `k_b` kappa2 / (cos(kappa r / 2) - sinc(kappa r / 2)) < 0: it pushes, by 12 `k_b` / r2 when it has just buckled, and
-//! three times that when its ends meet. It is straight, and pulls with `c_b` (L - r), while that is the weaker push.
-//! Choi, Ko, *Stable but Responsive Cloth*, 2002.
+//! Bend springs that buckle. A strip of rest length r whose ends are closer together than that is
+//! an arc of this length: its curvature kappa has L / r = sinc(kappa r / 2), sinc x = sin x / x,
+//! its energy is `k_b` kappa2 r / 2, and so it pulls with `k_b` kappa2 / (cos(kappa r / 2) -
+//! sinc(kappa r / 2)) < 0: it pushes, by 12 `k_b` / r2 when it has just buckled, and three times
+//! that when its ends meet. It is straight, and pulls with `c_b` (L - r), while that is the weaker
+//! push. Choi, Ko, *Stable but Responsive Cloth*, 2002.
 //!
-//! All is a function of y = (kappa r / 2)2, by series that hold for every arc up to a full circle, y = pi2:
-//! 1 - sinc = y/6 (1 - y/20 (1 - y/42 ...)), and sinc - cos = y/3 P with P = 1 - y/10 (1 - y/28 ...).
+//! All is a function of y = (kappa r / 2)2, by series that hold for every arc up to a full circle,
+//! y = pi2: 1 - sinc = y/6 (1 - y/20 (1 - y/42 ...)), and sinc - cos = y/3 P with P = 1 - y/10 (1 -
+//! y/28 ...).
 
 use std::f64::consts::PI;
 
-use super::springs::Elastic;
+use super::force::{At, Cost, Force, check_ends, ends};
+use super::springs::{self, Elastic};
+use crate::energy::Energy;
 use crate::error::{Error, at_least, positive};
 use crate::spring::{Spring, SpringKind, SpringLaw};
+use crate::system::Coupling;
 
 /// Terms of the series: the next is lost in rounding.
 const TERMS: usize = 13;
 /// Iterations of Newton's method: the third is the last that changes anything but rounding.
 const ITERATIONS: u32 = 3;
-/// What it costs, in ordinary springs.
-pub(crate) const PRICE: f64 = 30.0;
+/// Price of one, in ordinary springs.
+const PRICE: f64 = 30.0;
 
-/// A strip between particles i and j, straight at its rest length, that buckles when it is compressed.
+/// A strip between particles i and j, straight at its rest length, that buckles when it is
+/// compressed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Buckling {
-    /// One end.
+    /// Particle at one end.
     pub i: usize,
-    /// The other end.
+    /// Particle at the other end.
     pub j: usize,
-    /// r (m).
+    /// Rest length r (m).
     pub rest_length: f64,
-    /// `k_b`, its stiffness against bending (N m2).
+    /// Stiffness against bending `k_b` (N m2).
     pub bending: f64,
-    /// `c_b`, its stiffness while it is compressed and still straight (N/m).
+    /// Stiffness while it is compressed and still straight, `c_b` (N/m).
     pub compression: f64,
-    /// Its stiffness when it is stretched (N/m): 0 where other springs resist that.
+    /// Stiffness when it is stretched (N/m): 0 where other springs resist that.
     pub tension: f64,
-    /// c, along it (N s/m).
+    /// Damping c along it (N s/m).
     pub damping: f64,
 }
 
-/// One that has been looked at.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Strip {
-    pub of: Buckling,
+/// Bend springs that buckle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BucklingSprings(Vec<Strip>);
+
+impl BucklingSprings {
+    /// All of them, in the order in which they were added.
+    pub fn all(&self) -> impl Iterator<Item = Buckling> {
+        self.0.iter().map(|strip| strip.parameters)
+    }
+
+    /// Adds one.
+    ///
+    /// # Errors
+    /// A number is negative or not finite; the rest length or the stiffness against bending is 0,
+    /// or the compression stiffness less than 4 pi2 `k_b` / r3.
+    pub fn push(&mut self, buckling: Buckling) -> Result<(), Error> {
+        self.0.push(Strip::new(buckling)?);
+        Ok(())
+    }
+
+    /// The springs that they are before they buckle.
+    pub(crate) fn straight(&self) -> impl Iterator<Item = Spring> {
+        self.0.iter().map(Strip::straight)
+    }
+}
+
+impl Force for BucklingSprings {
+    fn name(&self) -> &'static str {
+        "buckling"
+    }
+
+    fn check(&self, particles: usize) -> Result<(), Error> {
+        self.0
+            .iter()
+            .try_for_each(|strip| check_ends(strip.ends(), particles))
+    }
+
+    fn add_forces(&self, at: &At, f: &mut [f64]) {
+        springs::add_all(&self.0, at.x, at.v, f);
+    }
+
+    fn add_differential(&self, at: &At, d: [&[f64]; 2], df: &mut [f64]) {
+        for strip in &self.0 {
+            springs::add_differential(strip, at, d, df);
+        }
+    }
+
+    fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+        for strip in &self.0 {
+            visit(springs::coupling(strip, x, clamped));
+        }
+    }
+
+    fn energy(&self, at: &At) -> Energy {
+        springs::energy(self.0.iter().copied(), at.x)
+    }
+
+    fn reads_velocity(&self) -> bool {
+        self.0.iter().any(|strip| strip.parameters.damping > 0.0)
+    }
+
+    fn cost(&self) -> Cost {
+        let couplings = self.0.len() as f64;
+        Cost {
+            couplings,
+            price: couplings * PRICE,
+        }
+    }
+
+    fn scale(&mut self, stiffness: f64, damping: f64) {
+        for Strip { parameters, .. } in &mut self.0 {
+            parameters.bending *= stiffness;
+            parameters.compression *= stiffness;
+            parameters.tension *= stiffness;
+            parameters.damping *= damping;
+        }
+    }
+
+    fn remove_springs(&mut self, torn: &[[usize; 2]]) {
+        self.0
+            .retain(|strip| torn.binary_search(&ends(&strip.straight())).is_err());
+    }
+}
+
+/// A buckling spring, and the length at which it buckles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Strip {
+    parameters: Buckling,
     /// The length below which it is an arc (m).
     buckles: f64,
 }
 
 impl Strip {
     /// # Errors
-    /// A number makes no sense, or the straight strip is weaker than the arc that it would be when its ends meet.
-    pub fn new(of: Buckling) -> Result<Self, Error> {
-        let r = of.rest_length;
+    /// A number makes no sense, or the straight strip is weaker than the arc that it would be when
+    /// its ends meet.
+    fn new(parameters: Buckling) -> Result<Self, Error> {
+        let r = parameters.rest_length;
         positive("a buckling spring's rest length", r)?;
-        positive("a buckling spring's stiffness against bending", of.bending)?;
-        at_least(0.0, "a buckling spring's tension stiffness", of.tension)?;
-        at_least(0.0, "a buckling spring's damping", of.damping)?;
-        let least = 4.0 * PI * PI * of.bending / (r * r * r);
+        positive(
+            "a buckling spring's stiffness against bending",
+            parameters.bending,
+        )?;
+        at_least(
+            0.0,
+            "a buckling spring's tension stiffness",
+            parameters.tension,
+        )?;
+        at_least(0.0, "a buckling spring's damping", parameters.damping)?;
+        let least = 4.0 * PI * PI * parameters.bending / (r * r * r);
         at_least(
             least,
             "a buckling spring's compression stiffness, so that it buckles only once,",
-            of.compression,
+            parameters.compression,
         )?;
-        // Where both push alike: c_b r s = 12 k_b / (r2 P). The difference is convex, so that s grows up to there.
-        let c = of.compression * r * r * r / of.bending;
+        // Where both push alike: c_b r s = 12 k_b / (r2 P). The difference is convex, so that s
+        // grows up to there.
+        let c = parameters.compression * r * r * r / parameters.bending;
         let newton = |s| {
             let [push, slope] = arc(s).push();
             s + (push - c * s) / (c - slope)
@@ -73,74 +172,74 @@ impl Strip {
             (s, next) = (next, newton(next));
         }
         Ok(Self {
-            of,
+            parameters,
             buckles: r * (1.0 - s),
         })
     }
 
     /// The spring that it is before it buckles.
-    pub fn straight(&self) -> Spring {
+    fn straight(&self) -> Spring {
         Spring {
             kind: SpringKind::Bend,
-            i: self.of.i,
-            j: self.of.j,
+            i: self.parameters.i,
+            j: self.parameters.j,
             law: SpringLaw {
-                stiffness: self.of.compression,
-                rest_length: self.of.rest_length,
-                damping: self.of.damping,
+                stiffness: self.parameters.compression,
+                rest_length: self.parameters.rest_length,
+                damping: self.parameters.damping,
             },
         }
     }
 
     fn arc(&self, length: f64) -> Arc {
-        arc(1.0 - length / self.of.rest_length)
+        arc(1.0 - length / self.parameters.rest_length)
     }
 }
 
 impl Elastic for Strip {
     #[inline]
     fn ends(&self) -> [usize; 2] {
-        [self.of.i, self.of.j]
+        [self.parameters.i, self.parameters.j]
     }
 
     fn pull(&self, length: f64) -> f64 {
-        let r = self.of.rest_length;
+        let r = self.parameters.rest_length;
         if length >= r {
-            self.of.tension * (length - r)
+            self.parameters.tension * (length - r)
         } else if length >= self.buckles {
-            self.of.compression * (length - r)
+            self.parameters.compression * (length - r)
         } else {
-            -self.of.bending * self.arc(length).push()[0] / (r * r)
+            -self.parameters.bending * self.arc(length).push()[0] / (r * r)
         }
     }
 
     fn stiffness(&self, length: f64) -> f64 {
-        let r = self.of.rest_length;
+        let r = self.parameters.rest_length;
         if length >= r {
-            self.of.tension
+            self.parameters.tension
         } else if length >= self.buckles {
-            self.of.compression
+            self.parameters.compression
         } else {
-            self.of.bending * self.arc(length).push()[1] / (r * r * r)
+            self.parameters.bending * self.arc(length).push()[1] / (r * r * r)
         }
     }
 
     fn energy(&self, length: f64) -> f64 {
-        let r = self.of.rest_length;
-        let straight = |length: f64| 0.5 * self.of.compression * (length - r).powi(2);
+        let r = self.parameters.rest_length;
+        let straight = |length: f64| 0.5 * self.parameters.compression * (length - r).powi(2);
         if length >= r {
-            0.5 * self.of.tension * (length - r).powi(2)
+            0.5 * self.parameters.tension * (length - r).powi(2)
         } else if length >= self.buckles {
             straight(length)
         } else {
-            let bent = |length: f64| 2.0 * self.of.bending * self.arc(length).y / r;
+            let bent = |length: f64| 2.0 * self.parameters.bending * self.arc(length).y / r;
             straight(self.buckles) + bent(length) - bent(self.buckles)
         }
     }
 
     #[inline]
     fn damping(&self) -> f64 {
-        self.of.damping
+        self.parameters.damping
     }
 }
 
@@ -151,7 +250,8 @@ struct Arc {
     slope: f64,
 }
 
-/// The one whose ends are closer by this share of its length, 0 to 1: 1 - sinc = s, by Newton's method in y.
+/// The one whose ends are closer by this share of its length, 0 to 1: 1 - sinc = s, by Newton's
+/// method in y.
 fn arc(s: f64) -> Arc {
     // Exact to the third order in small s, and where s is 1.
     let mut y = s * (6.0 + s * (1.8 + s * (0.822_857_142_857 + s * 1.246_747_258_232)));
@@ -164,7 +264,7 @@ fn arc(s: f64) -> Arc {
 }
 
 impl Arc {
-    /// How it pushes, in `k_b` / r2, and how that grows with s.
+    /// Push in `k_b` / r2, and its derivative by s.
     fn push(&self) -> [f64; 2] {
         // dy/ds = 6 / P.
         let push = 12.0 / self.p;

@@ -8,8 +8,9 @@
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
-/// With a = c h / m, v -> v + h phi (g - (c/m) v), x -> x + h phi v + h2 psi g,
-/// phi = (1 - e^-a) / a, psi = (1 - phi) / a: x += `v_to_x` v + `to_x`, v += `v_to_v` v + `to_v`.
+/// The flow over a time h. With a = c h / m, v -> v + h phi (g - (c/m) v), x -> x + h phi v + h2
+/// psi g, phi = (1 - e^-a) / a, psi = (1 - phi) / a: x += `v_to_x` v + `to_x`, v += `v_to_v` v +
+/// `to_v`.
 #[derive(Clone, Copy)]
 pub(crate) struct Flow {
     v_to_x: f64,
@@ -19,7 +20,8 @@ pub(crate) struct Flow {
 }
 
 impl Flow {
-    /// Of particles of one over the mass `w`, for a time h.
+    /// The flow for a time h (s) of particles under drag c (kg/s) and gravity g (m/s2), whose
+    /// inverse mass is `w` (1/kg).
     pub fn new(c: f64, g: Vector3<f64>, w: f64, h: f64) -> Self {
         let (phi, psi) = phi_psi(c * w * h);
         Self {
@@ -30,7 +32,7 @@ impl Flow {
         }
     }
 
-    /// One axis of a vector of particles.
+    /// Positions and velocities along one axis after the flow.
     #[inline(always)]
     pub fn of<S: Simd>(self, simd: S, axis: usize, x: S::f64s, v: S::f64s) -> (S::f64s, S::f64s) {
         let add = |a, from, k, more| {
@@ -45,14 +47,14 @@ impl Flow {
         )
     }
 
-    /// Moves particles.
+    /// Moves particles by the flow.
     pub fn apply(self, x: [&mut [f64]; 3], v: [&mut [f64]; 3]) {
         Arch::new().dispatch(Apply { flow: self, x, v });
     }
 }
 
-/// Moves particles of several masses.
-pub(crate) fn apply(
+/// Moves particles of several masses, as [`Flow`] does those of one.
+pub(crate) fn flow_each(
     c: f64,
     g: Vector3<f64>,
     inverse_masses: &[f64],
@@ -60,7 +62,7 @@ pub(crate) fn apply(
     mut x: [&mut [f64]; 3],
     mut v: [&mut [f64]; 3],
 ) {
-    // Those of one mass come in runs: the exponential is taken once a run.
+    // Equal masses come in runs: the exponential is taken once for each run.
     let mut start = 0;
     for run in inverse_masses.chunk_by(|a, b| a == b) {
         let part = start..start + run.len();
@@ -97,7 +99,7 @@ impl WithSimd for Apply<'_> {
     }
 }
 
-/// (1 - e^-a) / a and (1 - that) / a, by their series where the quotients would cancel.
+/// phi = (1 - e^-a) / a and psi = (1 - phi) / a, by their series where the quotients would cancel.
 fn phi_psi(a: f64) -> (f64, f64) {
     if a.abs() < 1e-2 {
         let phi =
@@ -130,7 +132,7 @@ mod tests {
             for _ in 0..times {
                 let h = 0.7 / f64::from(times);
                 let (x, v) = (x.each_mut(), v.each_mut());
-                apply(
+                flow_each(
                     0.5,
                     g,
                     &[2.0],

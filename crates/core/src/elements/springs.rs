@@ -1,23 +1,111 @@
-//! Springs: with d = xi - xj, L = |d|, u = d/L and w = vi - vj, the force on i is -(p(L) + c (w . u)) u, and its opposite
-//! on j; p is its pull, k (L - r) of most. A spring of length zero has no direction, and no force.
+//! Springs: with d = xi - xj, L = |d|, u = d/L and w = vi - vj, the force on i is -(p(L) + c (w .
+//! u)) u, and its opposite on j; p is its pull, k (L - r) of most. A spring of length zero has no
+//! direction, and no force.
 
+use super::force::{At, Cost, Force, check_ends, ends};
+use crate::energy::Energy;
+use crate::error::Error;
 use crate::spring::Spring;
-use crate::system::Coupling;
+use crate::system::{AxialCoupling, Coupling};
 
-/// What pulls two particles together, or pushes them apart, by their distance (m).
-pub(crate) trait Elastic {
+/// Single springs, which are evaluated in their order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Springs(Vec<Spring>);
+
+impl Springs {
+    /// Springs in the order given.
+    #[must_use]
+    pub fn new(springs: Vec<Spring>) -> Self {
+        Self(springs)
+    }
+
+    /// All of them, in their order.
+    #[must_use]
+    pub fn all(&self) -> &[Spring] {
+        &self.0
+    }
+
+    /// Adds one at the end.
+    pub(crate) fn push(&mut self, spring: Spring) {
+        self.0.push(spring);
+    }
+
+    /// Puts them in the order of their ends: neighbours in memory are then used one after another.
+    pub(crate) fn sort(&mut self) {
+        self.0.sort_by_key(ends);
+    }
+}
+
+impl Force for Springs {
+    fn name(&self) -> &'static str {
+        "springs"
+    }
+
+    fn check(&self, particles: usize) -> Result<(), Error> {
+        self.0
+            .iter()
+            .try_for_each(|spring| check_ends([spring.i, spring.j], particles))
+    }
+
+    fn add_forces(&self, at: &At, f: &mut [f64]) {
+        add_all(&self.0, at.x, at.v, f);
+    }
+
+    fn add_differential(&self, at: &At, d: [&[f64]; 2], df: &mut [f64]) {
+        for spring in &self.0 {
+            add_differential(spring, at, d, df);
+        }
+    }
+
+    fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+        for spring in &self.0 {
+            visit(coupling(spring, x, clamped));
+        }
+    }
+
+    fn energy(&self, at: &At) -> Energy {
+        energy(self.0.iter().copied(), at.x)
+    }
+
+    fn reads_velocity(&self) -> bool {
+        self.0.iter().any(|spring| spring.law.damping > 0.0)
+    }
+
+    fn cost(&self) -> Cost {
+        let springs = self.0.len() as f64;
+        Cost {
+            couplings: springs,
+            price: springs,
+        }
+    }
+
+    fn scale(&mut self, stiffness: f64, damping: f64) {
+        for spring in &mut self.0 {
+            spring.law.scale(stiffness, damping);
+        }
+    }
+
+    fn remove_springs(&mut self, torn: &[[usize; 2]]) {
+        self.0
+            .retain(|spring| torn.binary_search(&ends(spring)).is_err());
+    }
+}
+
+/// A force between two particles along the line between them, by their distance (m).
+pub(super) trait Elastic {
+    /// Particles at its ends.
     fn ends(&self) -> [usize; 2];
 
-    /// p (N).
+    /// Pull p (N), negative where it pushes.
     fn pull(&self, length: f64) -> f64;
 
-    /// dp/dL (N/m).
+    /// Stiffness dp/dL (N/m).
     fn stiffness(&self, length: f64) -> f64;
 
-    /// What was put into it since it had its rest length (J).
+    /// Energy above that at the rest length (J).
     fn energy(&self, length: f64) -> f64;
 
-    /// c, along it (N s/m).
+    /// Damping c along it (N s/m).
     fn damping(&self) -> f64;
 }
 
@@ -47,14 +135,14 @@ impl Elastic for Spring {
     }
 }
 
-/// Adds the forces of single springs.
-pub(crate) fn add_list(list: &[impl Elastic], x: &[f64], v: &[f64], f: &mut [f64]) {
+/// Adds the forces of springs.
+pub(super) fn add_all(springs: &[impl Elastic], x: &[f64], v: &[f64], f: &mut [f64]) {
     let n = x.len() / 3;
     let (x, y, z) = (&x[..n], &x[n..2 * n], &x[2 * n..]);
     let (u, v, w) = (&v[..n], &v[n..2 * n], &v[2 * n..]);
     let (fx, f) = f.split_at_mut(n);
     let (fy, fz) = f.split_at_mut(n);
-    for spring in list {
+    for spring in springs {
         let [i, j] = spring.ends();
         let (dx, dy, dz) = (x[i] - x[j], y[i] - y[j], z[i] - z[j]);
         let length = (dx * dx + dy * dy + dz * dz).sqrt();
@@ -77,32 +165,30 @@ pub(crate) fn add_list(list: &[impl Elastic], x: &[f64], v: &[f64], f: &mut [f64
     }
 }
 
-/// Adds dF of one spring. With dd = dxi - dxj, dw = dvi - dvj and p = (dd - u (u . dd)) / L, that is
+/// Adds dF of a spring. With dd = dxi - dxj, dw = dvi - dvj and p = (dd - u (u . dd)) / L, that is
 /// -(across dd + (along - across) u (u . dd)) - c ((dw . u + w . p) u + (w . u) p).
-pub(crate) fn add_differential(
-    coupling: &Coupling,
-    x: &[f64],
-    v: &[f64],
-    dx: &[f64],
-    dv: &[f64],
+pub(super) fn add_differential(
+    spring: &impl Elastic,
+    at: &At,
+    [dx, dv]: [&[f64]; 2],
     df: &mut [f64],
 ) {
-    let Coupling {
+    let AxialCoupling {
         i,
         j,
         direction: u,
         along,
         across,
         damping: c,
-    } = *coupling;
+    } = axial(spring, at.x);
     let dd = difference(dx, i, j);
     let share = dot(u, dd);
     let mut force: [f64; 3] =
         std::array::from_fn(|a| across * dd[a] + (along - across) * share * u[a]);
     if c > 0.0 {
-        let length = norm(difference(x, i, j));
+        let length = norm(difference(at.x, i, j));
         let inverse = if length > 0.0 { 1.0 / length } else { 0.0 };
-        let w = difference(v, i, j);
+        let w = difference(at.v, i, j);
         let dw = difference(dv, i, j);
         let p: [f64; 3] = std::array::from_fn(|a| (dd[a] - u[a] * share) * inverse);
         let (rate, turn) = (dot(dw, u) + dot(w, p), dot(w, u));
@@ -110,15 +196,17 @@ pub(crate) fn add_differential(
             force[a] += c * (rate * u[a] + turn * p[a]);
         }
     }
-    let n = x.len() / 3;
+    let n = df.len() / 3;
     for axis in 0..3 {
         df[axis * n + i] -= force[axis];
         df[axis * n + j] += force[axis];
     }
 }
 
-/// The symmetric part of a spring's differential: dp/dL along it, p/L across. At length zero it has no direction.
-pub(crate) fn coupling(spring: &impl Elastic, x: &[f64]) -> Coupling {
+/// The symmetric part of a spring's differential: dp/dL along it, p/L across. A spring of length
+/// zero has no direction.
+#[inline]
+fn axial(spring: &impl Elastic, x: &[f64]) -> AxialCoupling {
     let [i, j] = spring.ends();
     let d = difference(x, i, j);
     let length = norm(d);
@@ -129,7 +217,7 @@ pub(crate) fn coupling(spring: &impl Elastic, x: &[f64]) -> Coupling {
     } else {
         (0.0, along)
     };
-    Coupling {
+    AxialCoupling {
         i,
         j,
         direction: d.map(|d| d * inverse),
@@ -139,15 +227,27 @@ pub(crate) fn coupling(spring: &impl Elastic, x: &[f64]) -> Coupling {
     }
 }
 
-/// The energy in a spring (J).
-pub(crate) fn energy(spring: &impl Elastic, x: &[f64]) -> f64 {
-    spring.energy(length(x, spring))
+/// The coupling of a spring. With `clamped`, stiffness across a compressed spring, which is
+/// negative, counts as none (Choi, Ko, *Stable but responsive cloth*, 2002).
+#[inline]
+pub(super) fn coupling(spring: &impl Elastic, x: &[f64], clamped: bool) -> Coupling {
+    let mut axial = axial(spring, x);
+    if clamped {
+        axial.across = axial.across.max(0.0);
+    }
+    Coupling::Axial(axial)
 }
 
-/// L (m).
-pub(crate) fn length(x: &[f64], spring: &impl Elastic) -> f64 {
-    let [i, j] = spring.ends();
-    norm(difference(x, i, j))
+/// The energy of springs.
+pub(super) fn energy<E: Elastic>(springs: impl IntoIterator<Item = E>, x: &[f64]) -> Energy {
+    let of_one = |spring: E| {
+        let [i, j] = spring.ends();
+        spring.energy(norm(difference(x, i, j)))
+    };
+    Energy {
+        elastic: springs.into_iter().map(of_one).sum(),
+        ..Energy::default()
+    }
 }
 
 #[inline]

@@ -1,26 +1,30 @@
-//! A gentle wind in gusts: a steady breeze and a few plane waves whose directions, lengths and periods come from
-//! a seed. A pure function of seed, time and position, so that every stage of a step feels the same wind and a run
-//! can be repeated. It pushes each particle alike, or it is the velocity of air that streams past triangles.
+//! A gentle wind in gusts: a steady breeze and a few plane waves whose directions, lengths and
+//! periods come from a seed. A pure function of seed, time and position, so that every stage of a
+//! step feels the same wind and a run can be repeated. It pushes each particle alike, or it is the
+//! velocity of air that streams past triangles.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::Air;
+use super::air::Air;
+use super::force::{At, ByParticle, Force};
+use crate::columns::{columns, columns_mut};
 use crate::random::SplitMix;
+use crate::threads::{fork, threads};
 
 const WAVES: usize = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Wave {
-    /// In N, or m/s.
+    /// Amplitude (N, or m/s).
     #[serde(with = "crate::serial")]
     amplitude: Vector3<f64>,
-    /// In rad/m.
+    /// Wave number (rad/m).
     #[serde(with = "crate::serial")]
     number: Vector3<f64>,
-    /// In rad/s.
+    /// Angular frequency (rad/s).
     rate: f64,
-    /// In rad.
+    /// Phase (rad).
     phase: f64,
 }
 
@@ -37,12 +41,13 @@ pub struct Wind {
     #[serde(with = "crate::serial")]
     breeze: Vector3<f64>,
     waves: [Wave; WAVES],
-    /// What blows on triangles.
+    /// The air, if it blows on triangles.
     air: Option<Air>,
 }
 
 impl Wind {
-    /// A wind that pushes each particle by `force` (N) on the average, and never by more than 2.2 times that.
+    /// A wind that pushes each particle by `force` (N) on average, and never by more than 2.2 times
+    /// that.
     #[must_use]
     pub fn new(seed: u64, force: Vector3<f64>) -> Self {
         let mut random = SplitMix(seed);
@@ -63,8 +68,8 @@ impl Wind {
         }
     }
 
-    /// A wind that pushes at the [triangles](crate::Network::set_triangles) of a network, with air that moves at
-    /// `velocity` (m/s) on the average, and never faster than 2.2 times that.
+    /// A wind that pushes at the [triangles](crate::Network::set_triangles) of a network, with air
+    /// that moves at `velocity` (m/s) on average, and never faster than 2.2 times that.
     #[must_use]
     pub fn on_triangles(seed: u64, velocity: Vector3<f64>, air: Air) -> Self {
         Self {
@@ -73,7 +78,7 @@ impl Wind {
         }
     }
 
-    /// The same gusts, so many times as strong.
+    /// The same gusts, `factor` times as strong.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -98,7 +103,7 @@ impl Wind {
         }
     }
 
-    /// What blows on triangles, if it does.
+    /// The air, if the wind blows on triangles.
     #[must_use]
     pub fn air(&self) -> Option<Air> {
         self.air
@@ -112,22 +117,16 @@ impl Wind {
         })
     }
 
-    /// How that changes with x, as x moves by `towards`.
-    pub(crate) fn differential(&self, t: f64, x: [f64; 3], towards: Vector3<f64>) -> Vector3<f64> {
+    /// The differential of [`at`](Self::at), as x moves by `towards`.
+    pub(super) fn differential(&self, t: f64, x: [f64; 3], towards: Vector3<f64>) -> Vector3<f64> {
         self.waves.iter().fold(Vector3::zeros(), |df, wave| {
             df + wave.amplitude * (libm::cos(wave.argument(t, x)) * wave.number.dot(&towards))
         })
     }
+}
 
-    /// Sets f to the forces on particles at x.
-    pub(crate) fn blow(&self, t: f64, x: [&[f64]; 3], f: &mut [&mut [f64]; 3]) {
-        for f in &mut *f {
-            f.fill(0.0);
-        }
-        self.add(t, x, f);
-    }
-
-    pub(crate) fn add(&self, t: f64, x: [&[f64]; 3], f: &mut [&mut [f64]; 3]) {
+impl ByParticle for Wind {
+    fn add(&self, t: f64, x: [&[f64]; 3], f: &mut [&mut [f64]; 3]) {
         for i in 0..x[0].len() {
             let force = self.at(t, x.map(|x| x[i]));
             for axis in 0..3 {
@@ -135,17 +134,33 @@ impl Wind {
             }
         }
     }
+}
 
-    pub(crate) fn add_differential(&self, t: f64, x: &[f64], dx: &[f64], df: &mut [f64]) {
-        let n = x.len() / 3;
+impl Force for Wind {
+    fn name(&self) -> &'static str {
+        "wind"
+    }
+
+    fn add_forces(&self, at: &At, f: &mut [f64]) {
+        let n = at.masses.len();
+        fork(threads(n), 0..n, 1, columns_mut(f), &|particles, mut f| {
+            self.add(at.t, columns(at.x, &particles), &mut f);
+        });
+    }
+
+    fn add_differential(&self, at: &At, [dx, _]: [&[f64]; 2], df: &mut [f64]) {
+        let n = at.masses.len();
         for i in 0..n {
-            let at = [x[i], x[n + i], x[2 * n + i]];
-            let towards = Vector3::new(dx[i], dx[n + i], dx[2 * n + i]);
-            let change = self.differential(t, at, towards);
+            let row = |a: &[f64]| [a[i], a[n + i], a[2 * n + i]];
+            let change = self.differential(at.t, row(at.x), row(dx).into());
             for axis in 0..3 {
                 df[axis * n + i] += change[axis];
             }
         }
+    }
+
+    fn by_particle(&self) -> Option<&dyn ByParticle> {
+        Some(self)
     }
 }
 

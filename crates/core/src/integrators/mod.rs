@@ -17,62 +17,13 @@ mod sweep;
 mod symplectic_euler;
 mod verlet;
 
-use serde::{Deserialize, Serialize};
-
 use crate::control::Control;
 use crate::error::{Error, positive};
-use crate::system::ParticleSystem;
+use crate::system::{Mechanics, ParticleSystem};
 
+pub use crate::work::Work;
 pub use adaptive::{Adaptive, AdaptiveState, Taken, Tolerance};
 pub use embedded::Tableau;
-
-/// What a step cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Work {
-    /// Evaluations of f(t, y), or of the forces.
-    pub evaluations: u64,
-    /// Linear systems solved.
-    pub solves: u64,
-    /// Iterations that conjugate gradients took for them.
-    pub iterations: u64,
-    /// Matrices factorised for them.
-    pub factorizations: u64,
-    /// What that linear algebra costs, in evaluations, by prices that are the same on every machine.
-    pub algebra: f64,
-    /// The largest relative residual that a solve left.
-    pub residual: f64,
-    /// Steps of an adaptive method that were too inaccurate, and taken back.
-    pub rejections: u64,
-}
-
-impl Work {
-    /// Evaluations, and nothing else.
-    #[must_use]
-    pub fn of(evaluations: u64) -> Self {
-        Self {
-            evaluations,
-            ..Self::default()
-        }
-    }
-
-    /// The cost of everything, in evaluations.
-    #[must_use]
-    pub fn total(&self) -> f64 {
-        self.evaluations as f64 + self.algebra
-    }
-}
-
-impl std::ops::AddAssign for Work {
-    fn add_assign(&mut self, other: Self) {
-        self.evaluations += other.evaluations;
-        self.solves += other.solves;
-        self.iterations += other.iterations;
-        self.factorizations += other.factorizations;
-        self.algebra += other.algebra;
-        self.residual = self.residual.max(other.residual);
-        self.rejections += other.rejections;
-    }
-}
 
 /// Advances a state.
 pub trait Integrator: Send {
@@ -126,7 +77,7 @@ impl Method {
     pub fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
         match system.mechanics() {
             None if self.needs_mechanics => Err(Error::NeedsMechanics { method: self.name }),
-            Some(mechanics) if self.implicit && mechanics.feedback().is_some() => {
+            Some(mechanics) if self.implicit && holds_constraints(mechanics) => {
                 Err(Error::Invalid(format!(
                     "{} does not support constraints: use an explicit solver",
                     self.title
@@ -191,6 +142,13 @@ impl PartialEq for Method {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
     }
+}
+
+/// Whether forces of constraints, which implicit methods cannot solve with, are among those of the
+/// system.
+fn holds_constraints(mechanics: &dyn Mechanics) -> bool {
+    let linearized = mechanics.linearized();
+    linearized.is_some_and(|linearized| linearized.baumgarte_frequency().is_some())
 }
 
 /// Every method.

@@ -10,7 +10,7 @@ use super::Method;
 use super::runge_kutta::RK4;
 use super::splitting::Plan;
 use crate::control::Control;
-use crate::rows::Part;
+use crate::rows::Terms;
 
 pub(super) const METHOD: Method = Method {
     name: "pefrl",
@@ -40,6 +40,6 @@ pub(super) static PLAN: Plan = Plan {
         (CHI, 0.5 - LAMBDA),
     ],
     last: XI,
-    part: Part::Kick,
+    terms: Terms::KickForces,
     damped: RK4,
 };

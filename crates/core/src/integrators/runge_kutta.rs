@@ -1,15 +1,16 @@
-//! Explicit Runge-Kutta methods each of whose stages reads only the one before it:
-//! k1 = f(t, y), k2 = f(t + c2 h, y + c2 h k1), k3 = f(t + c3 h, y + c3 h k2), ..., y1 = y + h (b1 k1 + b2 k2 + ...).
+//! Explicit Runge-Kutta methods each of whose stages reads only the one before it: k1 = f(t, y), k2
+//! = f(t + c2 h, y + c2 h k1), k3 = f(t + c3 h, y + c3 h k2), ..., y1 = y + h (b1 k1 + b2 k2 +
+//! ...).
 
 use pulp::{Arch, Simd, WithSimd};
 
 use super::sweep::Sweeper;
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
-use crate::rows::{Part, Stage};
+use crate::rows::{Stage, Terms};
 use crate::system::ParticleSystem;
 
-/// c and b of each stage.
+/// The c and the b of each stage.
 pub(super) type Table = &'static [(f64, f64)];
 
 pub(super) const EULER: Table = &[(0.0, 1.0)];
@@ -23,9 +24,9 @@ pub(super) const RK4: Table = &[
 ];
 
 /// The stages of a step from t to t + h.
-pub(super) fn stages(table: Table, part: Part, t: f64, h: f64) -> impl Iterator<Item = Stage> {
+pub(super) fn stages(table: Table, terms: Terms, t: f64, h: f64) -> impl Iterator<Item = Stage> {
     table.iter().enumerate().map(move |(i, (c, b))| Stage {
-        part,
+        terms,
         t: t + c * h,
         until: table.get(i + 1).map_or(t + h, |(c, _)| t + c * h),
         first: i == 0,
@@ -35,14 +36,15 @@ pub(super) fn stages(table: Table, part: Part, t: f64, h: f64) -> impl Iterator<
     })
 }
 
-/// A method of such a table.
+/// A method with a table.
 pub(super) struct RungeKutta {
     table: Table,
     dim: usize,
-    /// For systems of rows.
+    /// Scratch for systems of rows.
     sweeper: Option<Sweeper>,
     stages: Vec<Stage>,
-    /// For others: y of the stage under way, y + b1 h k1 + b2 h k2 + ..., and the last k.
+    /// Scratch for other systems: y of the stage under way, y + b1 h k1 + b2 h k2 + ..., and the
+    /// last k.
     stage: Vec<f64>,
     sum: Vec<f64>,
     k: Vec<f64>,
@@ -77,13 +79,13 @@ impl Integrator for RungeKutta {
     ) -> Result<Work, Error> {
         check_dim(self.dim, y)?;
         self.stages.clear();
-        self.stages.extend(stages(self.table, Part::All, t, h));
+        self.stages.extend(stages(self.table, Terms::Motion, t, h));
         match (&mut self.sweeper, system.rows()) {
             (Some(sweeper), Some(system)) if sweeper.fits(system, self.stages.len()) => {
                 sweeper.step(system, None, &self.stages, y);
             }
             _ => {
-                // Made for another system, it has none.
+                // An integrator that was made for rows has none.
                 for scratch in [&mut self.stage, &mut self.sum, &mut self.k] {
                     scratch.resize(self.dim, 0.0);
                 }
@@ -105,7 +107,7 @@ impl Integrator for RungeKutta {
     }
 }
 
-/// From one stage to the next.
+/// The way from one stage to the next with whole arrays.
 pub(super) struct Combine<'a> {
     pub stage: &'a Stage,
     pub y: &'a [f64],

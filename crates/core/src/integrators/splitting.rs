@@ -1,5 +1,6 @@
-//! Splitting methods: drifts move x by v, and kicks change v by forces at x as it stands. Where forces depend on v too, as
-//! those of springs damped along their length do, a kick is a step of an explicit Runge-Kutta method in v.
+//! Splitting methods: drifts move x by v, and kicks change v by forces at x as it stands. Where
+//! forces depend on v too, as those of springs damped along their length do, a kick is a step of an
+//! explicit Runge-Kutta method in v.
 
 use pulp::Arch;
 
@@ -7,32 +8,35 @@ use super::runge_kutta::{Combine, EULER, Table, stages};
 use super::sweep::Sweeper;
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
-use crate::rows::{Part, Stage};
-use crate::system::{Mechanics, ParticleSystem, place_pins};
+use crate::rows::{Stage, Terms};
+use crate::system::{Mechanics, ParticleSystem, Splitting, divide_by_masses, place_pins};
 
-/// Stages that one sweep goes through at most, if they are not those of a single kick: with more, rows leave the cache.
+/// Largest number of stages of a sweep through several kicks: with more, rows leave the cache.
 const STAGES: usize = 4;
 
-/// A method.
+/// A method as a table of drifts and kicks.
 pub(super) struct Plan {
+    /// Name of the method.
     pub name: &'static str,
-    /// Drifts, each with the kick after it, and the last drift: parts of the step.
+    /// Lengths of each drift and of the kick after it, over that of the step.
     pub steps: &'static [(f64, f64)],
+    /// Length of the last drift, over that of the step.
     pub last: f64,
-    /// What kicks: [`Part::Kick`] if drifts carry gravity and drag exactly, or [`Part::Push`], all forces, if not.
-    pub part: Part,
-    /// How kicks are taken where forces depend on v.
+    /// The terms that kick: [`Terms::KickForces`] if drifts carry gravity and drag exactly, and
+    /// otherwise [`Terms::AllForces`].
+    pub terms: Terms,
+    /// The method of a kick where forces depend on v.
     pub damped: Table,
 }
 
-/// A method at work.
-pub(super) struct Splitting {
+/// A method with its scratch.
+pub(super) struct SplittingMethod {
     plan: &'static Plan,
     dim: usize,
     stages: Vec<Stage>,
-    /// For systems of rows.
+    /// Scratch for systems of rows.
     sweeper: Option<Sweeper>,
-    /// For others: v when the kick began, the sum of its stages, and accelerations.
+    /// Scratch for other systems: v when the kick began, the sum of its stages, and accelerations.
     v: Vec<f64>,
     sum: Vec<f64>,
     a: Vec<f64>,
@@ -44,7 +48,7 @@ impl Plan {
         self.with(system, sweeper)
     }
 
-    /// With this sweeper, or with whole arrays.
+    /// An integrator that steps with this sweeper, or by whole arrays.
     pub fn with(
         &'static self,
         system: &dyn ParticleSystem,
@@ -52,7 +56,7 @@ impl Plan {
     ) -> Box<dyn Integrator> {
         let dim = system.dim();
         let length = if sweeper.is_some() { 0 } else { dim / 2 };
-        Box::new(Splitting {
+        Box::new(SplittingMethod {
             plan: self,
             dim,
             stages: Vec::with_capacity(self.steps.len() * self.kick(system).len()),
@@ -64,24 +68,22 @@ impl Plan {
     }
 
     fn kick(&self, system: &dyn ParticleSystem) -> Table {
-        if system
-            .mechanics()
-            .is_some_and(Mechanics::kick_reads_velocity)
-        {
+        let splitting = system.mechanics().and_then(Mechanics::splitting);
+        if splitting.is_none_or(Splitting::kick_reads_velocity) {
             self.damped
         } else {
             EULER
         }
     }
 
-    /// Those of as many whole kicks as fit.
+    /// Number of stages of a sweep: those of as many whole kicks as fit.
     pub fn stages_of_sweep(&self, system: &dyn ParticleSystem) -> usize {
         let kick = self.kick(system).len();
         kick * (STAGES / kick).clamp(1, self.steps.len())
     }
 }
 
-impl Integrator for Splitting {
+impl Integrator for SplittingMethod {
     fn step(
         &mut self,
         system: &dyn ParticleSystem,
@@ -101,18 +103,19 @@ impl Integrator for Splitting {
         for (i, (drift, length)) in plan.steps.iter().enumerate() {
             now += drift * h;
             let next = plan.steps.get(i + 1).map_or(plan.last, |(drift, _)| *drift) * h;
-            self.stages
-                .extend(stages(kick, plan.part, now, length * h).map(|stage| Stage {
+            self.stages.extend(
+                stages(kick, plan.terms, now, length * h).map(|stage| Stage {
                     t: now,
                     until: if stage.c.is_none() { now + next } else { now },
                     drift: if stage.c.is_none() { next } else { 0.0 },
                     ..stage
-                }));
+                }),
+            );
         }
         let per_sweep = plan.stages_of_sweep(system);
         match (&mut self.sweeper, system.rows()) {
             (Some(sweeper), Some(system)) if sweeper.fits(system, per_sweep) => {
-                let mut lead = Some((plan.part, lead)).filter(|_| lead.1 != 0.0);
+                let mut lead = Some((plan.terms, lead)).filter(|_| lead.1 != 0.0);
                 for stages in self.stages.chunks(per_sweep) {
                     sweeper.step(system, lead.take(), stages, y);
                 }
@@ -123,25 +126,26 @@ impl Integrator for Splitting {
     }
 }
 
-impl Splitting {
-    /// The stages with whole arrays.
+impl SplittingMethod {
+    /// Takes y through the stages by whole arrays.
     fn plain(&mut self, mechanics: &dyn Mechanics, (t, lead): (f64, f64), y: &mut [f64]) {
         let (x, v) = y.split_at_mut(self.dim / 2);
-        // Made for another system, it has none.
+        // An integrator that was made for rows has none.
         for scratch in [&mut self.v, &mut self.sum, &mut self.a] {
             scratch.resize(v.len(), 0.0);
         }
-        let part = self.plan.part;
-        drift(mechanics, part, t, lead, x, v);
+        let terms = self.plan.terms;
+        drift(mechanics, terms, t, lead, x, v);
         for stage in &self.stages {
             if stage.first {
                 self.v.copy_from_slice(v);
             }
-            if part == Part::Kick {
-                mechanics.kick_forces(stage.t, x, v, &mut self.a);
-                mechanics.divide_by_masses(&mut self.a);
-            } else {
-                mechanics.accelerations(stage.t, x, v, &mut self.a);
+            match mechanics.splitting() {
+                Some(splitting) if terms == Terms::KickForces => {
+                    splitting.kick_forces(stage.t, x, v, &mut self.a);
+                    divide_by_masses(mechanics.inverse_masses(), &mut self.a);
+                }
+                _ => mechanics.accelerations(stage.t, x, v, &mut self.a),
             }
             Arch::new().dispatch(Combine {
                 stage,
@@ -150,19 +154,20 @@ impl Splitting {
                 next: v,
                 k: &self.a,
             });
-            drift(mechanics, part, stage.t, stage.drift, x, v);
+            drift(mechanics, terms, stage.t, stage.drift, x, v);
         }
     }
 }
 
-fn drift(mechanics: &dyn Mechanics, part: Part, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
+fn drift(mechanics: &dyn Mechanics, terms: Terms, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
     if h == 0.0 {
         return;
     }
-    if part == Part::Kick {
-        mechanics.drift(t, h, x, v);
-    } else {
-        super::add_scaled(x, h, v);
-        place_pins(mechanics, t + h, x, v);
+    match mechanics.splitting() {
+        Some(splitting) if terms == Terms::KickForces => splitting.drift(t, h, x, v),
+        _ => {
+            super::add_scaled(x, h, v);
+            place_pins(mechanics, t + h, x, v);
+        }
     }
 }

@@ -1,65 +1,76 @@
-//! A step in one sweep over a system's rows: each stage follows the one before it, a few rows behind, so that what passes
-//! between them is still in the cache. On several threads, each sweeps over a band of rows, and over those beside it
-//! that its own depend on.
+//! A step in one sweep over a system's rows: each stage follows the one before it, a few rows
+//! behind, so that what passes between them is still in the cache. Patches of rows are swept one by
+//! one. On several threads, each sweeps over a band of rows, and over those beside it that its own
+//! depend on.
 
 use std::array;
 use std::ops::Range;
 
-use crate::rows::{Part, REACH, Registers, Rows, Stage, Sweep, Window};
+use crate::rows::{Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms, Window};
 use crate::system::ParticleSystem;
 use crate::threads::{Columns, split_off, threads};
 
-/// Particles that a stage goes through at a time.
+/// Number of particles that a stage goes through at a time.
 const BLOCK: usize = 256;
 
-/// With fewer particles, what passes between one or two stages stays in the cache by itself (docs/performance.md).
+/// Number of particles below which what passes between one or two stages stays in the cache anyway
+/// (docs/performance.md).
 const MANY: usize = 4096;
-/// With wider rows, what is kept of a few takes more room than the whole state.
+/// Columns above which what is kept of a few rows takes more room than the whole state.
 const WIDE: usize = 4096;
 
-/// Scratch for steps of a system of so many rows.
+/// Scratch for steps of a system of rows.
 pub(super) struct Sweeper {
-    rows: usize,
-    cols: usize,
+    /// Patches in the order of their numbers.
+    patches: Vec<Patch>,
     stages: usize,
+    /// Bands in the order of their particles.
     bands: Vec<Band>,
 }
 
 impl Sweeper {
-    /// One for a system of rows, where it pays.
+    /// A sweeper for a system of rows, where it pays.
     pub fn new(system: &dyn ParticleSystem, stages: usize) -> Option<Self> {
         let rows = system.rows()?;
-        let particles = rows.rows() * rows.cols();
-        let pays = (stages > 2 || particles >= MANY) && rows.cols() <= WIDE;
-        pays.then(|| Self::with_bands(rows, stages, threads(particles)))
+        let patches: Vec<_> = (0..rows.patches()).map(|k| rows.patch(k)).collect();
+        let particles = patches.iter().map(Patch::particles).sum();
+        let widest = patches.iter().map(|patch| patch.cols).max()?;
+        let pays = (stages > 2 || particles >= MANY) && widest <= WIDE;
+        let share = |patch: &Patch| (threads(particles) * patch.particles()).div_ceil(particles);
+        pays.then(|| Self::with_bands(rows, stages, share))
     }
 
-    pub fn with_bands(system: &dyn Rows, stages: usize, bands: usize) -> Self {
-        let (rows, cols) = (system.rows(), system.cols());
-        let bands = bands.clamp(1, rows);
+    /// A sweeper with so many bands of each patch.
+    pub fn with_bands(system: &dyn Rows, stages: usize, bands: impl Fn(&Patch) -> usize) -> Self {
+        let patches: Vec<_> = (0..system.patches()).map(|k| system.patch(k)).collect();
+        let mut all = vec![];
+        for (number, patch) in patches.iter().enumerate() {
+            let bands = bands(patch).clamp(1, patch.rows);
+            all.extend((0..bands).map(|k| {
+                let rows = k * patch.rows / bands..(k + 1) * patch.rows / bands;
+                Band::new(system, (number, *patch), rows, stages)
+            }));
+        }
+        all.sort_by_key(Band::first);
         Self {
-            rows,
-            cols,
+            patches,
             stages,
-            bands: (0..bands)
-                .map(|k| Band::new(k * rows / bands..(k + 1) * rows / bands, rows, cols, stages))
-                .collect(),
+            bands: all,
         }
     }
 
     /// Whether it is for such a system, and so many stages.
     pub fn fits(&self, system: &dyn Rows, stages: usize) -> bool {
-        (self.rows, self.cols, self.stages) == (system.rows(), system.cols(), stages)
+        let patches = (0..system.patches()).map(|k| system.patch(k));
+        self.stages == stages && patches.eq(self.patches.iter().copied())
     }
 
     /// Takes y through the stages, after a drift from some time on.
     pub fn step(&mut self, system: &dyn Rows, lead: Option<Lead>, stages: &[Stage], y: &mut [f64]) {
-        if self.bands.len() > 1 {
-            for band in &mut self.bands {
-                band.look_around(y);
-            }
+        for band in &mut self.bands {
+            band.look_around(y);
         }
-        let mut columns = y.chunks_exact_mut(self.rows * self.cols);
+        let mut columns = y.chunks_exact_mut(y.len() / 6);
         let columns = array::from_fn(|_| columns.next().unwrap_or_default());
         let job = Job {
             system,
@@ -70,8 +81,8 @@ impl Sweeper {
     }
 }
 
-/// What a step begins with: a drift of such a length from some time (s).
-pub(super) type Lead = (Part, (f64, f64));
+/// The drift with which a step begins: its time and its length (s).
+pub(super) type Lead = (Terms, (f64, f64));
 
 struct Job<'a> {
     system: &'a dyn Rows,
@@ -85,56 +96,64 @@ fn fork(bands: &mut [Band], job: &Job, mut y: Columns<6>) {
         return;
     }
     let (above, below) = bands.split_at_mut(bands.len() / 2);
-    let at = (below[0].rows.start - above[0].rows.start) * above[0].cols;
-    let firsts = split_off(&mut y, at);
+    let firsts = split_off(&mut y, below[0].first() - above[0].first());
     rayon::join(|| fork(above, job, firsts), || fork(below, job, y));
 }
 
-/// Some of the rows, and what a thread needs to step them.
+/// Some rows of a patch, and what a thread needs to step them.
 struct Band {
+    /// Number of the patch.
+    number: usize,
+    patch: Patch,
     rows: Range<usize>,
-    cols: usize,
-    /// The rows that it sees, and y in those of them that are another's.
+    /// The rows that it sees, and y in those of them that belong to other bands.
     seen: Range<usize>,
     above: Window,
     below: Window,
-    /// Rows that a stage goes through at a time.
+    /// Number of rows that a stage goes through at a time.
     block: usize,
     registers: Registers,
-    sweep: Sweep,
+    scratch: SweepScratch,
 }
 
 impl Band {
-    fn new(rows: Range<usize>, of: usize, cols: usize, stages: usize) -> Self {
-        let seen = rows.start.saturating_sub(REACH * stages)..of.min(rows.end + REACH * stages);
+    fn new(
+        system: &dyn Rows,
+        (number, patch): (usize, Patch),
+        rows: Range<usize>,
+        stages: usize,
+    ) -> Self {
+        let cols = patch.cols;
+        let more = REACH * stages;
+        let seen = rows.start.saturating_sub(more)..patch.rows.min(rows.end + more);
         let block = (BLOCK / cols).max(1);
         let window = |depth: usize| Window::new(depth.max(1), 6, cols);
-        let depth = block + REACH * stages;
         Self {
-            cols,
+            number,
+            patch,
             above: window(rows.start - seen.start),
             below: window(seen.end - rows.end),
             rows,
             seen,
             block,
-            registers: Registers {
-                y: window(depth),
-                sum: window(depth),
-                stage: window(depth),
-            },
-            sweep: Sweep::new(stages, cols),
+            registers: Registers::new(block + more, cols),
+            scratch: SweepScratch::new(system, stages, cols),
         }
+    }
+
+    /// Number of its first particle.
+    fn first(&self) -> usize {
+        self.patch.row(self.rows.start).start
     }
 
     /// Copies the rows of other bands before these change them.
     fn look_around(&mut self, y: &[f64]) {
-        let n = y.len() / 6;
+        let (n, patch) = (y.len() / 6, self.patch);
         let copy = |rows: Range<usize>, to: &mut Window| {
             for row in rows {
                 for c in 0..6 {
-                    let from = c * n + row * self.cols;
-                    to.column_mut(row, c)
-                        .copy_from_slice(&y[from..from + self.cols]);
+                    let from = &y[c * n..(c + 1) * n][patch.row(row)];
+                    to.column_mut(row, c).copy_from_slice(from);
                 }
             }
         };
@@ -149,14 +168,14 @@ impl Band {
             lead,
             stages,
         } = job;
-        system.begin(&mut self.sweep);
+        system.begin(self.number, &mut self.scratch);
         let (mut loaded, mut front) = (self.seen.start, self.seen.start);
         loop {
             front += self.block;
             while loaded < (front + REACH).min(self.seen.end) {
                 self.load(loaded, &y);
-                if let Some((part, (t, h))) = *lead {
-                    system.drift(part, t, h, loaded, &mut self.registers);
+                if let Some((terms, times)) = *lead {
+                    system.drift(self.number, terms, times, loaded, &mut self.registers);
                 }
                 if stages[0].c.is_some() {
                     self.registers.begin(loaded);
@@ -174,11 +193,12 @@ impl Band {
                 let to = front.saturating_sub(REACH * number).min(end);
                 if from < to {
                     system.advance(
+                        self.number,
                         number,
                         stage,
                         from..to,
                         &mut self.registers,
-                        &mut self.sweep,
+                        &mut self.scratch,
                     );
                     if number + 1 == stages.len() {
                         self.store(from.max(self.rows.start)..to, &mut y);
@@ -193,13 +213,14 @@ impl Band {
         }
     }
 
-    /// Takes in a row.
+    /// Loads a row.
     fn load(&mut self, row: usize, y: &Columns<6>) {
+        let cols = self.patch.cols;
         for (c, y) in y.iter().enumerate() {
             let from = if row < self.rows.start {
                 self.above.column(row, c)
             } else if row < self.rows.end {
-                &y[(row - self.rows.start) * self.cols..][..self.cols]
+                &y[(row - self.rows.start) * cols..][..cols]
             } else {
                 self.below.column(row, c)
             };
@@ -207,12 +228,13 @@ impl Band {
         }
     }
 
-    /// Gives out rows that are done.
+    /// Stores rows that are done.
     fn store(&self, rows: Range<usize>, y: &mut Columns<6>) {
         for row in rows {
-            let at = (row - self.rows.start) * self.cols;
+            let cols = self.patch.cols;
+            let at = (row - self.rows.start) * cols;
             for (c, y) in y.iter_mut().enumerate() {
-                y[at..at + self.cols].copy_from_slice(self.registers.stage.column(row, c));
+                y[at..at + cols].copy_from_slice(self.registers.stage.column(row, c));
             }
         }
     }
@@ -227,21 +249,22 @@ mod tests {
     use crate::testing::cloth;
     use crate::{Grid, Scene};
 
-    enum Of {
+    enum Kind {
         Table(Table),
         Plan(&'static Plan),
     }
 
     /// The state after some steps, in such bands, or with whole arrays.
-    fn after(scene: &Scene, method: &Of, bands: Option<usize>) -> Vec<f64> {
+    fn after(scene: &Scene, method: &Kind, bands: Option<usize>) -> Vec<f64> {
         let system = scene.model.system();
-        let sweeper =
-            |stages| bands.map(|bands| Sweeper::with_bands(system.rows().unwrap(), stages, bands));
+        let sweeper = |stages| {
+            bands.map(|bands| Sweeper::with_bands(system.rows().unwrap(), stages, |_| bands))
+        };
         let mut method: Box<dyn Integrator> = match method {
-            Of::Table(table) => {
+            Kind::Table(table) => {
                 Box::new(RungeKutta::with(table, system.dim(), sweeper(table.len())))
             }
-            Of::Plan(plan) => plan.with(system, sweeper(plan.stages_of_sweep(system))),
+            Kind::Plan(plan) => plan.with(system, sweeper(plan.stages_of_sweep(system))),
         };
         let mut y = scene.state.clone();
         for k in 0..5 {
@@ -263,11 +286,11 @@ mod tests {
             for damping_time in [0.0, 5e-4] {
                 let scene = cloth(Grid::new(rows, cols).unwrap(), damping_time);
                 for (k, method) in [
-                    Of::Table(EULER),
-                    Of::Table(RK4),
-                    Of::Plan(&symplectic_euler::PLAN),
-                    Of::Plan(&verlet::PLAN),
-                    Of::Plan(&pefrl::PLAN),
+                    Kind::Table(EULER),
+                    Kind::Table(RK4),
+                    Kind::Plan(&symplectic_euler::PLAN),
+                    Kind::Plan(&verlet::PLAN),
+                    Kind::Plan(&pefrl::PLAN),
                 ]
                 .iter()
                 .enumerate()
@@ -291,7 +314,13 @@ mod tests {
         let grid = Grid::new(11, 13).unwrap();
         let scene = cloth(grid, 5e-4);
         let system = scene.model.system();
-        let sweeper = || Some(Sweeper::with_bands(system.rows().unwrap(), RK4.len(), 2));
+        let sweeper = || {
+            Some(Sweeper::with_bands(
+                system.rows().unwrap(),
+                RK4.len(),
+                |_| 2,
+            ))
+        };
         let step = |method: &mut RungeKutta, mut y: Vec<f64>| {
             method.step(system, 0.0, 1e-3, &mut y).unwrap();
             y

@@ -4,7 +4,7 @@ use super::Method;
 use super::runge_kutta::EULER;
 use super::splitting::Plan;
 use crate::control::Control;
-use crate::rows::Part;
+use crate::rows::Terms;
 
 pub(super) const METHOD: Method = Method {
     name: "symplectic",
@@ -25,6 +25,6 @@ pub(super) static PLAN: Plan = Plan {
     name: METHOD.name,
     steps: &[(0.0, 1.0)],
     last: 1.0,
-    part: Part::Push,
+    terms: Terms::AllForces,
     damped: EULER,
 };

@@ -12,7 +12,7 @@ use super::Method;
 use super::runge_kutta::MIDPOINT;
 use super::splitting::Plan;
 use crate::control::Control;
-use crate::rows::Part;
+use crate::rows::Terms;
 
 pub(super) const METHOD: Method = Method {
     name: "verlet",
@@ -33,6 +33,6 @@ pub(super) static PLAN: Plan = Plan {
     name: METHOD.name,
     steps: &[(0.5, 1.0)],
     last: 0.5,
-    part: Part::Kick,
+    terms: Terms::KickForces,
     damped: MIDPOINT,
 };

@@ -1,11 +1,12 @@
-//! Conjugate gradients, preconditioned by the inverse of each particle's own 3 x 3 block, filtered as in Baraff and
-//! Witkin, *Large Steps in Cloth Simulation*, 1998: what is pinned stays as it is, however many iterations there are.
+//! Conjugate gradients, preconditioned by the inverse of each particle's own 3 x 3 block, filtered
+//! as in Baraff and Witkin, *Large Steps in Cloth Simulation*, 1998: pinned particles stay, however
+//! many iterations there are.
 
 use std::array;
 
 use super::tangent::Tangent;
-use crate::elements::columns;
-use crate::system::Mechanics;
+use crate::columns::columns;
+use crate::system::Linearized;
 
 /// Scratch for a system of one size.
 pub(crate) struct ConjugateGradients {
@@ -17,13 +18,14 @@ pub(crate) struct ConjugateGradients {
     inverses: [Vec<f64>; 6],
 }
 
-/// How it ended.
+/// The end of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Solution {
+    /// Number of iterations.
     pub iterations: u64,
-    /// |b - A x| / |b|
+    /// Relative residual |b - A x| / |b|.
     pub residual: f64,
-    /// The matrix is not positive definite, and x is of no use.
+    /// Whether the matrix is not positive definite: x is of no use then.
     pub indefinite: bool,
 }
 
@@ -42,7 +44,7 @@ impl ConjugateGradients {
     /// Solves A x = b from x = 0 to a relative residual. b has nothing where particles are pinned.
     pub fn solve(
         &mut self,
-        mechanics: &dyn Mechanics,
+        system: &dyn Linearized,
         tangent: &Tangent,
         b: &[f64],
         x: &mut [f64],
@@ -71,7 +73,7 @@ impl ConjugateGradients {
         let mut rz = descend(0.0, [p, q], inverses, [x, r, z]).1;
         p.copy_from_slice(z);
         while solution.iterations < most && solution.residual > tolerance {
-            tangent.product(mechanics, p, q);
+            tangent.product(system, p, q);
             let curvature = dot(p, q);
             if !(curvature > 0.0 && rz > 0.0) {
                 solution.indefinite = true;
@@ -98,12 +100,12 @@ impl ConjugateGradients {
         for column in &mut self.inverses[3..] {
             column.fill(0.0);
         }
-        for (i, j, block) in tangent.blocks() {
+        tangent.blocks(|i, j, block| {
             for (column, part) in self.inverses.iter_mut().zip(block) {
                 column[i] += part;
                 column[j] += part;
             }
-        }
+        });
         for (i, m) in tangent.masses().iter().enumerate() {
             let block = array::from_fn(|k| self.inverses[k][i]);
             let inverse = if *m == 0.0 { [0.0; 6] } else { inverse(block) };
@@ -114,10 +116,11 @@ impl ConjugateGradients {
     }
 }
 
-/// Particles that are gone through at a time, while they are in the nearest cache.
+/// Number of particles in a block, which stays in the nearest cache.
 const BLOCK: usize = 256;
 
-/// x += step p, r -= step q, z = B^-1 r. Of the new ones, r . r and r . z.
+/// Takes a step along p: x += step p, r -= step q, z = B^-1 r. Returns r . r and r . z of the new
+/// ones.
 fn descend(
     step: f64,
     [p, q]: [&[f64]; 2],
@@ -156,7 +159,7 @@ fn descend(
     (rr, rz)
 }
 
-/// In sixteen sums, which do not wait for one another.
+/// The scalar product, in sixteen sums that do not wait for one another.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 16];
     let (blocks, rest) = a.as_chunks::<16>();
@@ -170,7 +173,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.into_iter().chain(rest).sum()
 }
 
-/// Of a symmetric block; if that is not positive definite, of its diagonal's sizes.
+/// The inverse of a symmetric block; if that is not positive definite, of the absolute values on
+/// its diagonal.
 fn inverse([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [f64; 6] {
     let minor = xx * yy - xy * xy;
     let (a, b, c) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);

@@ -1,5 +1,5 @@
-//! A sparse Cholesky factorisation (faer) whose order and pattern are found once. Pinned particles keep rows of the
-//! identity, so that pinning one changes no pattern.
+//! A sparse Cholesky factorisation (faer) whose order and pattern are found once. Pinned particles
+//! keep rows of the identity, so that pinning one changes no pattern.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
@@ -12,11 +12,12 @@ use faer::{Conj, MatMut, Par, Side, Spec};
 
 use super::tangent::Tangent;
 
-/// The matrix in columns, unknowns by particle, its factor, and the room to find it.
+/// The matrix in columns, unknowns by particle, its factor, and scratch.
 pub(crate) struct Cholesky {
-    /// Ends of the couplings for which this is the pattern.
+    /// Ends of the couplings of the pattern.
     pairs: Vec<(u32, u32)>,
-    /// Where the block of each coupling is: the particle whose columns it is in, and its place among their blocks.
+    /// Place of the block of each coupling: the particle whose columns it is in, and its place
+    /// among their blocks.
     places: Vec<(u32, u32)>,
     column_starts: Vec<u32>,
     rows: Vec<u32>,
@@ -25,20 +26,17 @@ pub(crate) struct Cholesky {
     factor: Vec<f64>,
     memory: MemBuffer,
     rhs: Vec<f64>,
-    /// Operations of a factorisation, and numbers in the factor.
+    /// Operations of a factorisation.
     pub operations: f64,
+    /// Numbers in the factor.
     pub size: f64,
 }
 
 impl Cholesky {
-    /// The pattern of a system; `None` if it takes more memory than there is.
+    /// The pattern of a tangent; `None` if the factor takes more memory than there is.
     pub fn new(tangent: &Tangent) -> Option<Self> {
         let n = tangent.particles();
-        let pairs: Vec<_> = tangent
-            .couplings()
-            .iter()
-            .map(|c| (c.i as u32, c.j as u32))
-            .collect();
+        let pairs: Vec<_> = tangent.pairs().collect();
         // The higher neighbours of each particle.
         let mut neighbours: Vec<Vec<u32>> = vec![vec![]; n];
         for &(i, j) in &pairs {
@@ -95,15 +93,10 @@ impl Cholesky {
 
     /// Whether the couplings are still those of the pattern.
     pub fn fits(&self, tangent: &Tangent) -> bool {
-        let couplings = tangent.couplings();
-        couplings.len() == self.pairs.len()
-            && couplings
-                .iter()
-                .zip(&self.pairs)
-                .all(|(c, (i, j))| c.i as u32 == *i && c.j as u32 == *j)
+        tangent.pairs().eq(self.pairs.iter().copied())
     }
 
-    /// Factorises A. Whether it is positive definite.
+    /// Factorises A. Returns whether it is positive definite.
     pub fn factorise(&mut self, tangent: &Tangent) -> bool {
         self.fill(tangent);
         let n = self.rhs.len();
@@ -155,15 +148,19 @@ impl Cholesky {
                 self.values[start(i, b)] = m;
             }
         }
-        for ((i, j, block), (low, place)) in tangent.blocks().zip(&self.places) {
+        let values = &mut self.values;
+        let mut places = self.places.iter();
+        tangent.blocks(|i, j, block| {
+            let Some((low, place)) = places.next() else {
+                return;
+            };
             let [xx, yy, zz, xy, xz, yz] = block;
             let full = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
             let free = |k: usize| tangent.masses()[k] != 0.0;
             for end in [i, j] {
                 if free(end) {
                     for (b, row) in full.iter().enumerate() {
-                        for (value, part) in self.values[start(end, b)..].iter_mut().zip(&row[b..])
-                        {
+                        for (value, part) in values[start(end, b)..].iter_mut().zip(&row[b..]) {
                             *value += part;
                         }
                     }
@@ -173,11 +170,11 @@ impl Cholesky {
                 for (b, row) in full.iter().enumerate() {
                     let first = start(*low as usize, b) + (3 - b) + 3 * *place as usize;
                     for (r, part) in row.iter().enumerate() {
-                        self.values[first + r] -= part;
+                        values[first + r] -= part;
                     }
                 }
             }
-        }
+        });
     }
 }
 

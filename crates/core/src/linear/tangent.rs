@@ -1,65 +1,84 @@
-//! The matrix of an implicit step, A = M + a (C + D) + a2 K, from the couplings between particles: gathered once, and
-//! multiplied without square roots. Pinned particles are filtered: their rows are those of the identity, and no vector
-//! that is solved for has anything there.
+//! The matrix of an implicit step, A = M + a (C + D) + a2 K, from the couplings between particles:
+//! gathered once, and multiplied without square roots. Pinned particles are filtered: their rows
+//! are those of the identity, and vectors that are solved for are zero there.
 
-use crate::system::{Coupling, Matrix, Mechanics};
+use crate::system::{AxialCoupling, BlockCoupling, Coupling, Linearized, Matrix};
 
-/// A, K and what of it is needed to solve with them.
+/// A and K.
 pub(crate) struct Tangent {
-    couplings: Vec<Coupling>,
-    /// Of each coupling in A: over all directions, and along it in addition.
+    axial: Vec<AxialCoupling>,
+    /// Factors of each axial coupling in A: over all directions, and along it in addition.
     weights: Vec<[f64; 2]>,
-    /// Of each particle in A; 0 where it is pinned.
+    blocks: Vec<BlockCoupling>,
+    /// Mass of each particle in A (kg); 0 where it is pinned.
     masses: Vec<f64>,
     /// 0 where it is pinned, 1 elsewhere.
     free: Vec<f64>,
-    /// Whether stiffness across compressed springs counts as none.
+    /// Whether couplings are clamped.
     clamped: bool,
-    /// Where and for what step it was gathered.
+    /// Positions (m) and step (s) of the last gathering.
     x: Vec<f64>,
     a: f64,
 }
 
 impl Tangent {
-    /// With room for all that couples in the system.
-    pub fn new(mechanics: &dyn Mechanics) -> Self {
-        let n = mechanics.inverse_masses().len();
-        let mut couplings = vec![];
-        mechanics.couplings(&vec![0.0; 3 * n], &mut |coupling| couplings.push(coupling));
-        Self {
-            weights: vec![[0.0; 2]; couplings.len()],
-            couplings,
+    /// With room for all couplings of the system.
+    pub fn new(system: &dyn Linearized) -> Self {
+        let n = system.inverse_masses().len();
+        let mut tangent = Self {
+            axial: vec![],
+            weights: vec![],
+            blocks: vec![],
             masses: vec![0.0; n],
             free: vec![0.0; n],
             clamped: false,
             x: vec![0.0; 3 * n],
             a: 0.0,
-        }
+        };
+        tangent.collect(system, &vec![0.0; 3 * n]);
+        tangent.weights.resize(tangent.axial.len(), [0.0; 2]);
+        tangent
     }
 
+    fn collect(&mut self, system: &dyn Linearized, x: &[f64]) {
+        let (axial, blocks) = (&mut self.axial, &mut self.blocks);
+        axial.clear();
+        blocks.clear();
+        system.couplings(x, self.clamped, &mut |coupling| match coupling {
+            Coupling::Axial(coupling) => axial.push(coupling),
+            Coupling::Block(coupling) => blocks.push(coupling),
+        });
+    }
+
+    /// Number of particles.
     pub fn particles(&self) -> usize {
         self.masses.len()
     }
 
-    pub fn couplings(&self) -> &[Coupling] {
-        &self.couplings
+    /// Number of couplings.
+    pub fn couplings(&self) -> usize {
+        self.axial.len() + self.blocks.len()
     }
 
-    /// Gathers the couplings at x for steps of length a (s). With `clamped`, stiffness across a compressed spring, which
-    /// is negative, counts as none, and A is positive definite (Choi, Ko, *Stable but responsive cloth*, 2002).
-    pub fn gather(&mut self, mechanics: &dyn Mechanics, x: &[f64], a: f64, clamped: bool) {
-        self.couplings.clear();
-        let couplings = &mut self.couplings;
-        mechanics.couplings(x, &mut |coupling| couplings.push(coupling));
+    /// Ends of the couplings.
+    pub fn pairs(&self) -> impl Iterator<Item = (u32, u32)> {
+        let axial = self.axial.iter().map(|c| (c.i as u32, c.j as u32));
+        axial.chain(self.blocks.iter().map(|c| (c.i as u32, c.j as u32)))
+    }
+
+    /// Gathers the couplings at x for steps of length a (s). With `clamped`, A is positive
+    /// definite.
+    pub fn gather(&mut self, system: &dyn Linearized, x: &[f64], a: f64, clamped: bool) {
         self.clamped = clamped;
+        self.collect(system, x);
         self.weights.clear();
-        self.weights.extend(self.couplings.iter().map(|c| {
-            let across = if clamped { c.across.max(0.0) } else { c.across };
-            [a * a * across, a * a * (c.along - across) + a * c.damping]
+        self.weights.extend(self.axial.iter().map(|c| {
+            let (across, along) = (a * a * c.across, a * a * (c.along - c.across));
+            [across, along + a * c.damping]
         }));
-        let drag = a * mechanics.drag_coefficient();
+        let drag = a * system.drag_coefficient();
         let particles = self.masses.iter_mut().zip(&mut self.free);
-        for ((m, free), w) in particles.zip(mechanics.inverse_masses()) {
+        for ((m, free), w) in particles.zip(system.inverse_masses()) {
             (*m, *free) = if *w == 0.0 {
                 (0.0, 0.0)
             } else {
@@ -70,16 +89,21 @@ impl Tangent {
         self.a = a;
     }
 
-    /// The mass of each particle in A; 0 where it is pinned.
+    /// The mass of each particle in A (kg); 0 where it is pinned.
     pub fn masses(&self) -> &[f64] {
         &self.masses
     }
 
-    /// The 3 x 3 block of each coupling in A: xx, yy, zz, xy, xz, yz.
-    pub fn blocks(&self) -> impl Iterator<Item = (usize, usize, [f64; 6])> {
-        self.couplings.iter().zip(&self.weights).map(|(c, w)| {
+    /// The block of a coupling in A.
+    fn block(&self, coupling: &BlockCoupling) -> [f64; 6] {
+        let (a, [k, c]) = (self.a, [coupling.stiffness, coupling.damping]);
+        std::array::from_fn(|part| a * a * k[part] + a * c[part])
+    }
+
+    /// Visits the ends and the 3 x 3 block in A of each coupling: xx, yy, zz, xy, xz, yz.
+    pub fn blocks(&self, mut visit: impl FnMut(usize, usize, [f64; 6])) {
+        for (c, [iso, along]) in self.axial.iter().zip(&self.weights) {
             let [x, y, z] = c.direction;
-            let [iso, along] = *w;
             let block = [
                 iso + along * x * x,
                 iso + along * y * y,
@@ -88,17 +112,28 @@ impl Tangent {
                 along * x * z,
                 along * y * z,
             ];
-            (c.i, c.j, block)
-        })
+            visit(c.i, c.j, block);
+        }
+        for c in &self.blocks {
+            visit(c.i, c.j, self.block(c));
+        }
     }
 
-    /// A bound of the largest a2 w2 of the particles: what the step makes of the fastest motion, squared.
+    /// A bound of the largest a2 w2 of the particles: the square of the step's length in the
+    /// fastest motion.
     pub fn stiffness(&self, scratch: &mut [f64]) -> f64 {
         let n = self.particles();
         let sums = &mut scratch[..n];
         sums.fill(0.0);
-        for (c, [iso, along]) in self.couplings.iter().zip(&self.weights) {
+        for (c, [iso, along]) in self.axial.iter().zip(&self.weights) {
             let k = (iso + along).max(*iso);
+            sums[c.i] += k;
+            sums[c.j] += k;
+        }
+        for c in &self.blocks {
+            let [xx, yy, zz, xy, xz, yz] = self.block(c).map(f64::abs);
+            // The largest sum of a row bounds the largest eigenvalue.
+            let k = (xx + xy + xz).max(xy + yy + yz).max(xz + yz + zz);
             sums[c.i] += k;
             sums[c.j] += k;
         }
@@ -108,8 +143,8 @@ impl Tangent {
             .fold(0.0, |most: f64, (sum, m)| most.max(2.0 * sum / m))
     }
 
-    /// out = A p, for a p without pinned particles; nor has out any.
-    pub fn product(&self, mechanics: &dyn Mechanics, p: &[f64], out: &mut [f64]) {
+    /// Writes A p to `out`, for a p that is zero on pinned particles; so is `out`.
+    pub fn product(&self, system: &dyn Linearized, p: &[f64], out: &mut [f64]) {
         let matrix = Matrix {
             x: &self.x,
             a: self.a,
@@ -117,34 +152,38 @@ impl Tangent {
             masses: &self.masses,
             free: &self.free,
         };
-        if mechanics.multiply(&matrix, p, out) {
+        let done = system.multiply(&matrix, p, out);
+        if done == 0 {
+            let n = self.particles();
+            for (out, p) in out.chunks_exact_mut(n).zip(p.chunks_exact(n)) {
+                for ((out, p), m) in out.iter_mut().zip(p).zip(&self.masses) {
+                    *out = m * p;
+                }
+            }
+        } else if done == self.couplings() {
             return;
         }
-        let n = self.particles();
-        for (out, p) in out.chunks_exact_mut(n).zip(p.chunks_exact(n)) {
-            for ((out, p), m) in out.iter_mut().zip(p).zip(&self.masses) {
-                *out = m * p;
-            }
+        for (c, [iso, along]) in self.axial.iter().zip(&self.weights).skip(done) {
+            add_axial(c, *iso, *along, p, out);
         }
-        for (c, [iso, along]) in self.couplings.iter().zip(&self.weights) {
-            add(c, *iso, *along, p, out);
+        for c in &self.blocks {
+            add_block(c, self.block(c), p, out);
         }
         self.filter(out);
     }
 
-    /// out -= a K d, d with pinned particles: by what moving by d changes the forces, times a.
+    /// Subtracts a K d from out, for a d that may move pinned particles: adds what moving by d
+    /// changes the forces, times a.
     pub fn subtract_stiffness(&self, a: f64, d: &[f64], out: &mut [f64]) {
-        for c in &self.couplings {
-            let across = if self.clamped {
-                c.across.max(0.0)
-            } else {
-                c.across
-            };
-            add(c, -a * across, -a * (c.along - across), d, out);
+        for c in &self.axial {
+            add_axial(c, -a * c.across, -a * (c.along - c.across), d, out);
+        }
+        for c in &self.blocks {
+            add_block(c, c.stiffness.map(|k| -a * k), d, out);
         }
     }
 
-    /// Nothing where particles are pinned.
+    /// Sets a to zero where particles are pinned.
     pub fn filter(&self, a: &mut [f64]) {
         let n = self.particles();
         for column in a.chunks_exact_mut(n) {
@@ -157,20 +196,33 @@ impl Tangent {
     }
 }
 
-/// Adds (iso + along u uT) d at the one end of the coupling, and takes it away at the other.
+/// Adds (iso + along u uT) d at one end of a coupling, and subtracts it at the other.
 #[inline]
-fn add(c: &Coupling, iso: f64, along: f64, p: &[f64], out: &mut [f64]) {
-    let n = p.len() / 3;
-    let (i, j, u) = (c.i, c.j, c.direction);
-    let d = [
-        p[i] - p[j],
-        p[n + i] - p[n + j],
-        p[2 * n + i] - p[2 * n + j],
-    ];
+fn add_axial(c: &AxialCoupling, iso: f64, along: f64, p: &[f64], out: &mut [f64]) {
+    let (d, u) = (difference(p, c.i, c.j), c.direction);
     let share = along * (d[0] * u[0] + d[1] * u[1] + d[2] * u[2]);
+    add(c.i, c.j, |axis| iso * d[axis] + share * u[axis], out);
+}
+
+/// Adds a block times d at one end of a coupling, and subtracts it at the other.
+fn add_block(c: &BlockCoupling, [xx, yy, zz, xy, xz, yz]: [f64; 6], p: &[f64], out: &mut [f64]) {
+    let d = difference(p, c.i, c.j);
+    let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+    let product = rows.map(|row| row[0] * d[0] + row[1] * d[1] + row[2] * d[2]);
+    add(c.i, c.j, |axis| product[axis], out);
+}
+
+#[inline]
+fn difference(p: &[f64], i: usize, j: usize) -> [f64; 3] {
+    let n = p.len() / 3;
+    [0, n, 2 * n].map(|column| p[column + i] - p[column + j])
+}
+
+#[inline]
+fn add(i: usize, j: usize, force: impl Fn(usize) -> f64, out: &mut [f64]) {
+    let n = out.len() / 3;
     for axis in 0..3 {
-        let force = iso * d[axis] + share * u[axis];
-        out[axis * n + i] += force;
-        out[axis * n + j] -= force;
+        out[axis * n + i] += force(axis);
+        out[axis * n + j] -= force(axis);
     }
 }

@@ -12,9 +12,7 @@ fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let spacing = 1.0 / (side - 1) as f64;
     let mut network = Network::new(vec![1.0 / grid.particles() as f64; grid.particles()]).unwrap();
     network
-        .set_sheet(
-            Sheet::new(grid, spacing, [stiffness, stiffness, 0.25 * stiffness], 0.0).unwrap(),
-        )
+        .add(Sheet::new(grid, spacing, [stiffness, stiffness, 0.25 * stiffness], 0.0).unwrap())
         .unwrap();
     let n = grid.particles();
     let mut random = SplitMix(7);
@@ -184,7 +182,7 @@ fn solves_measured() {
                     .0
                     .iterations;
             });
-            solver.look();
+            solver.analyse();
             let direct = solver.direct.as_mut().unwrap();
             let (operations, size) = (direct.operations, direct.size);
             let factor = time(|| {
@@ -198,7 +196,7 @@ fn solves_measured() {
                 .0
                 .factorizations
                 == 1;
-            let couplings = solver.tangent.couplings().len() as f64;
+            let couplings = solver.tangent.couplings() as f64;
             let guess = SPREAD * (1.0 + solver.stiffness()).sqrt() * (2.0 / tolerance).ln();
             println!(
                 "{name:<18} {a_w:>8} {:>8.2} {:>9.2} {:>7.2} {iterations:>11} ({guess:>5.0}) {:>6.0} {:>9.0} {:>8.1} {:>13.0} {:>14.1}  {}  {:.2}",

@@ -5,96 +5,155 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::Network;
-use crate::elements::Sheet;
-use crate::elements::buckling;
-use crate::elements::flow::{self, Flow};
-use crate::elements::sheet::kernel::{self as sheet, Of};
-use crate::elements::{columns_mut, drag, ending::Ending, springs};
+use crate::columns::columns_mut;
+use crate::elements::force::{At, ByParticle, Carried};
+use crate::elements::sheet::{Advance, LAWS, Quantity, SPRING_FORCES, begin, set};
+use crate::elements::{Element, Finish, Flow, Sheet, flow_each};
 use crate::path::Place;
-use crate::rows::{Part, Registers, Rows, Stage, Sweep};
-use crate::system::{Coupling, Matrix, Mechanics, place_pins};
+use crate::rows::{Patch, Registers, Rows, Stage, SweepScratch, Terms};
+use crate::system::{
+    Coupling, Linearized, Matrix, Mechanics, Splitting, divide_by_masses, place_pins,
+};
 
 impl Network {
-    /// What the ending makes of the springs' forces.
-    pub(super) fn evaluate(&self, x: &[f64], v: &[f64], f: &mut [f64], ending: &Ending) {
-        if let Some(sheet) = self.only_sheet().filter(|_| ending.air.is_none()) {
-            sheet::set(Of::Forces, sheet, x, v, f, ending);
-            return;
+    /// The arguments of elements.
+    pub(super) fn at<'a>(&'a self, t: f64, x: &'a [f64], v: &'a [f64]) -> At<'a> {
+        At {
+            t,
+            x,
+            v,
+            masses: &self.masses,
+            triangles: &self.triangles,
         }
-        let n = self.particles();
-        match &self.sheet {
-            Some(sheet) => {
-                for column in f.chunks_exact_mut(n) {
-                    column[sheet.grid().particles()..].fill(0.0);
-                }
-                sheet::set(Of::Forces, sheet, x, v, f, &Ending::default());
+    }
+
+    /// Gravity and drag together.
+    fn carried(&self) -> Carried {
+        let all = self.elements.iter().filter_map(|e| e.force().carried());
+        all.fold(Carried::default(), |a, b| Carried {
+            gravity: a.gravity + b.gravity,
+            drag: a.drag + b.drag,
+        })
+    }
+
+    /// Whether drifts carry gravity and drag: not with constraints, which hold against all forces
+    /// together.
+    fn drifts_carry(&self, terms: Terms) -> bool {
+        terms == Terms::KickForces && !self.is_constrained()
+    }
+
+    /// The gravity and drag that a drift carries.
+    fn drifting(&self, terms: Terms) -> Carried {
+        if self.drifts_carry(terms) {
+            self.carried()
+        } else {
+            Carried::default()
+        }
+    }
+
+    /// The gravity and drag that no drift carries.
+    fn finish(&self, terms: Terms) -> Finish<'_> {
+        if self.drifts_carry(terms) {
+            return Finish::default();
+        }
+        let Carried { gravity, drag } = self.carried();
+        Finish {
+            gravity: (gravity != Vector3::zeros()).then_some((gravity, &self.masses)),
+            drag: (drag > 0.0).then_some(drag),
+            ..Finish::default()
+        }
+    }
+
+    /// Sets f to the finished sum of all forces that no drift carries.
+    fn evaluate(&self, at: &At, f: &mut [f64], finish: &Finish) {
+        let is_other = |e: &&Element| e.force().carried().is_none();
+        self.sum(self.elements.iter().filter(is_other), at, f, finish);
+    }
+
+    /// Sets f to the finished sum of some elements: first those that are no sheets, in their order;
+    /// on top of these each sheet, which finishes its own particles, so that nothing passes through
+    /// memory twice.
+    fn sum<'a>(
+        &'a self,
+        elements: impl Iterator<Item = &'a Element> + Clone,
+        at: &At,
+        f: &mut [f64],
+        finish: &Finish,
+    ) {
+        let is_other = |element: &&Element| element.sheet().is_none();
+        let mut others = elements.clone().filter(is_other).peekable();
+        let added = others.peek().is_some();
+        if added {
+            f.fill(0.0);
+        } else {
+            self.clear_single(f);
+        }
+        others.for_each(|element| element.force().add_forces(at, f));
+        for sheet in elements.filter_map(Element::sheet) {
+            set(Quantity::Forces, sheet, [at.x, at.v], f, added, finish);
+        }
+        self.finish_single(at.v, f, finish);
+    }
+
+    /// Sets f to zero on the particles of no sheet.
+    fn clear_single(&self, f: &mut [f64]) {
+        for column in f.chunks_exact_mut(self.particles()) {
+            for particles in &self.single {
+                column[particles.clone()].fill(0.0);
             }
-            None => f.fill(0.0),
-        }
-        springs::add_list(&self.list, x, v, f);
-        springs::add_list(&self.strips, x, v, f);
-        ending.apply(x, v, f);
-    }
-
-    /// The sheet, if it is all that holds the particles together.
-    fn only_sheet(&self) -> Option<&Sheet> {
-        self.sheet
-            .as_ref()
-            .filter(|sheet| sheet.grid().particles() == self.particles())
-            .filter(|_| self.list.is_empty() && self.strips.is_empty())
-    }
-
-    /// The drag and the gravity that a drift carries: with constraints none, which hold against all forces together.
-    fn drifting(&self, part: Part) -> (f64, Vector3<f64>) {
-        match part {
-            Part::Kick if !self.is_constrained() => (
-                self.drag.unwrap_or_default(),
-                self.gravity.unwrap_or_default(),
-            ),
-            _ => (0.0, Vector3::zeros()),
         }
     }
 
-    /// Moves particles by what a drift carries. Where pins go is set right afterwards.
+    /// Finishes f on the particles of no sheet.
+    fn finish_single(&self, v: &[f64], f: &mut [f64], finish: &Finish) {
+        for particles in &self.single {
+            finish.apply(particles, v, f);
+        }
+    }
+
+    /// Writes the forces (N) of all springs to f, in the state (x, v).
+    pub fn spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
+        let springs = self.elements.iter().filter(|e| e.is_elastic());
+        self.sum(springs, &self.at(0.0, x, v), f, &Finish::default());
+    }
+
+    /// Moves particles by what a drift carries. Pins are put in their places afterwards.
     fn flow(
         &self,
-        part: Part,
+        terms: Terms,
         h: f64,
         particles: Range<usize>,
         x: [&mut [f64]; 3],
         v: [&mut [f64]; 3],
     ) {
-        let (c, g) = self.drifting(part);
-        match self.same {
-            Some(w) => Flow::new(c, g, w, h).apply(x, v),
-            None => flow::apply(c, g, &self.inverse_masses[particles], h, x, v),
+        let Carried { drag, gravity } = self.drifting(terms);
+        match self.uniform_inverse_mass {
+            Some(w) => Flow::new(drag, gravity, w, h).apply(x, v),
+            None => flow_each(drag, gravity, &self.inverse_masses[particles], h, x, v),
         }
     }
 
-    /// Pins of a row are where they are, whatever moved them in between.
-    fn place_row(&self, t: f64, row: usize, registers: &mut Registers) {
-        let cols = Rows::cols(self);
-        for pin in self.pins_of(row * cols..(row + 1) * cols) {
+    /// Puts the pins of a row in their places at time t, wherever they were moved.
+    fn place_row(&self, t: f64, particles: Range<usize>, row: usize, registers: &mut Registers) {
+        for pin in self.pins_of(particles.clone()) {
             let place = pin.path.at(t);
+            let columns = registers.stage_mut(row);
             for axis in 0..3 {
-                let i = pin.particle - row * cols;
-                registers.stage.column_mut(row, axis)[i] = place.position[axis];
-                registers.stage.column_mut(row, 3 + axis)[i] = place.velocity[axis];
+                let i = pin.particle - particles.start;
+                columns[axis][i] = place.position[axis];
+                columns[3 + axis][i] = place.velocity[axis];
             }
         }
     }
 
-    /// What is added to the springs' forces at time t: of all forces, or of those that kick.
-    fn others(&self, part: Part, t: f64) -> Ending<'_> {
-        let all = part != Part::Kick || self.is_constrained();
-        Ending {
-            wind: self.push().map(|wind| (wind, t)),
-            air: self.air(t),
-            gravity: self.gravity.filter(|_| all).map(|g| (g, &*self.masses)),
-            drag: self.drag.filter(|_| all),
-            inertia: None,
-            inverse_masses: None,
-        }
+    /// The sheet that is a patch of rows.
+    fn patch_sheet(&self, patch: usize) -> Option<&Sheet> {
+        self.sheets().nth(patch)
+    }
+
+    /// The forces on each particle by itself.
+    fn by_particle(&self) -> impl Iterator<Item = &dyn ByParticle> {
+        self.elements.iter().filter_map(|e| e.force().by_particle())
     }
 }
 
@@ -104,34 +163,71 @@ impl Mechanics for Network {
     }
 
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.evaluate(x, v, f, &self.others(Part::All, t));
+        self.evaluate(&self.at(t, x, v), f, &self.finish(Terms::AllForces));
         self.hold(t, x, v, f);
     }
 
     fn accelerations(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
         if self.is_constrained() {
             self.forces(t, x, v, a);
-            self.divide_by_masses(a);
+            divide_by_masses(&self.inverse_masses, a);
             return;
         }
-        let ending = Ending {
+        let finish = Finish {
             inverse_masses: Some(&self.inverse_masses),
-            ..self.others(Part::All, t)
+            ..self.finish(Terms::AllForces)
         };
-        self.evaluate(x, v, a, &ending);
+        self.evaluate(&self.at(t, x, v), a, &finish);
     }
 
+    fn pins(&self, t: f64, visit: &mut dyn FnMut(usize, Place)) {
+        for pin in &self.pins {
+            visit(pin.particle, pin.path.at(t));
+        }
+    }
+
+    /// Rows of sheets, if nothing else acts on more than one particle: it would reach into rows
+    /// that a sweep has left behind.
     fn rows(&self) -> Option<&dyn Rows> {
-        // Triangles reach into rows above, which a sweep has left behind; constraints reach anywhere.
+        let in_rows = |element: &Element| {
+            let force = element.force();
+            element.sheet().is_some() || force.carried().is_some() || force.by_particle().is_some()
+        };
         let sweeps =
-            self.only_sheet().is_some() && self.air(0.0).is_none() && !self.is_constrained();
+            self.single.is_empty() && self.elements.iter().all(in_rows) && !self.is_constrained();
         sweeps.then_some(self as &dyn Rows)
     }
 
-    fn feedback(&self) -> Option<f64> {
-        self.is_constrained().then(|| self.constraints.feedback())
+    fn splitting(&self) -> Option<&dyn Splitting> {
+        Some(self)
     }
 
+    fn linearized(&self) -> Option<&dyn Linearized> {
+        Some(self)
+    }
+}
+
+impl Splitting for Network {
+    /// All forces but gravity and drag, which are in the drift, unless there are constraints.
+    fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.evaluate(&self.at(t, x, v), f, &self.finish(Terms::KickForces));
+        self.hold(t, x, v, f);
+    }
+
+    fn kick_reads_velocity(&self) -> bool {
+        let reads = |e: &Element| e.force().carried().is_none() && e.force().reads_velocity();
+        self.is_constrained() || self.elements.iter().any(reads)
+    }
+
+    /// x' = v, v' = g - (c/m) v, exactly; with constraints v stays.
+    fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
+        let all = 0..self.particles();
+        self.flow(Terms::KickForces, h, all, columns_mut(x), columns_mut(v));
+        place_pins(self, t + h, x, v);
+    }
+}
+
+impl Linearized for Network {
     fn force_differential(
         &self,
         t: f64,
@@ -141,164 +237,155 @@ impl Mechanics for Network {
         dv: &[f64],
         df: &mut [f64],
     ) {
-        // How the turning of damped springs changes their forces, vectors do not know.
-        let turns = self.springs_damped() && v.iter().any(|v| *v != 0.0);
-        if let Some(sheet) = self.only_sheet().filter(|_| !turns) {
-            let of = |stiffness, damping, p: &[f64], out: &mut [f64]| {
-                let (of, sheet) = (
-                    Of::Tangent { clamped: false },
-                    sheet.scaled(stiffness, damping),
-                );
-                sheet::set(of, &sheet, x, p, out, &Ending::default());
+        df.fill(0.0);
+        for element in &self.elements {
+            let at = self.at(t, x, v);
+            element.force().add_differential(&at, [dx, dv], df);
+        }
+    }
+
+    fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+        for element in &self.elements {
+            element.force().couplings(x, clamped, visit);
+        }
+    }
+
+    fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
+        let count = self.sheets().map(Sheet::len).sum();
+        if count > 0 {
+            let (a, clamped) = (matrix.a, matrix.clamped);
+            let finish = Finish {
+                inertia: Some(matrix.masses),
+                inverse_masses: Some(matrix.free),
+                ..Finish::default()
             };
-            of(1.0, 0.0, dx, df);
-            if sheet.is_damped() && dv.iter().any(|dv| *dv != 0.0) {
-                let mut damping = vec![0.0; df.len()];
-                of(0.0, 1.0, dv, &mut damping);
-                df.iter_mut()
-                    .zip(damping)
-                    .for_each(|(df, more)| *df += more);
+            self.clear_single(out);
+            for sheet in self.sheets() {
+                let quantity = Quantity::Tangent { clamped };
+                let sheet = sheet.scaled(a * a, a);
+                set(quantity, &sheet, [matrix.x, p], out, false, &finish);
             }
-        } else {
-            df.fill(0.0);
-            self.couplings(x, &mut |coupling| {
-                springs::add_differential(&coupling, x, v, dx, dv, df);
-            });
+            self.finish_single(p, out, &finish);
         }
-        if let Some(c) = self.drag {
-            drag::add(c, dv, df);
-        }
-        if let Some(wind) = self.push() {
-            wind.add_differential(t, x, dx, df);
-        }
-        if let Some(air) = self.air(t) {
-            air.add_differential(x, v, dx, dv, df);
-        }
-    }
-
-    fn couplings(&self, x: &[f64], visit: &mut dyn FnMut(Coupling)) {
-        self.springs()
-            .for_each(|spring| visit(springs::coupling(&spring, x)));
-        self.strips
-            .iter()
-            .for_each(|strip| visit(springs::coupling(strip, x)));
-    }
-
-    fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> bool {
-        let Some(sheet) = self.only_sheet() else {
-            return false;
-        };
-        let (of, a) = (
-            Of::Tangent {
-                clamped: matrix.clamped,
-            },
-            matrix.a,
-        );
-        let ending = Ending {
-            inertia: Some(matrix.masses),
-            inverse_masses: Some(matrix.free),
-            ..Ending::default()
-        };
-        sheet::set(of, &sheet.scaled(a * a, a), matrix.x, p, out, &ending);
-        true
+        count
     }
 
     fn speed(&self) -> f64 {
-        let sheet = self.sheet.iter().flat_map(Sheet::springs).count() as f64;
-        let (list, strips) = (self.list.len() as f64, self.strips.len() as f64);
-        let all = sheet + list + strips;
-        if all > 0.0 {
-            all / (sheet / sheet::SPEED + list + strips * buckling::PRICE)
+        let (mut couplings, mut price) = (0.0, 0.0);
+        for element in &self.elements {
+            let cost = element.force().cost();
+            couplings += cost.couplings;
+            price += cost.price;
+        }
+        if couplings > 0.0 {
+            couplings / price
         } else {
             1.0
         }
     }
 
     fn drag_coefficient(&self) -> f64 {
-        self.drag.unwrap_or(0.0)
+        self.carried().drag
     }
 
-    fn pins(&self, t: f64, visit: &mut dyn FnMut(usize, Place)) {
-        for pin in &self.pins {
-            visit(pin.particle, pin.path.at(t));
-        }
-    }
-
-    /// Springs and wind. Gravity and drag are in the drift, unless there are constraints.
-    fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.evaluate(x, v, f, &self.others(Part::Kick, t));
-        self.hold(t, x, v, f);
-    }
-
-    fn kick_reads_velocity(&self) -> bool {
-        self.air(0.0).is_some() || self.springs_damped() || self.is_constrained()
-    }
-
-    /// x' = v, v' = g - (c/m) v, exactly; with constraints v stays.
-    fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
-        let all = 0..self.particles();
-        self.flow(Part::Kick, h, all, columns_mut(x), columns_mut(v));
-        place_pins(self, t + h, x, v);
+    fn baumgarte_frequency(&self) -> Option<f64> {
+        self.is_constrained()
+            .then(|| self.constraints.baumgarte_frequency())
     }
 }
 
 impl Rows for Network {
-    fn rows(&self) -> usize {
-        self.sheet.map_or(0, |sheet| sheet.grid().rows())
+    fn patches(&self) -> usize {
+        self.sheets().count()
     }
 
-    fn cols(&self) -> usize {
-        self.sheet.map_or(0, |sheet| sheet.grid().cols())
+    fn patch(&self, patch: usize) -> Patch {
+        let of = |sheet: &Sheet| Patch {
+            first: sheet.particles().start,
+            rows: sheet.grid().rows(),
+            cols: sheet.grid().cols(),
+        };
+        self.patch_sheet(patch).map_or_else(Patch::default, of)
     }
 
-    fn begin(&self, sweep: &mut Sweep) {
-        if let Some(sheet) = &self.sheet {
-            sheet::begin(sheet, sweep.laws.column_mut(0, 0));
+    fn kept_columns(&self) -> usize {
+        SPRING_FORCES
+    }
+
+    fn shared_numbers(&self) -> usize {
+        LAWS
+    }
+
+    fn begin(&self, patch: usize, scratch: &mut SweepScratch) {
+        if let Some(sheet) = self.patch_sheet(patch) {
+            begin(sheet, scratch);
         }
-        sweep.found.clear();
     }
 
-    fn drift(&self, part: Part, t: f64, h: f64, row: usize, registers: &mut Registers) {
-        let cols = Rows::cols(self);
-        let [x, y, z, u, v, w] = registers.stage.columns_mut(row);
-        let particles = row * cols..(row + 1) * cols;
-        self.flow(part, h, particles, [x, y, z], [u, v, w]);
-        self.place_row(t + h, row, registers);
+    fn drift(
+        &self,
+        patch: usize,
+        terms: Terms,
+        (t, h): (f64, f64),
+        row: usize,
+        registers: &mut Registers,
+    ) {
+        let particles = self.patch(patch).row(row);
+        let [x, y, z, u, v, w] = registers.stage_mut(row);
+        self.flow(terms, h, particles.clone(), [x, y, z], [u, v, w]);
+        self.place_row(t + h, particles, row, registers);
     }
 
     fn advance(
         &self,
+        patch: usize,
         number: usize,
         stage: &Stage,
         rows: Range<usize>,
         registers: &mut Registers,
-        sweep: &mut Sweep,
+        scratch: &mut SweepScratch,
     ) {
-        let Some(sheet) = &self.sheet else { return };
-        let ending = Ending {
-            inverse_masses: Some(&self.inverse_masses),
-            ..self.others(stage.part, stage.t)
+        let Some(sheet) = self.patch_sheet(patch) else {
+            return;
         };
-        let flow = self.same.filter(|_| stage.drift != 0.0).map(|w| {
-            let (c, g) = self.drifting(stage.part);
-            Flow::new(c, g, w, stage.drift)
+        let place = self.patch(patch);
+        let finish = Finish {
+            inverse_masses: Some(&self.inverse_masses),
+            ..self.finish(stage.terms)
+        };
+        let flow = self.uniform_inverse_mass.filter(|_| stage.drift != 0.0);
+        let flow = flow.map(|w| {
+            let Carried { drag, gravity } = self.drifting(stage.terms);
+            Flow::new(drag, gravity, w, stage.drift)
         });
+        let added = self.by_particle().next().is_some();
         for row in rows {
-            sheet::Advance {
+            if added {
+                let [x, y, z, ..] = registers.stage(row);
+                let mut addends = scratch.addends_mut();
+                for addends in &mut addends {
+                    addends.fill(0.0);
+                }
+                self.by_particle()
+                    .for_each(|force| force.add(stage.t, [x, y, z], &mut addends));
+            }
+            Advance {
                 sheet,
-                ending: &ending,
+                added,
+                finish: &finish,
                 flow,
                 number,
                 stage,
                 row,
                 registers,
-                sweep,
+                scratch,
             }
             .run();
             if stage.drift == 0.0 || flow.is_some() {
-                self.place_row(stage.until, row, registers);
+                self.place_row(stage.until, place.row(row), row, registers);
             } else {
-                Rows::drift(self, stage.part, stage.t, stage.drift, row, registers);
+                let times = (stage.t, stage.drift);
+                Rows::drift(self, patch, stage.terms, times, row, registers);
             }
         }
     }

@@ -1,14 +1,16 @@
-//! What is stretched too far tears. A spring longer than the limit times its rest length breaks. A bend spring breaks also
-//! where a structural spring that it runs along has: when no particle is left between its ends that is held to both.
-//! Triangles that have lost a side are holes.
+//! Tearing. A spring longer than the limit times its rest length breaks, and with it all between
+//! the same two particles. A bend spring breaks also where a structural spring that it runs along
+//! has: when no particle is left between its ends that structural springs join to both. Triangles
+//! that have lost a side are holes.
 
-use super::{Network, Strip};
+use super::Network;
+use crate::elements::force::{distance_squared, ends};
 use crate::error::Error;
 use crate::spring::{Spring, SpringKind};
 
 impl Network {
-    /// Lets springs break at so many times their rest length, or never, which is how a network begins. Those of rest
-    /// length 0 do not.
+    /// Lets springs break at so many times their rest length, or never, as in a new network.
+    /// Springs of rest length 0 never break.
     ///
     /// # Errors
     /// The limit is not a finite number above 1.
@@ -28,49 +30,45 @@ impl Network {
         self.tear
     }
 
-    /// Springs that have broken.
+    /// Number of pairs of particles between which springs have broken.
     #[must_use]
     pub fn tears(&self) -> usize {
         self.torn.len()
     }
 
-    /// Between which particles, the lower number first, in order.
+    /// Pairs of particles between which springs have broken, the lower number of each first, in
+    /// order.
     #[must_use]
     pub fn torn(&self) -> &[[usize; 2]] {
         &self.torn
     }
 
-    /// Breaks the springs between these particles.
+    /// Breaks the springs between these pairs of particles.
     ///
     /// # Errors
-    /// There is none between two of them.
+    /// There is no spring between a pair of them.
     pub fn break_springs(&mut self, pairs: &[[usize; 2]]) -> Result<(), Error> {
         if pairs.is_empty() {
             return Ok(());
         }
-        let straight = self.strips.iter().map(Strip::straight);
-        let springs = self.springs().chain(straight);
-        let mut there: Vec<_> = springs.map(|s| ends(s.i, s.j)).collect();
+        let mut there: Vec<_> = self.all_springs().map(|s| ends(&s)).collect();
         there.sort_unstable();
         for &[i, j] in pairs {
-            if there.binary_search(&ends(i, j)).is_err() {
+            if there.binary_search(&[i.min(j), i.max(j)]).is_err() {
                 return Err(Error::Invalid(format!(
                     "there is no spring between particles {i} and {j}"
                 )));
             }
         }
-        self.torn.extend(pairs.iter().map(|&[i, j]| ends(i, j)));
-        self.torn.sort_unstable();
-        self.torn.dedup();
-        self.leave_out_torn();
-        self.leave_out_holes();
+        self.break_between(pairs.iter().map(|&[i, j]| [i.min(j), i.max(j)]));
         Ok(())
     }
 
-    /// Takes over the springs and triangles of the same network as it began, but for those between these particles.
+    /// Takes over the springs and triangles of the same network as it began, but for those between
+    /// these pairs of particles.
     ///
     /// # Errors
-    /// It has not as many particles, or no such springs.
+    /// The other has not as many particles, or no such springs.
     pub fn mend(&mut self, whole: &Self, torn: &[[usize; 2]]) -> Result<(), Error> {
         self.torn.clone_from(&whole.torn);
         self.copy_springs(whole)?;
@@ -91,21 +89,25 @@ impl Network {
         !(self.is_torn(a, b) || self.is_torn(b, c) || self.is_torn(c, a))
     }
 
-    /// Leaves out springs between particles where one has broken.
-    pub(super) fn leave_out_torn(&mut self) {
-        if self.torn.is_empty() {
-            return;
+    /// Breaks the springs between pairs of particles, the lower number of each first. How many
+    /// pairs are new.
+    fn break_between(&mut self, pairs: impl IntoIterator<Item = [usize; 2]>) -> usize {
+        let already = self.torn.len();
+        self.torn.extend(pairs);
+        self.torn.sort_unstable();
+        self.torn.dedup();
+        self.remove_torn();
+        self.leave_out_holes();
+        self.torn.len() - already
+    }
+
+    /// Removes the springs between particles where one has broken.
+    pub(super) fn remove_torn(&mut self) {
+        if !self.torn.is_empty() {
+            for element in &mut self.elements {
+                element.force_mut().remove_springs(&self.torn);
+            }
         }
-        let mut springs: Vec<Spring> = self.springs().collect();
-        if self.sheet.take().is_some() {
-            springs.sort_by_key(|s| ends(s.i, s.j));
-        }
-        springs.retain(|s| !self.is_torn(s.i, s.j));
-        self.list = springs;
-        let torn = std::mem::take(&mut self.torn);
-        self.strips
-            .retain(|strip| torn.binary_search(&ends(strip.of.i, strip.of.j)).is_err());
-        self.torn = torn;
     }
 
     /// Leaves out triangles that have lost a side.
@@ -114,66 +116,47 @@ impl Network {
         self.triangles = self.triangles.iter().filter(whole).copied().collect();
     }
 
-    /// Breaks the springs that are too long at x (m), and those that go with them. How many they are.
+    /// Breaks the springs that are too long at x (m), and those that go with them. Returns between
+    /// how many pairs.
     pub fn tear(&mut self, x: &[f64]) -> usize {
         let Some(limit) = self.tear else { return 0 };
-        let n = self.particles();
-        let breaks = |i: usize, j: usize, rest_length: f64| {
-            let d = |axis: usize| x[axis * n + i] - x[axis * n + j];
-            let squared = d(0) * d(0) + d(1) * d(1) + d(2) * d(2);
-            let most = limit * rest_length;
-            most > 0.0 && squared > most * most
+        let is_too_long = |s: &Spring| {
+            let most = limit * s.law.rest_length;
+            most > 0.0 && distance_squared(x, s.i, s.j) > most * most
         };
-        let spring_breaks = |s: &Spring| breaks(s.i, s.j, s.law.rest_length);
-        let strips = || self.strips.iter().map(Strip::straight);
-        if !self.springs().chain(strips()).any(|s| spring_breaks(&s)) {
+        if !self.all_springs().any(|s| is_too_long(&s)) {
             return 0;
         }
-        // Families of one law have no holes.
-        let mut springs: Vec<Spring> = self.springs().collect();
-        if self.sheet.take().is_some() {
-            springs.sort_by_key(|s| ends(s.i, s.j));
-        }
-        let before = Held::by(&springs);
-        let already = self.torn.len();
-        let torn = &mut self.torn;
-        let mut keep = |i: usize, j: usize, holds: bool| {
-            if !holds {
-                torn.push(ends(i, j));
-            }
-            holds
+        let springs: Vec<Spring> = self.all_springs().collect();
+        let mut torn: Vec<_> = springs
+            .iter()
+            .filter(|s| is_too_long(s))
+            .map(ends)
+            .collect();
+        torn.sort_unstable();
+        let holds = |s: &&Spring| torn.binary_search(&ends(s)).is_err();
+        let before = Neighbours::by(springs.iter());
+        let after = Neighbours::by(springs.iter().filter(holds));
+        let is_cut = |s: &&Spring| {
+            s.kind == SpringKind::Bend && before.share(s.i, s.j) && !after.share(s.i, s.j)
         };
-        springs.retain(|s| keep(s.i, s.j, !spring_breaks(s)));
-        let after = Held::by(&springs);
-        let cut = |i: usize, j: usize| before.share(i, j) && !after.share(i, j);
-        springs.retain(|s| keep(s.i, s.j, s.kind != SpringKind::Bend || !cut(s.i, s.j)));
-        self.strips.retain(|strip| {
-            let s = strip.straight();
-            keep(s.i, s.j, !spring_breaks(&s) && !cut(s.i, s.j))
-        });
-        self.list = springs;
-        self.torn.sort_unstable();
-        self.leave_out_holes();
-        self.torn.len() - already
+        let cut: Vec<_> = springs.iter().filter(is_cut).map(ends).collect();
+        self.break_between(torn.into_iter().chain(cut))
     }
 }
 
-fn ends(i: usize, j: usize) -> [usize; 2] {
-    [i.min(j), i.max(j)]
-}
+/// The pairs of particles that structural springs join, both ways, in order.
+struct Neighbours(Vec<[usize; 2]>);
 
-/// Who is held to whom by structural springs, both ways, in order.
-struct Held(Vec<[usize; 2]>);
-
-impl Held {
-    fn by(springs: &[Spring]) -> Self {
-        let structural = springs.iter().filter(|s| s.kind == SpringKind::Structural);
+impl Neighbours {
+    fn by<'a>(springs: impl Iterator<Item = &'a Spring>) -> Self {
+        let structural = springs.filter(|s| s.kind == SpringKind::Structural);
         let mut pairs: Vec<_> = structural.flat_map(|s| [[s.i, s.j], [s.j, s.i]]).collect();
         pairs.sort_unstable();
         Self(pairs)
     }
 
-    /// Whether a particle is held to both i and j.
+    /// Whether a particle is a neighbour of both i and j.
     fn share(&self, i: usize, j: usize) -> bool {
         let first = self.0.partition_point(|pair| pair[0] < i);
         let mut of_i = self.0[first..].iter().take_while(|pair| pair[0] == i);

@@ -31,7 +31,7 @@ impl Grabbed {
     /// Attracts the particle to its path, if it is not led as a pin.
     pub(super) fn attract(&self, network: &mut Network) {
         if self.is_attracted(network) {
-            network.draw(self.particle, self.path, 1.0 / PULL_TIME);
+            network.attract(self.particle, self.path, 1.0 / PULL_TIME);
         }
     }
 }

@@ -5,9 +5,10 @@ use nalgebra::{DMatrixView, Vector3};
 use super::{Simulation, Stepper};
 use crate::contact::Statistics;
 use crate::control::Control;
+use crate::energy::Energy;
 use crate::error::BlowUp;
 use crate::integrators::{Method, Work};
-use crate::network::{Energy, Network};
+use crate::network::Network;
 use crate::scene::{Model, Scene};
 
 impl Simulation {

@@ -11,12 +11,12 @@ use std::array;
 
 use nalgebra::Vector3;
 
-use crate::elements::flow::Flow;
-use crate::elements::{columns_mut, drag};
+use crate::columns::columns_mut;
+use crate::elements::Flow;
 use crate::error::Error;
 use crate::integrators::{Integrator, Method};
 use crate::path::Place;
-use crate::system::{Coupling, Mechanics};
+use crate::system::{AxialCoupling, Coupling, Linearized, Mechanics, Splitting, place_pins};
 
 pub use observed::{
     Observation, Rest, Truth, modes_in_motion, observe_at_rest, observe_from_start, rest,
@@ -91,9 +91,43 @@ impl Mechanics for Tied {
 
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.kick_forces(t, x, v, f);
-        drag::add(self.0.drag, v, f);
+        for (f, v) in f.iter_mut().zip(v) {
+            *f -= self.0.drag * v;
+        }
     }
 
+    fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
+        visit(2, Place::still(Vector3::zeros()));
+    }
+
+    fn splitting(&self) -> Option<&dyn Splitting> {
+        Some(self)
+    }
+
+    fn linearized(&self) -> Option<&dyn Linearized> {
+        Some(self)
+    }
+}
+
+impl Splitting for Tied {
+    fn kick_forces(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        for ((f, x), v) in f.iter_mut().zip(x).zip(v) {
+            *f = -self.0.stiffness * x - self.0.damping * v;
+        }
+    }
+
+    fn kick_reads_velocity(&self) -> bool {
+        self.0.damping != 0.0
+    }
+
+    fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
+        let flow = Flow::new(self.0.drag, Vector3::zeros(), 1.0, h);
+        flow.apply(columns_mut(x), columns_mut(v));
+        place_pins(self, t + h, x, v);
+    }
+}
+
+impl Linearized for Tied {
     fn force_differential(
         &self,
         t: f64,
@@ -106,40 +140,21 @@ impl Mechanics for Tied {
         self.forces(t, dx, dv, df);
     }
 
-    fn couplings(&self, _x: &[f64], visit: &mut dyn FnMut(Coupling)) {
+    fn couplings(&self, _x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         for i in 0..2 {
-            visit(Coupling {
+            visit(Coupling::Axial(AxialCoupling {
                 i,
                 j: 2,
                 direction: [1.0, 0.0, 0.0],
                 along: self.0.stiffness,
                 across: self.0.stiffness,
                 damping: self.0.damping,
-            });
+            }));
         }
     }
 
     fn drag_coefficient(&self) -> f64 {
         self.0.drag
-    }
-
-    fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
-        visit(2, Place::still(Vector3::zeros()));
-    }
-
-    fn kick_forces(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        for ((f, x), v) in f.iter_mut().zip(x).zip(v) {
-            *f = -self.0.stiffness * x - self.0.damping * v;
-        }
-    }
-
-    fn kick_reads_velocity(&self) -> bool {
-        self.0.damping != 0.0
-    }
-
-    fn drift(&self, _t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
-        let (x, v) = (columns_mut(x), columns_mut(v));
-        Flow::new(self.0.drag, Vector3::zeros(), 1.0, h).apply(x, v);
     }
 }
 

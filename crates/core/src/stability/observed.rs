@@ -9,7 +9,7 @@ use crate::network::Network;
 use crate::random::SplitMix;
 use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
-use crate::system::Mechanics;
+use crate::system::Linearized;
 
 /// The largest step that was seen to hold is known to this fraction.
 const PRECISION: f64 = 0.005;

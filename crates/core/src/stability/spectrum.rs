@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::Mode;
 use crate::random::SplitMix;
-use crate::system::{Mechanics, ParticleSystem};
+use crate::system::{Linearized, Mechanics, ParticleSystem};
 
 /// Products with the stiffness that a spectrum takes at most: enough for its ends to be exact to three digits on any
 /// cloth, and for its middle to be seen.
@@ -19,7 +19,7 @@ const DENSE: usize = 300;
 /// small first-order system from its Jacobian. A system that is neither has none. Negative stiffness is a mode that buckles.
 #[must_use]
 pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
-    let mut modes = match system.mechanics() {
+    let mut modes = match system.mechanics().and_then(Mechanics::linearized) {
         Some(mechanics) => {
             let (x, _) = y.split_at(y.len() / 2);
             let mut modes = vec![];
@@ -36,7 +36,7 @@ pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
 
 /// Every mode around the positions x, or as many as a few seconds allow, fastest first, each with its shape: the root of
 /// the masses times the displacement, of length 1.
-pub(super) fn shapes(mechanics: &dyn Mechanics, t: f64, x: &[f64]) -> Vec<(Mode, Vec<f64>)> {
+pub(super) fn shapes(mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Vec<(Mode, Vec<f64>)> {
     let products = (MULTIPLICATIONS / x.len() as f64).sqrt() as usize;
     let mut modes = vec![];
     let products = products.max(PRODUCTS);
@@ -50,7 +50,7 @@ pub(super) fn shapes(mechanics: &dyn Mechanics, t: f64, x: &[f64]) -> Vec<(Mode,
 /// Products with the mass-normalised stiffness and damping, M^-1/2 K M^-1/2. Velocities are taken as zero: the modes are
 /// those of springs in this place, whatever they are doing.
 struct Normalised<'a> {
-    mechanics: &'a dyn Mechanics,
+    mechanics: &'a dyn Linearized,
     t: f64,
     x: &'a [f64],
     zero: Vec<f64>,
@@ -58,7 +58,7 @@ struct Normalised<'a> {
 }
 
 impl<'a> Normalised<'a> {
-    fn new(mechanics: &'a dyn Mechanics, t: f64, x: &'a [f64]) -> Self {
+    fn new(mechanics: &'a dyn Linearized, t: f64, x: &'a [f64]) -> Self {
         Self {
             mechanics,
             t,
@@ -151,7 +151,7 @@ fn normalise(z: &mut [f64]) -> f64 {
 
 /// Visits the modes with their shapes.
 fn of_mechanics(
-    mechanics: &dyn Mechanics,
+    mechanics: &dyn Linearized,
     t: f64,
     x: &[f64],
     products: usize,
@@ -211,8 +211,8 @@ fn of_mechanics(
 }
 
 /// In which errors of all constraints are taken back.
-fn of_constraints(mechanics: &dyn Mechanics) -> Option<Mode> {
-    mechanics.feedback().map(|w| Mode {
+fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
+    mechanics.baumgarte_frequency().map(|w| Mode {
         stiffness: w * w,
         drag: 0.0,
         damping: 2.0 * w,
@@ -265,7 +265,7 @@ impl LargestMode {
     /// The fastest mode around the positions x, that of constraints if they have a faster one: within 1 % the first time, and as close as the cloth has moved since
     /// afterwards. Takes 24 products with the force differential the first time, and then 4.
     #[must_use]
-    pub fn estimate(&mut self, mechanics: &dyn Mechanics, t: f64, x: &[f64]) -> Option<Mode> {
+    pub fn estimate(&mut self, mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Option<Mode> {
         let mut stiffness = Normalised::new(mechanics, t, x);
         let free = mechanics.inverse_masses();
         let known = self.shape.len() == x.len();

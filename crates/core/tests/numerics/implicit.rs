@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::common::{integrate, method, oscillator, scene, simulation};
-use a3_core::{Control, Grid, Mechanics, Network, Path, Sheet, Simulation, Vector3};
+use a3_core::{Control, Coupling, Grid, Linearized, Network, Path, Sheet, Simulation, Vector3};
 use a3_core::{Model, Scene};
 use approx::assert_relative_eq;
 
@@ -72,7 +72,10 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
                     *sum = -network.drag_coefficient() * d;
                 }
             }
-            network.couplings(x, &mut |c| {
+            network.couplings(x, false, &mut |coupling| {
+                let Coupling::Axial(c) = coupling else {
+                    panic!("springs act along their length")
+                };
                 let e: [f64; 3] = std::array::from_fn(|a| d[a * n + c.i] - d[a * n + c.j]);
                 let share = (0..3).map(|a| e[a] * c.direction[a]).sum::<f64>();
                 for a in 0..3 {
@@ -163,7 +166,7 @@ fn falling(side: usize, omega: f64) -> Scene {
     let k = mass * omega * omega / 7.8;
     let mut network = Network::new(vec![mass; n]).unwrap();
     network
-        .set_sheet(Sheet::new(grid, spacing, [k, k, 0.25 * k], 0.0).unwrap())
+        .add(Sheet::new(grid, spacing, [k, k, 0.25 * k], 0.0).unwrap())
         .unwrap();
     let mut state = vec![0.0; 6 * n];
     for i in 0..n {

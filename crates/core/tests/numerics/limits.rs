@@ -160,7 +160,7 @@ fn a_cloth_has_its_frequency() {
         let grid = Grid::new(side, side).unwrap();
         let mut network = Network::new(vec![1.0; grid.particles()]).unwrap();
         network
-            .set_sheet(Sheet::new(grid, 1.0, [1.0; 3], 0.0).unwrap())
+            .add(Sheet::new(grid, 1.0, [1.0; 3], 0.0).unwrap())
             .unwrap();
         let n = grid.particles();
         let mut y = vec![0.0; 6 * n];

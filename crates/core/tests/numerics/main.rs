@@ -11,3 +11,4 @@ mod limits;
 mod order;
 mod reference;
 mod stability;
+mod views;

@@ -83,7 +83,7 @@ fn sheets_led_by_their_pins_keep_the_order() {
     let n = grid.particles();
     let mut network = Network::new(vec![0.5; n]).unwrap();
     let sheet = Sheet::new(grid, 0.5, [40.0, 20.0, 10.0], 0.01).unwrap();
-    network.set_sheet(sheet).unwrap();
+    network.add(sheet).unwrap();
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
     let mut y = vec![0.0; 6 * n];
     for k in 0..n {

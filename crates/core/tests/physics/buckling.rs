@@ -3,8 +3,8 @@
 use crate::common::{distance, integrate, method, scene_with_grid, size};
 use a3_core::elements::Buckling;
 use a3_core::{
-    Control, Mechanics, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
-    Vector3,
+    Control, Coupling, Linearized, Mechanics, Model, Network, Path, Scene, Simulation, Splitting,
+    Spring, SpringKind, SpringLaw, Vector3,
 };
 use approx::assert_relative_eq;
 
@@ -156,7 +156,10 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
         network.force_differential(0.0, &x, &zero, dx, dv, &mut df);
         let mut sum = vec![0.0; 6];
         let mut count = 0;
-        network.couplings(&x, &mut |c| {
+        network.couplings(&x, false, &mut |coupling| {
+            let Coupling::Axial(c) = coupling else {
+                panic!("springs act along their length")
+            };
             count += 1;
             assert!(c.along >= 0.0);
             let e: [f64; 3] = std::array::from_fn(|a| d[2 * a] - d[2 * a + 1]);

@@ -3,8 +3,8 @@
 use crate::common::{distance, integrate, method, scene, scene_with_grid, size};
 use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{
-    Control, Grid, Mechanics, Model, Network, ParticleSystem, Sheet, Simulation, Spring,
-    SpringKind, SpringLaw, Vector3,
+    Control, Grid, Linearized, Mechanics, Model, Network, ParticleSystem, Sheet, Simulation,
+    Spring, SpringKind, SpringLaw, Vector3,
 };
 use approx::assert_relative_eq;
 
@@ -212,7 +212,7 @@ fn a_spring_of_length_zero_has_no_force() {
         let grid = Grid::new(5, 7).unwrap();
         let mut network = Network::new(vec![1.0; grid.particles()]).unwrap();
         network
-            .set_sheet(Sheet::new(grid, 0.1, [100.0, 80.0, 30.0], damping).unwrap())
+            .add(Sheet::new(grid, 0.1, [100.0, 80.0, 30.0], damping).unwrap())
             .unwrap();
         let n = 3 * grid.particles();
         let (x, v) = (vec![0.3; n], (0..n).map(|k| k as f64).collect::<Vec<_>>());
@@ -244,7 +244,7 @@ fn momentum_is_conserved() {
     let network = scene.model.network().unwrap();
     let n = network.particles();
     let mut free = Network::new(network.masses().to_vec()).unwrap();
-    free.set_sheet(*network.sheet().unwrap()).unwrap();
+    free.add(network.sheets().next().unwrap().clone()).unwrap();
     let start = shaken(&scene.state, 0.02);
     let momenta = |y: &[f64]| {
         let get = |k: usize, i: usize| Vector3::new(y[k + i], y[k + n + i], y[k + 2 * n + i]);

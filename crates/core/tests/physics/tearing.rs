@@ -1,6 +1,6 @@
 //! What is stretched too far tears, and nothing else does.
 
-use crate::common::{described, method, scene, scene_with_grid};
+use crate::common::{described, distance, method, scene, scene_with_grid, size};
 use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{
     Control, Mechanics, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
@@ -126,7 +126,7 @@ fn weak_cloth() -> Scene {
     let Model::Network(network) = &mut scene.model else {
         panic!("masses and springs")
     };
-    let grid = network.sheet().unwrap().grid();
+    let grid = network.sheets().next().unwrap().grid();
     network.set_triangles(grid.triangles()).unwrap();
     network.set_tear(Some(1.6)).unwrap();
     let air = Air::new(1.2, 1.2, 0.5).unwrap();
@@ -171,7 +171,7 @@ fn cloth_pulled_by_a_hand_tears_stays_finite_and_is_mended_by_a_reset() {
         assert!(run.state().iter().all(|y| y.is_finite()));
         assert!(stretch(&run) <= 1.6, "{name}: {}", stretch(&run));
         let network = network_of(&run);
-        assert!(network.sheet().is_none());
+        assert_eq!(network.sheets().count(), 1);
         assert_eq!(network.springs().count() + tears, all);
         assert!(network.springs().all(|s| !network.is_torn(s.i, s.j)));
         let triangles = network.triangles();
@@ -196,9 +196,9 @@ fn cloth_pulled_by_a_hand_tears_stays_finite_and_is_mended_by_a_reset() {
 fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
     let scene = scene_with_grid("mit", 5, 6);
     let mut network = scene.model.network().unwrap().clone();
-    let grid = network.sheet().unwrap().grid();
+    let grid = network.sheets().next().unwrap().grid();
     let mut x: Vec<f64> = vec![0.0; 90];
-    let spacing = network.sheet().unwrap().laws()[0].rest_length;
+    let spacing = network.sheets().next().unwrap().laws()[0].rest_length;
     for i in 0..30 {
         x[i] = spacing * (i % 6) as f64;
         x[30 + i] = -spacing * (i / 6) as f64;
@@ -206,7 +206,7 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
     assert_eq!(network.tear(&x), 0, "it never tears unless it is asked");
     network.set_tear(Some(1.9)).unwrap();
     assert_eq!(network.tear(&x), 0);
-    assert!(network.sheet().is_some());
+    assert!(network.sheets().next().is_some());
     // Everything right of the third column moves to the right by a spacing: 5 structural springs are 2 long, shear
     // springs sqrt 5 / sqrt 2 = 1.58, and bend springs 1.5.
     for (_, x) in x
@@ -227,11 +227,6 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
         assert!(network.is_torn(at(1), at(3)) && network.is_torn(at(2), at(4)));
         assert!(!network.is_torn(at(0), at(2)) && !network.is_torn(at(3), at(5)));
     }
-    let ends: Vec<_> = network
-        .springs()
-        .map(|s| (s.i.min(s.j), s.i.max(s.j)))
-        .collect();
-    assert!(ends.is_sorted());
     assert_eq!(network.tear(&x), 0);
     // What is left pulls as it did.
     let v = vec![0.0; 90];
@@ -243,7 +238,7 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
         .unwrap();
     let mut expected = vec![0.0; 90];
     list.spring_forces(&x, &v, &mut expected);
-    assert!(f == expected);
+    assert!(distance(&f, &expected) < 1e-13 * size(&expected));
 }
 
 /// Without structural springs along it, or with another way round, a bend spring holds until it is too long itself.

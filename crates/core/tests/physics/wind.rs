@@ -168,7 +168,7 @@ fn still_air_slows_what_moves_and_never_drives_it() {
     };
     let n = grid.particles();
     let mut free = Network::new(network.masses().to_vec()).unwrap();
-    free.set_sheet(*network.sheet().unwrap()).unwrap();
+    free.add(network.sheets().next().unwrap().clone()).unwrap();
     free.set_triangles(grid.triangles()).unwrap();
     **network = free;
     for (k, v) in scene.state[3 * n..].iter_mut().enumerate() {

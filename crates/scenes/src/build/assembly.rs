@@ -38,8 +38,8 @@ pub(super) struct Assembly {
     pub masses: Vec<f64>,
     pub positions: Vec<Vector3<f64>>,
     pub velocities: Vec<Vector3<f64>>,
-    /// Springs of the first cloth.
-    pub sheet: Option<Sheet>,
+    /// Springs of each cloth.
+    pub sheets: Vec<Sheet>,
     pub surface: Surface,
     pub springs: Vec<Spring>,
     pub strips: Vec<Buckling>,
@@ -86,13 +86,13 @@ impl Assembly {
                 ),
             ));
         }
-        // The springs of the first cloth are those of a grid.
+        // The springs of a cloth take no memory one by one.
         let springs = self.springs.len().saturating_add(counts.springs);
-        if springs > MAX_SPRINGS && !(key.starts_with("cloth") && self.masses.is_empty()) {
+        if springs > MAX_SPRINGS && !key.starts_with("cloth") {
             return Err(Fault::new(
                 key,
                 format!(
-                    "the scene would have some {springs} springs; at most {MAX_SPRINGS} are allowed besides those of the first cloth"
+                    "the scene would have some {springs} springs; at most {MAX_SPRINGS} are allowed besides those of cloths"
                 ),
             ));
         }

@@ -107,11 +107,7 @@ impl Body for Cloth {
         assembly.masses.extend(vec![mass; grid.particles()]);
         assembly.add_surface(first, grid.triangles().map(|t| t.map(|i| i as u32)));
         assembly.add_strips(first, strips);
-        if first == 0 {
-            assembly.sheet = Some(sheet);
-        } else {
-            assembly.add_springs(first, sheet.springs());
-        }
+        assembly.sheets.push(sheet.starting_at(first));
         Ok(())
     }
 

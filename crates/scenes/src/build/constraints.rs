@@ -13,7 +13,7 @@ pub(super) fn add(
     state: &[f64],
 ) -> Result<(), Fault> {
     if let Some(w) = description.feedback {
-        at("feedback", network.set_feedback(w))?;
+        at("feedback", network.set_baumgarte_frequency(w))?;
     }
     let all = &description.constraint;
     for (k, spec) in all.iter().enumerate() {

@@ -45,8 +45,8 @@ pub(super) fn build(
     assembly.pins.extend(more);
     let state = state::of(&assembly.positions, &assembly.velocities);
     let mut network = at("", Network::new(assembly.masses))?;
-    if let Some(sheet) = assembly.sheet {
-        at("", network.set_sheet(sheet))?;
+    for sheet in assembly.sheets {
+        at("", network.add(sheet))?;
     }
     at("", network.add_springs(assembly.springs))?;
     for (k, strip) in assembly.strips.into_iter().enumerate() {

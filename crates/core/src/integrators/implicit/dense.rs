@@ -1,16 +1,17 @@
-//! Stages of a small system without masses: Newton's method with its Jacobian by central differences.
+//! Stages of a small system without masses: Newton's method with its Jacobian by central
+//! differences.
 
 use super::{CLOSE, MOST, Newton, norm};
 use crate::error::Error;
 use crate::integrators::{Work, check_dim};
 use crate::system::ParticleSystem;
 
-/// A larger system's Jacobian would be no small matter.
+/// Largest dimension: the Jacobian of a larger system takes too long.
 const LARGEST: usize = 1024;
 
 pub(super) struct Dense {
     dim: usize,
-    /// 1 - a J, row by row.
+    /// The matrix 1 - a J, row by row.
     matrix: Vec<f64>,
     change: Vec<f64>,
     at: Vec<f64>,
@@ -104,7 +105,7 @@ impl Dense {
     }
 }
 
-/// Solves the system in place by elimination with row pivots. Whether it has a solution.
+/// Solves the system in place by elimination with row pivots. Returns whether it has a solution.
 fn eliminate(matrix: &mut [f64], b: &mut [f64]) -> bool {
     let n = b.len();
     for k in 0..n {

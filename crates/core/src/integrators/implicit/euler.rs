@@ -1,5 +1,6 @@
-//! Implicit Euler, y1 = y + h f(t + h, y1), by one step of Newton's method, as in Baraff and Witkin, *Large Steps in
-//! Cloth Simulation*, 1998: any step is stable, and motion is damped the more the longer it is. Order 1.
+//! Implicit Euler, y1 = y + h f(t + h, y1), by one step of Newton's method, as in Baraff and
+//! Witkin, *Large Steps in Cloth Simulation*, 1998: any step is stable, and motion is damped the
+//! more the longer it is. Order 1.
 
 use super::super::{Integrator, Method, Work, check_dim};
 use super::{Newton, Stage};

@@ -1,5 +1,6 @@
-//! The implicit midpoint rule, Y = y + h/2 f(t + h/2, Y), y1 = 2 Y - y, its equations solved to the end: symplectic, so
-//! that energy is kept, and any step is stable while they have a solution. Order 2.
+//! The implicit midpoint rule, Y = y + h/2 f(t + h/2, Y), y1 = 2 Y - y, its equations solved to the
+//! end: symplectic, so that energy is kept, and any step is stable while they have a solution.
+//! Order 2.
 
 use super::super::{Integrator, Method, Work, check_dim};
 use super::{Newton, Stage, place};

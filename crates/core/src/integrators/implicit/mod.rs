@@ -1,9 +1,9 @@
 //! The equation of an implicit stage, y = base + a f(t, y), solved by Newton's method from a guess.
 //!
-//! Of a mechanical system, with the guess (x, v) and A = M + a (C + D) + a2 K:
-//! A dv = M (bv - v) + a F(t, x, v) - a K (bx + a v - x), dx = bx + a v - x + a dv.
-//! Particles that are pinned are put in their places before, and filtered (Baraff and Witkin, *Large Steps in Cloth
-//! Simulation*, 1998). Of any other system the Jacobian is taken by central differences, and eliminated.
+//! For a mechanical system with the guess (x, v) and A = M + a (C + D) + a2 K: it is A dv = M (bv -
+//! v) + a F(t, x, v) - a K (bx + a v - x), dx = bx + a v - x + a dv. Particles that are pinned are
+//! put in their places before, and filtered (Baraff and Witkin, *Large Steps in Cloth Simulation*,
+//! 1998). The Jacobian of any other system is taken by central differences, and eliminated.
 
 mod dense;
 mod euler;
@@ -12,7 +12,7 @@ mod tr_bdf2;
 
 use crate::error::Error;
 use crate::linear::Solver;
-use crate::system::{Mechanics, ParticleSystem, place_pins};
+use crate::system::{Linearized, Mechanics, ParticleSystem, place_pins};
 use dense::Dense;
 
 pub(super) use euler::METHOD as EULER;
@@ -21,23 +21,24 @@ pub(super) use tr_bdf2::METHOD as TR_BDF2;
 
 use super::Work;
 
-/// Iterations of Newton's method, at most.
+/// Largest number of iterations of Newton's method.
 const MOST: u32 = 30;
-/// It ends when the last change was this small, relative to the state: the next would be lost in rounding.
+/// Last change at which the iteration ends, relative to the state: the next would be lost in
+/// rounding.
 const CLOSE: f64 = 1e-11;
-/// What a linear system within it is solved to.
+/// Relative residual to which its linear systems are solved.
 const FORCING: f64 = 1e-5;
 
-/// How far Newton's method goes.
+/// Number of iterations of Newton's method.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Newton {
-    /// One step, with compressed springs clamped.
+    /// One iteration, with compressed springs clamped.
     Once,
-    /// Until nothing changes any more.
+    /// As many as it takes until nothing changes any more.
     Full,
 }
 
-/// Solves stages of one system.
+/// Solver of the stages of one system.
 enum Stage {
     Mechanical(Box<Mechanical>),
     Dense(Dense),
@@ -45,8 +46,8 @@ enum Stage {
 
 impl Stage {
     fn new(system: &dyn ParticleSystem) -> Self {
-        match system.mechanics() {
-            Some(mechanics) => Self::Mechanical(Box::new(Mechanical::new(mechanics))),
+        match system.mechanics().and_then(Mechanics::linearized) {
+            Some(linearized) => Self::Mechanical(Box::new(Mechanical::new(linearized))),
             None => Self::Dense(Dense::new(system.dim())),
         }
     }
@@ -61,9 +62,9 @@ impl Stage {
         y: &mut [f64],
         newton: Newton,
     ) -> Result<Work, Error> {
-        match (self, system.mechanics()) {
-            (Self::Mechanical(stage), Some(mechanics)) => {
-                stage.solve(mechanics, t, a, base, y, newton)
+        match (self, system.mechanics().and_then(Mechanics::linearized)) {
+            (Self::Mechanical(stage), Some(linearized)) => {
+                stage.solve(linearized, t, a, base, y, newton)
             }
             (Self::Dense(stage), _) => stage.solve(system, t, a, base, y, newton),
             (Self::Mechanical(_), None) => Err(Error::NeedsMechanics { method: "implicit" }),
@@ -83,13 +84,13 @@ struct Mechanical {
     solver: Solver,
     f: Vec<f64>,
     rhs: Vec<f64>,
-    /// bx + a v - x
+    /// The gap bx + a v - x (m).
     gap: Vec<f64>,
     dv: Vec<f64>,
 }
 
 impl Mechanical {
-    fn new(mechanics: &dyn Mechanics) -> Self {
+    fn new(mechanics: &dyn Linearized) -> Self {
         let zeros = || vec![0.0; 3 * mechanics.inverse_masses().len()];
         Self {
             solver: Solver::new(mechanics),
@@ -102,7 +103,7 @@ impl Mechanical {
 
     fn solve(
         &mut self,
-        mechanics: &dyn Mechanics,
+        mechanics: &dyn Linearized,
         t: f64,
         a: f64,
         base: &[f64],
@@ -136,11 +137,11 @@ impl Mechanical {
         })
     }
 
-    /// One iteration of Newton's method; how much it changed v.
+    /// One iteration of Newton's method. Returns the norm of the change of v.
     #[expect(clippy::too_many_arguments, reason = "the stage's equation has them")]
     fn iterate(
         &mut self,
-        mechanics: &dyn Mechanics,
+        mechanics: &dyn Linearized,
         t: f64,
         a: f64,
         [bx, bv]: [&[f64]; 2],
@@ -185,7 +186,8 @@ impl Mechanical {
             *work += cost;
             match solved {
                 Some(_) => break,
-                // What is compressed makes the matrix indefinite: without it Newton's method converges more slowly.
+                // What is compressed makes the matrix indefinite: without it Newton's method
+                // converges more slowly.
                 None if !clamped => clamped = true,
                 None => return Err(Error::NoConvergence { residual: 1.0 }),
             }

@@ -1,7 +1,7 @@
-//! TR-BDF2 (Bank et al. 1985) as a diagonally implicit Runge-Kutta method (Hosea, Shampine, *Analysis and implementation
-//! of TR-BDF2*, 1996): with g = 1 - 1/sqrt 2 and w = sqrt 2 / 4,
-//! Y2 = y + g h (f(t, y) + f(t + 2 g h, Y2)), y1 = y + h (w f(t, y) + w f2 + g f(t + h, y1)).
-//! Any step is stable, and what is stiff dies out. Order 2.
+//! TR-BDF2 (Bank et al. 1985) as a diagonally implicit Runge-Kutta method (Hosea, Shampine,
+//! *Analysis and implementation of TR-BDF2*, 1996): with g = 1 - 1/sqrt 2 and w = sqrt 2 / 4, Y2 =
+//! y + g h (f(t, y) + f(t + 2 g h, Y2)), y1 = y + h (w f(t, y) + w f2 + g f(t + h, y1)). Any step
+//! is stable, and what is stiff dies out. Order 2.
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 

@@ -7,8 +7,9 @@
 
 use pulp::Simd;
 
-/// 1 / sqrt(a) to the last digit or two: from the guess that half the exponent is, four steps of Newton's method. Finite
-/// at 0. Takes half the time of the processor's own square root and division, which do not overlap.
+/// 1 / sqrt(a) to the last digit or two: from the guess that half the exponent is, four steps of
+/// Newton's method. Finite at 0. Takes half the time of the processor's own square root and
+/// division, which do not overlap.
 #[inline(always)]
 pub(crate) fn inverse_root<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
     let mut y = [a];

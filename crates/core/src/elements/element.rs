@@ -1,0 +1,103 @@
+//! The table of elements: a force that is added is a file beside this one, and a line here.
+
+use super::airflow::Airflow;
+use super::attraction::Attraction;
+use super::buckling::BucklingSprings;
+use super::drag::Drag;
+use super::force::Force;
+use super::gravity::Gravity;
+use super::sheet::Sheet;
+use super::springs::Springs;
+use super::wind::Wind;
+use crate::spring::Spring;
+
+macro_rules! elements {
+    ($($(#[$doc:meta])* $name:ident,)*) => {
+        /// One of the forces of a network.
+        #[derive(Clone, Debug)]
+        #[non_exhaustive]
+        pub enum Element {
+            $($(#[$doc])* $name($name),)*
+        }
+
+        impl Element {
+            /// Its force.
+            pub(crate) fn force(&self) -> &dyn Force {
+                match self {
+                    $(Self::$name(element) => element,)*
+                }
+            }
+
+            /// Its force, to be changed.
+            pub(crate) fn force_mut(&mut self) -> &mut dyn Force {
+                match self {
+                    $(Self::$name(element) => element,)*
+                }
+            }
+
+            /// The place of its kind in the order of elements.
+            pub(crate) fn rank(&self) -> u8 {
+                enum Rank {
+                    $($name,)*
+                }
+                match self {
+                    $(Self::$name(_) => Rank::$name as u8,)*
+                }
+            }
+        }
+
+        $(impl From<$name> for Element {
+            fn from(element: $name) -> Self {
+                Self::$name(element)
+            }
+        })*
+    };
+}
+
+// In the order in which a network keeps them.
+elements! {
+    /// Springs of a grid of particles.
+    Sheet,
+    /// Single springs.
+    Springs,
+    /// Bend springs that buckle.
+    BucklingSprings,
+    /// Uniform gravity.
+    Gravity,
+    /// Viscous drag.
+    Drag,
+    /// Wind that pushes each particle.
+    Wind,
+    /// Wind that blows on triangles.
+    Airflow,
+    /// A critically damped spring from a moving point to a particle.
+    Attraction,
+}
+
+impl Element {
+    /// Its springs that do not buckle.
+    pub(crate) fn springs(&self) -> impl Iterator<Item = Spring> {
+        let single = match self {
+            Self::Springs(springs) => springs.all(),
+            _ => &[],
+        };
+        let of_sheet = self.sheet().into_iter().flat_map(Sheet::springs);
+        of_sheet.chain(single.iter().copied())
+    }
+
+    /// The sheet, if it is one.
+    pub(crate) fn sheet(&self) -> Option<&Sheet> {
+        match self {
+            Self::Sheet(sheet) => Some(sheet),
+            _ => None,
+        }
+    }
+
+    /// Whether it is made of springs, which can be scaled, copied and torn.
+    pub(crate) fn is_elastic(&self) -> bool {
+        matches!(
+            self,
+            Self::Sheet(_) | Self::Springs(_) | Self::BucklingSprings(_)
+        )
+    }
+}

@@ -1,0 +1,48 @@
+//! Gravity, drag and the division by mass, once all other forces on a particle are summed up.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::{drag, gravity};
+
+/// Gravity and drag, which are added last, and the masses to divide by.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Finish<'a> {
+    /// Acceleration (m/s2), with the mass of each particle (kg).
+    pub gravity: Option<(Vector3<f64>, &'a [f64])>,
+    /// Coefficient of viscous drag (kg/s).
+    pub drag: Option<f64>,
+    /// Masses (kg), where the product of a matrix with a vector is wanted: they times the vector,
+    /// less the sum.
+    pub inertia: Option<&'a [f64]>,
+    /// Factors at the end: one over each mass (1/kg).
+    pub inverse_masses: Option<&'a [f64]>,
+}
+
+impl Finish<'_> {
+    /// Finishes the forces f on some particles with velocities v, both n x 3.
+    pub fn apply(&self, particles: &Range<usize>, v: &[f64], f: &mut [f64]) {
+        let n = f.len() / 3;
+        for (axis, column) in f.chunks_exact_mut(n).enumerate() {
+            let f = &mut column[particles.clone()];
+            let v = &v[axis * n..(axis + 1) * n][particles.clone()];
+            if let Some((g, masses)) = self.gravity {
+                gravity::add(g[axis], &masses[particles.clone()], f);
+            }
+            if let Some(c) = self.drag {
+                drag::add(c, v, f);
+            }
+            if let Some(masses) = self.inertia {
+                for ((f, v), m) in f.iter_mut().zip(v).zip(&masses[particles.clone()]) {
+                    *f = m * v - *f;
+                }
+            }
+            if let Some(inverse_masses) = self.inverse_masses {
+                for (f, w) in f.iter_mut().zip(&inverse_masses[particles.clone()]) {
+                    *f *= w;
+                }
+            }
+        }
+    }
+}

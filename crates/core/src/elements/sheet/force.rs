@@ -1,0 +1,78 @@
+//! The springs of a sheet as a force.
+
+use super::super::finish::Finish;
+use super::super::force::{At, Cost, Force, check_particle};
+use super::super::springs;
+use super::model::Sheet;
+use super::strips::{Quantity, set};
+use crate::energy::Energy;
+use crate::error::Error;
+use crate::system::Coupling;
+
+/// How many times as fast the kernel is as the same springs one by one, on the grids that people
+/// look at.
+const SPEED: f64 = 3.0;
+
+impl Force for Sheet {
+    fn name(&self) -> &'static str {
+        "springs"
+    }
+
+    fn check(&self, particles: usize) -> Result<(), Error> {
+        check_particle(self.particles().end - 1, particles)
+    }
+
+    fn add_forces(&self, at: &At, f: &mut [f64]) {
+        let finish = Finish::default();
+        set(Quantity::Forces, self, [at.x, at.v], f, true, &finish);
+    }
+
+    fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
+        let is_zero = |a: &[f64]| a.iter().all(|a| *a == 0.0);
+        // The turning of damped springs changes their forces, which the kernel leaves out.
+        if self.is_damped() && !is_zero(at.v) {
+            for spring in self.springs() {
+                springs::add_differential(&spring, at, [dx, dv], df);
+            }
+            return;
+        }
+        let mut add = |stiffness, damping, p: &[f64]| {
+            let quantity = Quantity::Tangent { clamped: false };
+            let sheet = self.scaled(stiffness, damping);
+            set(quantity, &sheet, [at.x, p], df, true, &Finish::default());
+        };
+        add(1.0, 0.0, dx);
+        if self.is_damped() && !is_zero(dv) {
+            add(0.0, 1.0, dv);
+        }
+    }
+
+    fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+        self.springs()
+            .for_each(|spring| visit(springs::coupling(&spring, x, clamped)));
+    }
+
+    fn energy(&self, at: &At) -> Energy {
+        springs::energy(self.springs(), at.x)
+    }
+
+    fn reads_velocity(&self) -> bool {
+        self.is_damped()
+    }
+
+    fn cost(&self) -> Cost {
+        let couplings = self.len() as f64;
+        Cost {
+            couplings,
+            price: couplings / SPEED,
+        }
+    }
+
+    fn scale(&mut self, stiffness: f64, damping: f64) {
+        Sheet::scale(self, stiffness, damping);
+    }
+
+    fn remove_springs(&mut self, torn: &[[usize; 2]]) {
+        self.remove(torn);
+    }
+}

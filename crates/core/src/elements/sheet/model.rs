@@ -1,0 +1,191 @@
+//! A grid of particles and its springs: one law for each of the six directions.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::missing::{Masks, Missing};
+use super::offsets::OFFSETS;
+use crate::error::{Error, positive};
+use crate::grid::Grid;
+use crate::spring::{Spring, SpringKind, SpringLaw};
+
+/// A grid of particles and its springs: structural to the next particle, shear across each cell,
+/// bend to the next but one. Its particles are numbered row by row, from one of them on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    first: usize,
+    grid: Grid,
+    laws: [SpringLaw; 6],
+    missing: Option<Arc<Missing>>,
+}
+
+impl Sheet {
+    /// A sheet at rest in a flat grid of that `spacing` (m), whose particles are the first ones.
+    /// `stiffness` (N/m) is that of structural, shear and bend springs; each is damped by
+    /// `damping_time` (s) times its stiffness.
+    ///
+    /// # Errors
+    /// The spacing is not above 0, or a number is negative or not finite.
+    pub fn new(
+        grid: Grid,
+        spacing: f64,
+        stiffness: [f64; 3],
+        damping_time: f64,
+    ) -> Result<Self, Error> {
+        positive("the spacing", spacing)?;
+        let [structural, shear, bend] = stiffness;
+        let mut laws = [SpringLaw::new(0.0, 0.0, 0.0)?; 6];
+        for (law, (kind, rows, cols)) in laws.iter_mut().zip(OFFSETS) {
+            let k = match kind {
+                SpringKind::Structural => structural,
+                SpringKind::Shear => shear,
+                SpringKind::Bend => bend,
+            };
+            let cells = ((rows * rows) as f64 + (cols * cols) as f64).sqrt();
+            *law = SpringLaw::new(k, spacing * cells, k * damping_time)?;
+        }
+        Ok(Self {
+            first: 0,
+            grid,
+            laws,
+            missing: None,
+        })
+    }
+
+    /// The same sheet, of the particles from `first` on.
+    #[must_use]
+    pub fn starting_at(self, first: usize) -> Self {
+        Self { first, ..self }
+    }
+
+    /// Rows and columns.
+    #[must_use]
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// Numbers of its particles.
+    #[must_use]
+    pub fn particles(&self) -> Range<usize> {
+        self.first..self.first.saturating_add(self.grid.particles())
+    }
+
+    /// Laws of the springs to the right, down, down and right, down and left, two to the right, two
+    /// down.
+    #[must_use]
+    pub fn laws(&self) -> &[SpringLaw; 6] {
+        &self.laws
+    }
+
+    /// Whether any spring is damped.
+    pub(crate) fn is_damped(&self) -> bool {
+        self.laws.iter().any(|law| law.damping > 0.0)
+    }
+
+    /// The sheet with springs so many times as stiff, and so many times as damped.
+    pub(crate) fn scaled(&self, stiffness: f64, damping: f64) -> Self {
+        let mut sheet = self.clone();
+        sheet.scale(stiffness, damping);
+        sheet
+    }
+
+    /// Multiplies stiffness and damping.
+    pub(super) fn scale(&mut self, stiffness: f64, damping: f64) {
+        for law in &mut self.laws {
+            law.scale(stiffness, damping);
+        }
+    }
+
+    /// Number of its springs.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        let (rows, cols) = (self.grid.rows(), self.grid.cols());
+        let of_direction = |(_, down, right): (SpringKind, usize, isize)| {
+            rows.saturating_sub(down) * cols.saturating_sub(right.unsigned_abs())
+        };
+        let whole: usize = OFFSETS.into_iter().map(of_direction).sum();
+        whole - self.lost().len()
+    }
+
+    /// Whether all its springs are missing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The springs that are missing: direction and first end of each, in order.
+    fn lost(&self) -> &[(usize, usize)] {
+        self.missing
+            .as_ref()
+            .map_or(&[], |missing| missing.springs())
+    }
+
+    /// Each spring by itself, direction by direction, those of one in the order of their first
+    /// ends.
+    pub fn springs(&self) -> impl Iterator<Item = Spring> {
+        let (first, grid, laws) = (self.first, self.grid, self.laws);
+        let mut lost = self.lost().iter().copied().peekable();
+        (0..OFFSETS.len())
+            .flat_map(move |direction| {
+                let (_, down, right) = OFFSETS[direction];
+                let cols = grid.cols() as isize;
+                let ends = (-right).max(0)..cols.min(cols - right);
+                (0..grid.rows().saturating_sub(down)).flat_map(move |row| {
+                    ends.clone().map(move |col| {
+                        let i = grid.index_of(row, col as usize);
+                        (
+                            direction,
+                            i,
+                            grid.index_of(row + down, (col + right) as usize),
+                        )
+                    })
+                })
+            })
+            .filter(move |(direction, i, _)| lost.next_if_eq(&(*direction, *i)).is_none())
+            .map(move |(direction, i, j)| Spring {
+                kind: OFFSETS[direction].0,
+                i: first + i,
+                j: first + j,
+                law: laws[direction],
+            })
+    }
+
+    /// Removes the springs between pairs of particles, the lower number of each first.
+    pub(super) fn remove(&mut self, pairs: &[[usize; 2]]) {
+        let mut lost: Vec<_> = pairs
+            .iter()
+            .filter_map(|pair| self.between(*pair))
+            .collect();
+        lost.extend(self.lost());
+        lost.sort_unstable();
+        lost.dedup();
+        if lost.len() > self.lost().len() {
+            self.missing = Some(Arc::new(Missing::new(self.grid, lost)));
+        }
+    }
+
+    /// Direction and first end of the spring between two particles.
+    fn between(&self, [i, j]: [usize; 2]) -> Option<(usize, usize)> {
+        let particles = self.particles();
+        if !particles.contains(&i) || !particles.contains(&j) {
+            return None;
+        }
+        let cols = self.grid.cols();
+        let (i, j) = (i - self.first, j - self.first);
+        let down = (j / cols).checked_sub(i / cols)?;
+        let right = (j % cols) as isize - (i % cols) as isize;
+        let direction = OFFSETS
+            .iter()
+            .position(|offset| (offset.1, offset.2) == (down, right))?;
+        Some((direction, i))
+    }
+
+    /// Masks of a row from column `first` on, if a spring is missing in it.
+    #[inline]
+    pub(super) fn masks(&self, row: usize, first: usize) -> Option<Masks<'_>> {
+        let numbers =
+            |law: SpringLaw| [law.stiffness, law.stiffness * law.rest_length, law.damping];
+        let missing = self.missing.as_ref()?;
+        missing.masks(row, first, self.laws.map(numbers))
+    }
+}

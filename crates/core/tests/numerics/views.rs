@@ -1,0 +1,360 @@
+//! The views that a system may offer are open to systems outside the core: a line of particles that
+//! knows how to kick and drift, to multiply by its tangent, and to step row by row.
+
+use std::ops::Range;
+
+use crate::common::{distance, integrate, method, size};
+use a3_core::{
+    BlockCoupling, Coupling, Error, Linearized, Mechanics, Patch, Place, Registers, Rows,
+    Splitting, Stage, SweepScratch, Terms, Vector3, integrators,
+};
+
+/// Stiffness between neighbours (N/m): xx, yy, zz, xy, xz, yz.
+const K: [f64; 6] = [40.0, 30.0, 50.0, 5.0, -3.0, 8.0];
+const G: [f64; 3] = [0.5, -9.81, 0.0];
+
+/// Particles in a line, the first one pinned, each held to the next by an anisotropic linear
+/// spring.
+struct Line {
+    inverse_masses: Vec<f64>,
+    has_views: bool,
+}
+
+impl Line {
+    fn new(particles: usize, has_views: bool) -> Self {
+        let mut inverse_masses = vec![20.0; particles];
+        inverse_masses[0] = 0.0;
+        Self {
+            inverse_masses,
+            has_views,
+        }
+    }
+
+    fn particles(&self) -> usize {
+        self.inverse_masses.len()
+    }
+
+    fn state(&self) -> Vec<f64> {
+        let n = self.particles();
+        let mut y: Vec<f64> = (0..6 * n).map(|k| 0.1 * (k as f64).sin()).collect();
+        (0..6).for_each(|axis| y[axis * n] = 0.0);
+        y
+    }
+}
+
+fn product(d: [f64; 3]) -> [f64; 3] {
+    let [xx, yy, zz, xy, xz, yz] = K;
+    [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+        .map(|row| row[0] * d[0] + row[1] * d[1] + row[2] * d[2])
+}
+
+fn row(a: &[f64], i: usize) -> [f64; 3] {
+    let n = a.len() / 3;
+    [0, n, 2 * n].map(|column| a[column + i])
+}
+
+fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| a[axis] - b[axis])
+}
+
+/// The force on a particle between pulls from above and below.
+fn force(above: [f64; 3], below: [f64; 3], g: bool) -> [f64; 3] {
+    [0, 1, 2].map(|axis| above[axis] - below[axis] + if g { 0.05 * G[axis] } else { 0.0 })
+}
+
+impl Line {
+    fn add_up(&self, x: &[f64], g: bool, f: &mut [f64]) {
+        let n = self.particles();
+        let mut above = [0.0; 3];
+        for i in 0..n {
+            let below = if i + 1 < n {
+                product(difference(row(x, i), row(x, i + 1)))
+            } else {
+                [0.0; 3]
+            };
+            let sum = force(above, below, g);
+            (0..3).for_each(|axis| f[axis * n + i] = sum[axis]);
+            above = below;
+        }
+    }
+}
+
+impl Mechanics for Line {
+    fn inverse_masses(&self) -> &[f64] {
+        &self.inverse_masses
+    }
+
+    fn forces(&self, _t: f64, x: &[f64], _v: &[f64], f: &mut [f64]) {
+        self.add_up(x, true, f);
+    }
+
+    fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
+        visit(0, Place::still(Vector3::zeros()));
+    }
+
+    fn rows(&self) -> Option<&dyn Rows> {
+        self.has_views.then_some(self as &dyn Rows)
+    }
+
+    fn splitting(&self) -> Option<&dyn Splitting> {
+        self.has_views.then_some(self as &dyn Splitting)
+    }
+
+    fn linearized(&self) -> Option<&dyn Linearized> {
+        self.has_views.then_some(self as &dyn Linearized)
+    }
+}
+
+/// Gravity is in the drift: x += h v + h2/2 g, v += h g.
+fn fall(h: f64, x: &mut [f64], v: &mut [f64], g: f64) {
+    for (x, v) in x.iter_mut().zip(v) {
+        *x += h * *v + 0.5 * h * h * g;
+        *v += h * g;
+    }
+}
+
+impl Splitting for Line {
+    fn kick_forces(&self, _t: f64, x: &[f64], _v: &[f64], f: &mut [f64]) {
+        self.add_up(x, false, f);
+    }
+
+    fn kick_reads_velocity(&self) -> bool {
+        false
+    }
+
+    fn drift(&self, _t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
+        let n = self.particles();
+        for axis in 0..3 {
+            let column = axis * n..(axis + 1) * n;
+            fall(h, &mut x[column.clone()], &mut v[column], G[axis]);
+            (x[axis * n], v[axis * n]) = (0.0, 0.0);
+        }
+    }
+}
+
+impl Linearized for Line {
+    fn force_differential(
+        &self,
+        _t: f64,
+        _x: &[f64],
+        _v: &[f64],
+        dx: &[f64],
+        _dv: &[f64],
+        df: &mut [f64],
+    ) {
+        self.add_up(dx, false, df);
+    }
+
+    fn couplings(&self, _x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+        for i in 1..self.particles() {
+            visit(Coupling::Block(BlockCoupling {
+                i: i - 1,
+                j: i,
+                stiffness: K,
+                damping: [0.0; 6],
+            }));
+        }
+    }
+}
+
+/// A particle a row.
+impl Rows for Line {
+    fn patches(&self) -> usize {
+        1
+    }
+
+    fn patch(&self, _patch: usize) -> Patch {
+        Patch {
+            first: 0,
+            rows: self.particles(),
+            cols: 1,
+        }
+    }
+
+    /// The pull from above.
+    fn kept_columns(&self) -> usize {
+        3
+    }
+
+    fn begin(&self, _patch: usize, scratch: &mut SweepScratch) {
+        scratch.clear_kept();
+    }
+
+    fn drift(
+        &self,
+        _patch: usize,
+        terms: Terms,
+        (_, h): (f64, f64),
+        row: usize,
+        registers: &mut Registers,
+    ) {
+        let [x, y, z, u, v, w] = registers.stage_mut(row);
+        for (axis, (x, v)) in [(x, u), (y, v), (z, w)].into_iter().enumerate() {
+            if terms == Terms::KickForces {
+                fall(h, x, v, G[axis]);
+            } else {
+                x[0] += h * v[0];
+            }
+            if row == 0 {
+                (x[0], v[0]) = (0.0, 0.0);
+            }
+        }
+    }
+
+    fn advance(
+        &self,
+        patch: usize,
+        number: usize,
+        stage: &Stage,
+        rows: Range<usize>,
+        registers: &mut Registers,
+        scratch: &mut SweepScratch,
+    ) {
+        for row in rows {
+            let at = |row| {
+                let [x, y, z, ..] = registers.stage(row);
+                [x[0], y[0], z[0]]
+            };
+            let below = if row + 1 < self.particles() {
+                product(difference(at(row), at(row + 1)))
+            } else {
+                [0.0; 3]
+            };
+            let above = [0, 1, 2]
+                .map(|axis| std::mem::replace(&mut scratch.kept_mut(number, axis)[0], below[axis]));
+            let w = self.inverse_masses[row];
+            let a = force(above, below, stage.terms != Terms::KickForces).map(|f| [f * w]);
+            registers.advance(stage, row, [&a[0], &a[1], &a[2]]);
+            if stage.drift != 0.0 {
+                let times = (stage.t, stage.drift);
+                Rows::drift(self, patch, stage.terms, times, row, registers);
+            }
+            if row == 0 {
+                for column in registers.stage_mut(row) {
+                    column[0] = 0.0;
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn rows_step_to_the_bits_of_whole_arrays() {
+    struct WholeArrays(Line);
+    impl Mechanics for WholeArrays {
+        fn inverse_masses(&self) -> &[f64] {
+            self.0.inverse_masses()
+        }
+        fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+            self.0.forces(t, x, v, f);
+        }
+        fn pins(&self, t: f64, visit: &mut dyn FnMut(usize, Place)) {
+            Mechanics::pins(&self.0, t, visit);
+        }
+        fn splitting(&self) -> Option<&dyn Splitting> {
+            Some(&self.0)
+        }
+    }
+    // The longer one in bands, on as many threads as there are.
+    for particles in [1, 2, 9, 5000] {
+        let y = Line::new(particles, true).state();
+        for name in [
+            "euler",
+            "heun",
+            "rk4",
+            "symplectic-euler",
+            "verlet",
+            "pefrl",
+        ] {
+            let line = Line::new(particles, true);
+            let found = integrate(&line, method(name), &y, 1e-2, 7);
+            let whole = WholeArrays(Line::new(particles, true));
+            let expected = integrate(&whole, method(name), &y, 1e-2, 7);
+            assert!(found == expected, "{name}, {particles} particles");
+        }
+    }
+}
+
+/// With views and without, every method finds the same motion.
+#[test]
+fn a_system_without_views_is_served_too() {
+    let line = Line::new(7, true);
+    let y = line.state();
+    let expected = integrate(&line, method("dop853"), &y, 1e-3, 200);
+    for m in integrators::METHODS {
+        let error = |line: &Line, steps: u64| {
+            let found = integrate(line, m, &y, 0.2 / steps as f64, steps);
+            distance(&found, &expected) / size(&expected)
+        };
+        for has_views in [true, false] {
+            let line = Line::new(7, has_views);
+            let (coarse, fine) = (error(&line, 200), error(&line, 400));
+            let falls = coarse / fine;
+            let order = 0.7 * 2f64.powi(m.order as i32);
+            println!("{} {has_views}: {coarse:.1e} {fine:.1e}", m.name);
+            assert!(fine < 1e-9 || falls > order, "{}: {falls}", m.name);
+        }
+    }
+}
+
+/// The midpoint rule with the blocks of the tangent solves its equation.
+#[test]
+fn implicit_methods_solve_with_blocks() {
+    for particles in [7, 300] {
+        let line = Line::new(particles, true);
+        let n = particles;
+        let y = line.state();
+        let h = 0.1;
+        let after = integrate(&line, method("implicit-midpoint"), &y, h, 1);
+        let middle: Vec<f64> = y.iter().zip(&after).map(|(a, b)| 0.5 * (a + b)).collect();
+        let mut f = vec![0.0; 3 * n];
+        line.forces(0.0, &middle[..3 * n], &middle[3 * n..], &mut f);
+        for k in 0..3 * n {
+            let x = after[k] - y[k] - h * middle[3 * n + k];
+            let v = after[3 * n + k] - y[3 * n + k] - h * f[k] * line.inverse_masses[k % n];
+            assert!(x.abs() < 1e-9 && v.abs() < 1e-9, "{k}: {x:e} {v:e}");
+        }
+    }
+}
+
+/// A line that holds a constraint: what implicit methods cannot serve is refused before anything
+/// opens.
+#[test]
+fn constraints_in_the_forces_are_refused_by_implicit_methods() {
+    struct Constrained(Line);
+    impl Mechanics for Constrained {
+        fn inverse_masses(&self) -> &[f64] {
+            self.0.inverse_masses()
+        }
+        fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+            self.0.forces(t, x, v, f);
+        }
+        fn linearized(&self) -> Option<&dyn Linearized> {
+            Some(self)
+        }
+    }
+    impl Linearized for Constrained {
+        fn force_differential(
+            &self,
+            t: f64,
+            x: &[f64],
+            v: &[f64],
+            dx: &[f64],
+            dv: &[f64],
+            df: &mut [f64],
+        ) {
+            self.0.force_differential(t, x, v, dx, dv, df);
+        }
+        fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+            self.0.couplings(x, clamped, visit);
+        }
+        fn baumgarte_frequency(&self) -> Option<f64> {
+            Some(10.0)
+        }
+    }
+    let system = Constrained(Line::new(3, true));
+    for m in integrators::METHODS {
+        let refused = matches!(m.integrator(&system), Err(Error::Invalid(_)));
+        assert_eq!(refused, m.implicit, "{}", m.name);
+    }
+}
