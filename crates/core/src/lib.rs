@@ -80,7 +80,7 @@ pub use network::Network;
 pub use path::{Path, Place};
 pub use rows::{Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
 pub use scene::{FirstOrder, Model, Scene, Swing};
-pub use simulation::{Checkpoint, Grabbed, Simulation};
+pub use simulation::{Checkpoint, Grabbed, Progress, Simulation};
 pub use spring::{Spring, SpringKind, SpringLaw};
 pub use system::{
     AxialCoupling, BlockCoupling, Coupling, Linearized, Matrix, Mechanics, ParticleSystem,

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Work;
 use super::embedded::{EmbeddedPair, PairStep, Tableau};
-use crate::error::{Error, positive};
+use super::error_norm::{ErrorNorm, Tolerance};
+use crate::error::Error;
 use crate::system::ParticleSystem;
 
 /// No step is shorter (s): what asks for it has no solution, or a tolerance below what double precision holds.
@@ -14,58 +15,6 @@ const SHORTEST: f64 = 1e-10;
 const SAFETY: f64 = 0.8;
 /// The least and the most that a step changes by.
 const CHANGE: (f64, f64) = (0.2, 8.0);
-
-/// How large an error a step may make.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerance {
-    /// Relative to the state.
-    pub relative: f64,
-    /// In m and m/s.
-    pub absolute: f64,
-}
-
-impl Tolerance {
-    /// A relative tolerance, and a thousandth of it as the absolute one.
-    ///
-    /// # Errors
-    /// It is not a finite number above 0.
-    pub fn new(relative: f64) -> Result<Self, Error> {
-        positive("the tolerance", relative)?;
-        Ok(Self {
-            relative,
-            absolute: 1e-3 * relative,
-        })
-    }
-}
-
-/// What an error is measured against. The root mean square of a block of numbers, over absolute tolerance + relative
-/// tolerance x the block's own root mean square: positions are one block and velocities another, so that neither units
-/// nor the directions of the axes matter, and a number that happens to be near zero asks for no more digits than others.
-pub(super) struct Scale {
-    tolerance: Tolerance,
-    /// Length of a block.
-    block: usize,
-}
-
-impl Scale {
-    /// The error over what is tolerated in the block that has most of it.
-    pub fn norm(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> f64 {
-        let blocks = |a: &'_ [f64]| -> [f64; 2] {
-            let mut chunks = a.chunks(self.block).map(root_mean_square);
-            [chunks.next().unwrap_or(0.0), chunks.next().unwrap_or(0.0)]
-        };
-        let (y0, y1, error) = (blocks(y0), blocks(y1), blocks(error));
-        let Tolerance { relative, absolute } = self.tolerance;
-        let ratio = |b: usize| error[b] / (absolute + relative * y0[b].max(y1[b]));
-        let (a, b) = (ratio(0), ratio(1));
-        // NaN has to come out as such.
-        if a >= b || a.is_nan() { a } else { b }
-    }
-}
-
-fn root_mean_square(a: &[f64]) -> f64 {
-    (a.iter().map(|a| a * a).sum::<f64>() / a.len() as f64).sqrt()
-}
 
 /// A step that was taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -176,7 +125,7 @@ impl Adaptive {
             work += self.pair.begin(system, t, y);
         }
         self.goes_on = false;
-        let scale = Scale {
+        let norm = ErrorNorm {
             tolerance: self.tolerance,
             block: if system.mechanics().is_some() {
                 y.len() / 2
@@ -186,7 +135,7 @@ impl Adaptive {
             .max(1),
         };
         if self.next == 0.0 {
-            self.next = self.first_step(system, t, y, &scale);
+            self.next = self.first_step(system, t, y, &norm);
             work += Work::of(1);
         }
         let exponent = -1.0 / self.pair.exponent();
@@ -197,7 +146,7 @@ impl Adaptive {
                 self.next = 0.0;
                 return Err(Error::StepTooSmall { time: t, step: h });
             }
-            let (cost, error) = self.pair.attempt(system, t, h, &scale);
+            let (cost, error) = self.pair.attempt(system, t, h, &norm);
             work += cost;
             let change = SAFETY * libm::pow(error, exponent);
             if error <= 1.0 {
@@ -222,15 +171,21 @@ impl Adaptive {
     }
 
     /// A first step of which one of Euler's shows that it is not far off.
-    fn first_step(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64], scale: &Scale) -> f64 {
+    fn first_step(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        y: &[f64],
+        norm: &ErrorNorm,
+    ) -> f64 {
         let f0 = self.pair.derivative();
-        let (size, slope) = (scale.norm(y, y, y), scale.norm(y, y, f0));
+        let (size, slope) = (norm.of(y, y, y), norm.of(y, y, f0));
         let h0 = if size < 1e-5 || slope < 1e-5 {
             1e-6
         } else {
             0.01 * size / slope
         };
-        let bend = scale.norm(y, y, self.pair.second_derivative(system, t, h0));
+        let bend = norm.of(y, y, self.pair.second_derivative(system, t, h0));
         let steepest = slope.max(bend);
         let h1 = if steepest <= 1e-15 {
             (1e-3 * h0).max(1e-6)

@@ -5,7 +5,7 @@
 use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
-use super::adaptive::Scale;
+use super::error_norm::ErrorNorm;
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -163,7 +163,7 @@ impl EmbeddedPair {
         system: &dyn ParticleSystem,
         t: f64,
         h: f64,
-        scale: &Scale,
+        norm: &ErrorNorm,
     ) -> (Work, f64) {
         let mut work = Work::of(self.stages(system, t, h));
         let reads_end = self.tableau.errors[0].len() > self.tableau.stages.len() + 1;
@@ -173,7 +173,7 @@ impl EmbeddedPair {
         let mut error = |weights: &[f64]| {
             self.stage.fill(0.0);
             add_combination(&mut self.stage, h, weights, &self.last.k);
-            scale.norm(&self.last.y0, &self.last.y1, &self.stage)
+            norm.of(&self.last.y0, &self.last.y1, &self.stage)
         };
         let error = match self.tableau.errors {
             [fifth, third] => {

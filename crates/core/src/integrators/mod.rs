@@ -4,6 +4,7 @@ mod adaptive;
 mod dop853;
 mod dormand_prince;
 mod embedded;
+mod error_norm;
 mod euler;
 mod heun;
 mod implicit;
@@ -22,8 +23,9 @@ use crate::error::{Error, positive};
 use crate::system::{Mechanics, ParticleSystem};
 
 pub use crate::work::Work;
-pub use adaptive::{Adaptive, AdaptiveState, Taken, Tolerance};
+pub use adaptive::{Adaptive, AdaptiveState, Taken};
 pub use embedded::Tableau;
+pub use error_norm::Tolerance;
 
 /// Advances a state.
 pub trait Integrator: Send {

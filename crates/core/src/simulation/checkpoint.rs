@@ -2,12 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Simulation, Stepper};
+use super::Simulation;
+use super::stepper::{Progress, Stepper};
 use crate::contact::Shape;
 use crate::control::Control;
 use crate::elements::Wind;
 use crate::error::Error;
-use crate::integrators::{AdaptiveState, Method, Work};
+use crate::integrators::{Method, Work};
 use crate::network::Network;
 use crate::path::Path;
 use crate::scene::Model;
@@ -63,10 +64,8 @@ pub struct Checkpoint {
     pub wind: Option<Wind>,
     /// Springs that have broken, by the particles at their ends, the lower number first, in order.
     pub torn: Vec<[usize; 2]>,
-    /// Memory of an adaptive method.
-    pub adaptive: Option<AdaptiveState>,
-    /// End of the step that an adaptive method is within: its time (s), and the state there.
-    pub ahead: Option<(f64, Vec<f64>)>,
+    /// Progress of an adaptive method.
+    pub adaptive: Option<Progress>,
 }
 
 impl Checkpoint {
@@ -90,7 +89,6 @@ impl Checkpoint {
             wind: None,
             torn: vec![],
             adaptive: None,
-            ahead: None,
         }
     }
 
@@ -156,9 +154,10 @@ impl Simulation {
     /// The run as it is now, with the last step of an adaptive method: some 20 arrays of the size of the state.
     #[must_use]
     pub fn checkpoint(&self) -> Checkpoint {
-        let mut checkpoint = self.moment();
-        self.stepper.record(true, &mut checkpoint);
-        checkpoint
+        Checkpoint {
+            adaptive: self.stepper.progress(true),
+            ..self.moment()
+        }
     }
 
     /// The run as it is now, without the last step of an adaptive method: what goes on from there begins a new one.
@@ -204,10 +203,8 @@ impl Simulation {
             swing_phase: self.swing_phase,
             wind: network.and_then(Network::wind).copied(),
             torn: old.torn,
-            adaptive: None,
-            ahead: None,
+            adaptive: self.stepper.progress(false),
         };
-        self.stepper.record(false, moment);
     }
 
     /// Takes over everything of a checkpoint: the run goes on as the one that it was made of, to the same bits. A run that
@@ -223,7 +220,9 @@ impl Simulation {
             checkpoint.bind(network, whole)?;
         }
         let mut stepper = Stepper::new(checkpoint.method, model.system(), checkpoint.control)?;
-        stepper.resume(checkpoint)?;
+        if let Some(progress) = &checkpoint.adaptive {
+            stepper.resume(progress)?;
+        }
         (self.model, self.stepper) = (model, stepper);
         (self.method, self.control) = (checkpoint.method, checkpoint.control);
         (self.since, self.taken) = (checkpoint.since, checkpoint.taken);

@@ -9,6 +9,7 @@ mod steps;
 mod tuning;
 
 pub use checkpoint::{Checkpoint, Grabbed};
+pub use stepper::Progress;
 
 use nalgebra::Vector3;
 

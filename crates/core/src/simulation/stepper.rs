@@ -1,9 +1,10 @@
 //! The stepper of a run: an integrator that takes fixed steps, or an adaptive method that looks ahead.
 
-use super::Checkpoint;
+use serde::{Deserialize, Serialize};
+
 use crate::control::Control;
 use crate::error::Error;
-use crate::integrators::{Adaptive, Integrator, Method, Tolerance};
+use crate::integrators::{Adaptive, AdaptiveState, Integrator, Method, Tolerance};
 use crate::system::ParticleSystem;
 
 /// Taker of the steps.
@@ -19,6 +20,15 @@ pub(super) enum Stepper {
         /// Time of that end (s), if state and system are still those that the step began with.
         until: Option<f64>,
     },
+}
+
+/// Progress of an adaptive method within a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Progress {
+    /// Memory of the method.
+    pub method: AdaptiveState,
+    /// End of the step that the run is within: its time (s), and the state there.
+    pub ahead: Option<(f64, Vec<f64>)>,
 }
 
 impl Stepper {
@@ -46,44 +56,47 @@ impl Stepper {
         })
     }
 
-    /// Writes down what an adaptive method remembers, and with `ahead` also the step that it is within.
-    pub fn record(&self, ahead: bool, checkpoint: &mut Checkpoint) {
-        (checkpoint.adaptive, checkpoint.ahead) = (None, None);
-        if let Self::Adaptive {
-            adaptive,
-            end,
-            until,
-        } = self
-        {
-            let until = until.filter(|_| ahead);
-            checkpoint.adaptive = Some(adaptive.state(until.is_some()));
-            checkpoint.ahead = until.map(|until| (until, end.clone()));
+    /// What an adaptive method remembers, and with `ahead` also the step that the run is within.
+    pub fn progress(&self, ahead: bool) -> Option<Progress> {
+        match self {
+            Self::Fixed(_) => None,
+            Self::Adaptive {
+                adaptive,
+                end,
+                until,
+            } => {
+                let until = until.filter(|_| ahead);
+                Some(Progress {
+                    method: adaptive.state(until.is_some()),
+                    ahead: until.map(|until| (until, end.clone())),
+                })
+            }
         }
     }
 
-    /// Goes on from what was written down.
+    /// Goes on from what was remembered.
     ///
     /// # Errors
     /// It is of another method or of another system.
-    pub fn resume(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
-        if let Self::Adaptive {
+    pub fn resume(&mut self, progress: &Progress) -> Result<(), Error> {
+        let Self::Adaptive {
             adaptive,
             end,
             until,
         } = self
-            && let Some(state) = &checkpoint.adaptive
-        {
-            adaptive.resume(state)?;
-            if let Some((time, state)) = &checkpoint.ahead {
-                if state.len() != end.len() {
-                    return Err(Error::Dimension {
-                        expected: end.len(),
-                        found: state.len(),
-                    });
-                }
-                end.copy_from_slice(state);
-                *until = Some(*time);
+        else {
+            return Ok(());
+        };
+        adaptive.resume(&progress.method)?;
+        if let Some((time, state)) = &progress.ahead {
+            if state.len() != end.len() {
+                return Err(Error::Dimension {
+                    expected: end.len(),
+                    found: state.len(),
+                });
             }
+            end.copy_from_slice(state);
+            *until = Some(*time);
         }
         Ok(())
     }

@@ -209,7 +209,7 @@ fn checkpoints_that_do_not_fit_are_refused_and_change_nothing() {
     refuse(&|c| c.torn.push([0, 224]));
     refuse(&|c| c.obstacles.push((7, Path::Still(Vector3::zeros()))));
     refuse(&|c| c.grabbed_obstacle = Some(7));
-    refuse(&|c| c.ahead = Some((1.0, vec![])));
+    refuse(&|c| c.adaptive.as_mut().unwrap().ahead = Some((1.0, vec![])));
     let other = simulation("mit", "dop853", 1e-6);
     refuse(&|c| {
         let mut run = simulation("mit", "dop853", 1e-6);
