@@ -83,7 +83,7 @@ impl EmbeddedPair {
         let stages = self.last.k.len();
         if step.k.len() != stages {
             return Err(Error::Invalid(format!(
-                "the last step has {} stages, and {stages} were expected",
+                "the last step has {} stages, but the method has {stages}",
                 step.k.len()
             )));
         }

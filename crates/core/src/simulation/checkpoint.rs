@@ -118,7 +118,7 @@ impl Checkpoint {
         }
         if !self.time().is_finite() || self.y.iter().any(|y| !y.is_finite()) {
             return Err(Error::Invalid(
-                "a state to go back to has finite numbers, and so has its time".into(),
+                "the state and the time of a checkpoint must be finite".into(),
             ));
         }
         Ok(())

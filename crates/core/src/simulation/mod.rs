@@ -66,7 +66,7 @@ impl Simulation {
         }
         if dim == 0 || dim % 3 != 0 {
             return Err(Error::Invalid(format!(
-                "a scene's state is n x 3 positions, and this has {dim} numbers"
+                "the state of a scene must be n x 3 numbers, not {dim}"
             )));
         }
         let y = scene.state.clone();
