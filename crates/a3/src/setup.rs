@@ -53,7 +53,7 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
     Session::new(origin(what), setup, simulations, &beginning)
 }
 
-/// Where the scene is from.
+/// The origin of the scene.
 fn origin(what: &What) -> Origin {
     Origin {
         source: what.scene.clone(),

@@ -15,7 +15,7 @@ use crate::hud::{self, Overlay, layout};
 use crate::output;
 use crate::session::{Readings, Session};
 
-/// What became of a frame.
+/// The outcome of drawing a frame.
 pub enum FrameOutcome {
     /// The frame was drawn. The text must be drawn again after this time, if at all: it fades in.
     Drawn(Option<Duration>),

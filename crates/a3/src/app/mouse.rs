@@ -1,4 +1,4 @@
-//! What the mouse does: pull, turn, move, pin, and drag the timeline.
+//! Actions of the mouse: pull, turn, move, pin, and drag the timeline.
 
 use winit::dpi::PhysicalPosition;
 use winit::event::{MouseButton, MouseScrollDelta};

@@ -7,7 +7,7 @@ use a3_render::Camera;
 
 use crate::show;
 
-/// What is picked, by its number.
+/// A particle or an obstacle, by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     Particle(usize),

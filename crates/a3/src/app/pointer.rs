@@ -1,4 +1,4 @@
-//! The mouse: where its pointer is, and what a pressed button does.
+//! The mouse: the position of its pointer, and the drag by a pressed button.
 
 use std::time::{Duration, Instant};
 
@@ -9,10 +9,10 @@ use super::pick::Grip;
 /// The longest time between the two clicks of a double click.
 const DOUBLE_CLICK: Duration = Duration::from_millis(400);
 
-/// What a pressed button does while the pointer moves.
+/// A drag: the action of a pressed button while the pointer moves.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Drag {
-    /// Nothing.
+    /// No action.
     None,
     /// Pull a particle or push an obstacle.
     Pull(Grip),
@@ -28,7 +28,7 @@ pub enum Drag {
 pub struct Mouse {
     /// Position of the pointer (px from the left and from the top of the window).
     pub pointer: [f32; 2],
-    /// What the pressed button does.
+    /// The drag by the pressed button.
     pub drag: Drag,
     /// The pane in which the button was pressed.
     pub pane: usize,

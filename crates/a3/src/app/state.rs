@@ -17,7 +17,7 @@ use crate::session::{Action, Session};
 
 /// The window, from the first event to the last.
 pub struct App {
-    /// What is simulated and shown.
+    /// The session that is shown.
     pub session: Session,
     display: OwnedDisplayHandle,
     /// All that depends on the adapter, once it is open.

@@ -1,4 +1,4 @@
-//! What is on the screen, as lines of text on stderr, for tests.
+//! Status lines for tests: what is on the screen, as text on stderr.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! What is written about a run that blew up.
+//! The text about a run that blew up.
 
 use a3_core::{BlowUp, Cause, Control};
 use egui::{RichText, Ui};

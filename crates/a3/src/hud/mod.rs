@@ -1,4 +1,4 @@
-//! What egui draws over the picture: text, the timeline, and the panel of knobs and plots.
+//! The text over the picture, the timeline, and the panel of knobs and plots: all that egui draws.
 
 mod blow_up;
 mod help;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 /// Real time between two readings (s).
 const INTERVAL: f32 = 0.5;
 
-/// What happened since the last reading.
+/// Frames and their time since the last reading.
 pub struct Meter {
     begun: Instant,
     frames: u32,

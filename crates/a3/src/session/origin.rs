@@ -1,4 +1,4 @@
-//! Where a scene is from.
+//! The origin of a scene.
 
 use a3_core::Grid;
 

@@ -1,4 +1,4 @@
-//! What the text over the picture says beside the runs themselves.
+//! Readings for the text over the picture, beside those of the runs themselves.
 
 use super::timeline::TimelinePosition;
 

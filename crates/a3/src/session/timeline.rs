@@ -4,27 +4,31 @@ use std::collections::VecDeque;
 
 use a3_core::{Checkpoint, Simulation};
 
-/// Simulated time between two moments (s), and over all of them.
+/// Simulated time between two moments (s).
 const INTERVAL: f64 = 1.0 / 60.0;
+/// Simulated time from the oldest to the newest moment (s).
 const SPAN: f64 = 20.0;
-/// All of them together may take so much (bytes).
+/// Memory that all moments together may take (bytes).
 const MEMORY: usize = 64 << 20;
 
 /// Kept moments, the oldest first.
 #[derive(Default)]
 pub struct Timeline {
     moments: VecDeque<Entry>,
-    /// The one that is shown, unless it is the newest.
+    /// Number of the moment that is shown, unless it is the newest.
     shown: Option<usize>,
 }
 
+/// All runs at one time.
 struct Entry {
+    /// Simulated time (s).
     clock: f64,
-    /// Of each run: none of what was lost then.
+    /// A checkpoint of each run, unless the run was lost.
     moments: Vec<Option<Checkpoint>>,
 }
 
 impl Entry {
+    /// Memory (bytes).
     fn size(&self) -> usize {
         self.moments.iter().flatten().map(Checkpoint::size).sum()
     }
@@ -33,11 +37,11 @@ impl Entry {
 /// Position of a moment on the timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimelinePosition {
-    /// 0 at the oldest moment, 1 at the newest.
+    /// Share of the kept time: 0 at the oldest moment, 1 at the newest.
     pub share: f32,
-    /// How long before the newest moment (s).
+    /// Time before the newest moment (s).
     pub back: f64,
-    /// From the oldest to the newest (s).
+    /// Time from the oldest to the newest moment (s).
     pub span: f64,
 }
 
@@ -48,8 +52,8 @@ impl Timeline {
         self.shown = None;
     }
 
-    /// Keeps the states at `clock` (s), if the last ones are old enough, or at once with `now`.
-    /// What came after the moment that is shown did not happen.
+    /// Keeps the states at `clock` (s) if the last ones are old enough, or at once with `now`.
+    /// Moments after the one that is shown are dropped.
     pub fn keep<'r>(&mut self, clock: f64, now: bool, runs: impl Iterator<Item = &'r Simulation>) {
         if let Some(k) = self.shown.take() {
             self.moments.truncate(k + 1);
@@ -63,7 +67,7 @@ impl Timeline {
         let next = self.moments.back().map_or(0, Entry::size);
         let old = |entry: &Entry| entry.clock < clock - SPAN;
         let full = self.moments.len() > 1 && size + next > MEMORY;
-        // The oldest one's place, if there is no other.
+        // The memory of the oldest moment is used again.
         let spare = if full || self.moments.front().is_some_and(old) {
             self.moments.pop_front()
         } else {
@@ -85,7 +89,7 @@ impl Timeline {
         self.moments.push_back(Entry { clock, moments });
     }
 
-    /// Goes `by` moments on, or back. Whether another one is shown then.
+    /// Goes `by` moments on, or back if it is negative, and returns whether another one is shown.
     pub fn go(&mut self, by: isize) -> bool {
         let newest = self.moments.len().saturating_sub(1);
         let from = self.shown.unwrap_or(newest);
@@ -94,7 +98,7 @@ impl Timeline {
         to != from
     }
 
-    /// Goes to a place from 0, the oldest moment, to 1, the newest.
+    /// Goes to a share of the kept time: 0 is the oldest moment, 1 the newest.
     pub fn go_to(&mut self, share: f32) -> bool {
         let newest = self.moments.len().saturating_sub(1);
         let to = (share.clamp(0.0, 1.0) * newest as f32).round() as isize;
@@ -108,7 +112,7 @@ impl Timeline {
             return;
         };
         for (run, moment) in runs.zip(&entry.moments) {
-            // It is of this run, and in shape.
+            // The checkpoint is of this run, so it fits.
             let _ = moment.as_ref().map(|moment| run.rewind(moment));
         }
     }

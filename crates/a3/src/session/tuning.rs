@@ -1,4 +1,4 @@
-//! What the panel keeps in the session: how the scene was tuned, and which row is chosen.
+//! The panel's part of a session: the tuning of the scene, and the chosen row.
 
 use a3_core::Scene;
 

@@ -1,4 +1,4 @@
-//! What a run looks like: from particles, springs and obstacles to balls, lines and triangles.
+//! The look of a run: from particles, springs and obstacles to balls, lines and triangles.
 
 mod coil;
 mod colours;

@@ -1,4 +1,4 @@
-//! Where a scene is looked at from.
+//! The camera of a scene.
 
 use a3_render::Camera;
 use a3_scenes::Presentation;

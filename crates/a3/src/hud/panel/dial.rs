@@ -1,4 +1,4 @@
-//! What a knob shows and how it is turned: values on a scale.
+//! The dial of a knob: a value on a scale, and how it is turned.
 
 /// The values that a knob may have.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub enum DialScale {
     Switch,
 }
 
-/// What a knob shows.
+/// The value that a knob shows, and its scale.
 pub struct Dial {
     /// The value now.
     pub value: f64,

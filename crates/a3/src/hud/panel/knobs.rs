@@ -18,7 +18,7 @@ pub struct Knob {
     pub name: &'static str,
     /// Whether its row stands apart from the one above it.
     pub apart: bool,
-    /// What it shows for a session and the number of a pane, if it has a meaning there.
+    /// The dial for a session and the number of a pane, if the knob has a meaning there.
     pub read: fn(&Session, usize) -> Option<Dial>,
     /// Sets its value in a session and the pane of that number.
     set: fn(&mut Session, usize, f64),

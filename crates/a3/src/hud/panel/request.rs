@@ -1,4 +1,4 @@
-//! What keys and the mouse ask of the panel.
+//! Requests of keys and mouse to the panel.
 
 use super::dial::{Dial, Turn};
 use super::knobs::{KNOBS, Knob};

@@ -25,7 +25,7 @@ pub(super) fn width(window: f32) -> f32 {
     WIDTH.min((MOST * window).round())
 }
 
-/// What the panel leaves of a window of `size` (px) at `scale` pixels per point.
+/// Size that the panel leaves of a window of `size` (px) at `scale` pixels per point.
 pub fn leaves(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     if !is_shown(session) {
         return size;
