@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 /// Control of the steps of a run: their length, or the error that each of them may make.
 ///
-/// Every method takes steps of a fixed length. A tolerance is for adaptive methods, which estimate their error.
+/// Every method takes steps of a fixed length. A tolerance is for adaptive methods, which estimate
+/// their error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {

@@ -1,4 +1,4 @@
-//! What can go wrong, in words for the one who has to mend it.
+//! Errors, in words for the one who has to mend them.
 
 use std::fmt;
 
@@ -6,11 +6,11 @@ use nalgebra::Vector3;
 
 use crate::control::Control;
 
-/// Why something could not be built or stepped.
+/// Reason why something could not be built or stepped.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A number that makes no sense; says which, and what would be right.
+    /// A number that makes no sense: which one, and what would be right.
     Invalid(String),
     /// The method needs forces and masses, and the system has none.
     NeedsMechanics {
@@ -26,58 +26,58 @@ pub enum Error {
     },
     /// No step that is long enough to get anywhere meets the tolerance.
     StepTooSmall {
-        /// Where (s).
+        /// Time at which the step began (s).
         time: f64,
-        /// The step that was still too long (s).
+        /// Step that was still too long (s).
         step: f64,
     },
     /// The equations of an implicit step were not solved.
     NoConvergence {
-        /// What is left of the first residual.
+        /// Residual that is left, over the first one.
         residual: f64,
     },
     /// The run left every reasonable bound.
     BlowUp(BlowUp),
 }
 
-/// Where a run was lost.
+/// Loss of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlowUp {
-    /// The method that lost it, in full.
+    /// Title of the method.
     pub method: &'static str,
-    /// The step or the tolerance that it was run with.
+    /// Step or tolerance of the run.
     pub control: Control,
-    /// Steps taken, the bad one included.
+    /// Number of steps taken, the bad one included.
     pub step: u64,
-    /// Time at its end (s).
+    /// Time at the end of the bad step (s).
     pub time: f64,
-    /// What was seen.
+    /// Cause of the loss.
     pub cause: Cause,
 }
 
-/// How a run was lost.
+/// Cause of the loss of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
     /// A particle is far away from everything.
     Away {
-        /// The first such.
+        /// Number of the first such particle.
         particle: usize,
-        /// From the middle of the scene (m).
+        /// Distance from the middle of the scene (m).
         distance: f64,
     },
     /// A particle's state is not finite.
     NotFinite {
-        /// The first such.
+        /// Number of the first such particle.
         particle: usize,
     },
     /// No step meets the tolerance of an adaptive method.
     StepTooSmall {
-        /// The step that was still too long (s).
+        /// Step that was still too long (s).
         step: f64,
     },
     /// The equations of an implicit step were not solved.
     NoConvergence {
-        /// What is left of the first residual.
+        /// Residual that is left, over the first one.
         residual: f64,
     },
 }

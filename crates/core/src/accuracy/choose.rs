@@ -6,7 +6,8 @@ use crate::error::Error;
 use crate::integrators::{METHODS, Method};
 use crate::scene::Scene;
 
-/// Ratio of the shortest step that fails to the longest that is good enough, at which the search ends.
+/// Ratio of the shortest step that fails to the longest that is good enough, at which the search
+/// ends.
 const CLOSE: f64 = 1.08;
 /// The same ratio for tolerances, on which the cost hardly depends.
 const CLOSE_TOLERANCE: f64 = 1.7;
@@ -26,7 +27,8 @@ pub struct Candidate {
 
 /// The cheapest step or tolerance of each method that meets the error, cheapest method first.
 ///
-/// Methods that cost more than twice as much as the two best are left out. `None` if it was told to stop.
+/// Methods that cost more than twice as much as the two best are left out. `None` if it was told to
+/// stop.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -83,7 +85,7 @@ struct Search<'a> {
     metric: Metric,
     error: f64,
     method: &'static Method,
-    /// A run that costs more is not tried.
+    /// Largest cost of a run that is of use, in evaluations.
     dearest: f64,
     go_on: GoOn<'a>,
 }
@@ -93,7 +95,7 @@ impl Search<'_> {
         measure(self.scene, self.method, control, self.reference, self.go_on)
     }
 
-    /// The error over the one asked for; infinite if the run was lost.
+    /// The error of an outcome over the one asked for; infinite if the run was lost.
     fn ratio(&self, outcome: &Outcome) -> f64 {
         if outcome.lost.is_some() {
             f64::INFINITY
@@ -166,7 +168,8 @@ impl Search<'_> {
     }
 }
 
-/// A tolerance between a good one and a bad one, or a step between them that fits the frames, if there is one left.
+/// A tolerance between a good one and a bad one, or a step between them that fits the frames, if
+/// there is one left.
 fn between(good: Control, bad: f64, frames: &super::Frames) -> Option<Control> {
     let middle = (good.value() * bad).sqrt();
     let Control::Step(good) = good else {

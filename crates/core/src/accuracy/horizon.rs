@@ -1,4 +1,5 @@
-//! How long errors mean something: motion that is chaotic makes large ones of the smallest.
+//! Horizon: the time for which errors mean something. Chaotic motion makes large errors of the
+//! smallest.
 
 use super::GoOn;
 use crate::control::Control;
@@ -9,24 +10,26 @@ use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::stability::spectrum;
 
-/// Errors may grow by this much on their own.
+/// Factor by which errors may grow on their own.
 const AMPLIFICATION: f64 = 1e4;
-/// What two runs begin with between them, over the scene's radius.
+/// Distance of two runs at their start, over the scene's radius.
 const SEPARATION: f64 = 1e-8;
 /// Horizons that are round numbers (s).
 const ROUND: [f64; 11] = [0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0];
 
-/// How far a scene can be foretold.
+/// Time for which a scene can be predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Horizon {
-    /// A round time until which two runs that start side by side separate less than ten-thousandfold (s).
+    /// A round time until which two runs that start side by side separate less than
+    /// ten-thousandfold (s).
     pub until: f64,
     /// The time in which their separation grows by the factor e (s); infinite if it does not.
     pub lyapunov: f64,
 }
 
-/// Estimates it from two runs that start side by side, up to ten seconds; three if the scene's fastest motion takes less
-/// than a tenth of a second. `None` if it was told to stop.
+/// Estimates the horizon of a scene from two runs that start side by side, up to ten seconds; three
+/// if the scene's fastest motion takes less than a tenth of a second. `None` if it was told to
+/// stop.
 ///
 /// # Errors
 /// The scene cannot be run.

@@ -9,7 +9,8 @@ use crate::stability::{largest_step, spectrum};
 
 /// Ratio of a step to the next shorter one.
 const RUNG: f64 = 1.5;
-/// Longest step as a multiple of the method's limit: one or two steps past the limit show that it is one.
+/// Longest step as a multiple of the method's limit: one or two steps past the limit show that it
+/// is one.
 const PAST: f64 = 1.4;
 /// Largest and smallest tolerance of adaptive methods, as halves of a power of ten.
 const TOLERANCES: (i32, i32) = (-2, -24);

@@ -1,4 +1,5 @@
-//! How accurate a method is on a scene: true errors, against a reference that is made here and knows its own.
+//! Accuracy of methods on a scene: true errors, against a reference that is made here and knows its
+//! own error.
 
 mod choose;
 mod horizon;
@@ -19,20 +20,20 @@ pub use horizon::{Horizon, horizon};
 pub use ladder::ladder;
 pub use reference::Reference;
 
-/// Asked between frames whether to go on.
+/// Question whether to go on, asked between frames.
 pub type GoOn<'a> = &'a dyn Fn() -> bool;
 
 /// The times at which runs are compared: `count` equal parts of `until`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frames {
-    /// The end (s).
+    /// End of the last part (s).
     pub until: f64,
-    /// How many, a multiple of 60, so that many steps fit.
+    /// Number of parts, a multiple of 60, so that many steps fit.
     pub count: u64,
 }
 
 impl Frames {
-    /// At least 60 a second, and at least 60.
+    /// Frames up to `until` (s): at least 60 a second, and at least 60.
     #[must_use]
     pub fn new(until: f64) -> Self {
         Self {
@@ -41,13 +42,13 @@ impl Frames {
         }
     }
 
-    /// From one to the next (s).
+    /// Time from one frame to the next (s).
     #[must_use]
     pub fn spacing(&self) -> f64 {
         self.until / self.count as f64
     }
 
-    /// When frame k is (s).
+    /// Time of frame k (s).
     #[must_use]
     pub fn time(&self, k: u64) -> f64 {
         if k == self.count {
@@ -58,7 +59,7 @@ impl Frames {
     }
 }
 
-/// What is compared of a state.
+/// The part of a state that is compared.
 #[derive(Clone, Debug, Default)]
 struct Snapshot {
     positions: Vec<f64>,
@@ -104,11 +105,12 @@ fn structural(network: &Network) -> impl Iterator<Item = crate::Spring> {
 /// The largest errors over the frames of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// Root mean square over the particles of their distance from where they should be (m).
+    /// Root mean square over the particles of their distance from the reference (m).
     pub position: f64,
-    /// Of the total energy (J); 0 for a first-order scene.
+    /// Error of the total energy (J); 0 for a first-order scene.
     pub energy: f64,
-    /// Root mean square over the structural springs of length over rest length; 0 without any.
+    /// Root mean square over the structural springs of the error of length over rest length; 0
+    /// without any.
     pub strain: f64,
 }
 
@@ -122,20 +124,20 @@ impl Errors {
     }
 }
 
-/// Which of the errors counts.
+/// Kind of error that counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Metric {
-    /// Of positions (m).
+    /// Error of positions (m).
     #[default]
     Position,
-    /// Of the total energy (J).
+    /// Error of the total energy (J).
     Energy,
-    /// Of length over rest length.
+    /// Error of length over rest length.
     Strain,
 }
 
 impl Metric {
-    /// That one.
+    /// The error of this kind.
     #[must_use]
     pub fn of(self, errors: &Errors) -> f64 {
         match self {
@@ -146,22 +148,22 @@ impl Metric {
     }
 }
 
-/// How a run went.
+/// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// Over the frames that it reached.
+    /// Errors over the frames that it reached.
     pub errors: Errors,
-    /// What it cost.
+    /// Cost of the run.
     pub work: Work,
-    /// Where it was lost, if it was.
+    /// Blow-up by which it was lost, if it was.
     pub lost: Option<BlowUp>,
 }
 
-/// Takes a run from its beginning to the end of the frames, and visits each frame at which a step ends, or, under a
-/// tolerance, every frame.
+/// Takes a run from its beginning to the end of the frames, and visits each frame at which a step
+/// ends, or, under a tolerance, every frame.
 ///
-/// Steps that neither divide the spacing of the frames nor are a multiple of it are shortened at each frame. Returns
-/// where the run was lost, if it was; `None` if it was told to stop.
+/// Steps that neither divide the spacing of the frames nor are a multiple of it are shortened at
+/// each frame. Returns where the run was lost, if it was; `None` if it was told to stop.
 ///
 /// # Errors
 /// The run cannot go on, for another reason than a blow-up.

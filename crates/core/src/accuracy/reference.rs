@@ -1,5 +1,5 @@
-//! A reference: DOP853 at two tolerances, and PEFRL with its step halved and extrapolated, or, without masses, classical
-//! Runge-Kutta. What they disagree by is what the reference is not sure of.
+//! References: DOP853 at two tolerances, and PEFRL with its step halved and extrapolated, or,
+//! without masses, classical Runge-Kutta. Their differences are the uncertainty of the reference.
 
 use super::{Errors, Frames, GoOn, Snapshot, run};
 use crate::control::Control;
@@ -9,18 +9,18 @@ use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::stability::{largest_step, spectrum};
 
-/// The tolerances of DOP853: tighter ones lose more to rounding than they gain.
+/// Tolerances of DOP853: tighter ones lose more to rounding than they gain.
 const TOLERANCES: [f64; 2] = [1e-12, 1e-11];
-/// The longer of the steps of the other family, over its largest stable one.
+/// Longer step of the other family, over its largest stable one.
 const SHARE: f64 = 1.0 / 16.0;
 
-/// Where everything should be, frame by frame.
+/// Reference of a scene: states frame by frame, with their uncertainty.
 pub struct Reference {
-    /// When.
+    /// Times of the states.
     pub frames: Frames,
-    /// What it is not sure of.
+    /// Uncertainty of the reference.
     pub floor: Errors,
-    /// What it took to make.
+    /// Cost of the reference.
     pub work: Work,
     snapshots: Vec<Snapshot>,
 }
@@ -94,7 +94,7 @@ fn missing() -> Error {
     Error::Invalid("the methods that make a reference are not in the table".into())
 }
 
-/// Richardson's: the error of order 4 cancels.
+/// Richardson's extrapolation: the error of order 4 cancels.
 fn extrapolate(coarse: &Snapshot, fine: &Snapshot) -> Snapshot {
     let both = |coarse: f64, fine: f64| fine + (fine - coarse) / 15.0;
     let all = |coarse: &[f64], fine: &[f64]| {

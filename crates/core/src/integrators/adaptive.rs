@@ -1,5 +1,5 @@
-//! Steps of a pair's own choice: as long as its error estimate stays within the tolerance (Hairer, Norsett, Wanner,
-//! *Solving Ordinary Differential Equations I*, 1993, II.4).
+//! Adaptive steps: as long as the error estimate of a pair stays within the tolerance (Hairer,
+//! Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.4).
 
 use serde::{Deserialize, Serialize};
 
@@ -9,21 +9,22 @@ use super::error_norm::{ErrorNorm, Tolerance};
 use crate::error::Error;
 use crate::system::ParticleSystem;
 
-/// No step is shorter (s): what asks for it has no solution, or a tolerance below what double precision holds.
+/// Shortest step (s): an equation that asks for less has no solution, or a tolerance below what
+/// double precision holds.
 const SHORTEST: f64 = 1e-10;
-/// A step aims at this share of the error that would be tolerated.
+/// Share of the tolerated error that a step aims at.
 const SAFETY: f64 = 0.8;
-/// The least and the most that a step changes by.
+/// Least and greatest ratio of a step to the one before it.
 const CHANGE: (f64, f64) = (0.2, 8.0);
 
-/// A step that was taken.
+/// A step that an adaptive method took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Taken {
-    /// Where it began (s).
+    /// Time at its beginning (s).
     pub t: f64,
-    /// How long it was (s).
+    /// Length (s).
     pub h: f64,
-    /// What it cost, attempts that failed included.
+    /// Cost, rejected attempts included.
     pub work: Work,
 }
 
@@ -37,8 +38,10 @@ pub struct AdaptiveState {
     step: Option<PairStep>,
 }
 
-/// A pair with its tolerance. Beside scratch it remembers the length of its last step, as the first guess for the
-/// next, and the derivative at the end of it, which [`restart`](Self::restart) forgets.
+/// An adaptive method: a pair with its tolerance.
+///
+/// Beside scratch it remembers the length of its last step, as the first guess for the next, and
+/// the derivative at its end, which [`restart`](Self::restart) forgets.
 pub struct Adaptive {
     pair: EmbeddedPair,
     tolerance: Tolerance,
@@ -60,14 +63,14 @@ impl Adaptive {
         }
     }
 
-    /// The step that was taken last.
+    /// The last step.
     #[must_use]
     pub fn last(&self) -> Taken {
         self.last
     }
 
-    /// What the method remembers: all of it, or without the `stages` of the last step, after which it
-    /// [restarts](Self::restart).
+    /// What the method remembers: all of it, or without the `stages` of the last step, after which
+    /// it [restarts](Self::restart).
     #[must_use]
     pub fn state(&self, stages: bool) -> AdaptiveState {
         AdaptiveState {
@@ -100,7 +103,8 @@ impl Adaptive {
         self.next = self.next.min(h);
     }
 
-    /// Forgets what depends on the system and the state: to be called when either changes between steps.
+    /// Forgets what depends on the system and the state. To be called when either changes between
+    /// steps.
     pub fn restart(&mut self) {
         self.goes_on = false;
     }
@@ -108,8 +112,8 @@ impl Adaptive {
     /// Takes y from t to the end of one step.
     ///
     /// # Errors
-    /// The state has another length than the system's; or no step that gets anywhere meets the tolerance: y is as
-    /// it was then.
+    /// The state has another length than the system's; or no step that gets anywhere meets the
+    /// tolerance: y is as it was then.
     pub fn advance(
         &mut self,
         system: &dyn ParticleSystem,
@@ -164,13 +168,14 @@ impl Adaptive {
         }
     }
 
-    /// The state at a time within the last step. What it costs: the first time in a step more than nothing.
+    /// Writes the state at a time (s) within the last step to `out`. Returns the work, which is 0
+    /// from the second time on within one step.
     pub fn interpolate(&mut self, system: &dyn ParticleSystem, time: f64, out: &mut [f64]) -> Work {
         let Taken { t, h, .. } = self.last;
         self.pair.interpolate(system, t, (time - t) / h, out)
     }
 
-    /// A first step of which one of Euler's shows that it is not far off.
+    /// A guess of the first step (s), from one step of Euler's method.
     fn first_step(
         &mut self,
         system: &dyn ParticleSystem,

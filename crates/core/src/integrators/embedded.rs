@@ -1,6 +1,6 @@
-//! Explicit Runge-Kutta pairs by their tables: `y1 = y + h sum b k` with `k_i = f(t + c_i h, y + h sum a_ij k_j)`, an
-//! estimate of its error from other weights, and a polynomial through the step (Hairer, Norsett, Wanner, *Solving
-//! Ordinary Differential Equations I*, 1993, II.4 to II.6).
+//! Explicit Runge-Kutta pairs by their tables: `y1 = y + h sum b k` with `k_i = f(t + c_i h, y + h
+//! sum a_ij k_j)`, an estimate of its error from other weights, and a polynomial through the step
+//! (Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.4 to II.6).
 
 use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
@@ -11,30 +11,33 @@ use crate::error::Error;
 use crate::system::ParticleSystem;
 use crate::threads::{fork, threads};
 
-/// The numbers of a pair. After the stages comes k = f(t + h, y1), the first of the next step, and after that the
-/// stages that only the polynomial wants.
+/// Coefficients of a pair. After its stages comes k = f(t + h, y1), the first stage of the next
+/// step, and after that the stages that only the polynomial needs.
 #[derive(Debug)]
 pub struct Tableau {
-    /// Of each stage from the second on: when, and the weights of the stages before it.
+    /// Time `c_i` and weights `a_ij` of each stage from the second on.
     pub(super) stages: &'static [(f64, &'static [f64])],
-    /// The weights of y1.
+    /// Weights of y1.
     pub(super) weights: &'static [f64],
-    /// The weights of the error estimates: of one, or of those of order 5 and 3 that DOP853 weighs against each other.
+    /// Weights of the error estimates: of one, or of the two, of orders 5 and 3, that DOP853
+    /// combines.
     pub(super) errors: &'static [&'static [f64]],
-    /// The local error that is estimated falls as h to this power.
+    /// Power of h with which the estimated local error falls.
     pub(super) exponent: f64,
-    /// The polynomial's own stages.
+    /// Times and weights of the polynomial's own stages.
     pub(super) extra: &'static [(f64, &'static [f64])],
-    /// Weights of the polynomial's terms of degree 4 and more; those below follow from both ends.
+    /// Weights of the polynomial's terms of degree 4 and more; the terms below follow from both
+    /// ends.
     pub(super) dense: &'static [&'static [f64]],
 }
 
-/// The most terms that a polynomial has.
+/// Largest number of terms of a polynomial.
 const TERMS: usize = 7;
-/// Numbers that are summed up together: few enough for all of their stages to stay in the cache.
+/// Numbers that are summed together: few enough for all of their stages to stay in the cache.
 const BLOCK: usize = 512;
 
-/// A pair at work: a method of fixed steps by itself, an adaptive one in the hands of [`Adaptive`](super::Adaptive).
+/// A pair with its scratch: a method of fixed steps by itself, and an adaptive one in
+/// [`Adaptive`](super::Adaptive).
 pub(super) struct EmbeddedPair {
     tableau: &'static Tableau,
     /// State at which a stage is evaluated, and later the error estimate.
@@ -42,7 +45,8 @@ pub(super) struct EmbeddedPair {
     last: PairStep,
 }
 
-/// The last step of a pair, from which the next one goes on, and off which states within it are read.
+/// The last step of a pair, from which the next one goes on, and off which states within it are
+/// read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PairStep {
     /// Length of the step (s).
@@ -102,31 +106,31 @@ impl EmbeddedPair {
         self.tableau.exponent
     }
 
-    /// Where the step ends.
+    /// The state at the end of the step.
     pub fn end(&self) -> &[f64] {
         &self.last.y1
     }
 
-    /// Goes on from y, whose derivative is not known.
+    /// Begins a step at y, whose derivative is not known.
     pub fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
         self.last.y0.copy_from_slice(y);
         system.eval_f(t, y, &mut self.last.k[0]);
         Work::of(1)
     }
 
-    /// Goes on from the end of the step, whose derivative is its last stage.
+    /// Begins a step at the end of the last one, whose derivative is its last stage.
     pub fn go_on(&mut self) {
         let last = self.tableau.stages.len() + 1;
         self.last.k.swap(0, last);
         std::mem::swap(&mut self.last.y0, &mut self.last.y1);
     }
 
-    /// The derivative where the step begins.
+    /// The derivative at the beginning of the step.
     pub fn derivative(&self) -> &[f64] {
         &self.last.k[0]
     }
 
-    /// How fast that changes, from one step of Euler's method.
+    /// The second derivative at the beginning of the step, from one step of Euler's method.
     pub fn second_derivative(&mut self, system: &dyn ParticleSystem, t: f64, h: f64) -> &[f64] {
         let (first, rest) = self.last.k.split_at_mut(1);
         let (f0, f1) = (&first[0], &mut rest[0]);
@@ -138,7 +142,8 @@ impl EmbeddedPair {
         f1
     }
 
-    /// A step of h from where [`begin`](Self::begin) or [`go_on`](Self::go_on) left it.
+    /// Evaluates the stages of a step of h (s) from where [`begin`](Self::begin) or
+    /// [`go_on`](Self::go_on) left it. Returns their number.
     fn stages(&mut self, system: &dyn ParticleSystem, t: f64, h: f64) -> u64 {
         let tableau = self.tableau;
         self.last.h = h;
@@ -157,7 +162,8 @@ impl EmbeddedPair {
         tableau.stages.len() as u64
     }
 
-    /// Tries a step of h. Its cost, and its estimated error over the tolerated one: up to 1 it is good.
+    /// Tries a step of h (s). Returns its cost, and its estimated error over the tolerated one,
+    /// which is at most 1 for an accepted step.
     pub fn attempt(
         &mut self,
         system: &dyn ParticleSystem,
@@ -192,14 +198,15 @@ impl EmbeddedPair {
         (work, error)
     }
 
-    /// The derivative at the step's end.
+    /// Evaluates the derivative at the end of the step.
     fn finish(&mut self, system: &dyn ParticleSystem, t: f64) -> Work {
         let last = self.tableau.stages.len() + 1;
         system.eval_f(t + self.last.h, &self.last.y1, &mut self.last.k[last]);
         Work::of(1)
     }
 
-    /// The state at the fraction theta of an accepted step that began at t.
+    /// Writes the state at the fraction theta of an accepted step that began at t (s) to `out`.
+    /// Returns the cost.
     pub fn interpolate(
         &mut self,
         system: &dyn ParticleSystem,
@@ -218,7 +225,8 @@ impl EmbeddedPair {
             self.last.dense = true;
             work = Work::of(tableau.extra.len() as u64);
         }
-        // y0 + theta (F0 + (1 - theta) (F1 + theta (F2 + (1 - theta) (F3 + ...)))): the factor of each term.
+        // y0 + theta (F0 + (1 - theta) (F1 + theta (F2 + (1 - theta) (F3 + ...)))): the factor of
+        // each term.
         let mut factor = 1.0;
         let factors: [f64; TERMS] = std::array::from_fn(|i| {
             factor *= if i % 2 == 0 { theta } else { 1.0 - theta };
@@ -283,7 +291,7 @@ fn add_to_block(start: usize, out: &mut [f64], h: f64, weights: &[f64], k: &[Vec
     }
 }
 
-/// Adds four terms.
+/// Sum of four terms, added to `out`.
 struct Add<'a> {
     out: &'a mut [f64],
     terms: [(f64, &'a [f64]); 4],
@@ -305,7 +313,7 @@ impl WithSimd for Add<'_> {
     }
 }
 
-/// Runs over blocks of numbers, each with where it starts: on several threads if there are many.
+/// Visits blocks of numbers, each with its first index, on several threads if there are many.
 fn blocks(out: &mut [f64], run: impl Fn(usize, &mut [f64]) + Sync) {
     let bands = threads(out.len() / 6);
     let rows = out.len().div_ceil(BLOCK);

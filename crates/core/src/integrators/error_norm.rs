@@ -25,11 +25,11 @@ impl Tolerance {
     }
 }
 
-/// Norm of an error: the root mean square of a block of numbers, over absolute tolerance + relative tolerance x the
-/// root mean square of the block of the state.
+/// Norm of an error: the root mean square of a block of numbers, over absolute tolerance + relative
+/// tolerance x the root mean square of the block of the state.
 ///
-/// Positions are one block and velocities another, so that neither units nor the directions of the axes matter, and a
-/// number that happens to be near zero asks for no more digits than others.
+/// Positions are one block and velocities another, so that neither units nor the directions of the
+/// axes matter, and a number that happens to be near zero asks for no more digits than others.
 pub(super) struct ErrorNorm {
     /// Tolerated error.
     pub tolerance: Tolerance,

@@ -1,4 +1,5 @@
-//! One file a method, one table. An integrator sees flat arrays and knows no physics.
+//! Integrators: one file a method, and the table of all methods. An integrator sees flat arrays and
+//! knows no physics.
 
 mod adaptive;
 mod dop853;
@@ -27,13 +28,14 @@ pub use adaptive::{Adaptive, AdaptiveState, Taken};
 pub use embedded::Tableau;
 pub use error_norm::Tolerance;
 
-/// Advances a state.
+/// A method with scratch for one system, which advances its state.
 pub trait Integrator: Send {
-    /// Takes y from t to t + h: a pure function of the arguments. Allocates nothing.
+    /// Takes y from time t to t + h (s): a pure function of the arguments, which allocates nothing.
+    /// Returns the work.
     ///
     /// # Errors
-    /// The system is another than the one the integrator was made for: its state has another length, or it lacks
-    /// the forces and masses the method needs.
+    /// The system is another than the one the integrator was made for: its state has another
+    /// length, or it lacks the forces and masses the method needs.
     fn step(
         &mut self,
         system: &dyn ParticleSystem,
@@ -46,27 +48,28 @@ pub trait Integrator: Send {
 /// A row of the table of methods.
 #[derive(Debug)]
 pub struct Method {
-    /// As typed on the command line.
+    /// Name, as typed on the command line.
     pub name: &'static str,
-    /// The short name.
+    /// Short name, one letter.
     pub letter: char,
-    /// Other names it goes by.
+    /// Other names, as typed on the command line.
     pub aliases: &'static [&'static str],
-    /// In full.
+    /// Full name, for titles and tables.
     pub title: &'static str,
-    /// The global error falls as h to this power.
+    /// Order: the power of h with which the global error falls.
     pub order: u32,
     /// The step, or the tolerance of an adaptive method, that is stable on every built-in scene.
     pub default_control: Control,
-    /// Evaluations a step takes; of an implicit method, typically.
+    /// Number of evaluations a step takes; the typical number, for an implicit method.
     pub evaluations: u32,
-    /// Evaluations a step takes where springs are damped.
+    /// Number of evaluations a step takes where springs are damped.
     pub damped_evaluations: u32,
-    /// Whether it solves equations for its step, with linear algebra on top of the evaluations.
+    /// Whether the method solves equations for its step, with linear algebra on top of the
+    /// evaluations.
     pub implicit: bool,
-    /// The table of an adaptive method, which chooses its steps by itself, to a tolerance.
+    /// Tableau of an adaptive method, which chooses its steps by itself, to a tolerance.
     pub pair: Option<&'static Tableau>,
-    /// Whether it needs forces and masses, rather than any f(t, y).
+    /// Whether the method needs forces and masses, rather than any f(t, y).
     pub needs_mechanics: bool,
     create: fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>,
 }
@@ -75,7 +78,8 @@ impl Method {
     /// `Ok` if the method serves this system.
     ///
     /// # Errors
-    /// The method needs forces and masses, and the system has none; or it is implicit, and the system has constraints.
+    /// The method needs forces and masses, and the system has none; or it is implicit, and the
+    /// system has constraints.
     pub fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
         match system.mechanics() {
             None if self.needs_mechanics => Err(Error::NeedsMechanics { method: self.name }),
@@ -114,7 +118,8 @@ impl Method {
     /// `Ok` if the method can be controlled like this.
     ///
     /// # Errors
-    /// The value is not a finite number above 0, or it is a tolerance and the method estimates no error.
+    /// The value is not a finite number above 0, or it is a tolerance and the method estimates no
+    /// error.
     pub fn check_control(&self, control: Control) -> Result<(), Error> {
         match control {
             Control::Step(step) => positive("the step", step),
@@ -128,7 +133,8 @@ impl Method {
         }
     }
 
-    /// Control by a number as users type it: the tolerance of an adaptive method, the step (s) of any other.
+    /// Control by a number as users type it: the tolerance of an adaptive method, the step (s) of
+    /// any other.
     #[must_use]
     pub fn control(&self, value: f64) -> Control {
         if self.is_adaptive() {
@@ -170,7 +176,7 @@ pub static METHODS: &[Method] = &[
     implicit::MIDPOINT,
 ];
 
-/// The method of this letter, name or alias.
+/// The method with this letter, name or alias.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static Method> {
     METHODS

@@ -8,7 +8,8 @@ use crate::error::{BlowUp, Cause, Error};
 /// Distance from the scene's middle, in its radii, at which a particle is lost.
 const LOST: f64 = 100.0;
 
-/// Distance, in radii, within which all particles of a state are that one goes back to: still a picture of the scene.
+/// Distance, in radii, within which all particles of a state are that one goes back to: still a
+/// picture of the scene.
 const GOOD: f64 = 3.0;
 
 impl Simulation {
@@ -31,7 +32,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Counts a step that ends at `time` (s). After a blow-up, goes back to the last state in shape.
+    /// Counts a step that ends at `time` (s). After a blow-up, goes back to the last state in
+    /// shape.
     pub(super) fn judge(&mut self, cause: Option<Cause>, time: f64) -> Result<(), Error> {
         self.steps += 1;
         let Some(cause) = cause else { return Ok(()) };
@@ -49,7 +51,8 @@ impl Simulation {
         result.and(Err(blow_up.into()))
     }
 
-    /// The first particle that is farther than this many radii from the middle, or not finite, if there is one.
+    /// The first particle that is farther than this many radii from the middle, or not finite, if
+    /// there is one.
     fn beyond(&self, radii: f64, y: &[f64]) -> Option<Cause> {
         let n = self.particles();
         let (x, v) = y.split_at(3 * n);
@@ -58,7 +61,8 @@ impl Simulation {
         let squared = |i: usize| {
             (x[i] - c.x).powi(2) + (x[n + i] - c.y).powi(2) + (x[2 * n + i] - c.z).powi(2)
         };
-        // By blocks without a branch inside. Written so that NaN, which compares as false, is lost too.
+        // By blocks without a branch inside. Written so that NaN, which compares as false, is lost
+        // too.
         let near = |block: Range<usize>| block.fold(true, |near, i| near & (squared(i) <= limit));
         if !(0..n)
             .step_by(64)

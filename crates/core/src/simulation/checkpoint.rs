@@ -26,9 +26,10 @@ pub struct Grabbed {
 
 /// A run at one time: all that it needs, beside its scene, to go on to the same bits.
 ///
-/// The scene is not in it, nor what was [adjusted](Simulation::adjust) of the scene, such as the stiffness of springs:
-/// restore it in a run of the same scene, adjusted alike. The last step of an adaptive method is in it if
-/// [`Simulation::checkpoint`] made it, and not if [`Simulation::record`] did.
+/// The scene is not in it, nor what was [adjusted](Simulation::adjust) of the scene, such as the
+/// stiffness of springs: restore it in a run of the same scene, adjusted alike. The last step of an
+/// adaptive method is in it if [`Simulation::checkpoint`] made it, and not if
+/// [`Simulation::record`] did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// The method.
@@ -151,7 +152,8 @@ impl Checkpoint {
 }
 
 impl Simulation {
-    /// The run as it is now, with the last step of an adaptive method: some 20 arrays of the size of the state.
+    /// The run as it is now, with the last step of an adaptive method: some 20 arrays of the size
+    /// of the state.
     #[must_use]
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
@@ -160,7 +162,8 @@ impl Simulation {
         }
     }
 
-    /// The run as it is now, without the last step of an adaptive method: what goes on from there begins a new one.
+    /// The run as it is now, without the last step of an adaptive method: what goes on from there
+    /// begins a new one.
     #[must_use]
     pub fn moment(&self) -> Checkpoint {
         let mut moment = Checkpoint::empty(self.method, self.control);
@@ -207,12 +210,12 @@ impl Simulation {
         };
     }
 
-    /// Takes over everything of a checkpoint: the run goes on as the one that it was made of, to the same bits. A run that
-    /// was lost goes on too.
+    /// Takes over everything of a checkpoint: the run goes on as the one that it was made of, to
+    /// the same bits. A run that was lost goes on too.
     ///
     /// # Errors
-    /// The checkpoint is of another scene, its method does not serve this one, or a number is not finite. The run goes
-    /// on as before then.
+    /// The checkpoint is of another scene, its method does not serve this one, or a number is not
+    /// finite. The run goes on as before then.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
         checkpoint.check(self.y.len())?;
         let mut model = self.scene.model.clone();
@@ -236,9 +239,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes back to the state of a moment, and on from there as the run is now, also after a blow-up: hands let go; method,
-    /// control, work, wind, swing and which particles are pinned stay. Pins whose path does not lead there stay where
-    /// they are in that state, or swing from there.
+    /// Goes back to the state of a moment, and on from there as the run is now, also after a
+    /// blow-up: hands let go; method, control, work, wind, swing and which particles are pinned
+    /// stay. Pins whose path does not lead there stay where they are in that state, or swing from
+    /// there.
     ///
     /// # Errors
     /// The moment is of another scene, or a number is not finite.
@@ -263,7 +267,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes back to the state of a moment of this run: time, springs that had not broken, and obstacles.
+    /// Goes back to the state of a moment of this run: time, springs that had not broken, and
+    /// obstacles.
     pub(super) fn go_back(&mut self, moment: &Checkpoint) -> Result<(), Error> {
         if let (Model::Network(network), Some(whole)) =
             (&mut self.model, self.scene.model.network())

@@ -1,4 +1,4 @@
-//! The hands that swing, pull and blow.
+//! Hands: swing, wind, grabbed particles and obstacles, and pins.
 
 use nalgebra::Vector3;
 
@@ -10,16 +10,17 @@ use crate::path::Path;
 use crate::scene::{Model, Swing};
 use crate::system::place_pins;
 
-/// A pulled particle gets to where it is pulled in this time (s) ...
+/// Time in which a pulled particle gets to where it is pulled (s) ...
 const PULL_TIME: f64 = 1.0 / 30.0;
 
-/// ... but no faster than this many radii of the scene per second.
+/// ... unless that is faster than this many radii of the scene per second.
 const PULL_SPEED: f64 = 10.0;
 
 /// What constraints hold is drawn by a spring, as if from so many radii of the scene away at most.
 const PULL_REACH: f64 = 0.05;
 
-/// How short and how long a hand makes a rod, in lengths: what it does faster than the other end follows.
+/// How short and how long a hand makes a rod, in lengths: what it does faster than the other end
+/// follows.
 const ROD: (f64, f64) = (0.95, 1.05);
 
 impl Grabbed {
@@ -67,7 +68,8 @@ impl Simulation {
         self.swinging
     }
 
-    /// Swings the pins from where they are, or stops them there. A scene without swing stays as it is.
+    /// Swings the pins from where they are, or stops them there. A scene without swing stays as it
+    /// is.
     pub fn set_swinging(&mut self, on: bool) {
         let Some(swing) = self.scene.swing.filter(|_| on != self.swinging) else {
             return;
@@ -112,14 +114,15 @@ impl Simulation {
         }
     }
 
-    /// The grabbed particle.
+    /// Number of the grabbed particle.
     #[must_use]
     pub fn grabbed(&self) -> Option<usize> {
         self.grabbed.map(|grabbed| grabbed.particle)
     }
 
-    /// Takes hold of particle i, and lets go of any other: it is a pin then; or, if it is free but for constraints, a spring
-    /// draws it. Does nothing in a scene without masses, where there is nothing to hold against.
+    /// Takes hold of particle i, and lets go of any other: it is a pin then; or, if it is free but
+    /// for constraints, a spring draws it. Does nothing in a scene without masses, where there is
+    /// nothing to hold against.
     ///
     /// # Errors
     /// There is no such particle.
@@ -138,7 +141,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Leads the grabbed particle along its path: as a pin, or, if it is free but for constraints, by a spring.
+    /// Leads the grabbed particle along its path: as a pin, or, if it is free but for constraints,
+    /// by a spring.
     fn lead(&mut self, grabbed: Grabbed) {
         self.grabbed = Some(grabbed);
         if !self.attracts(&grabbed) {
@@ -153,9 +157,9 @@ impl Simulation {
         network.is_some_and(|network| grabbed.is_attracted(network))
     }
 
-    /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs or rods hold it back. A hand
-    /// is strong and not almighty: it stretches a spring it holds as far as the scene allows, a rod hardly at all, and
-    /// gets farther as the other end comes along.
+    /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs or
+    /// rods hold it back. A hand is strong and not almighty: it stretches a spring it holds as far
+    /// as the scene allows, a rod hardly at all, and gets farther as the other end comes along.
     pub fn pull(&mut self, target: Vector3<f64>) {
         let Some(grabbed) = self.grabbed else { return };
         let i = grabbed.particle;
@@ -169,7 +173,7 @@ impl Simulation {
         self.lead(Grabbed { path, ..grabbed });
     }
 
-    /// The way of a hand that begins now.
+    /// The path of a hand that begins to move now.
     fn way(&self, from: Vector3<f64>, to: Vector3<f64>) -> Path {
         let start = self.time();
         let time = PULL_TIME.max((to - from).norm() / (PULL_SPEED * self.radius));
@@ -181,8 +185,9 @@ impl Simulation {
         }
     }
 
-    /// The point on the way of particle i to `target` up to which no spring of its own is stretched too far, and no rod
-    /// stretched or squeezed. One that is already may not get longer, or shorter.
+    /// The point on the way of particle i to `target` up to which no spring of its own is stretched
+    /// too far, and no rod stretched or squeezed. One that is already may not get longer, or
+    /// shorter.
     fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
         let way = target - from;
         let network = || self.model.network().into_iter();
@@ -201,7 +206,8 @@ impl Simulation {
         from + share * way
     }
 
-    /// Lets go. A particle that was free keeps the speed of the hand; one that was pinned is pinned where it is.
+    /// Lets go of the grabbed particle. One that was free keeps the speed of the hand; one that was
+    /// pinned is pinned where it is.
     pub fn release(&mut self) {
         let Some(grabbed) = self.grabbed.take() else {
             return;
@@ -215,8 +221,9 @@ impl Simulation {
         }
     }
 
-    /// Pins particle i where it is, swinging if the pins do, or lets it go freely. That of a grabbed one is seen when the
-    /// hand lets go. Whether it is pinned now. Does nothing in a scene without masses.
+    /// Pins particle i where it is, swinging if the pins do, or lets it go freely. That of a
+    /// grabbed one is seen when the hand lets go. Whether it is pinned now. Does nothing in a scene
+    /// without masses.
     ///
     /// # Errors
     /// There is no such particle.
@@ -244,8 +251,8 @@ impl Simulation {
         self.grabbed_obstacle
     }
 
-    /// Takes hold of obstacle k where it is, and lets go of any other. Does nothing in a scene without masses, where
-    /// obstacles push nothing.
+    /// Takes hold of obstacle k where it is, and lets go of any other. Does nothing in a scene
+    /// without masses, where obstacles push nothing.
     ///
     /// # Errors
     /// There is no such obstacle, or it is a floor.
@@ -288,8 +295,8 @@ impl Simulation {
     }
 }
 
-/// How much of a way is left to what is at d (m) from the other end, until it is as near or as far as it may get, or as it
-/// is already: at most all, 1.
+/// How much of a way is left to what is at d (m) from the other end, until it is as near or as far
+/// as it may get, or as it is already: at most all, 1.
 fn share(d: Vector3<f64>, way: Vector3<f64>, shortest: f64, longest: f64) -> f64 {
     let (a, b, distance) = (way.norm_squared(), d.dot(&way), d.norm());
     if a == 0.0 {

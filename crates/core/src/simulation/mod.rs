@@ -28,7 +28,8 @@ pub struct Simulation {
     stepper: Stepper,
     control: Control,
     y: Vec<f64>,
-    /// Time is `since + taken * step`, which gathers no rounding errors; under a tolerance it is `since` (s).
+    /// Time is `since + taken * step`, which gathers no rounding errors; under a tolerance it is
+    /// `since` (s).
     since: f64,
     taken: u64,
     steps: u64,
@@ -49,11 +50,12 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// A run from the scene's beginning, in fixed steps or, with an adaptive method, to a tolerance.
+    /// A run from the scene's beginning, in fixed steps or, with an adaptive method, to a
+    /// tolerance.
     ///
     /// # Errors
-    /// The method does not serve the scene or does not take that control; or the scene's state has another length
-    /// than its model's.
+    /// The method does not serve the scene or does not take that control; or the scene's state has
+    /// another length than its model's.
     pub fn new(scene: Scene, method: &'static Method, control: Control) -> Result<Self, Error> {
         let stepper = Stepper::new(method, scene.model.system(), control)?;
         let model = scene.model.clone();
@@ -98,8 +100,8 @@ impl Simulation {
         Ok(run)
     }
 
-    /// Goes back to the beginning, with what was torn mended. Wind and swing stay on if they are, and pins free; the hand
-    /// lets go.
+    /// Goes back to the beginning, with what was torn mended. Wind and swing stay on if they are,
+    /// and pins free; the hand lets go.
     pub fn reset(&mut self) {
         let (windy, swinging) = (self.windy(), self.swinging);
         self.model = self.scene.model.clone();
@@ -122,7 +124,8 @@ impl Simulation {
     /// Goes on with another method, in fixed steps or to a tolerance.
     ///
     /// # Errors
-    /// The method does not serve the scene or does not take that control; the run goes on as before.
+    /// The method does not serve the scene or does not take that control; the run goes on as
+    /// before.
     pub fn set_method(&mut self, method: &'static Method, control: Control) -> Result<(), Error> {
         self.stepper = Stepper::new(method, self.model.system(), control)?;
         self.since = self.time();

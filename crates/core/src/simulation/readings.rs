@@ -95,7 +95,8 @@ impl Simulation {
         Vector3::new(self.y[i], self.y[n + i], self.y[2 * n + i])
     }
 
-    /// Velocities (m/s), column-major: of a mechanical scene from its state, of a first-order one from f.
+    /// Velocities (m/s), column-major: of a mechanical scene from its state, of a first-order one
+    /// from f.
     #[must_use]
     pub fn velocities(&self) -> Vec<f64> {
         if self.model.network().is_some() {
@@ -134,7 +135,8 @@ impl Simulation {
         self.model.network().map_or(0, Network::tears)
     }
 
-    /// The middle of the scene as it began, and the distance of its farthest particle from there, at least 1 (m).
+    /// The middle of the scene as it began, and the distance of its farthest particle from there,
+    /// at least 1 (m).
     #[must_use]
     pub fn extent(&self) -> (Vector3<f64>, f64) {
         (self.middle, self.radius)

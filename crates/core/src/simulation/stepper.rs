@@ -1,4 +1,5 @@
-//! The stepper of a run: an integrator that takes fixed steps, or an adaptive method that looks ahead.
+//! The stepper of a run: an integrator that takes fixed steps, or an adaptive method that looks
+//! ahead.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,8 +12,8 @@ use crate::system::ParticleSystem;
 pub(super) enum Stepper {
     /// Steps of a fixed size.
     Fixed(Box<dyn Integrator>),
-    /// Steps of its own choice, whose ends are no times that anyone asked for: the run looks ahead, and the state shown
-    /// is on the way to `end`.
+    /// Steps of its own choice, whose ends are no times that anyone asked for: the run looks ahead,
+    /// and the state shown is on the way to `end`.
     Adaptive {
         adaptive: Box<Adaptive>,
         /// State at the end of the last step.

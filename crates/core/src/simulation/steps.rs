@@ -1,4 +1,5 @@
-//! Steps of a run: fixed ones, and those of an adaptive method, which looks ahead of the time shown.
+//! Steps of a run: fixed ones, and those of an adaptive method, which looks ahead of the time
+//! shown.
 
 use super::blow_up::blow_up_by;
 use super::{Simulation, Stepper};
@@ -9,16 +10,17 @@ use crate::network::Network;
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem, place_pins};
 
-/// An adaptive method's step takes no particle farther into an obstacle than this share of the scene's radius, so that
-/// states between its ends do not sink visibly ...
+/// An adaptive method's step takes no particle farther into an obstacle than this share of the
+/// scene's radius, so that states between its ends do not sink visibly ...
 const SUNK: f64 = 1e-3;
 
 /// ... unless it is shorter than this (s).
 const SHORT: f64 = 1e-6;
 
 impl Simulation {
-    /// Takes `count` steps. When one of them blows up, the state is again the last at the beginning of such a call
-    /// that was still in shape, and no more steps are taken until [`reset`](Self::reset).
+    /// Takes `count` steps. When one of them blows up, the state is again the last at the beginning
+    /// of such a call that was still in shape, and no more steps are taken until
+    /// [`reset`](Self::reset).
     ///
     /// # Errors
     /// The run blew up, now or earlier.
@@ -38,9 +40,9 @@ impl Simulation {
 
     /// Goes on to `time` (s) exactly, if it is not past it: the last step is shortened.
     ///
-    /// An adaptive method steps past it instead, and the state is read off its step's polynomial: a frame costs no clipped
-    /// step, and how often one looks changes nothing. A step that blows up is treated as by
-    /// [`take_steps`](Self::take_steps).
+    /// An adaptive method steps past it instead, and the state is read off its step's polynomial: a
+    /// frame costs no clipped step, and how often one looks changes nothing. A step that blows up
+    /// is treated as by [`take_steps`](Self::take_steps).
     ///
     /// # Errors
     /// The run blew up, now or earlier; or `time` is not finite.
@@ -71,7 +73,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes one step of h (s) with what follows it: contact, the search for a blow-up, and tearing.
+    /// Takes one step of h (s) with what follows it: contact, the search for a blow-up, and
+    /// tearing.
     fn step_by(&mut self, h: f64) -> Result<(), Error> {
         let t = self.time();
         let system = self.model.system();
@@ -147,8 +150,8 @@ impl Simulation {
         Ok(reached)
     }
 
-    /// Shows the state at a time (s) up to the end of an adaptive method's step: between its ends as its polynomial has
-    /// it, with pins in their places.
+    /// Shows the state at a time (s) up to the end of an adaptive method's step: between its ends
+    /// as its polynomial has it, with pins in their places.
     fn show(&mut self, time: f64) {
         let system = self.model.system();
         if let Stepper::Adaptive {
@@ -178,7 +181,8 @@ impl Simulation {
         }
     }
 
-    /// Forgets the last step of an adaptive method: the state or the system is no longer the one that it began with.
+    /// Forgets the last step of an adaptive method: the state or the system is no longer the one
+    /// that it began with.
     pub(super) fn look_again(&mut self) {
         if let Stepper::Adaptive { until, .. } = &mut self.stepper {
             *until = None;
@@ -191,7 +195,8 @@ fn obstacles(model: &Model) -> &[Obstacle] {
     model.network().map_or(&[], Network::obstacles)
 }
 
-/// What follows a step of h (s) from t (s) to y1: particles leave obstacles, and pins are in their places.
+/// What follows a step of h (s) from t (s) to y1: particles leave obstacles, and pins are in their
+/// places.
 fn settle(model: &Model, contact: &mut Contact, (t, h): (f64, f64), y1: &mut [f64]) -> Statistics {
     let met = model.network().map_or_else(Statistics::default, |network| {
         contact.resolve(network.obstacles(), network.inverse_masses(), (t, h), y1)

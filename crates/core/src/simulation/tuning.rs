@@ -1,4 +1,4 @@
-//! What is changed while it runs, and stays changed when it begins again: settings, not state.
+//! Tuning: changes of the model while it runs, which a reset keeps.
 
 use super::{Simulation, Stepper};
 use crate::elements::Wind;
@@ -6,8 +6,8 @@ use crate::network::Network;
 use crate::scene::Model;
 
 impl Simulation {
-    /// Changes the model as it is now, and the one that a reset goes back to. The state and the time stay. Does nothing in a
-    /// scene without masses.
+    /// Changes the model as it is now, and the one that a reset goes back to. The state and the
+    /// time stay. Does nothing in a scene without masses.
     pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
         for model in [&mut self.model, &mut self.scene.model] {
             if let Model::Network(network) = model {
@@ -18,8 +18,8 @@ impl Simulation {
         self.refit();
     }
 
-    /// Makes the integrator anew for the system as it is now: it makes room for the forces that it meets, and knows what
-    /// they cost.
+    /// Makes the integrator anew for the system as it is now: it makes room for the forces that it
+    /// meets, and knows what they cost.
     pub(super) fn refit(&mut self) {
         // The method served this system before.
         if let Stepper::Fixed(integrator) = &mut self.stepper
@@ -29,7 +29,8 @@ impl Simulation {
         }
     }
 
-    /// The wind that blows when it does, instead of the scene's. A scene without wind stays without.
+    /// The wind that blows when it does, instead of the scene's. A scene without wind stays
+    /// without.
     pub fn change_wind(&mut self, wind: Wind) {
         if self.scene.wind.is_some() {
             self.scene.wind = Some(wind);
@@ -43,7 +44,8 @@ impl Simulation {
         !self.unpinned
     }
 
-    /// Frees every pinned particle but the one in the hand, or pins those of the scene again, where they are now.
+    /// Frees every pinned particle but the one in the hand, or pins those of the scene again, where
+    /// they are now.
     pub fn set_pinned(&mut self, on: bool) {
         if on == self.pinned() {
             return;

@@ -1,8 +1,10 @@
-//! Where methods fail: a mode of motion, what one step of a method makes of it, and the largest step that holds.
+//! Stability: modes of motion, their growth in one step of a method, and the largest step with
+//! which none grows.
 //!
-//! A mode is x'' = -w2 x - (drag + damping) x', with eigenvalues l = -(drag + damping)/2 +- i sqrt(w2 - ...). A Runge-Kutta
-//! method multiplies it by R(h l); a splitting method's step is a matrix that no single R(z) gives. So neither is written
-//! down here: the method takes a step on the mode, and the largest eigenvalue of what it did is its growth.
+//! A mode is x'' = -w2 x - (drag + damping) x', with eigenvalues l = -(drag + damping)/2 +- i
+//! sqrt(w2 - ...). A Runge-Kutta method multiplies it by R(h l); a splitting method's step is a
+//! matrix that no single R(z) gives. So neither is written down here: the method takes a step on
+//! the mode, and the largest eigenvalue of what it did is its growth.
 
 mod observed;
 mod spectrum;
@@ -23,16 +25,16 @@ pub use observed::{
 };
 pub use spectrum::{LargestMode, spectrum};
 
-/// A run is stable if no mode grows more than [`GROWTH`] times in this time (s), or in [`STEPS`] if they take longer.
-/// Methods that have a limit are as good as strict about it then; those that always grow, and slowly, get the step with
-/// which they do for so long.
+/// A run is stable if no mode grows more than [`GROWTH`] times in this time (s), or in [`STEPS`] if
+/// they take longer. Methods that have a limit are as good as strict about it then; those that
+/// always grow, and slowly, get the step with which they do for so long.
 pub const HORIZON: f64 = 10.0;
 /// See [`HORIZON`].
 pub const STEPS: f64 = 1000.0;
 /// See [`HORIZON`].
 pub const GROWTH: f64 = 10.0;
 
-/// The steps of h (s) in which nothing may grow.
+/// Number of steps of h (s) in which no mode may grow.
 fn steps(h: f64) -> f64 {
     (HORIZON / h).ceil().max(STEPS)
 }
@@ -59,7 +61,7 @@ impl Mode {
         }
     }
 
-    /// w (rad/s)
+    /// Angular frequency w (rad/s).
     #[must_use]
     pub fn frequency(&self) -> f64 {
         self.stiffness.max(0.0).sqrt()
@@ -80,8 +82,8 @@ impl Mode {
     }
 }
 
-/// The mode as a system: particle 0 starts from x = 1, particle 1 from v = 1, and both are tied to particle 2, which
-/// is pinned. They move along one axis.
+/// The mode as a system: particle 0 starts from x = 1, particle 1 from v = 1, and both are tied to
+/// particle 2, which is pinned. They move along one axis.
 struct Tied(Mode);
 
 impl Mechanics for Tied {
@@ -158,23 +160,25 @@ impl Linearized for Tied {
     }
 }
 
-/// A method and a mode: how much one step makes of the other.
+/// Growth of a mode in one step of a method.
 pub struct Growth {
     system: Tied,
     integrator: Box<dyn Integrator>,
 }
 
 impl Growth {
+    /// A method and a mode.
+    ///
     /// # Errors
-    /// None that a method of the table has.
+    /// Never fails for a method in [`METHODS`](crate::integrators::METHODS).
     pub fn new(method: &Method, mode: Mode) -> Result<Self, Error> {
         let system = Tied(mode);
         let integrator = method.integrator(&system)?;
         Ok(Self { system, integrator })
     }
 
-    /// The spectral radius of a step of h (s): |R(h l)| of a Runge-Kutta method, of the larger of both eigenvalues.
-    /// Infinite where the step fails.
+    /// The spectral radius of a step of h (s): |R(h l)| of a Runge-Kutta method, of the larger of
+    /// both eigenvalues. Infinite where the step fails.
     pub fn of_step(&mut self, h: f64) -> f64 {
         let mut y = [0.0; 18];
         // In a unit of time in which neither x nor v is small.
@@ -199,22 +203,24 @@ impl Growth {
     }
 }
 
-/// The largest step that a method holds.
+/// Limit of stability of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
-    /// In s; infinite where every step holds.
+    /// Largest stable step (s); infinite if every step is stable.
     pub step: f64,
-    /// Whether shorter steps do not grow at all. If not, they grow less than [`GROWTH`] times within [`HORIZON`].
+    /// Whether no mode grows at all with shorter steps. If not, modes grow less than [`GROWTH`]
+    /// times within [`HORIZON`].
     pub strict: bool,
-    /// Which of the modes sets it.
+    /// Index of the mode that sets the limit.
     pub mode: usize,
 }
 
-/// The largest step (s) with which no mode grows, as [`HORIZON`] says: all shorter steps hold too. Modes without a
-/// restoring force are left out: what falls or buckles is no fault of a method's. `None` without any mode.
+/// The largest step (s) with which no mode grows, as [`HORIZON`] says: all shorter steps hold too.
+/// Modes without a restoring force are left out: falling and buckling are no fault of the method.
+/// `None` without any mode.
 ///
 /// # Errors
-/// None that a method of the table has.
+/// Never fails for a method in [`METHODS`](crate::integrators::METHODS).
 pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Error> {
     let mut limit: Option<Limit> = None;
     for (k, mode) in modes.iter().enumerate().filter(|(_, m)| m.stiffness > 0.0) {

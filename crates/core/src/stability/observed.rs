@@ -1,4 +1,4 @@
-//! Where a method fails in fact: the nonlinear scene itself, stepped with longer and shorter steps.
+//! Observed limits of stability: the nonlinear scene itself, run with longer and shorter steps.
 
 use super::spectrum::shapes;
 use super::{GROWTH, HORIZON, Limit, Mode, STEPS, spectrum};
@@ -11,22 +11,23 @@ use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
 use crate::system::Linearized;
 
-/// The largest step that was seen to hold is known to this fraction.
+/// Relative accuracy of the largest step that was seen to hold.
 const PRECISION: f64 = 0.005;
-/// Where every step should hold, no longer one than this is tried (s) ...
+/// Longest step that is tried where every step should hold (s) ...
 const LONGEST: f64 = 1.0;
-/// ... and where a limit is predicted, none longer than so many times that.
+/// ... and where a limit is predicted, as a multiple of that limit.
 const BEYOND: f64 = 4.0;
-/// No run is longer than so many steps times particles: some seconds.
+/// Longest run, in steps times particles: some seconds.
 const MOST: f64 = 2e8;
-/// Looks at a run that holds.
+/// Number of times that a run is looked at, if it holds.
 const LOOKS: u64 = 200;
-/// The speed of the disturbance of a scene at rest (m/s, root of the sum of squares weighted with the masses in kg).
+/// Speed of the disturbance of a scene at rest: root of the sum of m v2 (m/s, for masses in kg).
 const NUDGE: f64 = 1e-6;
-/// The share in it of what is no mode in particular.
+/// Share of the disturbance that is no mode in particular.
 const OTHERS: f64 = 0.1;
 
-/// How a scene is brought to rest: steps (s), at most so many, and whether first everything is pushed a little.
+/// Stages in which a scene is brought to rest: step (s), most steps, and whether everything is
+/// pushed a little first.
 const SETTLING: [(f64, u32, bool); 5] = [
     (0.05, 400, false),
     (0.2, 400, false),
@@ -35,11 +36,12 @@ const SETTLING: [(f64, u32, bool); 5] = [
     (5.0, 400, false),
 ];
 
-/// When the modes of a scene in motion are looked at, as shares of [`HORIZON`].
+/// Times at which the modes of a scene in motion are looked at, as shares of [`HORIZON`].
 const MOMENTS: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
 
-/// The modes of the scene at several moments of the motion from its start, all together: stretched and folded springs
-/// have others than those that it starts with.
+/// The modes of a scene at several times of the motion from its start, all together.
+///
+/// Stretched and folded springs have other modes than those that the scene starts with.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -61,29 +63,31 @@ fn accurate() -> Result<&'static Method, Error> {
     find("dop853").ok_or_else(|| Error::Invalid("no accurate method is in the table".into()))
 }
 
-/// What bisection found.
+/// Result of a bisection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
-    /// The largest step that held (s); infinite if every step did that was tried: up to one second, or to four times the
-    /// limit that was predicted.
+    /// Largest step that held (s); infinite if every step held that was tried, up to one second or
+    /// to four times the predicted limit.
     pub step: f64,
-    /// Runs that it took.
+    /// Number of runs.
     pub runs: u32,
 }
 
 /// A scene at rest.
 #[derive(Clone)]
 pub struct Rest {
-    /// In that state, and nothing in it tears.
+    /// The scene in its state of rest, in which nothing tears.
     pub scene: Scene,
-    /// The modes around it, fastest first: every one, of a system of less than about 1200 numbers in x.
+    /// The modes around that state, fastest first: all of them, for less than about 1200 numbers in
+    /// x.
     pub modes: Vec<Mode>,
     shapes: Vec<Vec<f64>>,
 }
 
-/// The state in which the scene comes to rest, wind and swing off and nothing torn: found by implicit Euler in growing
-/// steps. `None` for a scene that this method does not serve or that is first order, for one in which pins or obstacles are
-/// on their way, and for one that does not settle.
+/// The state in which the scene comes to rest, wind and swing off and nothing torn: found by
+/// implicit Euler in growing steps. `None` for a scene that this method does not serve or that is
+/// first order, for one in which pins or obstacles are on their way, and for one that does not
+/// settle.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -145,9 +149,10 @@ pub fn rest(scene: &Scene) -> Result<Option<Rest>, Error> {
     }))
 }
 
-/// The largest step with which the scene, started from `rest` with the mode nudged that limits the method and every other
-/// a little, keeps the nudge from growing [`GROWTH`] times in [`HORIZON`]. Bisection begins at the limit. `None`
-/// where there is none, where it would take too long, and soon after `go_on` says no.
+/// The largest step with which the scene, started from `rest` with the mode nudged that limits the
+/// method and every other a little, keeps the nudge from growing [`GROWTH`] times in [`HORIZON`].
+/// Bisection begins at the limit. `None` where there is none, where it would take too long, and
+/// soon after `go_on` says no.
 ///
 /// # Errors
 /// The method does not serve the scene.
@@ -180,8 +185,8 @@ pub fn observe_at_rest(
     };
     let zero = vec![0.0; half];
     let nudge = size.of(&zero, &nudged.state[half..]);
-    // What grows is told from a run without the nudge beside it: a method may rest a little elsewhere than the scene
-    // does, and particles on an obstacle are pushed out at every step.
+    // What grows is told from a run without the nudge beside it: a method may rest a little
+    // elsewhere than the scene does, and particles on an obstacle are pushed out at every step.
     let least = least(guess);
     let holds = |h: f64| {
         let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
@@ -217,7 +222,7 @@ impl Size<'_> {
     }
 }
 
-/// The steps of a run, at least: a method that should hold any step is not asked for as many.
+/// Least number of steps of a run. A method that should hold any step is not asked for as many.
 fn least(guess: f64) -> f64 {
     if guess.is_finite() {
         STEPS
@@ -226,11 +231,12 @@ fn least(guess: f64) -> f64 {
     }
 }
 
-/// The largest step with which the scene runs from its start for [`HORIZON`] without gaining energy: never more beyond
-/// what it has in truth than half of what its motion has at most. A first-order scene holds if it does not grow
-/// [`GROWTH`] times; a method for which no limit is predicted, as long as the run is not lost: with such steps it makes
-/// errors of any size that do not grow. Bisection begins at `guess` (s). `None`
-/// where it would take too long, and soon after `go_on` says no.
+/// The largest step with which the scene runs from its start for [`HORIZON`] without gaining
+/// energy: never more beyond what it has in truth than half of what its motion has at most. A
+/// first-order scene holds if it does not grow [`GROWTH`] times; a method for which no limit is
+/// predicted, as long as the run is not lost: with such steps it makes errors of any size that do
+/// not grow. Bisection begins at `guess` (s). `None` where it would take too long, and soon after
+/// `go_on` says no.
 ///
 /// # Errors
 /// The method does not serve the scene.
@@ -259,17 +265,18 @@ pub fn observe_from_start(
     Ok(seen.filter(|_| go_on()))
 }
 
-/// The energy that a scene's run has in truth, and how much more is too much (J).
+/// True energy of a scene's run, and how much more is too much (J).
 #[derive(Clone, Debug, Default)]
 pub struct Truth {
-    /// At equal times from the start to [`HORIZON`]: the larger of both ends of each part. None of a first-order scene.
+    /// Energies in equal parts of the time from the start to [`HORIZON`]: the larger of both ends
+    /// of each part. Empty for a first-order scene.
     total: Vec<f64>,
-    /// Half of the most energy that its motion has.
+    /// Half of the largest kinetic energy.
     slack: f64,
 }
 
 impl Truth {
-    /// Of an accurate run.
+    /// The energy of an accurate run.
     ///
     /// # Errors
     /// The scene cannot be run.
@@ -294,7 +301,7 @@ impl Truth {
         Ok(Self { total, slack })
     }
 
-    /// The most that a run may have then.
+    /// Largest energy that a run may have at a time (s).
     fn at(&self, time: f64) -> Option<f64> {
         let part = (time / HORIZON * LOOKS as f64) as usize;
         let total = self.total.get(part).or(self.total.last())?;
@@ -306,7 +313,8 @@ fn norm(y: &[f64]) -> f64 {
     y.iter().map(|y| y * y).sum::<f64>().sqrt()
 }
 
-/// Takes the steps in which nothing may grow, and looks after every few of them, at the end after each one.
+/// Takes the steps in which nothing may grow, and looks after every few of them, near the end after
+/// each one. Returns whether every look was good.
 fn step_and_look(h: f64, least: f64, mut look: impl FnMut(u64) -> bool) -> bool {
     let steps = (HORIZON / h).ceil().max(least) as u64;
     let mut left = steps;

@@ -1,4 +1,4 @@
-//! The modes of a scene around a state, from products with the force differential alone.
+//! Spectrum: the modes of a scene around a state, from products with the force differential alone.
 
 use nalgebra::DMatrix;
 
@@ -6,17 +6,18 @@ use super::Mode;
 use crate::random::SplitMix;
 use crate::system::{Linearized, Mechanics, ParticleSystem};
 
-/// Products with the stiffness that a spectrum takes at most: enough for its ends to be exact to three digits on any
-/// cloth, and for its middle to be seen.
+/// Products with the stiffness that a spectrum takes at most: enough for its ends to be exact to
+/// three digits on any cloth, and for its middle to be seen.
 const PRODUCTS: usize = 64;
-/// Every mode is found of systems in which that takes no more multiplications (a few seconds).
+/// Most multiplications that finding every mode may take (a few seconds).
 const MULTIPLICATIONS: f64 = 2e9;
-/// A first-order system of up to so many numbers has its Jacobian computed.
+/// Largest first-order system whose Jacobian is computed, in numbers of its state.
 const DENSE: usize = 300;
 
-/// The modes around the state y, fastest first: of a mechanical system by Lanczos's method on the mass-normalised
-/// stiffness, each with the damping of its own shape, and of its constraints the mode in which errors are taken back; of a
-/// small first-order system from its Jacobian. A system that is neither has none. Negative stiffness is a mode that buckles.
+/// The modes around the state y, fastest first: of a mechanical system by Lanczos's method on the
+/// mass-normalised stiffness, each with the damping of its own shape, and of its constraints the
+/// mode in which errors are taken back; of a small first-order system from its Jacobian. A system
+/// that is neither has none. Negative stiffness is a mode that buckles.
 #[must_use]
 pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let mut modes = match system.mechanics().and_then(Mechanics::linearized) {
@@ -34,8 +35,8 @@ pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     modes
 }
 
-/// Every mode around the positions x, or as many as a few seconds allow, fastest first, each with its shape: the root of
-/// the masses times the displacement, of length 1.
+/// Every mode around the positions x, or as many as a few seconds allow, fastest first, each with
+/// its shape: the root of the masses times the displacement, of length 1.
 pub(super) fn shapes(mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Vec<(Mode, Vec<f64>)> {
     let products = (MULTIPLICATIONS / x.len() as f64).sqrt() as usize;
     let mut modes = vec![];
@@ -47,8 +48,8 @@ pub(super) fn shapes(mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Vec<(Mode
     modes
 }
 
-/// Products with the mass-normalised stiffness and damping, M^-1/2 K M^-1/2. Velocities are taken as zero: the modes are
-/// those of springs in this place, whatever they are doing.
+/// Products with the mass-normalised stiffness and damping, M^-1/2 K M^-1/2. Velocities are taken
+/// as zero: the modes are those of springs in this place, whatever they are doing.
 struct Normalised<'a> {
     mechanics: &'a dyn Linearized,
     t: f64,
@@ -77,7 +78,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// out = K z, or D z.
+    /// Writes K z, or D z, to `out`.
     fn product(&mut self, z: &[f64], damping: bool, out: &mut [f64]) {
         let mut scaled = std::mem::take(&mut self.scaled);
         scaled.copy_from_slice(z);
@@ -96,7 +97,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// Drag over mass, of the mode with that shape.
+    /// Drag over mass (1/s) of the mode with the shape z.
     fn drag(&self, z: &[f64]) -> f64 {
         let w = self.mechanics.inverse_masses();
         let share = z
@@ -106,7 +107,7 @@ impl<'a> Normalised<'a> {
         self.mechanics.drag_coefficient() * share
     }
 
-    /// The mode of that shape and stiffness.
+    /// The mode with the shape z and that stiffness (1/s2).
     fn mode(&mut self, stiffness: f64, z: &[f64], scratch: &mut [f64]) -> Mode {
         self.product(z, true, scratch);
         let drag = self.drag(z);
@@ -119,7 +120,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// A shape that has something of every mode.
+    /// A shape with a part of every mode.
     fn any_shape(&self) -> Vec<f64> {
         let mut random = SplitMix(1);
         let free = self.mechanics.inverse_masses();
@@ -138,7 +139,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Its length, which is 1 afterwards.
+/// Scales z to length 1. Returns the length that it had.
 fn normalise(z: &mut [f64]) -> f64 {
     let length = dot(z, z).sqrt();
     if length > 0.0 {
@@ -149,7 +150,7 @@ fn normalise(z: &mut [f64]) -> f64 {
     length
 }
 
-/// Visits the modes with their shapes.
+/// Visits the modes of a mechanical system with their shapes.
 fn of_mechanics(
     mechanics: &dyn Linearized,
     t: f64,
@@ -210,7 +211,7 @@ fn of_mechanics(
     }
 }
 
-/// In which errors of all constraints are taken back.
+/// The mode in which errors of all constraints decay, if there are constraints.
 fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
     mechanics.baumgarte_frequency().map(|w| Mode {
         stiffness: w * w,
@@ -219,7 +220,8 @@ fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
     })
 }
 
-/// One mode for each pair of eigenvalues of the Jacobian, by central differences.
+/// The modes of a first-order system: one for each pair of eigenvalues of the Jacobian, by central
+/// differences.
 fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let n = y.len();
     let mut jacobian = DMatrix::zeros(n, n);
@@ -249,21 +251,24 @@ fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
         .collect()
 }
 
-/// The fastest mode of a run that goes on, by power iteration from the shape it had when last asked.
+/// The fastest mode of a run that goes on, by power iteration from the shape it had when last
+/// asked.
 #[derive(Clone, Debug, Default)]
 pub struct LargestMode {
     shape: Vec<f64>,
 }
 
 impl LargestMode {
-    /// Its shape, mass-normalised: of displacements times the root of their mass, of length 1.
+    /// The shape of the mode: displacements times the root of their mass, of length 1.
     #[must_use]
     pub fn shape(&self) -> &[f64] {
         &self.shape
     }
 
-    /// The fastest mode around the positions x, that of constraints if they have a faster one: within 1 % the first time, and as close as the cloth has moved since
-    /// afterwards. Takes 24 products with the force differential the first time, and then 4.
+    /// The fastest mode around the positions x, or that of constraints if it is faster.
+    ///
+    /// It is found within 1 % the first time, by 24 products with the force differential. Later
+    /// calls take 4 products, and are as close as the system has moved little since.
     #[must_use]
     pub fn estimate(&mut self, mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Option<Mode> {
         let mut stiffness = Normalised::new(mechanics, t, x);
