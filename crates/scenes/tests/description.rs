@@ -217,12 +217,12 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "gravity = [0, -9.81, 0]",
         "floor = { height = 0, frition = 0.4 }",
-        "line 1: floor.frition: there is no key `frition`: did you mean `friction`? there are height, friction",
+        "line 1: floor.frition: there is no key `frition`; did you mean `friction`? The keys are height, friction",
     ),
     (
         "gravity = [0, -9.81, 0]",
         "floor = { friction = 0.4 }",
-        "line 1: floor: needs the key `height`",
+        "line 1: floor: the key `height` is missing",
     ),
     (
         "gravity = [0, -9.81, 0]",

@@ -259,8 +259,10 @@ fn paths_go_on_from_where_they_are() {
 #[test]
 fn obstacles_and_strips_go_on_too() {
     let text = "\
-box = [{ center = [0, -5, 0], size = [1, 2, 3], sine = { amplitude = [1, 0, 0], rate = 2 } }]
-capsule = [{ from = [0, -9, 0], to = [1, -9, 0], radius = 0.1, shift = { by = [1, 2, 3], end = 4 } }]
+floor = { height = -20, friction = 0.7 }
+box = [{ center = [0, -5, 0], size = [1, 2, 3], friction = 0.3, sine = { amplitude = [1, 0, 0], rate = 2 } }]
+capsule = [{ from = [0, -9, 0], to = [1, -9, 0], radius = 0.1, friction = 2, shift = { by = [1, 2, 3], end = 4 } }]
+sphere = [{ center = [0, -9, 5], radius = 1, friction = 0.1 }]
 
 [[cloth]]
 grid = [4, 5]
@@ -288,7 +290,7 @@ buckling = { bending = 0.0001, compression = 10 }
     let (now, then) = (network(&run), network(&again));
     for later in [0.0, 0.7, 9.0] {
         let paths = |network: &Network, t: f64| {
-            let [cuboid, capsule] = network.obstacles() else {
+            let [_, cuboid, capsule, _] = network.obstacles() else {
                 panic!("{:?}", network.obstacles());
             };
             let Shape::Capsule { ends, .. } = capsule.shape else {
@@ -301,5 +303,11 @@ buckling = { bending = 0.0001, compression = 10 }
             assert!((a - b).norm() < 1e-12, "{later}: {a} {b}");
         }
     }
+    let [sphere, cuboid, capsule, floor] = then.obstacles() else {
+        panic!("{:?}", then.obstacles());
+    };
+    let frictions = [sphere, cuboid, capsule, floor].map(|obstacle| obstacle.friction);
+    assert_eq!(frictions, [0.1, 0.3, 2.0, 0.7]);
+    assert_eq!([floor, sphere], [&now.obstacles()[3], &now.obstacles()[0]]);
     assert!(now.buckling().eq(then.buckling()));
 }
