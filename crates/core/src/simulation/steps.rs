@@ -10,11 +10,12 @@ use crate::network::Network;
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem, place_pins};
 
-/// An adaptive method's step takes no particle farther into an obstacle than this share of the
-/// scene's radius, so that states between its ends do not sink visibly ...
+/// Largest depth, as a share of the scene's radius, to which a step of an adaptive method may take a
+/// particle into an obstacle: a state between the ends of the step is shown as it is, and must not
+/// sink visibly.
 const SUNK: f64 = 1e-3;
 
-/// ... unless it is shorter than this (s).
+/// Length (s) below which a step is not shortened for that.
 const SHORT: f64 = 1e-6;
 
 impl Simulation {
@@ -127,7 +128,7 @@ impl Simulation {
             self.work += taken.work;
             let met = settle(&self.model, &mut self.contact, (begin, taken.h), end);
             if met.depth > limit && taken.h > SHORT {
-                // Again, to just after the touch.
+                // The step is taken again, to just after the particle touched the obstacle.
                 end.copy_from_slice(self.contact.y0());
                 adaptive.restart();
                 let share = met.touched + (1.0 - met.touched) * 0.5 * limit / met.depth;
