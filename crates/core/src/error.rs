@@ -1,4 +1,4 @@
-//! Errors, in words for the one who has to mend them.
+//! Errors of the crate, with messages for the user who has to correct them.
 
 use std::fmt;
 
@@ -10,74 +10,76 @@ use crate::control::Control;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A number that makes no sense: which one, and what would be right.
+    /// Invalid value; the message names it and says what would be valid.
     Invalid(String),
-    /// The method needs forces and masses, and the system has none.
+    /// Method that needs forces and masses, applied to a system that has none.
     NeedsMechanics {
         /// Name of the method.
         method: &'static str,
     },
-    /// The state has another length than the system's.
+    /// State whose length is not that of the system.
     Dimension {
-        /// Length of the system's state.
+        /// Length of the system's state (numbers).
         expected: usize,
-        /// Length of the one that was given.
+        /// Length of the state that was given (numbers).
         found: usize,
     },
-    /// No step that is long enough to get anywhere meets the tolerance.
+    /// Failure of an adaptive method: no step, however short, meets the tolerance.
     StepTooSmall {
-        /// Time at which the step began (s).
+        /// Time at the beginning of the step (s).
         time: f64,
-        /// Step that was still too long (s).
+        /// Step at which the search for a shorter one ended (s).
         step: f64,
     },
-    /// The equations of an implicit step were not solved.
+    /// Failure of an implicit method: the equations of a step were not solved.
     NoConvergence {
-        /// Residual that is left, over the first one.
+        /// Size of the last Newton correction over that of the first; 1 if its linear system could
+        /// not be solved.
         residual: f64,
     },
-    /// The run left every reasonable bound.
+    /// Run that blew up.
     BlowUp(BlowUp),
 }
 
-/// Loss of a run.
+/// Blow-up of a run: the method, the time and the cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlowUp {
-    /// Title of the method.
+    /// Full title of the method.
     pub method: &'static str,
     /// Step or tolerance of the run.
     pub control: Control,
-    /// Number of steps taken, the bad one included.
+    /// Number of steps taken, the failed one included.
     pub step: u64,
-    /// Time at the end of the bad step (s).
+    /// Time at the end of the failed step (s).
     pub time: f64,
-    /// Cause of the loss.
+    /// Cause of the blow-up.
     pub cause: Cause,
 }
 
-/// Cause of the loss of a run.
+/// Cause of a blow-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// A particle is far away from everything.
+    /// Particle that is far outside the scene.
     Away {
-        /// Number of the first such particle.
+        /// Index of the first such particle.
         particle: usize,
-        /// Distance from the middle of the scene (m).
+        /// Distance of the particle from the centre of the scene (m).
         distance: f64,
     },
-    /// A particle's state is not finite.
+    /// Particle whose position or velocity is not finite.
     NotFinite {
-        /// Number of the first such particle.
+        /// Index of the first such particle.
         particle: usize,
     },
-    /// No step meets the tolerance of an adaptive method.
+    /// Failure of an adaptive method: no step meets its tolerance.
     StepTooSmall {
-        /// Step that was still too long (s).
+        /// Step at which the search for a shorter one ended (s).
         step: f64,
     },
-    /// The equations of an implicit step were not solved.
+    /// Failure of an implicit method: the equations of a step were not solved.
     NoConvergence {
-        /// Residual that is left, over the first one.
+        /// Size of the last Newton correction over that of the first; 1 if its linear system could
+        /// not be solved.
         residual: f64,
     },
 }

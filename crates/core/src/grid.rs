@@ -1,4 +1,4 @@
-//! A rectangular grid of particles: its numbering, its triangles.
+//! Rectangular grid of particles: its numbering and its triangles.
 
 use crate::error::Error;
 
@@ -13,10 +13,10 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid of so many rows and columns.
+    /// Grid of `rows` x `cols` particles.
     ///
     /// # Errors
-    /// There are less than 2 rows or columns, or more than [`MAX_PARTICLES`] in all.
+    /// There are fewer than 2 rows or columns, or more than [`MAX_PARTICLES`] particles in all.
     pub fn new(rows: usize, cols: usize) -> Result<Self, Error> {
         let fits = rows.checked_mul(cols).is_some_and(|n| n <= MAX_PARTICLES);
         if rows >= 2 && cols >= 2 && fits {
@@ -46,7 +46,7 @@ impl Grid {
         self.rows * self.cols
     }
 
-    /// Number of the particle in row i and column j.
+    /// Index of the particle in row i and column j, both counted from 0.
     #[must_use]
     #[doc(alias = "indexOf")]
     pub fn index_of(&self, i: usize, j: usize) -> usize {
@@ -54,8 +54,9 @@ impl Grid {
         i * self.cols + j
     }
 
-    /// Two triangles for each cell, in the same winding order, all cut along the same diagonal:
-    /// smooth shading would show where it alternates.
+    /// Triangles of the grid as indices of particles: two for each cell, all in the same winding
+    /// order. Every cell is cut along the same diagonal, because smooth shading makes alternating
+    /// diagonals visible.
     pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> {
         let grid = *self;
         (0..grid.rows - 1).flat_map(move |i| {

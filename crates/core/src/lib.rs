@@ -1,17 +1,24 @@
 //! Mass-spring systems and the integrators that step them.
 //!
-//! The crate computes and nothing else: no files, no clock, no window, no GPU.
+//! The crate computes and does nothing else: it uses no files, no clock, no window and no GPU.
 //!
-//! * [`ParticleSystem`] is a first-order system y' = f(t, y); [`Mechanics`] is one with forces and masses.
-//! * [`Integrator`]s step any [`ParticleSystem`]; [`integrators::METHODS`] lists them.
-//! * [`Network`] is particles and springs with the forces a scene asked for.
-//! * [`Simulation`] is scene x method x time, with the hands that pull at it.
+//! * [`ParticleSystem`]: a first-order system y' = f(t, y); [`Mechanics`]: one with forces and
+//!   masses.
+//! * [`Integrator`]: a method that steps any [`ParticleSystem`]; [`integrators::METHODS`] lists
+//!   the methods.
+//! * [`Network`]: particles with pins, constraints, obstacles and force elements, such as springs.
+//! * [`Scene`]: a model, the state it starts from, and what a run of it can be disturbed by.
+//! * [`Simulation`]: the run of a scene by a method, which can be disturbed as it goes on.
 //!
-//! Build a network, step it, and chart it: how far is each method off, and what does it cost?
+//! The example builds a network, steps it, and measures the error and the cost of three step
+//! lengths.
 //!
 //! ```
 //! use a3_core::accuracy::{Frames, Reference, measure};
-//! use a3_core::{Control, Model, Network, Path, Scene, Spring, SpringKind, SpringLaw, Simulation, Vector3, integrators};
+//! use a3_core::{
+//!     Control, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
+//!     integrators,
+//! };
 //!
 //! // A particle on a spring below a pin.
 //! let mut network = Network::new(vec![1.0; 2])?;
@@ -19,7 +26,7 @@
 //! network.add_spring(Spring { kind: SpringKind::Structural, i: 0, j: 1, law })?;
 //! network.pin(0, Path::Still(Vector3::zeros()))?;
 //! network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
-//! // All x, all y, all z; and the velocities after them.
+//! // The state holds all x, all y and all z (m), and then the velocities (m/s) in the same order.
 //! let state = vec![0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
 //! let scene = Scene::new("pendulum", Model::Network(Box::new(network)), state);
 //!
@@ -28,7 +35,7 @@
 //! run.advance_to(1.0)?;
 //! assert!(run.position(1).y < -0.9);
 //!
-//! // The true error of three steps, and their evaluations of the forces.
+//! // Errors against the reference, and the number of evaluations, at three step lengths.
 //! let go_on = || true;
 //! let reference = Reference::new(&scene, Frames::new(1.0), &go_on)?.unwrap();
 //! let chart: Vec<_> = [0.02, 0.01, 0.005]
@@ -87,7 +94,7 @@ pub use system::{
     Splitting,
 };
 
-/// The example of the README, compiled as a test of documentation.
+/// Example of the README, compiled as a documentation test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,21 +1,21 @@
-//! Where something that is led by the hand is, as a function of time.
+//! Prescribed motion of pins and obstacles as a function of time.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Position, velocity and acceleration of a point on a path.
+/// Position, velocity and acceleration of a point of a path at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// In m.
+    /// Position (m).
     pub position: Vector3<f64>,
-    /// In m/s.
+    /// Velocity (m/s).
     pub velocity: Vector3<f64>,
-    /// In m/s2.
+    /// Acceleration (m/s2).
     pub acceleration: Vector3<f64>,
 }
 
 impl Place {
-    /// At rest at `position`.
+    /// Place of a point at rest at `position` (m).
     #[must_use]
     pub fn still(position: Vector3<f64>) -> Self {
         Self {
@@ -30,38 +30,39 @@ impl Place {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Path {
-    /// Stays there.
+    /// Point at rest at this position (m).
     Still(#[serde(with = "crate::serial")] Vector3<f64>),
-    /// `center + amplitude sin(rate t + phase)`.
+    /// Harmonic motion: `center + amplitude sin(rate t + phase)`.
     Sine {
-        /// In m.
+        /// Centre (m).
         #[serde(with = "crate::serial")]
         center: Vector3<f64>,
-        /// In m.
+        /// Amplitude (m).
         #[serde(with = "crate::serial")]
         amplitude: Vector3<f64>,
-        /// In rad/s.
+        /// Angular frequency (rad/s).
         rate: f64,
-        /// In rad.
+        /// Phase at t = 0 (rad).
         phase: f64,
     },
-    /// From `from` at time `start` in a straight line to `to` at time `end`; at rest before and after.
+    /// Uniform motion in a straight line from `from` at time `start` to `to` at time `end`; at rest
+    /// before and after.
     Line {
-        /// In m.
+        /// First position (m).
         #[serde(with = "crate::serial")]
         from: Vector3<f64>,
-        /// In m.
+        /// Last position (m).
         #[serde(with = "crate::serial")]
         to: Vector3<f64>,
-        /// In s.
+        /// Time at which the motion starts (s).
         start: f64,
-        /// In s, later than `start`
+        /// Time at which the motion ends (s), later than `start`.
         end: f64,
     },
 }
 
 impl Path {
-    /// The place at time t (s).
+    /// Position, velocity and acceleration at time t (s).
     #[must_use]
     pub fn at(&self, t: f64) -> Place {
         match *self {

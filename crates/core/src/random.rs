@@ -1,6 +1,7 @@
-//! Numbers that look random and are the same every time.
+//! Pseudorandom numbers that a seed determines.
 
-/// Steele, Lea, Flood, *Fast splittable pseudorandom number generators*, 2014.
+/// SplitMix64 generator with its state (Steele, Lea, Flood, *Fast splittable pseudorandom number
+/// generators*, 2014).
 pub(crate) struct SplitMix(pub u64);
 
 impl SplitMix {
@@ -11,6 +12,7 @@ impl SplitMix {
         z ^ (z >> 31)
     }
 
+    /// Next number, uniformly distributed from `low` up to but not including `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * ((self.next() >> 11) as f64 / (1u64 << 53) as f64)
     }

@@ -1,4 +1,4 @@
-//! Scenes: a model, the state it starts from, and what a run of it can be disturbed by.
+//! Scenes: models, the states they start from, and what their runs can be disturbed by.
 
 use std::sync::Arc;
 
@@ -9,20 +9,20 @@ use crate::grid::Grid;
 use crate::network::Network;
 use crate::system::ParticleSystem;
 
-/// First-order system that runs share.
+/// First-order system, shared among runs.
 pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
 
 /// Model of a scene.
 #[derive(Clone)]
 pub enum Model {
-    /// Any system y' = f(t, y) whose state is n x 3 positions in column-major order.
+    /// First-order system y' = f(t, y) whose state is n x 3 positions in column-major order.
     FirstOrder(FirstOrder),
     /// Network of masses and springs.
     Network(Box<Network>),
 }
 
 impl Model {
-    /// The model as an integrator sees it.
+    /// Model as the system that an integrator steps.
     #[must_use]
     pub fn system(&self) -> &dyn ParticleSystem {
         match self {
@@ -31,7 +31,7 @@ impl Model {
         }
     }
 
-    /// The network of masses and springs, if it is one.
+    /// Network of masses and springs; `None` for a first-order system.
     #[must_use]
     pub fn network(&self) -> Option<&Network> {
         match self {
@@ -57,7 +57,7 @@ pub struct Swing {
     pub rate: f64,
 }
 
-/// A model, the state it starts from, and what a run of it can be disturbed by.
+/// Scene: a model, the state it starts from, and what a run of it can be disturbed by.
 #[derive(Clone)]
 pub struct Scene {
     /// Name, for messages and files.
@@ -70,12 +70,12 @@ pub struct Scene {
     pub swing: Option<Swing>,
     /// Wind that can be turned on.
     pub wind: Option<Wind>,
-    /// Largest stretch, in rest lengths, to which a hand pulls the springs of the particle it holds.
+    /// Largest length, in rest lengths, to which a hand pulls the springs of the particle it holds.
     pub reach: f64,
 }
 
 impl Scene {
-    /// A scene without swing and wind, and with a hand that reaches ten rest lengths.
+    /// Scene without swing and wind, in which a hand pulls springs to at most ten rest lengths.
     #[must_use]
     pub fn new(name: impl Into<String>, model: Model, state: Vec<f64>) -> Self {
         Self {
@@ -88,7 +88,7 @@ impl Scene {
         }
     }
 
-    /// Grid of the first cloth, if there is one.
+    /// Grid of the first sheet of cloth, if there is one.
     #[must_use]
     pub fn grid(&self) -> Option<Grid> {
         self.model.network()?.sheets().next().map(Sheet::grid)

@@ -1,4 +1,4 @@
-//! Vectors in serialised values: as arrays of three numbers.
+//! Serialisation of vectors as arrays of three numbers.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

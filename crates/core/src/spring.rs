@@ -1,20 +1,21 @@
-//! Springs: their kinds, their laws and their ends.
+//! Springs: their kinds, their force laws and their ends.
 
 use crate::error::{Error, at_least};
 
-/// The purpose of a spring.
+/// Purpose of a spring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpringKind {
-    /// A spring that holds neighbours together; drawn in the wireframe.
+    /// Spring that holds neighbours together; drawn in the wireframe.
     Structural,
-    /// A spring that keeps a cell square.
+    /// Spring that keeps a cell square.
     Shear,
-    /// A spring that keeps a row straight.
+    /// Spring that keeps a row straight.
     #[doc(alias = "flex")]
     Bend,
 }
 
-/// The law of a spring of length L and rate of stretch L': it pulls with k (L - r) + c L'.
+/// Force law of a spring of length L (m) and rate of stretch L' (m/s): it pulls its ends together
+/// with the force k (L - r) + c L' (N).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLaw {
     /// Stiffness k (N/m).
@@ -26,10 +27,10 @@ pub struct SpringLaw {
 }
 
 impl SpringLaw {
-    /// A law of stiffness k (N/m), rest length r (m) and damping c (N s/m).
+    /// Law of stiffness k (N/m), rest length r (m) and damping c (N s/m).
     ///
     /// # Errors
-    /// A number is negative or not finite.
+    /// One of the numbers is negative or not finite.
     pub fn new(stiffness: f64, rest_length: f64, damping: f64) -> Result<Self, Error> {
         at_least(0.0, "a spring's stiffness", stiffness)?;
         at_least(0.0, "a spring's rest length", rest_length)?;
@@ -41,22 +42,22 @@ impl SpringLaw {
         })
     }
 
-    /// Multiplies stiffness and damping.
+    /// Multiplies the stiffness and the damping by these factors.
     pub(crate) fn scale(&mut self, stiffness: f64, damping: f64) {
         self.stiffness *= stiffness;
         self.damping *= damping;
     }
 }
 
-/// One spring between particles i and j.
+/// Spring between particles i and j.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
-    /// Its purpose.
+    /// Purpose of the spring.
     pub kind: SpringKind,
-    /// Particle at one end.
+    /// Index of the particle at one end.
     pub i: usize,
-    /// Particle at the other end.
+    /// Index of the particle at the other end.
     pub j: usize,
-    /// Its law.
+    /// Force law of the spring.
     pub law: SpringLaw,
 }

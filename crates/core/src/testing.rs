@@ -1,10 +1,11 @@
-//! Networks for the unit tests, which cannot use the built-in scenes: those are of a crate above this one.
+//! Networks for the unit tests. These cannot use the built-in scenes, which belong to a crate that
+//! depends on this one.
 
 use crate::random::SplitMix;
 use crate::{Grid, Model, Network, Path, Scene, Sheet, Vector3};
 
-/// A hanging cloth in motion, its particles a little out of place, its upper corners pinned. `damping_time` is the damping
-/// of each spring over its stiffness (s).
+/// Hanging cloth in motion, its particles slightly displaced, its upper corners pinned.
+/// `damping_time` is the damping of each spring over its stiffness (s).
 pub(crate) fn cloth(grid: Grid, damping_time: f64) -> Scene {
     const SPACING: f64 = 0.2;
     let (n, cols) = (grid.particles(), grid.cols());

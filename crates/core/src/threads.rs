@@ -1,13 +1,13 @@
-//! Rows over threads, where there are enough of them. Whoever computes a row computes the same
-//! bits.
+//! Division of rows among threads, where there are enough particles. The result of a row does not
+//! depend on the thread that computes it.
 
 use std::ops::Range;
 
-/// Least number of particles of a thread: with fewer, waking it costs more than it saves
-/// (docs/performance.md).
+/// Least number of particles for each thread: with fewer, waking the thread costs more than it
+/// saves (docs/performance.md).
 const GRAIN: usize = 2048;
 
-/// Number of threads for so many particles. None is started for a system that has too few for two.
+/// Number of threads for this many particles: 1 where there are too few for two threads.
 pub(crate) fn threads(particles: usize) -> usize {
     match particles / GRAIN {
         0 | 1 => 1,
@@ -18,7 +18,7 @@ pub(crate) fn threads(particles: usize) -> usize {
 /// Columns of a matrix whose rows are split among threads.
 pub(crate) type Columns<'a, const N: usize> = [&'a mut [f64]; N];
 
-/// Splits off what comes before an index in each of the columns.
+/// Splits off the part of each column before the index `at`, and returns these parts.
 pub(crate) fn split_off<'a, const N: usize>(
     columns: &mut Columns<'a, N>,
     at: usize,
@@ -28,7 +28,8 @@ pub(crate) fn split_off<'a, const N: usize>(
         .map(|column| column.split_off_mut(..at).unwrap_or_default())
 }
 
-/// Runs over rows of so many particles in bands, each with its part of the columns.
+/// Calls `run` on bands of the rows, each of `cols` particles, in parallel. Each call gets the part
+/// of the columns that belongs to its band.
 pub(crate) fn fork<const N: usize>(
     bands: usize,
     rows: Range<usize>,

@@ -1,4 +1,4 @@
-//! A step allocates nothing, whatever the method and the scene.
+//! Steps allocate no memory, with any method and any scene.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -6,7 +6,7 @@ use std::cell::Cell;
 use a3_core::elements::{Air, Wind};
 use a3_core::{Constraint, Model, Network, Path, Scene, Simulation, Vector3, integrators};
 
-/// The system's allocator, which counts this thread's allocations.
+/// Allocator of the system that counts the allocations of each thread.
 struct Counting;
 
 thread_local! {
@@ -63,7 +63,8 @@ fn no_step_allocates() {
     }
 }
 
-/// Air that sets in ends the sweeps of a sheet: the next step makes room for whole arrays, and none after it.
+/// Air ends the sweeps of a sheet: the first step in it allocates scratch for whole arrays, and no
+/// later step allocates.
 #[test]
 fn no_step_in_the_air_allocates_but_the_first() {
     for method in integrators::METHODS {
@@ -120,7 +121,7 @@ fn no_step_that_tears_nothing_allocates() {
     }
 }
 
-/// What a method has made room for is made anew when the scene is adjusted, not while it steps.
+/// Scratch of a method is allocated anew when the scene is adjusted, not during steps.
 #[test]
 fn no_step_after_an_adjustment_allocates() {
     for method in integrators::METHODS {

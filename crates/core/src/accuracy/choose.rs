@@ -1,4 +1,4 @@
-//! The cheapest method, and its step or tolerance, for an error.
+//! Choice of the cheapest method, with its step or tolerance, for a given error.
 
 use super::{GoOn, Metric, Outcome, Reference, ladder, measure};
 use crate::control::Control;
@@ -6,29 +6,30 @@ use crate::error::Error;
 use crate::integrators::{METHODS, Method};
 use crate::scene::Scene;
 
-/// Ratio of the shortest step that fails to the longest that is good enough, at which the search
+/// Ratio of the shortest step that fails to the longest that meets the error, at which the search
 /// ends.
 const CLOSE: f64 = 1.08;
-/// The same ratio for tolerances, on which the cost hardly depends.
+/// The same ratio for tolerances, on which the cost depends only weakly.
 const CLOSE_TOLERANCE: f64 = 1.7;
-/// Most steps that a run takes.
+/// Largest number of steps of a run.
 const MOST_STEPS: u64 = 1_000_000;
 
-/// A method with its step or tolerance, and what was measured of its run.
+/// Method with its step or tolerance, and the outcome of its run.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
-    /// The method.
+    /// Method of the run.
     pub method: &'static Method,
-    /// The step or the tolerance.
+    /// Step or tolerance of the run.
     pub control: Control,
     /// Errors and cost of the run.
     pub outcome: Outcome,
 }
 
-/// The cheapest step or tolerance of each method that meets the error, cheapest method first.
+/// Cheapest step or tolerance of each method that meets the error `error`, in the unit of the
+/// metric; the cheapest method comes first.
 ///
-/// Methods that cost more than twice as much as the two best are left out. `None` if it was told to
-/// stop.
+/// The search gives up a method that would cost more than twice as much as the second cheapest so
+/// far. Returns `None` if `go_on` returned false.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -40,14 +41,14 @@ pub fn choose(
     go_on: GoOn,
 ) -> Result<Option<Vec<Candidate>>, Error> {
     let mut found: Vec<Candidate> = vec![];
-    // High orders first: what they cost spares the long runs of low ones.
+    // Methods of high order come first: their cost bounds the runs of those of low order.
     let mut methods: Vec<_> = METHODS.iter().collect();
     methods.sort_by_key(|method| std::cmp::Reverse(method.order));
     for method in methods {
         if method.check(scene.model.system()).is_err() {
             continue;
         }
-        // The second best, which is the runner-up so far.
+        // Cost limit: twice that of the second cheapest candidate so far.
         let dearest = found
             .get(1)
             .map_or(f64::INFINITY, |c| 2.0 * c.outcome.work.total());
@@ -73,19 +74,24 @@ pub fn choose(
     Ok(Some(found))
 }
 
+/// Result of the search for one method.
 enum Found {
+    /// Cheapest run that meets the error.
     Best(Candidate),
+    /// No run meets the error, or it would be too dear.
     Nothing,
+    /// The search was told to stop.
     Stopped,
 }
 
+/// Search for the cheapest step or tolerance of one method.
 struct Search<'a> {
     scene: &'a Scene,
     reference: &'a Reference,
     metric: Metric,
     error: f64,
     method: &'static Method,
-    /// Largest cost of a run that is of use, in evaluations.
+    /// Largest cost of a run, in evaluations.
     dearest: f64,
     go_on: GoOn<'a>,
 }
@@ -95,7 +101,7 @@ impl Search<'_> {
         measure(self.scene, self.method, control, self.reference, self.go_on)
     }
 
-    /// The error of an outcome over the one asked for; infinite if the run was lost.
+    /// Error of the run over the one asked for; infinite if the run was lost.
     fn ratio(&self, outcome: &Outcome) -> f64 {
         if outcome.lost.is_some() {
             f64::INFINITY
@@ -112,7 +118,7 @@ impl Search<'_> {
             let Some(&control) = rungs.get(i) else {
                 return Ok(Found::Nothing);
             };
-            // The least cost of fixed steps is known beforehand.
+            // The least cost of a run with fixed steps is known beforehand.
             let least = control
                 .step()
                 .map(|step| frames.until / step * f64::from(self.method.evaluations));
@@ -130,7 +136,8 @@ impl Search<'_> {
                 return Ok(Found::Nothing);
             }
             fails = Some(control.value());
-            // Rungs that the order says are in vain are skipped.
+            // By the method's order, rungs coarser than `aim` cannot meet the error: they are
+            // skipped.
             let order = match control {
                 Control::Step(_) => f64::from(self.method.order),
                 Control::Tolerance(_) => 1.0,
@@ -168,8 +175,8 @@ impl Search<'_> {
     }
 }
 
-/// A tolerance between a good one and a bad one, or a step between them that fits the frames, if
-/// there is one left.
+/// Tolerance between one that meets the error and one that fails, or a step between two such steps
+/// that fits the frames; `None` if there is none.
 fn between(good: Control, bad: f64, frames: &super::Frames) -> Option<Control> {
     let middle = (good.value() * bad).sqrt();
     let Control::Step(good) = good else {
@@ -181,7 +188,7 @@ fn between(good: Control, bad: f64, frames: &super::Frames) -> Option<Control> {
         spacing / (spacing / middle).round()
     } else {
         let stride = (middle / spacing).round() as u64;
-        // The nearest that divides the number of frames.
+        // The nearest stride that divides the number of frames.
         let fits = |stride: &u64| *stride > 0 && frames.count.is_multiple_of(*stride);
         let near = (0..frames.count).flat_map(|d| [stride + d, stride.saturating_sub(d)]);
         near.into_iter().find(fits)? as f64 * spacing

@@ -1,5 +1,4 @@
-//! Horizon: the time for which errors mean something. Chaotic motion makes large errors of the
-//! smallest.
+//! Time for which errors are meaningful: chaotic motion makes the smallest errors large.
 
 use super::GoOn;
 use crate::control::Control;
@@ -10,26 +9,27 @@ use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::stability::spectrum;
 
-/// Factor by which errors may grow on their own.
+/// Largest factor by which errors may grow by the motion of the scene alone.
 const AMPLIFICATION: f64 = 1e4;
-/// Distance of two runs at their start, over the scene's radius.
+/// Largest displacement of a coordinate between the two runs at the start, over the scene's radius.
 const SEPARATION: f64 = 1e-8;
-/// Horizons that are round numbers (s).
+/// Horizons to choose from, round numbers (s).
 const ROUND: [f64; 11] = [0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0];
 
-/// Time for which a scene can be predicted.
+/// Predictability of a scene's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Horizon {
-    /// A round time until which two runs that start side by side separate less than
-    /// ten-thousandfold (s).
+    /// Round time until which the distance of two runs that start side by side grows by less than
+    /// 10,000 times (s).
     pub until: f64,
-    /// The time in which their separation grows by the factor e (s); infinite if it does not.
+    /// Lyapunov time, in which that distance grows by the factor e (s); infinite if it grows by no
+    /// more than 30 times in all.
     pub lyapunov: f64,
 }
 
-/// Estimates the horizon of a scene from two runs that start side by side, up to ten seconds; three
-/// if the scene's fastest motion takes less than a tenth of a second. `None` if it was told to
-/// stop.
+/// Horizon of a scene, estimated from two runs that start side by side. They run for up to 10 s, or
+/// for up to 3 s if the period of the scene's fastest mode is below 0.1 s. `None` if `go_on`
+/// returned false.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -86,7 +86,7 @@ pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
         grown = (time, most);
     }
     let exponent = grown.1.ln() / grown.0;
-    // A few times is no chaos.
+    // Growth by a small factor is not chaos.
     let lyapunov = if grown.1 > 30.0 {
         1.0 / exponent
     } else {

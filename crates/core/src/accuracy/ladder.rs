@@ -1,4 +1,4 @@
-//! The steps or tolerances at which a method is tried, from the coarsest that makes sense.
+//! Steps or tolerances at which a method is tried, from the coarsest that makes sense.
 
 use super::Frames;
 use crate::control::Control;
@@ -7,20 +7,22 @@ use crate::integrators::Method;
 use crate::scene::Scene;
 use crate::stability::{largest_step, spectrum};
 
-/// Ratio of a step to the next shorter one.
+/// Ratio of a step to the next shorter one, at least, as far as whole numbers allow.
 const RUNG: f64 = 1.5;
-/// Longest step as a multiple of the method's limit: one or two steps past the limit show that it
-/// is one.
+/// Longest step over the method's stability limit: one or two steps past the limit show where it
+/// is.
 const PAST: f64 = 1.4;
-/// Largest and smallest tolerance of adaptive methods, as halves of a power of ten.
+/// Exponents of the largest and the smallest tolerance of adaptive methods, in half powers of ten:
+/// from 10^-1 to 10^-12.
 const TOLERANCES: (i32, i32) = (-2, -24);
 
-/// Steps that fit the frames, from just past the method's limit down, or tolerances from 0.1 down.
+/// Steps that fit the frames, from just past the method's stability limit down, or, for an adaptive
+/// method, tolerances from 0.1 down.
 ///
-/// The coarsest comes first. Steps end where a run would take more than `most` of them.
+/// The coarsest comes first. The list of steps ends where a run would take more than `most` steps.
 ///
 /// # Errors
-/// The method does not serve the scene.
+/// The method does not support the scene.
 pub fn ladder(
     scene: &Scene,
     method: &'static Method,
@@ -43,7 +45,7 @@ pub fn ladder(
     let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
     let longest = (PAST * limit).min(frames.until / 6.0);
     let mut steps = vec![];
-    // Several frames a step, while that divides their number.
+    // Steps of several frames, where they divide the number of frames.
     let spacing = frames.spacing();
     let mut last = f64::INFINITY;
     for stride in (2..=frames.count).rev() {
@@ -53,7 +55,7 @@ pub fn ladder(
             last = h;
         }
     }
-    // Several steps a frame.
+    // Several steps in each frame.
     let mut parts = (spacing / longest).ceil().max(1.0) as u64;
     while parts * frames.count <= most {
         steps.push(Control::Step(spacing / parts as f64));

@@ -1,5 +1,5 @@
-//! Accuracy of methods on a scene: true errors, against a reference that is made here and knows its
-//! own error.
+//! Accuracy of methods on a scene: errors against a reference solution whose own uncertainty is
+//! known, and the choice of the cheapest method for an error.
 
 mod choose;
 mod horizon;
@@ -20,20 +20,20 @@ pub use horizon::{Horizon, horizon};
 pub use ladder::ladder;
 pub use reference::Reference;
 
-/// Question whether to go on, asked between frames.
+/// Function that is called between frames and returns whether to go on.
 pub type GoOn<'a> = &'a dyn Fn() -> bool;
 
-/// The times at which runs are compared: `count` equal parts of `until`.
+/// Times at which runs are compared: the ends of `count` equal parts of the time from 0 to `until`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frames {
-    /// End of the last part (s).
+    /// Time of the last frame (s).
     pub until: f64,
-    /// Number of parts, a multiple of 60, so that many steps fit.
+    /// Number of frames, a multiple of 60, so that steps of many lengths fit.
     pub count: u64,
 }
 
 impl Frames {
-    /// Frames up to `until` (s): at least 60 a second, and at least 60.
+    /// Frames up to `until` (s): at least 60 in each second, and at least 60 in all.
     #[must_use]
     pub fn new(until: f64) -> Self {
         Self {
@@ -42,7 +42,7 @@ impl Frames {
         }
     }
 
-    /// Time from one frame to the next (s).
+    /// Interval between frames (s).
     #[must_use]
     pub fn spacing(&self) -> f64 {
         self.until / self.count as f64
@@ -59,16 +59,19 @@ impl Frames {
     }
 }
 
-/// The part of a state that is compared.
+/// Quantities of a state that are compared.
 #[derive(Clone, Debug, Default)]
 struct Snapshot {
+    /// Positions (m): all x, all y, all z.
     positions: Vec<f64>,
+    /// Total energy (J); 0 for a first-order scene.
     energy: f64,
     /// Length over rest length of each structural spring.
     strains: Vec<f64>,
 }
 
 impl Snapshot {
+    /// Quantities of the run's current state.
     fn of(run: &Simulation) -> Self {
         let positions = run.state()[..3 * run.particles()].to_vec();
         let strains = run.model().network().map_or(vec![], |network| {
@@ -83,6 +86,7 @@ impl Snapshot {
         }
     }
 
+    /// Differences from another snapshot of the same scene.
     fn errors(&self, other: &Self) -> Errors {
         let square =
             |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum() };
@@ -96,25 +100,27 @@ impl Snapshot {
     }
 }
 
+/// Structural springs of a network whose rest length is above 0.
 fn structural(network: &Network) -> impl Iterator<Item = crate::Spring> {
     network
         .springs()
         .filter(|s| s.kind == SpringKind::Structural && s.law.rest_length > 0.0)
 }
 
-/// The largest errors over the frames of a run.
+/// Errors of a state, or the largest ones over the frames of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
-    /// Root mean square over the particles of their distance from the reference (m).
+    /// Root mean square over the particles of the distance from their reference positions (m).
     pub position: f64,
-    /// Error of the total energy (J); 0 for a first-order scene.
+    /// Absolute error of the total energy (J); 0 for a first-order scene.
     pub energy: f64,
     /// Root mean square over the structural springs of the error of length over rest length; 0
-    /// without any.
+    /// without such springs.
     pub strain: f64,
 }
 
 impl Errors {
+    /// Larger of both errors in each quantity.
     fn max(self, other: Self) -> Self {
         Self {
             position: self.position.max(other.position),
@@ -124,10 +130,10 @@ impl Errors {
     }
 }
 
-/// Kind of error that counts.
+/// Choice of one of the [`Errors`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Metric {
-    /// Error of positions (m).
+    /// Error of the positions (m).
     #[default]
     Position,
     /// Error of the total energy (J).
@@ -137,7 +143,7 @@ pub enum Metric {
 }
 
 impl Metric {
-    /// The error of this kind.
+    /// Error that the metric chooses, in its unit.
     #[must_use]
     pub fn of(self, errors: &Errors) -> f64 {
         match self {
@@ -148,32 +154,32 @@ impl Metric {
     }
 }
 
-/// Outcome of a run.
+/// Outcome of a run against the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// Errors over the frames that it reached.
+    /// Largest errors over the frames that the run reached.
     pub errors: Errors,
-    /// Cost of the run.
+    /// Work of the whole run.
     pub work: Work,
-    /// Blow-up by which it was lost, if it was.
+    /// Blow-up of the run, if it was lost.
     pub lost: Option<BlowUp>,
 }
 
-/// Takes a run from its beginning to the end of the frames, and visits each frame at which a step
-/// ends, or, under a tolerance, every frame.
+/// Runs a simulation from its beginning to the last frame. With a fixed step, `visit` is called at
+/// each frame at which a step ends; with a tolerance, at every frame.
 ///
-/// Steps that neither divide the spacing of the frames nor are a multiple of it are shortened at
-/// each frame. Returns where the run was lost, if it was; `None` if it was told to stop.
+/// Steps that neither divide the interval between frames nor are a multiple of it are shortened at
+/// each frame. Returns the blow-up, if the run was lost, and `None` if `go_on` returned false.
 ///
 /// # Errors
-/// The run cannot go on, for another reason than a blow-up.
+/// The run cannot go on for a reason other than a blow-up.
 pub fn run(
     simulation: &mut Simulation,
     frames: &Frames,
     go_on: GoOn,
     mut visit: impl FnMut(u64, &Simulation),
 ) -> Result<Option<Option<BlowUp>>, Error> {
-    // Frames a step takes, and steps a frame takes, if whole numbers of steps and of frames fit.
+    // Number of frames for each step, and of steps for each frame, if both are whole numbers.
     let whole = simulation.control().step().and_then(|step| {
         let ratio = step / frames.spacing();
         let (stride, per_frame) = (ratio.round().max(1.0), (1.0 / ratio).round().max(1.0));
@@ -187,7 +193,7 @@ pub fn run(
             return Ok(None);
         }
         k = (k + stride).min(frames.count);
-        // Counted steps gather no sliver of one at the end of a frame.
+        // Steps are counted, so that rounding leaves no tiny step at the end of a frame.
         let result = match whole {
             Some((_, per_frame)) if k < frames.count => simulation.take_steps(per_frame),
             _ => simulation.advance_to(frames.time(k)),
@@ -201,10 +207,10 @@ pub fn run(
     Ok(Some(None))
 }
 
-/// Runs a scene and compares it with its reference. `None` if it was told to stop.
+/// Runs a scene and compares the run with its reference. Returns `None` if `go_on` returned false.
 ///
 /// # Errors
-/// The method does not serve the scene or does not take that control.
+/// The method does not support the scene or the control, or the run fails without a blow-up.
 pub fn measure(
     scene: &Scene,
     method: &'static Method,

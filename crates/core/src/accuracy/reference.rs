@@ -1,5 +1,9 @@
-//! References: DOP853 at two tolerances, and PEFRL with its step halved and extrapolated, or,
-//! without masses, classical Runge-Kutta. Their differences are the uncertainty of the reference.
+//! Reference solution of a scene, and its uncertainty.
+//!
+//! The reference is a run of DOP853 at a tight tolerance. It is compared with a run of DOP853 at a
+//! looser tolerance, and with PEFRL (for a first-order system, the classical Runge-Kutta method) at
+//! a step h and at h/2, extrapolated to zero step by Richardson's formula. The largest disagreement
+//! is the uncertainty of the reference.
 
 use super::{Errors, Frames, GoOn, Snapshot, run};
 use crate::control::Control;
@@ -9,27 +13,28 @@ use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::stability::{largest_step, spectrum};
 
-/// Tolerances of DOP853: tighter ones lose more to rounding than they gain.
+/// Tolerances of DOP853, that of the reference first. Tighter ones lose more to rounding than they
+/// gain.
 const TOLERANCES: [f64; 2] = [1e-12, 1e-11];
-/// Longer step of the other family, over its largest stable one.
+/// Step h of the other method, the longer of its two, over its largest stable step, at most.
 const SHARE: f64 = 1.0 / 16.0;
 
-/// Reference of a scene: states frame by frame, with their uncertainty.
+/// Reference solution of a scene at each frame.
 pub struct Reference {
-    /// Times of the states.
+    /// Times of the reference.
     pub frames: Frames,
-    /// Uncertainty of the reference.
+    /// Uncertainty of the reference: the largest disagreement of its runs over the frames.
     pub floor: Errors,
-    /// Cost of the reference.
+    /// Work of all runs that make the reference.
     pub work: Work,
     snapshots: Vec<Snapshot>,
 }
 
 impl Reference {
-    /// Makes the reference of a scene, as it starts. `None` if it was told to stop.
+    /// Reference of a scene from its start. `None` if `go_on` returned false.
     ///
     /// # Errors
-    /// The scene cannot be run, or the reference itself is lost.
+    /// The scene cannot be run, or one of the runs of the reference blows up.
     pub fn new(scene: &Scene, frames: Frames, go_on: GoOn) -> Result<Option<Self>, Error> {
         let mut work = Work::default();
         let mut trajectory = |method: &'static Method, control: Control| {
@@ -83,18 +88,20 @@ impl Reference {
         }))
     }
 
-    /// The errors of a run that is at frame k, from 1 on.
+    /// Errors of a run that is at frame k, counted from 1.
     #[must_use]
     pub fn errors(&self, k: u64, run: &Simulation) -> Errors {
         Snapshot::of(run).errors(&self.snapshots[k as usize - 1])
     }
 }
 
+/// Error for a method of the reference that is not in the table of methods.
 fn missing() -> Error {
     Error::Invalid("the methods that make a reference are not in the table".into())
 }
 
-/// Richardson's extrapolation: the error of order 4 cancels.
+/// Richardson's extrapolation from the steps h and h/2 of a method of order 4, whose leading error
+/// cancels: fine + (fine - coarse) / 15.
 fn extrapolate(coarse: &Snapshot, fine: &Snapshot) -> Snapshot {
     let both = |coarse: f64, fine: f64| fine + (fine - coarse) / 15.0;
     let all = |coarse: &[f64], fine: &[f64]| {

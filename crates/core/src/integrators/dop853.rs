@@ -1,6 +1,6 @@
-//! DOP853, the method of order 8 of Dormand and Prince with the error estimates of orders 5 and 3
-//! and the dense output of order 7 by Hairer, Norsett, Wanner, *Solving Ordinary Differential
-//! Equations I*, 1993, II.5, II.6 and the appendix.
+//! DOP853: the method of order 8 of Dormand and Prince, with error estimates of orders 5 and 3 and
+//! dense output of order 7 (Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*,
+//! 1993, II.5, II.6 and the appendix).
 
 use super::Method;
 use super::embedded::{EmbeddedPair, Tableau};

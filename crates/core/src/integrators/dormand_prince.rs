@@ -1,6 +1,7 @@
-//! The method of order 5 of Dormand and Prince, *A family of embedded Runge-Kutta formulae*, J. Comput. Appl. Math. 6
-//! (1980), its error by a method of order 4, with the dense output of order 4 by Hairer, Norsett, Wanner, *Solving
-//! Ordinary Differential Equations I*, 1993, II.6. Known as ode45.
+//! Dormand-Prince 5(4), known as ode45 (Dormand, Prince, *A family of embedded Runge-Kutta
+//! formulae*, J. Comput. Appl. Math. 6, 1980). The state is advanced by the method of order 5, and
+//! its error is estimated by a method of order 4. The dense output has order 4 (Hairer, Norsett,
+//! Wanner, *Solving Ordinary Differential Equations I*, 1993, II.6).
 
 use super::Method;
 use super::embedded::{EmbeddedPair, Tableau};

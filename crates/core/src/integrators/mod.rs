@@ -1,5 +1,5 @@
-//! Integrators: one file a method, and the table of all methods. An integrator sees flat arrays and
-//! knows no physics.
+//! Methods of integration: one file for each, and one table of all. An integrator sees flat arrays
+//! and knows no physics.
 
 mod adaptive;
 mod dop853;
@@ -28,14 +28,14 @@ pub use adaptive::{Adaptive, AdaptiveState, Taken};
 pub use embedded::Tableau;
 pub use error_norm::Tolerance;
 
-/// A method with scratch for one system, which advances its state.
+/// Integrator of a system: a method with its scratch.
 pub trait Integrator: Send {
-    /// Takes y from time t to t + h (s): a pure function of the arguments, which allocates nothing.
-    /// Returns the work.
+    /// Takes the state y from t to t + h (s), and returns the work. The result depends on the
+    /// arguments alone. Allocates nothing.
     ///
     /// # Errors
-    /// The system is another than the one the integrator was made for: its state has another
-    /// length, or it lacks the forces and masses the method needs.
+    /// The length of the state is not that of the system, the system lacks the forces and masses
+    /// that the method needs, or the equations of an implicit method were not solved.
     fn step(
         &mut self,
         system: &dyn ParticleSystem,
@@ -45,41 +45,43 @@ pub trait Integrator: Send {
     ) -> Result<Work, Error>;
 }
 
-/// A row of the table of methods.
+/// Row of the table of methods.
 #[derive(Debug)]
 pub struct Method {
     /// Name, as typed on the command line.
     pub name: &'static str,
-    /// Short name, one letter.
+    /// Short name, of one letter.
     pub letter: char,
-    /// Other names, as typed on the command line.
+    /// Other names of the method.
     pub aliases: &'static [&'static str],
-    /// Full name, for titles and tables.
+    /// Full title.
     pub title: &'static str,
-    /// Order: the power of h with which the global error falls.
+    /// Order: the global error falls as h to this power.
     pub order: u32,
-    /// The step, or the tolerance of an adaptive method, that is stable on every built-in scene.
+    /// Step, or tolerance of an adaptive method, that is stable on every built-in scene.
     pub default_control: Control,
-    /// Number of evaluations a step takes; the typical number, for an implicit method.
+    /// Number of evaluations in a step; a typical number for an implicit method.
     pub evaluations: u32,
-    /// Number of evaluations a step takes where springs are damped.
+    /// Number of evaluations in a step where springs are damped.
     pub damped_evaluations: u32,
-    /// Whether the method solves equations for its step, with linear algebra on top of the
-    /// evaluations.
+    /// Whether the method is implicit: a step solves equations, by linear algebra in addition to
+    /// the evaluations.
     pub implicit: bool,
-    /// Tableau of an adaptive method, which chooses its steps by itself, to a tolerance.
+    /// Coefficients of an adaptive method, which chooses its steps by itself to a tolerance; `None`
+    /// for other methods.
     pub pair: Option<&'static Tableau>,
-    /// Whether the method needs forces and masses, rather than any f(t, y).
+    /// Whether the method needs forces and masses, and does not support an arbitrary f(t, y).
     pub needs_mechanics: bool,
+    /// Constructor of the method's integrator.
     create: fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>,
 }
 
 impl Method {
-    /// `Ok` if the method serves this system.
+    /// `Ok` if the method supports this system.
     ///
     /// # Errors
-    /// The method needs forces and masses, and the system has none; or it is implicit, and the
-    /// system has constraints.
+    /// The method needs forces and masses, and the system has none; or the method is implicit, and
+    /// the system has constraints.
     pub fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
         match system.mechanics() {
             None if self.needs_mechanics => Err(Error::NeedsMechanics { method: self.name }),
@@ -93,16 +95,17 @@ impl Method {
         }
     }
 
-    /// An integrator with scratch for this system.
+    /// Integrator with scratch for this system.
     ///
     /// # Errors
-    /// As [`check`](Self::check).
+    /// The method does not support the system, see [`check`](Self::check).
     pub fn integrator(&self, system: &dyn ParticleSystem) -> Result<Box<dyn Integrator>, Error> {
         self.check(system)?;
         Ok((self.create)(system))
     }
 
-    /// The method with steps of its own choice; `None` if it estimates no error.
+    /// Integrator that chooses its steps to this tolerance; `None` if the method estimates no
+    /// error.
     #[must_use]
     pub fn adaptive(&self, system: &dyn ParticleSystem, tolerance: Tolerance) -> Option<Adaptive> {
         self.pair
@@ -133,8 +136,8 @@ impl Method {
         }
     }
 
-    /// Control by a number as users type it: the tolerance of an adaptive method, the step (s) of
-    /// any other.
+    /// Control from a number that a user types: the tolerance of an adaptive method, the step (s)
+    /// of any other.
     #[must_use]
     pub fn control(&self, value: f64) -> Control {
         if self.is_adaptive() {
@@ -145,21 +148,20 @@ impl Method {
     }
 }
 
-/// Methods are the same if their names are.
+/// Methods are equal if their names are.
 impl PartialEq for Method {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
     }
 }
 
-/// Whether forces of constraints, which implicit methods cannot solve with, are among those of the
-/// system.
+/// Whether the system has constraints, which implicit methods do not support.
 fn holds_constraints(mechanics: &dyn Mechanics) -> bool {
     let linearized = mechanics.linearized();
     linearized.is_some_and(|linearized| linearized.baumgarte_frequency().is_some())
 }
 
-/// Every method.
+/// Table of all methods.
 pub static METHODS: &[Method] = &[
     euler::METHOD,
     heun::METHOD,
@@ -176,7 +178,7 @@ pub static METHODS: &[Method] = &[
     implicit::MIDPOINT,
 ];
 
-/// The method with this letter, name or alias.
+/// Method with this letter, name or alias.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static Method> {
     METHODS
@@ -184,7 +186,7 @@ pub fn find(name: &str) -> Option<&'static Method> {
         .find(|m| name.chars().eq([m.letter]) || m.name == name || m.aliases.contains(&name))
 }
 
-/// `Ok` if `y` has the length `expected`.
+/// `Ok` if `y` has the length `expected`, else [`Error::Dimension`].
 fn check_dim(expected: usize, y: &[f64]) -> Result<(), Error> {
     if y.len() == expected {
         Ok(())

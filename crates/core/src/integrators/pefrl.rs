@@ -1,10 +1,10 @@
-//! PEFRL, the position-extended Forest-Ruth-like method of Omelyan, Mryglod and Folk, *Optimized Forest-Ruth- and
-//! Suzuki-like algorithms for integration of motion in many-body systems*, Comput. Phys. Commun. 146 (2002): five
-//! drifts and four kicks, symmetric. Order 4.
+//! PEFRL, the position-extended Forest-Ruth-like method (Omelyan, Mryglod, Folk, *Optimized
+//! Forest-Ruth- and Suzuki-like algorithms for integration of motion in many-body systems*, Comput.
+//! Phys. Commun. 146, 2002): a symmetric sequence of five drifts and four kicks. Order 4.
 //!
-//! Each drift is the exact flow under drag and gravity. Where the other forces depend on the velocity (springs damped
-//! along their length), each kick is one step of the classical Runge-Kutta method in v, at x as it stands: less would
-//! drop the order.
+//! Each drift is the exact flow under drag and gravity. Where the other forces depend on the
+//! velocity, as those of damped springs do, each kick is one step of the classical Runge-Kutta
+//! method in v at fixed x. A method of lower order there would reduce the order of the whole.
 
 use super::Method;
 use super::runge_kutta::RK4;

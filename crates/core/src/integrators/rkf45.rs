@@ -1,8 +1,10 @@
-//! Runge-Kutta-Fehlberg 4(5) (Fehlberg, NASA TR R-315, 1969): goes on with the method of order 5, its error by that of
-//! order 4. Neither is stable on the imaginary axis, so undamped motion grows at any step.
+//! Runge-Kutta-Fehlberg 4(5) (Fehlberg, NASA TR R-315, 1969). The state is advanced by the method
+//! of order 5, and its error is estimated by the method of order 4. Neither is stable on the
+//! imaginary axis, so that undamped motion grows at any step.
 //!
-//! Its polynomial of degree 4 takes both ends, and one more derivative, at a quarter of the step, where the cubic
-//! through the ends has the state to order 4 (Shampine, *Interpolation for Runge-Kutta methods*, 1985).
+//! The dense output is a polynomial of degree 4. It takes states and derivatives at both ends of
+//! the step, and one more derivative at a quarter of it, at the state of the cubic Hermite
+//! polynomial through both ends (Shampine, *Interpolation for Runge-Kutta methods*, 1985).
 
 use super::Method;
 use super::embedded::{EmbeddedPair, Tableau};

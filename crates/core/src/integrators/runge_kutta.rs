@@ -1,6 +1,6 @@
-//! Explicit Runge-Kutta methods each of whose stages reads only the one before it: k1 = f(t, y), k2
-//! = f(t + c2 h, y + c2 h k1), k3 = f(t + c3 h, y + c3 h k2), ..., y1 = y + h (b1 k1 + b2 k2 +
-//! ...).
+//! Explicit Runge-Kutta methods each of whose stages reads only the one before it:
+//! k1 = f(t, y), k2 = f(t + c2 h, y + c2 h k1), k3 = f(t + c3 h, y + c3 h k2), ...,
+//! y1 = y + h (b1 k1 + b2 k2 + ...).
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::rows::{Stage, Terms};
 use crate::system::ParticleSystem;
 
-/// The c and the b of each stage.
+/// Coefficients (c, b) of each stage.
 pub(super) type Table = &'static [(f64, f64)];
 
 pub(super) const EULER: Table = &[(0.0, 1.0)];
@@ -23,7 +23,7 @@ pub(super) const RK4: Table = &[
     (1.0, 1.0 / 6.0),
 ];
 
-/// The stages of a step from t to t + h.
+/// Stages of a step from t to t + h (s).
 pub(super) fn stages(table: Table, terms: Terms, t: f64, h: f64) -> impl Iterator<Item = Stage> {
     table.iter().enumerate().map(move |(i, (c, b))| Stage {
         terms,
@@ -36,15 +36,15 @@ pub(super) fn stages(table: Table, terms: Terms, t: f64, h: f64) -> impl Iterato
     })
 }
 
-/// A method with a table.
+/// Method given by a table, with its scratch.
 pub(super) struct RungeKutta {
     table: Table,
     dim: usize,
-    /// Scratch for systems of rows.
+    /// Scratch for systems of rows; `None` for others.
     sweeper: Option<Sweeper>,
     stages: Vec<Stage>,
-    /// Scratch for other systems: y of the stage under way, y + b1 h k1 + b2 h k2 + ..., and the
-    /// last k.
+    /// Scratch for other systems: the y of the current stage, the sum y + b1 h k1 + b2 h k2 + ...,
+    /// and the last k.
     stage: Vec<f64>,
     sum: Vec<f64>,
     k: Vec<f64>,
@@ -85,7 +85,7 @@ impl Integrator for RungeKutta {
                 sweeper.step(system, None, &self.stages, y);
             }
             _ => {
-                // An integrator that was made for rows has none.
+                // An integrator that was made for rows has no scratch for whole arrays yet.
                 for scratch in [&mut self.stage, &mut self.sum, &mut self.k] {
                     scratch.resize(self.dim, 0.0);
                 }
@@ -107,7 +107,8 @@ impl Integrator for RungeKutta {
     }
 }
 
-/// The way from one stage to the next with whole arrays.
+/// Step from one stage to the next on whole arrays: adds the stage's k to the sum and forms the y
+/// of the next stage, or the new state.
 pub(super) struct Combine<'a> {
     pub stage: &'a Stage,
     pub y: &'a [f64],

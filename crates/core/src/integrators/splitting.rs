@@ -1,5 +1,5 @@
-//! Splitting methods: drifts move x by v, and kicks change v by forces at x as it stands. Where
-//! forces depend on v too, as those of springs damped along their length do, a kick is a step of an
+//! Splitting methods: alternate drifts, which move x by v, and kicks, which change v by the forces
+//! at fixed x. Where forces depend on v too, as those of damped springs do, a kick is a step of an
 //! explicit Runge-Kutta method in v.
 
 use pulp::Arch;
@@ -11,44 +11,47 @@ use crate::error::Error;
 use crate::rows::{Stage, Terms};
 use crate::system::{Mechanics, ParticleSystem, Splitting, divide_by_masses, place_pins};
 
-/// Largest number of stages of a sweep through several kicks: with more, rows leave the cache.
+/// Largest number of stages of a sweep through several kicks: with more, the rows no longer fit in
+/// the cache.
 const STAGES: usize = 4;
 
-/// A method as a table of drifts and kicks.
+/// Splitting method as a table of drifts and kicks.
 pub(super) struct Plan {
     /// Name of the method.
     pub name: &'static str,
-    /// Lengths of each drift and of the kick after it, over that of the step.
+    /// Lengths of each drift and of the kick after it, as fractions of the step.
     pub steps: &'static [(f64, f64)],
-    /// Length of the last drift, over that of the step.
+    /// Length of the last drift, as a fraction of the step.
     pub last: f64,
-    /// The terms that kick: [`Terms::KickForces`] if drifts carry gravity and drag exactly, and
+    /// Terms that act in kicks: [`Terms::KickForces`] if drifts carry gravity and drag exactly, and
     /// otherwise [`Terms::AllForces`].
     pub terms: Terms,
-    /// The method of a kick where forces depend on v.
+    /// Runge-Kutta method of a kick where forces depend on v.
     pub damped: Table,
 }
 
-/// A method with its scratch.
+/// Splitting method with its scratch.
 pub(super) struct SplittingMethod {
     plan: &'static Plan,
     dim: usize,
     stages: Vec<Stage>,
-    /// Scratch for systems of rows.
+    /// Scratch for systems of rows; `None` for others.
     sweeper: Option<Sweeper>,
-    /// Scratch for other systems: v when the kick began, the sum of its stages, and accelerations.
+    /// Scratch for other systems: v at the beginning of the kick, the sum over its stages, and the
+    /// accelerations.
     v: Vec<f64>,
     sum: Vec<f64>,
     a: Vec<f64>,
 }
 
 impl Plan {
+    /// Integrator of this method for a system.
     pub fn integrator(&'static self, system: &dyn ParticleSystem) -> Box<dyn Integrator> {
         let sweeper = Sweeper::new(system, self.stages_of_sweep(system));
         self.with(system, sweeper)
     }
 
-    /// An integrator that steps with this sweeper, or by whole arrays.
+    /// Integrator that steps with this sweeper, or by whole arrays if there is none.
     pub fn with(
         &'static self,
         system: &dyn ParticleSystem,
@@ -67,6 +70,7 @@ impl Plan {
         })
     }
 
+    /// Runge-Kutta method of a kick of this system.
     fn kick(&self, system: &dyn ParticleSystem) -> Table {
         let splitting = system.mechanics().and_then(Mechanics::splitting);
         if splitting.is_none_or(Splitting::kick_reads_velocity) {
@@ -76,7 +80,7 @@ impl Plan {
         }
     }
 
-    /// Number of stages of a sweep: those of as many whole kicks as fit.
+    /// Number of stages of a sweep: as many whole kicks as fit, at least one.
     pub fn stages_of_sweep(&self, system: &dyn ParticleSystem) -> usize {
         let kick = self.kick(system).len();
         kick * (STAGES / kick).clamp(1, self.steps.len())
@@ -127,10 +131,11 @@ impl Integrator for SplittingMethod {
 }
 
 impl SplittingMethod {
-    /// Takes y through the stages by whole arrays.
+    /// Takes y through the first drift of length `lead` (s) from t (s) and all stages by whole
+    /// arrays.
     fn plain(&mut self, mechanics: &dyn Mechanics, (t, lead): (f64, f64), y: &mut [f64]) {
         let (x, v) = y.split_at_mut(self.dim / 2);
-        // An integrator that was made for rows has none.
+        // An integrator that was made for rows has no scratch for whole arrays yet.
         for scratch in [&mut self.v, &mut self.sum, &mut self.a] {
             scratch.resize(v.len(), 0.0);
         }
@@ -159,6 +164,7 @@ impl SplittingMethod {
     }
 }
 
+/// Takes x and v through a drift from t to t + h (s), and pins to their places at its end.
 fn drift(mechanics: &dyn Mechanics, terms: Terms, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
     if h == 0.0 {
         return;

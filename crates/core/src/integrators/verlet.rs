@@ -1,12 +1,16 @@
-//! Verlet's method, drift-kick-drift: half a step of the exact flow under drag and gravity, the other forces' kick of
-//! a whole step, half a step of the flow again. Order 2, drag included.
+//! Verlet's method as drift-kick-drift: half a step of the exact flow under drag and gravity, a
+//! kick of a whole step by the other forces, and half a step of the flow again. Without drag and
+//! gravity: xm = x + h/2 v, v1 = v + h M^-1 F(t + h/2, xm), x1 = xm + h/2 v1. Order 2, also with
+//! drag.
 //!
-//! This is velocity Verlet seen from the middle of its step: the same map up to half a drift at either end, so it has
-//! the same order and the same limit. Kick-drift-kick would evaluate the forces at both ends, and have to remember
-//! one of them from step to step to pay for it once; here one evaluation is all there is, and nothing to go stale.
+//! The method is conjugate to velocity Verlet, kick-drift-kick, by half a drift, and so has the
+//! same order and the same stability limit. Kick-drift-kick evaluates the forces at both ends of a
+//! step, and would have to keep one evaluation from step to step in order to pay for it only once.
+//! Drift-kick-drift takes one evaluation in each step and keeps none.
 //!
-//! Forces that depend on the velocity (springs damped along their length) are kicked by the explicit midpoint rule in
-//! v, two evaluations, because one at the old velocity alone would drop the order to 1.
+//! Where forces depend on the velocity, as those of damped springs do, a kick is a step of the
+//! explicit midpoint rule in v, of two evaluations. A single evaluation at the old velocity would
+//! reduce the order to 1.
 
 use super::Method;
 use super::runge_kutta::MIDPOINT;

@@ -1,10 +1,11 @@
-//! Stability: modes of motion, their growth in one step of a method, and the largest step with
-//! which none grows.
+//! Linear stability of methods: modes of motion, their growth in one step, and the largest stable
+//! step.
 //!
-//! A mode is x'' = -w2 x - (drag + damping) x', with eigenvalues l = -(drag + damping)/2 +- i
-//! sqrt(w2 - ...). A Runge-Kutta method multiplies it by R(h l); a splitting method's step is a
-//! matrix that no single R(z) gives. So neither is written down here: the method takes a step on
-//! the mode, and the largest eigenvalue of what it did is its growth.
+//! A mode is x'' = -w^2 x - 2 d x', where 2 d is the sum of drag and damping over mass. Its
+//! eigenvalues are l = -d +- i sqrt(w^2 - d^2). A Runge-Kutta method multiplies the mode by R(h l);
+//! the step of a splitting method is a 2 x 2 matrix that no single R(z) gives. No formula is
+//! written down here for either: the method takes a step on the mode, and the spectral radius of
+//! the matrix of that step is the growth.
 
 mod observed;
 mod spectrum;
@@ -21,25 +22,28 @@ use crate::path::Place;
 use crate::system::{AxialCoupling, Coupling, Linearized, Mechanics, Splitting, place_pins};
 
 pub use observed::{
-    Observation, Rest, Truth, modes_in_motion, observe_at_rest, observe_from_start, rest,
+    Observation, RestState, Truth, modes_in_motion, observe_at_rest, observe_from_start, rest,
 };
 pub use spectrum::{LargestMode, spectrum};
 
-/// A run is stable if no mode grows more than [`GROWTH`] times in this time (s), or in [`STEPS`] if
-/// they take longer. Methods that have a limit are as good as strict about it then; those that
-/// always grow, and slowly, get the step with which they do for so long.
+/// Time (s) in which no mode of a stable run grows more than [`GROWTH`] times; it is longer if
+/// [`STEPS`] steps take longer.
+///
+/// For a method with a strict limit, this criterion gives very nearly that limit. For a method
+/// whose modes grow slowly at every step, it gives the step at which they grow [`GROWTH`] times in
+/// that time.
 pub const HORIZON: f64 = 10.0;
-/// See [`HORIZON`].
+/// Least number of steps in which no mode of a stable run grows more than [`GROWTH`] times.
 pub const STEPS: f64 = 1000.0;
-/// See [`HORIZON`].
+/// Largest growth of a mode of a stable run in [`HORIZON`] or in [`STEPS`] steps.
 pub const GROWTH: f64 = 10.0;
 
-/// Number of steps of h (s) in which no mode may grow.
+/// Number of steps of h (s) in which no mode may grow more than [`GROWTH`] times.
 fn steps(h: f64) -> f64 {
     (HORIZON / h).ceil().max(STEPS)
 }
 
-/// A mode of motion.
+/// Mode of motion x'' = -stiffness x - (drag + damping) x'.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mode {
     /// Stiffness over mass, the angular frequency squared (1/s2).
@@ -51,7 +55,7 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// The mode with the eigenvalue re + i im (1/s) and its conjugate, damped by drag.
+    /// Mode with the eigenvalue re + i im (1/s) and its conjugate, damped by drag.
     #[must_use]
     pub fn of_eigenvalue(re: f64, im: f64) -> Self {
         Self {
@@ -61,13 +65,13 @@ impl Mode {
         }
     }
 
-    /// Angular frequency w (rad/s).
+    /// Angular frequency w of the undamped mode (rad/s); 0 for negative stiffness.
     #[must_use]
     pub fn frequency(&self) -> f64 {
         self.stiffness.max(0.0).sqrt()
     }
 
-    /// Both eigenvalues, [re, im] (1/s).
+    /// Both eigenvalues as [re, im] (1/s).
     #[must_use]
     pub fn eigenvalues(&self) -> [[f64; 2]; 2] {
         let half = 0.5 * (self.drag + self.damping);
@@ -82,8 +86,8 @@ impl Mode {
     }
 }
 
-/// The mode as a system: particle 0 starts from x = 1, particle 1 from v = 1, and both are tied to
-/// particle 2, which is pinned. They move along one axis.
+/// Mode as a mechanical system along one axis: particles 0 and 1, of unit mass, are each tied to
+/// particle 2, which is pinned at the origin.
 struct Tied(Mode);
 
 impl Mechanics for Tied {
@@ -167,7 +171,7 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// A method and a mode.
+    /// Growth of `mode` by `method`.
     ///
     /// # Errors
     /// Never fails for a method in [`METHODS`](crate::integrators::METHODS).
@@ -177,11 +181,12 @@ impl Growth {
         Ok(Self { system, integrator })
     }
 
-    /// The spectral radius of a step of h (s): |R(h l)| of a Runge-Kutta method, of the larger of
-    /// both eigenvalues. Infinite where the step fails.
+    /// Spectral radius of the matrix of a step of h (s), for a Runge-Kutta method the larger |R(h
+    /// l)| of both eigenvalues l. Infinite where the step fails.
     pub fn of_step(&mut self, h: f64) -> f64 {
         let mut y = [0.0; 18];
-        // In a unit of time in which neither x nor v is small.
+        // Particle 0 starts with x = 1, particle 1 with v = `unit`: v is scaled by the frequency,
+        // so that x and v have similar magnitudes.
         let unit = self.system.0.frequency().max(1e-3);
         (y[0], y[10]) = (1.0, unit);
         if self.integrator.step(&self.system, 0.0, h, &mut y).is_err() {
@@ -203,21 +208,21 @@ impl Growth {
     }
 }
 
-/// Limit of stability of a method.
+/// Largest stable step of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
-    /// Largest stable step (s); infinite if every step is stable.
+    /// Largest stable step (s); infinite where every step is stable.
     pub step: f64,
     /// Whether no mode grows at all with shorter steps. If not, modes grow less than [`GROWTH`]
-    /// times within [`HORIZON`].
+    /// times in the time that [`HORIZON`] describes.
     pub strict: bool,
     /// Index of the mode that sets the limit.
     pub mode: usize,
 }
 
-/// The largest step (s) with which no mode grows, as [`HORIZON`] says: all shorter steps hold too.
-/// Modes without a restoring force are left out: falling and buckling are no fault of the method.
-/// `None` without any mode.
+/// Largest step with which no mode grows, by the criterion of [`HORIZON`]; all shorter steps are
+/// stable too. Modes without a restoring force are left out: they fall or buckle with any method.
+/// `None` if no mode is left.
 ///
 /// # Errors
 /// Never fails for a method in [`METHODS`](crate::integrators::METHODS).
@@ -226,14 +231,14 @@ pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Er
     for (k, mode) in modes.iter().enumerate().filter(|(_, m)| m.stiffness > 0.0) {
         let mut growth = Growth::new(method, *mode)?;
         let fails = |growth: &mut Growth, h: f64| growth.of_step(h).ln() * steps(h) > GROWTH.ln();
-        // Fast motion by stiffness or by damping.
+        // Rate of the fastest motion, by stiffness or by damping.
         let rate = mode.frequency().max(mode.drag + mode.damping);
         let longest = limit.map_or(1e4 / rate, |limit| limit.step.min(1e4 / rate));
         let mut h = 1e-3 / rate;
         let mut below = 0.0;
         while h < longest && !fails(&mut growth, h) {
             below = h;
-            // Finely for the first mode; for the others the search is as a rule in vain.
+            // The search is fine for the first mode. The others rarely lower the limit.
             h *= if limit.is_none() { 1.05 } else { 1.25 };
         }
         if h >= longest && !fails(&mut growth, longest) {

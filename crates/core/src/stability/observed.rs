@@ -1,4 +1,5 @@
-//! Observed limits of stability: the nonlinear scene itself, run with longer and shorter steps.
+//! Observed stability: the largest stable step of a method on the nonlinear scene itself, by
+//! bisection over runs.
 
 use super::spectrum::shapes;
 use super::{GROWTH, HORIZON, Limit, Mode, STEPS, spectrum};
@@ -11,23 +12,24 @@ use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
 use crate::system::Linearized;
 
-/// Relative accuracy of the largest step that was seen to hold.
+/// Relative precision of the observed step where a limit is predicted; ten times coarser elsewhere.
 const PRECISION: f64 = 0.005;
-/// Longest step that is tried where every step should hold (s) ...
+/// Longest step that is tried where no limit is predicted (s).
 const LONGEST: f64 = 1.0;
-/// ... and where a limit is predicted, as a multiple of that limit.
+/// Longest step that is tried where a limit is predicted, as a multiple of that limit.
 const BEYOND: f64 = 4.0;
-/// Longest run, in steps times particles: some seconds.
+/// Largest number of steps times particles of a run, which takes some seconds.
 const MOST: f64 = 2e8;
-/// Number of times that a run is looked at, if it holds.
+/// Number of checks during a run that holds.
 const LOOKS: u64 = 200;
-/// Speed of the disturbance of a scene at rest: root of the sum of m v2 (m/s, for masses in kg).
+/// Size of the disturbance of a scene at rest: the root of the sum of m v^2 over the particles
+/// (kg^1/2 m/s).
 const NUDGE: f64 = 1e-6;
-/// Share of the disturbance that is no mode in particular.
+/// Random part of that disturbance, relative to the limiting mode.
 const OTHERS: f64 = 0.1;
 
-/// Stages in which a scene is brought to rest: step (s), most steps, and whether everything is
-/// pushed a little first.
+/// Rounds that bring a scene to rest: the step (s), the largest number of steps, and whether all
+/// free particles are first displaced a little.
 const SETTLING: [(f64, u32, bool); 5] = [
     (0.05, 400, false),
     (0.2, 400, false),
@@ -36,12 +38,11 @@ const SETTLING: [(f64, u32, bool); 5] = [
     (5.0, 400, false),
 ];
 
-/// Times at which the modes of a scene in motion are looked at, as shares of [`HORIZON`].
+/// Times at which the modes of a scene in motion are computed, as fractions of [`HORIZON`].
 const MOMENTS: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
 
-/// The modes of a scene at several times of the motion from its start, all together.
-///
-/// Stretched and folded springs have other modes than those that the scene starts with.
+/// Modes of the scene at several times of the motion from its start, in one list, fastest first.
+/// Stretched and folded springs have other modes than those at the start.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -54,44 +55,47 @@ pub fn modes_in_motion(scene: &Scene) -> Result<Vec<Mode>, Error> {
         }
         modes.extend(spectrum(run.model().system(), run.time(), run.state()));
     }
-    // The fastest first: they set most limits.
+    // The fastest come first, as they set most limits.
     modes.sort_by(|a, b| b.stiffness.total_cmp(&a.stiffness));
     Ok(modes)
 }
 
+/// Method for accurate runs.
 fn accurate() -> Result<&'static Method, Error> {
     find("dop853").ok_or_else(|| Error::Invalid("no accurate method is in the table".into()))
 }
 
-/// Result of a bisection.
+/// Largest stable step that bisection found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
-    /// Largest step that held (s); infinite if every step held that was tried, up to one second or
-    /// to four times the predicted limit.
+    /// Largest step that held (s); infinite if every step that was tried held. Steps are tried up
+    /// to four times the predicted limit, or up to 1 s if none is predicted.
     pub step: f64,
-    /// Number of runs.
+    /// Number of runs that the bisection took.
     pub runs: u32,
 }
 
-/// A scene at rest.
+/// Scene at rest, with the modes around this state.
 #[derive(Clone)]
-pub struct Rest {
-    /// The scene in its state of rest, in which nothing tears.
+pub struct RestState {
+    /// Scene that starts in the state of rest; its springs do not tear.
     pub scene: Scene,
-    /// The modes around that state, fastest first: all of them, for less than about 1200 numbers in
-    /// x.
+    /// Modes around the state of rest, fastest first: all of them, if x has fewer than about 1200
+    /// numbers.
     pub modes: Vec<Mode>,
+    /// Shape of each mode: the displacements times the roots of the masses, of length 1.
     shapes: Vec<Vec<f64>>,
 }
 
-/// The state in which the scene comes to rest, wind and swing off and nothing torn: found by
-/// implicit Euler in growing steps. `None` for a scene that this method does not serve or that is
-/// first order, for one in which pins or obstacles are on their way, and for one that does not
-/// settle.
+/// State in which the scene comes to rest without wind and swing and without tearing, computed by
+/// implicit Euler with growing steps.
+///
+/// `None` for a first-order scene, for one that implicit Euler does not support, for one whose pins
+/// or obstacles move, and for one that does not settle.
 ///
 /// # Errors
 /// The scene cannot be run.
-pub fn rest(scene: &Scene) -> Result<Option<Rest>, Error> {
+pub fn rest(scene: &Scene) -> Result<Option<RestState>, Error> {
     let Some((implicit, network)) = find("implicit").zip(scene.model.network()) else {
         return Ok(None);
     };
@@ -106,7 +110,8 @@ pub fn rest(scene: &Scene) -> Result<Option<Rest>, Error> {
     let mut random = SplitMix(4);
     for (step, steps, leaves) in SETTLING {
         if leaves {
-            // A fold may balance on its edge: from there it falls to one of its sides, given time.
+            // A fold may be balanced on its edge. The push makes it fall to one side, and it needs
+            // all the steps to come to rest there.
             let mut pushed = scene.clone();
             pushed.state = run.state().to_vec();
             let (n, size) = (run.particles(), 1e-4 * run.extent().1);
@@ -142,22 +147,24 @@ pub fn rest(scene: &Scene) -> Result<Option<Rest>, Error> {
     }
     let (modes, shapes) = shapes(network, 0.0, &y[..half]).into_iter().unzip();
     scene.state = y;
-    Ok(Some(Rest {
+    Ok(Some(RestState {
         scene,
         modes,
         shapes,
     }))
 }
 
-/// The largest step with which the scene, started from `rest` with the mode nudged that limits the
-/// method and every other a little, keeps the nudge from growing [`GROWTH`] times in [`HORIZON`].
-/// Bisection begins at the limit. `None` where there is none, where it would take too long, and
-/// soon after `go_on` says no.
+/// Largest step with which a small disturbance of the scene at rest grows less than [`GROWTH`]
+/// times in [`HORIZON`].
+///
+/// The disturbance is a velocity in the mode that limits the method, with a small random part.
+/// Bisection begins at the predicted limit. `None` if no limit is given, if the runs would take too
+/// long, and soon after `go_on` returns false.
 ///
 /// # Errors
-/// The method does not serve the scene.
+/// The method does not support the scene.
 pub fn observe_at_rest(
-    rest: &Rest,
+    rest: &RestState,
     method: &'static Method,
     limit: Option<&Limit>,
     go_on: impl Fn() -> bool,
@@ -179,14 +186,14 @@ pub fn observe_at_rest(
             nudged.state[half + k] = NUDGE * z / network.masses()[particle].sqrt();
         }
     }
-    let size = Size {
+    let size = EnergyNorm {
         network,
         rest: &still.state[..half],
     };
     let zero = vec![0.0; half];
     let nudge = size.of(&zero, &nudged.state[half..]);
-    // What grows is told from a run without the nudge beside it: a method may rest a little
-    // elsewhere than the scene does, and particles on an obstacle are pushed out at every step.
+    // The disturbance is the difference from a second run without it: a method's state of rest may
+    // differ a little from the scene's, and particles on an obstacle are pushed out at every step.
     let least = least(guess);
     let holds = |h: f64| {
         let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
@@ -203,13 +210,13 @@ pub fn observe_at_rest(
     Ok(seen.filter(|_| go_on()))
 }
 
-/// The size of a disturbance: the root of twice its energy.
-struct Size<'a> {
+/// Measure of disturbances around a state of rest by the root of twice their energy (J^1/2).
+struct EnergyNorm<'a> {
     network: &'a Network,
     rest: &'a [f64],
 }
 
-impl Size<'_> {
+impl EnergyNorm<'_> {
     fn of(&self, dx: &[f64], dv: &[f64]) -> f64 {
         let zero = vec![0.0; dx.len()];
         let mut df = zero.clone();
@@ -222,7 +229,7 @@ impl Size<'_> {
     }
 }
 
-/// Least number of steps of a run. A method that should hold any step is not asked for as many.
+/// Least number of steps of a run; smaller where no limit is predicted.
 fn least(guess: f64) -> f64 {
     if guess.is_finite() {
         STEPS
@@ -231,15 +238,17 @@ fn least(guess: f64) -> f64 {
     }
 }
 
-/// The largest step with which the scene runs from its start for [`HORIZON`] without gaining
-/// energy: never more beyond what it has in truth than half of what its motion has at most. A
-/// first-order scene holds if it does not grow [`GROWTH`] times; a method for which no limit is
-/// predicted, as long as the run is not lost: with such steps it makes errors of any size that do
-/// not grow. Bisection begins at `guess` (s). `None` where it would take too long, and soon after
-/// `go_on` says no.
+/// Largest step with which the scene runs from its start for [`HORIZON`] without gaining energy.
+///
+/// A run of a network holds while its energy exceeds the true energy by less than half of the
+/// largest true kinetic energy. Where no limit is predicted (`guess` is infinite), it holds unless
+/// it is lost: errors at such long steps may be large, but do not grow. A run of a first-order
+/// scene holds while the norm of its state is less than [`GROWTH`] times the initial one. Bisection
+/// begins at `guess` (s). `None` if the runs would take too long, and soon after `go_on` returns
+/// false.
 ///
 /// # Errors
-/// The method does not serve the scene.
+/// The method does not support the scene.
 pub fn observe_from_start(
     scene: &Scene,
     truth: &Truth,
@@ -265,18 +274,19 @@ pub fn observe_from_start(
     Ok(seen.filter(|_| go_on()))
 }
 
-/// True energy of a scene's run, and how much more is too much (J).
+/// True energy of a scene's motion from its start, and the excess over it that a stable run may
+/// have (J).
 #[derive(Clone, Debug, Default)]
 pub struct Truth {
-    /// Energies in equal parts of the time from the start to [`HORIZON`]: the larger of both ends
-    /// of each part. Empty for a first-order scene.
+    /// Total energy (J) in each of the equal intervals from the start to [`HORIZON`]: the larger of
+    /// those at its two ends. Empty for a first-order scene.
     total: Vec<f64>,
-    /// Half of the largest kinetic energy.
+    /// Half of the largest kinetic energy (J).
     slack: f64,
 }
 
 impl Truth {
-    /// The energy of an accurate run.
+    /// Energy of an accurate run of the scene.
     ///
     /// # Errors
     /// The scene cannot be run.
@@ -301,7 +311,7 @@ impl Truth {
         Ok(Self { total, slack })
     }
 
-    /// Largest energy that a run may have at a time (s).
+    /// Largest energy that a stable run may have at this time (J).
     fn at(&self, time: f64) -> Option<f64> {
         let part = (time / HORIZON * LOOKS as f64) as usize;
         let total = self.total.get(part).or(self.total.last())?;
@@ -313,8 +323,9 @@ fn norm(y: &[f64]) -> f64 {
     y.iter().map(|y| y * y).sum::<f64>().sqrt()
 }
 
-/// Takes the steps in which nothing may grow, and looks after every few of them, near the end after
-/// each one. Returns whether every look was good.
+/// Calls `look` with numbers of steps to take and to check, in all the steps of h (s) in which
+/// nothing may grow and at least `least`, and then 8 more, one by one. Returns false as soon as
+/// `look` does.
 fn step_and_look(h: f64, least: f64, mut look: impl FnMut(u64) -> bool) -> bool {
     let steps = (HORIZON / h).ceil().max(least) as u64;
     let mut left = steps;
@@ -328,7 +339,7 @@ fn step_and_look(h: f64, least: f64, mut look: impl FnMut(u64) -> bool) -> bool 
     (0..8).all(|_| look(1))
 }
 
-/// The largest step below which `holds` does, by bisection of its logarithm.
+/// Largest step (s) for which `holds` returns true, by bisection of its logarithm from `guess` (s).
 fn bisect(
     guess: f64,
     particles: usize,

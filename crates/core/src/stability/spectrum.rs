@@ -1,4 +1,5 @@
-//! Spectrum: the modes of a scene around a state, from products with the force differential alone.
+//! Modes of a scene around a state, from products with the force differential alone: Lanczos's
+//! method with full reorthogonalisation, and power iteration.
 
 use nalgebra::DMatrix;
 
@@ -6,18 +7,20 @@ use super::Mode;
 use crate::random::SplitMix;
 use crate::system::{Linearized, Mechanics, ParticleSystem};
 
-/// Products with the stiffness that a spectrum takes at most: enough for its ends to be exact to
-/// three digits on any cloth, and for its middle to be seen.
+/// Largest number of products with the stiffness for a spectrum: enough for three exact digits of
+/// its ends on any cloth, and for a sample of its middle.
 const PRODUCTS: usize = 64;
-/// Most multiplications that finding every mode may take (a few seconds).
+/// Largest number of multiplications for computing every mode, which take a few seconds.
 const MULTIPLICATIONS: f64 = 2e9;
-/// Largest first-order system whose Jacobian is computed, in numbers of its state.
+/// Largest dimension of a first-order system whose Jacobian is computed.
 const DENSE: usize = 300;
 
-/// The modes around the state y, fastest first: of a mechanical system by Lanczos's method on the
-/// mass-normalised stiffness, each with the damping of its own shape, and of its constraints the
-/// mode in which errors are taken back; of a small first-order system from its Jacobian. A system
-/// that is neither has none. Negative stiffness is a mode that buckles.
+/// Modes around the state y at time t (s), fastest first.
+///
+/// For a linearised mechanical system they come from Lanczos's method on the mass-normalised
+/// stiffness, each with the damping of its own shape. Constraints add the mode in which their
+/// errors decay. For a small first-order system the modes come from the eigenvalues of its
+/// Jacobian. For any other system there are none. A mode of negative stiffness buckles.
 #[must_use]
 pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let mut modes = match system.mechanics().and_then(Mechanics::linearized) {
@@ -35,8 +38,8 @@ pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     modes
 }
 
-/// Every mode around the positions x, or as many as a few seconds allow, fastest first, each with
-/// its shape: the root of the masses times the displacement, of length 1.
+/// Modes around the positions x (m), all of them or as many as a few seconds allow, fastest first,
+/// each with its shape: the displacements times the roots of the masses, of length 1.
 pub(super) fn shapes(mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Vec<(Mode, Vec<f64>)> {
     let products = (MULTIPLICATIONS / x.len() as f64).sqrt() as usize;
     let mut modes = vec![];
@@ -48,8 +51,8 @@ pub(super) fn shapes(mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Vec<(Mode
     modes
 }
 
-/// Products with the mass-normalised stiffness and damping, M^-1/2 K M^-1/2. Velocities are taken
-/// as zero: the modes are those of springs in this place, whatever they are doing.
+/// Mass-normalised stiffness M^-1/2 K M^-1/2 and damping M^-1/2 D M^-1/2 at the positions x, as
+/// operators. The modes are those at zero velocity.
 struct Normalised<'a> {
     mechanics: &'a dyn Linearized,
     t: f64,
@@ -69,6 +72,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
+    /// z = M^-1/2 z.
     fn scale(&self, z: &mut [f64]) {
         let w = self.mechanics.inverse_masses();
         for column in z.chunks_exact_mut(w.len()) {
@@ -78,7 +82,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// Writes K z, or D z, to `out`.
+    /// out = K z, or D z if `damping` is set, both mass-normalised.
     fn product(&mut self, z: &[f64], damping: bool, out: &mut [f64]) {
         let mut scaled = std::mem::take(&mut self.scaled);
         scaled.copy_from_slice(z);
@@ -97,7 +101,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// Drag over mass (1/s) of the mode with the shape z.
+    /// Drag over mass of the mode with the shape z (1/s).
     fn drag(&self, z: &[f64]) -> f64 {
         let w = self.mechanics.inverse_masses();
         let share = z
@@ -107,11 +111,11 @@ impl<'a> Normalised<'a> {
         self.mechanics.drag_coefficient() * share
     }
 
-    /// The mode with the shape z and that stiffness (1/s2).
+    /// Mode with the shape z and this stiffness over mass (1/s2).
     fn mode(&mut self, stiffness: f64, z: &[f64], scratch: &mut [f64]) -> Mode {
         self.product(z, true, scratch);
         let drag = self.drag(z);
-        // The difference of two numbers that are the same without damped springs.
+        // Without damped springs both terms are equal up to rounding.
         let damping = dot(z, scratch) - drag;
         Mode {
             stiffness,
@@ -120,7 +124,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// A shape with a part of every mode.
+    /// Random shape of length 1, which contains a share of every mode.
     fn any_shape(&self) -> Vec<f64> {
         let mut random = SplitMix(1);
         let free = self.mechanics.inverse_masses();
@@ -139,7 +143,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Scales z to length 1. Returns the length that it had.
+/// Scales z to length 1 and returns its former length.
 fn normalise(z: &mut [f64]) -> f64 {
     let length = dot(z, z).sqrt();
     if length > 0.0 {
@@ -150,7 +154,8 @@ fn normalise(z: &mut [f64]) -> f64 {
     length
 }
 
-/// Visits the modes of a mechanical system with their shapes.
+/// Calls `visit` with each mode around x and its shape, by Lanczos's method with at most `products`
+/// products.
 fn of_mechanics(
     mechanics: &dyn Linearized,
     t: f64,
@@ -172,7 +177,8 @@ fn of_mechanics(
         if basis.len() == products {
             break;
         }
-        // Against all that came before, twice, which is enough for orthogonality to the last digit.
+        // Gram-Schmidt against the whole basis, twice, which is enough for orthogonality to
+        // rounding.
         for _ in 0..2 {
             for z in &basis {
                 let share = dot(z, &next);
@@ -211,7 +217,8 @@ fn of_mechanics(
     }
 }
 
-/// The mode in which errors of all constraints decay, if there are constraints.
+/// Critically damped mode in which Baumgarte stabilisation reduces the errors of all constraints;
+/// `None` without constraints.
 fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
     mechanics.baumgarte_frequency().map(|w| Mode {
         stiffness: w * w,
@@ -220,8 +227,8 @@ fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
     })
 }
 
-/// The modes of a first-order system: one for each pair of eigenvalues of the Jacobian, by central
-/// differences.
+/// Modes of a first-order system: one for each real eigenvalue and each conjugate pair of the
+/// Jacobian, which is computed by central differences.
 fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let n = y.len();
     let mut jacobian = DMatrix::zeros(n, n);
@@ -244,31 +251,32 @@ fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     jacobian
         .complex_eigenvalues()
         .iter()
-        // What central differences cannot tell from zero.
+        // Parts that central differences cannot tell from zero become zero.
         .map(|l| [l.re, l.im].map(|part| if part.abs() < 1e-9 * scale { 0.0 } else { part }))
         .filter(|[re, im]| *im >= 0.0 && (*re, *im) != (0.0, 0.0))
         .map(|[re, im]| Mode::of_eigenvalue(re, im))
         .collect()
 }
 
-/// The fastest mode of a run that goes on, by power iteration from the shape it had when last
-/// asked.
+/// Fastest mode of a run in progress, by power iteration from the shape at the last estimate.
 #[derive(Clone, Debug, Default)]
 pub struct LargestMode {
     shape: Vec<f64>,
 }
 
 impl LargestMode {
-    /// The shape of the mode: displacements times the root of their mass, of length 1.
+    /// Shape of the mode at the last estimate: the displacements times the roots of the masses, of
+    /// length 1; empty before the first estimate.
     #[must_use]
     pub fn shape(&self) -> &[f64] {
         &self.shape
     }
 
-    /// The fastest mode around the positions x, or that of constraints if it is faster.
+    /// Fastest mode around the positions x (m) at time t (s), or that of the constraints if it is
+    /// faster.
     ///
-    /// It is found within 1 % the first time, by 24 products with the force differential. Later
-    /// calls take 4 products, and are as close as the system has moved little since.
+    /// The first estimate takes 24 products with the force differential and is accurate to 1 %.
+    /// Later ones take 4 products, and are as accurate if the positions have changed little.
     #[must_use]
     pub fn estimate(&mut self, mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Option<Mode> {
         let mut stiffness = Normalised::new(mechanics, t, x);
@@ -277,7 +285,7 @@ impl LargestMode {
         if !known {
             self.shape = stiffness.any_shape();
         }
-        // A particle may have been pinned since.
+        // A particle may have been pinned since the last estimate.
         for (k, z) in self.shape.iter_mut().enumerate() {
             if free[k % free.len()] == 0.0 {
                 *z = 0.0;

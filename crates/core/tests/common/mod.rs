@@ -1,4 +1,4 @@
-//! What several tests need.
+//! Helpers of several tests.
 #![allow(dead_code, missing_docs, reason = "each test file uses its part")]
 
 use a3_core::integrators;
@@ -15,7 +15,7 @@ pub fn scene(name: &str) -> Scene {
     a3_scenes::find(name).unwrap().build(None).unwrap().scene
 }
 
-/// That of a scene file's text.
+/// Scene described by the text of a scene file.
 pub fn described(text: &str) -> Scene {
     a3_scenes::Description::parse(text)
         .and_then(|d| d.build(None, &mut |_| Err("no mesh".into())))
@@ -31,13 +31,15 @@ pub fn scene_with_grid(name: &str, rows: usize, cols: usize) -> Scene {
         .scene
 }
 
-/// A run of a built-in scene: in steps of `value` (s), or to that tolerance with an adaptive method.
+/// Run of a built-in scene: in steps of `value` (s), or to the tolerance `value` with an adaptive
+/// method.
 pub fn simulation(scene_name: &str, method_name: &str, value: f64) -> Simulation {
     let method = method(method_name);
     Simulation::new(scene(scene_name), method, method.control(value)).unwrap()
 }
 
-/// y after `steps` steps of h with nothing between the method and the system.
+/// State y after `steps` steps of h (s), taken by the method's integrator alone, without a
+/// simulation.
 pub fn integrate(
     system: &dyn ParticleSystem,
     method: &Method,
@@ -53,8 +55,8 @@ pub fn integrate(
     y
 }
 
-/// A linear oscillator of that angular frequency [rad/s] and damping ratio: a spring of rest length 0, pinned at the
-/// origin, with viscous drag. Particle 1 moves.
+/// Linear oscillator of angular frequency `omega` (rad/s) and damping ratio `zeta`: particle 1, of
+/// 1 kg, on a spring of rest length 0 that is pinned at the origin, with viscous drag.
 pub fn oscillator(omega: f64, zeta: f64) -> Network {
     let mut network = Network::new(vec![1.0; 2]).unwrap();
     let law = SpringLaw::new(omega * omega, 0.0, 0.0).unwrap();
@@ -71,7 +73,7 @@ pub fn oscillator(omega: f64, zeta: f64) -> Network {
     network
 }
 
-/// The largest number in y, by size; infinite if one is not a number.
+/// Largest magnitude of a number in y; infinite if one of them is NaN.
 pub fn size(y: &[f64]) -> f64 {
     y.iter().fold(0.0, |m: f64, y| {
         if y.is_nan() {
@@ -82,7 +84,7 @@ pub fn size(y: &[f64]) -> f64 {
     })
 }
 
-/// The largest difference between two states.
+/// Largest difference between two states.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     size(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>())

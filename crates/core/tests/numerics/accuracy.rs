@@ -1,4 +1,5 @@
-//! References that know what they are not sure of, errors that are true, and choices that are the best.
+//! Accuracy: the uncertainty of references, the errors of methods, and the choice of the cheapest
+//! one.
 
 use crate::common::{method, scene};
 use a3_core::accuracy::{Frames, Metric, Reference, choose, horizon, ladder, measure};
@@ -26,7 +27,7 @@ fn on_the_circle_the_error_is_the_known_one() {
         let outcome = measure(&circle, method(name), Control::Step(h), &reference, GO_ON)
             .unwrap()
             .unwrap();
-        // On its own, step by step, against sine and cosine.
+        // The same error, computed step by step against the sine and the cosine.
         let mut y = circle.state.clone();
         let mut integrator = method(name).integrator(circle.model.system()).unwrap();
         let mut worst: f64 = 0.0;
@@ -49,13 +50,13 @@ fn on_the_circle_the_error_is_the_known_one() {
     }
 }
 
-/// Obstacles that are hit: the motion has kinks, which no order sees through.
+/// Scenes with collisions: their motion has kinks, at which no method keeps its order.
 const KINKED: [&str; 2] = ["mit-sphere", "jelly"];
 
-/// The floor is what three independent runs disagree by, and no smaller than the error of the reference itself.
+/// The uncertainty of the reference is small on every scene without collisions.
 #[test]
 fn references_agree_with_themselves() {
-    // That of the flag takes three million evaluations.
+    // The flag is left out, because its reference takes three million evaluations.
     for entry in a3_scenes::SCENES
         .iter()
         .filter(|entry| entry.name != "flag")
@@ -74,7 +75,7 @@ fn references_agree_with_themselves() {
             reference.work.evaluations,
         );
         if !KINKED.contains(&entry.name) {
-            // Two pendulums on rods tell runs apart within a second.
+            // The double pendulum on rods is chaotic: runs separate within a second.
             let bound = if entry.name == "double-pendulum" {
                 1e-3
             } else {
@@ -153,10 +154,11 @@ fn a_run_can_be_stopped() {
     );
 }
 
-/// The choice costs at most 1.3 times the best that a search of every method at many steps and tolerances finds.
+/// The chosen method costs at most 1.3 times the cheapest run that a search of every method at many
+/// steps and tolerances finds.
 #[test]
 fn the_choice_is_the_best() {
-    // A search of all methods on the jelly and in the air takes minutes.
+    // The jelly and the flag are left out, because a search of all methods on them takes minutes.
     let entries = a3_scenes::SCENES.iter();
     for entry in entries.filter(|entry| !["flag", "jelly"].contains(&entry.name)) {
         let scene = entry.build(None).unwrap().scene;

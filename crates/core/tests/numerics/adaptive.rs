@@ -1,4 +1,5 @@
-//! Adaptive methods: true errors and costs, dense output, the first step, and what happens where no step will do.
+//! Adaptive methods: errors and costs, dense output, the first step, and the failure where no step
+//! meets the tolerance.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +7,7 @@ use crate::common::{distance, integrate, method, scene, simulation, size};
 use a3_core::integrators::{Taken, Tolerance};
 use a3_core::{Cause, Control, Error, ParticleSystem, Simulation, integrators};
 
-/// Ten times around the circle: the largest error at the ends of the steps, and the steps taken.
+/// Largest error at the ends of the steps, and number of steps, for ten revolutions on the circle.
 fn circle(name: &str, relative: f64) -> (f64, usize) {
     let circle = scene("simple");
     let system = circle.model.system();
@@ -24,7 +25,8 @@ fn circle(name: &str, relative: f64) -> (f64, usize) {
 
 #[test]
 fn errors_and_steps_on_the_circle() {
-    // Errors and accepted steps of SciPy's and others' at relative tolerance 1e-3, 1e-6, 1e-9.
+    // Errors and accepted steps of SciPy and other libraries at relative tolerances of 1e-3, 1e-6,
+    // 1e-9.
     for (name, listed) in [
         ("dopri5", [(1.4e-2, 72), (6.1e-6, 329), (6.0e-9, 1337)]),
         ("rkf45", [(4.8e-2, 82), (9.7e-5, 362), (3.6e-7, 1469)]),
@@ -39,13 +41,13 @@ fn errors_and_steps_on_the_circle() {
     assert!(error < 1e-7 && steps < 200, "{error:e}, {steps}");
 }
 
-/// Each polynomial has its order: the largest error within a step falls as h to the power order + 1.
+/// Dense output has its order: the largest error within a step falls as h to the power order + 1.
 #[test]
 fn dense_output_has_its_order() {
     for (name, order) in [("dopri5", 4), ("rkf45", 4), ("dop853", 7)] {
         let circle = scene("simple");
         let system = circle.model.system();
-        // One step of about this length, by a tolerance that lets it pass.
+        // One step of length h, which a loose tolerance accepts.
         let error = |h: f64| {
             let mut adaptive = method(name)
                 .adaptive(system, Tolerance::new(1e3).unwrap())
@@ -76,7 +78,7 @@ fn dense_output_has_its_order() {
     }
 }
 
-/// The state at a time does not depend on how often one looks, and a frame costs no step.
+/// The state at a time does not depend on the frames before it, and frames cost no steps.
 #[test]
 fn frames_cost_no_steps() {
     for name in ["dopri5", "rkf45", "dop853"] {
@@ -104,7 +106,7 @@ fn an_adaptive_run_takes_part_in_everything() {
     run.take_steps(5).unwrap();
     assert_eq!(run.steps(), 5);
     assert!(run.step_size().unwrap() > 1e-4 && run.time() > 0.0);
-    // A hand in the middle of a step: what was stepped ahead is forgotten.
+    // A hand grabs in the middle of a step: the rest of the step is discarded.
     run.advance_to(run.time() + 0.001).unwrap();
     run.grab(399).unwrap();
     let from = run.position(399);
@@ -154,7 +156,7 @@ fn a_fixed_step_of_an_adaptive_method_stays_a_step() {
     run.set_control(Control::Step(0.005)).unwrap();
     run.take_steps(20).unwrap();
     assert_eq!((run.time(), run.steps()), (0.4, 50));
-    // From a step to a tolerance and back, if someone says so.
+    // An explicit change of control goes from a step to a tolerance and back.
     run.set_control(Control::Tolerance(1e-6)).unwrap();
     run.advance_to(0.5).unwrap();
     assert!(run.work().total() > 0.0 && run.step_size() != Some(0.005));
@@ -177,7 +179,7 @@ fn a_tolerance_is_for_methods_that_estimate_their_error() {
     assert_eq!(run.control(), Control::Step(0.01));
 }
 
-/// The tolerance is kept where the motion is stiff, and rejections are counted.
+/// The error on stiff cloth falls with the tolerance.
 #[test]
 fn a_tighter_tolerance_is_more_accurate_on_cloth() {
     let reference = {
@@ -198,7 +200,7 @@ fn a_tighter_tolerance_is_more_accurate_on_cloth() {
     }
 }
 
-/// y' = y^2 from 1 is infinite at t = 1.
+/// System y' = y^2, whose solution from y = 1 is infinite at t = 1 s.
 struct Pole;
 
 impl ParticleSystem for Pole {
@@ -229,7 +231,7 @@ fn where_no_step_will_do_it_says_so() {
         assert!(size(&y).is_finite());
         assert!(error.to_string().contains("no step meets the tolerance"));
     }
-    // A run that ends so is a blow-up, not a hang and not a panic.
+    // A run that ends so reports a blow-up: it neither hangs nor panics.
     let mut bare = scene("simple");
     bare.model = a3_core::Model::FirstOrder(std::sync::Arc::new(Pole));
     bare.state = vec![1.0, 0.5, 0.25];
@@ -251,7 +253,7 @@ fn tolerances_that_make_no_sense_are_refused() {
     }
 }
 
-/// At a fixed step they are methods like any other.
+/// Adaptive methods can also take fixed steps.
 #[test]
 fn pairs_take_fixed_steps_too() {
     let circle = scene("simple");

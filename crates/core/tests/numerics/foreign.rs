@@ -1,9 +1,9 @@
-//! Integrators know no physics: a system defined outside the core runs with every method that can serve it.
+//! A system defined outside the core runs with every method that supports it.
 
 use crate::common::integrate;
 use a3_core::{Error, ParticleSystem, integrators};
 
-/// Predators and prey: a' = a (2/3 - 4/3 b), b' = b (a - 1).
+/// Lotka-Volterra system of prey a and predators b: a' = a (2/3 - 4/3 b), b' = b (a - 1).
 struct LotkaVolterra;
 
 impl ParticleSystem for LotkaVolterra {
@@ -17,7 +17,7 @@ impl ParticleSystem for LotkaVolterra {
     }
 }
 
-/// Constant along every solution.
+/// Invariant, which is constant along every solution.
 fn invariant(y: &[f64]) -> f64 {
     y[0] - y[0].ln() + 4.0 / 3.0 * y[1] - 2.0 / 3.0 * y[1].ln()
 }

@@ -1,4 +1,5 @@
-//! Implicit methods: growth, energy, rest, and steps that no explicit method survives.
+//! Implicit methods: growth factors, energy, states of rest, and steps at which no explicit method
+//! is stable.
 
 use std::time::Instant;
 
@@ -7,7 +8,7 @@ use a3_core::{Control, Coupling, Grid, Linearized, Network, Path, Sheet, Simulat
 use a3_core::{Model, Scene};
 use approx::assert_relative_eq;
 
-/// |R(iy)|
+/// Growth factor |R(iy)| of a method.
 fn growth(name: &str, y: f64) -> f64 {
     let g = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
     match name {
@@ -29,13 +30,13 @@ fn the_circle_shrinks_as_it_must() {
         for h in [0.01, 0.3, 1.0, 10.0, 1000.0] {
             let y = integrate(circle.model.system(), method(name), &circle.state, h, 1);
             let radius = y.iter().map(|y| y * y).sum::<f64>().sqrt();
-            // The Jacobian comes from differences.
+            // The Jacobian comes from central differences, hence the tolerance.
             assert_relative_eq!(radius, growth(name, h), max_relative = 1e-9);
         }
     }
 }
 
-/// The same through forces, masses and couplings.
+/// The growth of an oscillator, solved with forces, masses and couplings, is |R(i h omega)| too.
 #[test]
 fn the_oscillator_shrinks_as_it_must() {
     for (omega, h) in [(1.0, 0.1), (1.0, 1.0), (30.0, 0.5), (1e4, 0.01)] {
@@ -98,7 +99,7 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
     }
 }
 
-/// Half a second a step: the course's cloth comes to rest where it must.
+/// With a step of 0.5 s, the course's cloth comes to rest in the right state.
 #[test]
 fn the_course_cloth_settles_at_half_a_second_a_step() {
     let mut run = simulation("mit", "i", 0.5);
@@ -107,13 +108,15 @@ fn the_course_cloth_settles_at_half_a_second_a_step() {
         run.take_steps(1).unwrap();
         assert!(run.state()[..675].iter().all(|x| x.abs() < 10.0 * radius));
     }
-    // Where RK4, DOP853, TR-BDF2 and the midpoint rule settle too, to all of these digits.
+    // RK4, DOP853, TR-BDF2 and the midpoint rule come to rest at the same height, to all of these
+    // digits.
     assert_relative_eq!(run.lowest(), -3.738_373_760_058, epsilon = 1e-9);
     assert_relative_eq!(run.largest_stretch().unwrap(), 2.756, epsilon = 1e-3);
     assert!(run.work().residual < 1e-3);
 }
 
-/// Energy of an undamped pendulum on a spring, 200 s: kept by the midpoint rule and by PEFRL, lost by implicit Euler.
+/// Energy of an undamped pendulum on a spring for 200 s: the midpoint rule and PEFRL keep it, and
+/// implicit Euler loses it.
 #[test]
 fn energy_over_a_long_time() {
     let mut pendulum = scene("pendulum");
@@ -137,14 +140,14 @@ fn energy_over_a_long_time() {
         println!("{name} at {h}: {early:.1e} J in 20 s, {late:.1e} J in 200 s");
         (early, late)
     };
-    // At equal work: 40,000 evaluations.
+    // All methods here take equal work, 40,000 evaluations.
     let (_, pefrl) = drift("pefrl", 0.02);
     assert!(pefrl < 1e-5);
     let (_, verlet) = drift("verlet", 0.005);
     assert!(verlet < 1e-2 && verlet > 10.0 * pefrl);
     let (_, rk4) = drift("rk4", 0.02);
     assert!(rk4 > 100.0 * pefrl);
-    // No drift at all, beside what comes and goes.
+    // The energy error oscillates and does not grow with time.
     for (name, h) in [
         ("implicit-midpoint", 0.01),
         ("pefrl", 0.02),
@@ -156,13 +159,14 @@ fn energy_over_a_long_time() {
     assert!(drift("implicit", 0.005).1 > 1.0);
 }
 
-/// A square cloth of 1 m and 1 kg, flat and level, two corners pinned: it falls with a jerk.
+/// Square cloth of 1 m and 1 kg, flat and level, with two corners pinned; its fastest angular
+/// frequency is about `omega` (rad/s). It falls with a jerk.
 fn falling(side: usize, omega: f64) -> Scene {
     let grid = Grid::new(side, side).unwrap();
     let n = grid.particles();
     let spacing = 1.0 / (side - 1) as f64;
     let mass = 1.0 / n as f64;
-    // The largest frequency of such a square is about sqrt(7.8 k/m).
+    // The largest angular frequency of such a square is about sqrt(7.8 k/m).
     let k = mass * omega * omega / 7.8;
     let mut network = Network::new(vec![mass; n]).unwrap();
     network
@@ -196,7 +200,7 @@ fn stiff_cloth_falls_at_a_frame_a_step() {
         );
         assert!(run.largest_stretch().unwrap() < 1.3, "{name}");
     }
-    // No explicit method comes near.
+    // The classical Runge-Kutta method blows up at this step.
     let mut run = Simulation::new(
         falling(20, 1000.0),
         method("rk4"),
@@ -206,7 +210,7 @@ fn stiff_cloth_falls_at_a_frame_a_step() {
     assert!(run.advance_to(1.0).is_err());
 }
 
-/// As a hand grabs and lets go, what is pinned changes, and pins are where they should be.
+/// Pins follow their paths also where a hand changes which particles are pinned.
 #[test]
 fn hands_pull_at_implicit_cloth() {
     for name in METHODS {

@@ -1,4 +1,5 @@
-//! Predicted limits against those that mathematics gives, and against what the scenes themselves do.
+//! Stability limits: predicted ones against exact ones, and against those observed on the scenes
+//! themselves.
 
 use crate::common::{described, method, scene, scene_with_grid};
 use a3_core::stability::{
@@ -36,7 +37,7 @@ fn growth_on_the_imaginary_axis() {
     }
 }
 
-/// Each method's limits: on the real axis, on the imaginary one, and between them.
+/// Limits of each method on the real axis, on the imaginary axis, and between them.
 #[test]
 fn limits_in_the_plane() {
     let limit = |name: &str, mode: Mode| largest_step(method(name), &[mode]).unwrap().unwrap();
@@ -53,7 +54,7 @@ fn limits_in_the_plane() {
         assert_relative_eq!(1000.0 * found.step, real, max_relative = 1e-3);
         assert!(found.strict, "{name}");
     }
-    // So fast a mode that what grows at all grows at once.
+    // The mode is so fast that any growth exceeds the bound at once.
     for (name, imaginary) in [
         ("rk4", 2.828_427_125),
         ("dopri5", 0.997_189_009),
@@ -117,7 +118,8 @@ fn limits_in_the_plane() {
     }
 }
 
-/// 2 sqrt(k/m) cos(pi / (2n + 1)), for n free masses on a line, one end pinned.
+/// Largest angular frequency of n free masses on a line with one end pinned: 2 sqrt(k/m) cos(pi /
+/// (2n + 1)).
 #[test]
 fn a_chain_has_its_frequency() {
     for n in [1, 2, 5, 40] {
@@ -146,7 +148,8 @@ fn a_chain_has_its_frequency() {
     }
 }
 
-/// A flat square of springs of one stiffness, two corners pinned: w2 in units of k/m.
+/// Largest w^2, in units of k/m, of a flat square of springs of one stiffness with two corners
+/// pinned.
 #[test]
 fn a_cloth_has_its_frequency() {
     for (side, expected) in [
@@ -195,13 +198,14 @@ fn drag_and_spring_damping_are_told_apart() {
     let network = cloth.model.network().unwrap();
     let modes = spectrum(network, 0.0, &cloth.state);
     assert_relative_eq!(modes[0].drag, 0.3, max_relative = 1e-9);
-    // 0.006 s times the stiffness, all of which is along the springs while none is stretched.
+    // Damping is 0.006 s times the stiffness: all stiffness acts along the springs while none is
+    // stretched.
     assert_relative_eq!(
         modes[0].damping,
         0.006 * modes[0].stiffness,
         max_relative = 0.05
     );
-    // The fastest are no faster than the sum of a particle's stiffnesses allows.
+    // The sum of the stiffnesses at a particle bounds the fastest mode.
     let bound = 2.0 * (4.0 * 2500.0 + 4.0 * 1250.0 + 4.0 * 625.0);
     assert!(modes[0].stiffness < bound && modes[0].stiffness > 0.4 * bound);
     let mut largest = LargestMode::default();
@@ -238,8 +242,9 @@ fn a_scene_of_any_shape_has_a_spectrum() {
     assert!(spectrum(tall.model.system(), 0.0, &tall.state)[0].frequency() > 0.0);
 }
 
-/// From both sides, on the nonlinear scene itself: the step at which a nudge of the resting cloth begins to grow, and the
-/// one at which the falling cloth gains energy.
+/// Predicted limits agree with those observed on the nonlinear scene: the step at which a
+/// disturbance of the cloth at rest begins to grow, and the step at which the falling cloth gains
+/// energy.
 #[test]
 fn limits_are_seen_on_the_cloth() {
     let cloth = scene_with_grid("cloth", 8, 8);
@@ -265,7 +270,8 @@ fn limits_are_seen_on_the_cloth() {
             "{} at rest: {ratio}",
             m.name
         );
-        // Past their limits these grow so slowly that the cloth has changed its shape before one sees it.
+        // Past their limits these methods grow so slowly that the cloth changes its shape before
+        // the growth is observed.
         let slow = match m.name {
             "euler" => 3.0,
             "trapezoid" | "midpoint" => 1.2,
@@ -276,7 +282,7 @@ fn limits_are_seen_on_the_cloth() {
     }
 }
 
-/// What is on its way comes to no rest, and what would tear on the way is brought to rest whole.
+/// A scene whose pins move has no state of rest, and a scene is brought to rest without tearing.
 #[test]
 fn rest_is_without_tears_and_not_of_what_moves() {
     let cloth = "

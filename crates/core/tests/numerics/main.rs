@@ -1,4 +1,5 @@
-//! Methods against mathematics: orders, growth factors, limits, reference states, charts of accuracy.
+//! Tests of the methods' numerics: orders, growth factors, stability limits, reference states,
+//! accuracy.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,5 @@
-//! The global error falls as h to the method's order, with gravity, drag, damped springs and a moving pin.
+//! Orders of convergence: the global error falls as h to the method's order, with gravity, drag,
+//! damped springs and a moving pin.
 
 use crate::common::{distance, integrate, method};
 use a3_core::{Grid, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3, integrators};
@@ -52,7 +53,8 @@ fn every_method_has_its_order() {
         let y0 = start(&network);
         let exact = integrate(&network, method("dop853"), &y0, 1.0 / 512.0, 512);
         for m in integrators::METHODS {
-            // Small enough for the leading term, large enough to stay clear of rounding: of order 8 hardly both.
+            // Steps are short enough for the leading term and long enough to avoid rounding; for
+            // order 8 hardly both is possible.
             let (steps, slack) = match m.order {
                 8.. => (20, 0.6),
                 5.. => (256, 0.1),
@@ -76,7 +78,7 @@ fn every_method_has_its_order() {
     }
 }
 
-/// Steps that sweep over rows put pins in their places stage by stage.
+/// Sweeps over rows keep the order with moving pins, which they put in their places stage by stage.
 #[test]
 fn sheets_led_by_their_pins_keep_the_order() {
     let grid = Grid::new(4, 5).unwrap();

@@ -1,11 +1,12 @@
-//! Scenes whose states were computed elsewhere, by extended-precision extrapolation: met to 1e-9.
+//! Scenes whose states were computed independently, by extrapolation in extended precision: methods
+//! agree with them to 1e-9.
 
 use crate::common::method;
 use a3_core::{Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
-struct Reference {
+struct ReferenceFile {
     gravity: [f64; 3],
     drag: f64,
     mass: Vec<f64>,
@@ -23,7 +24,7 @@ struct State {
     velocities: Vec<[f64; 3]>,
 }
 
-fn load(name: &str) -> Reference {
+fn load(name: &str) -> ReferenceFile {
     let path = format!("{}/tests/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
@@ -35,7 +36,7 @@ fn column_major(positions: &[[f64; 3]], velocities: &[[f64; 3]]) -> Vec<f64> {
         .collect()
 }
 
-fn simulate(reference: &Reference, name: &str, h: f64) -> Simulation {
+fn simulate(reference: &ReferenceFile, name: &str, h: f64) -> Simulation {
     let mut network = Network::new(reference.mass.clone()).unwrap();
     for &(i, j, k, rest, damping) in &reference.springs {
         let law = SpringLaw::new(k, rest, damping).unwrap();
@@ -63,7 +64,7 @@ fn simulate(reference: &Reference, name: &str, h: f64) -> Simulation {
     Simulation::new(scene, method(name), method(name).control(h)).unwrap()
 }
 
-/// The largest error over all states of the reference, velocities included.
+/// Largest error over all states of the reference, velocities included.
 fn error(name: &str, method: &str, h: f64) -> f64 {
     let reference = load(name);
     let mut simulation = simulate(&reference, method, h);
@@ -94,7 +95,9 @@ fn rk4_meets_every_reference() {
     }
 }
 
-/// Every adaptive method at a tight tolerance; every other, extrapolated to a step of zero by Neville's scheme: its error has the powers p, p + 1, ... of h.
+/// Every method agrees with the references: an adaptive one at a tight tolerance, any other
+/// extrapolated to a step of zero by Neville's scheme, as its error has the powers p, p + 1, ... of
+/// h.
 #[test]
 fn every_method_meets_the_references_in_the_limit() {
     for (name, base, levels) in [
@@ -123,7 +126,7 @@ fn every_method_meets_the_references_in_the_limit() {
                 simulation.state().to_vec()
             };
             let order = method.order as i32;
-            // No more levels than there is precision for.
+            // Methods of high order reach rounding after few levels.
             let levels = if order >= 4 { 3 } else { levels };
             let mut row: Vec<Vec<f64>> = (0..levels).map(run).collect();
             let mut best = f64::INFINITY;
@@ -145,7 +148,7 @@ fn every_method_meets_the_references_in_the_limit() {
     }
 }
 
-/// The scenes `mit` and `chain` are the course's: their states are the reference's.
+/// The scenes `mit` and `chain` are those of the course: their states agree with the references.
 #[test]
 fn built_in_scenes_are_the_references() {
     for (name, h) in [("mit", 2e-4), ("chain", 1e-3)] {

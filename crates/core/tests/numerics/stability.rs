@@ -1,4 +1,4 @@
-//! Growth factors and limits that mathematics gives exactly, each limit from both sides.
+//! Exact growth factors and stability limits; each limit is tested from both sides.
 
 use crate::common::{integrate, method, oscillator, scene, size};
 use approx::assert_relative_eq;
@@ -47,12 +47,14 @@ fn the_circle_after_1571_steps() {
     }
 }
 
-/// Largest state over two runs of a damped oscillator in steps of `h_omega`: the mode's frequency is 1.
+/// Largest magnitude in the final states of two runs of a damped oscillator of 1 rad/s, in steps of
+/// `h_omega` (s).
 fn largest(name: &str, zeta: f64, h_omega: f64) -> f64 {
     let network = oscillator(1.0, zeta);
     let mut largest: f64 = 0.0;
     for axis in 0..2 {
-        // Starting from a displacement, then from a velocity: one of them excites the growing mode.
+        // One run starts from a displacement, the other from a velocity: one of them excites the
+        // growing mode.
         let mut y = vec![0.0; 12];
         y[1 + 6 * axis] = 1.0;
         largest = largest.max(size(&integrate(
@@ -146,7 +148,8 @@ fn damped_limits() {
         ),
     ] {
         for (zeta, limit) in zetas.into_iter().zip(limits) {
-            // A growth of 1 % over the limit shows within these steps, unless it is all but flat.
+            // A step 1 % above the limit grows visibly within these steps, except for Euler at
+            // light damping, where growth is too slow.
             if name == "euler" && zeta == 0.01 {
                 continue;
             }
@@ -155,7 +158,8 @@ fn damped_limits() {
     }
 }
 
-/// Past its limit Dormand and Prince's method grows by 5e-6 a step.
+/// Limit of Dormand and Prince's method without damping; past it the method grows by a factor of 1
+/// + 5e-6 in each step.
 #[test]
 fn the_undamped_limit_of_dopri5() {
     let network = oscillator(1.0, 0.0);
@@ -168,13 +172,14 @@ fn the_undamped_limit_of_dopri5() {
     }
 }
 
-/// Euler at zeta = 0.01 grows by 2e-6 a step at 1.01 of its limit: told from the slope instead.
+/// Limit of Euler's method at zeta = 0.01: at 1.01 times its limit the amplitude grows by only 2e-6
+/// in each step, so that amplitudes at two times are compared.
 #[test]
 fn euler_at_light_damping() {
     let network = oscillator(1.0, 0.01);
     let mut y = vec![0.0; 12];
     y[1] = 1.0;
-    // Whole periods apart, so that the phase is the same.
+    // Both times are whole periods, so that the phase is the same.
     let amplitude = |h: f64, steps| {
         let y = integrate(&network, method("euler"), &y, h, steps);
         (y[1] * y[1] + y[7] * y[7]).sqrt()

@@ -1,5 +1,5 @@
-//! The views that a system may offer are open to systems outside the core: a line of particles that
-//! knows how to kick and drift, to multiply by its tangent, and to step row by row.
+//! Optional views, implemented by a system outside the core: a line of particles that implements
+//! kicks and drifts, products with its tangent, and steps row by row.
 
 use std::ops::Range;
 
@@ -11,6 +11,7 @@ use a3_core::{
 
 /// Stiffness between neighbours (N/m): xx, yy, zz, xy, xz, yz.
 const K: [f64; 6] = [40.0, 30.0, 50.0, 5.0, -3.0, 8.0];
+/// Gravity (m/s2).
 const G: [f64; 3] = [0.5, -9.81, 0.0];
 
 /// Particles in a line, the first one pinned, each held to the next by an anisotropic linear
@@ -57,7 +58,7 @@ fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| a[axis] - b[axis])
 }
 
-/// The force on a particle between pulls from above and below.
+/// Force (N) on a particle between the pulls of its neighbours, with gravity if `g` is set.
 fn force(above: [f64; 3], below: [f64; 3], g: bool) -> [f64; 3] {
     [0, 1, 2].map(|axis| above[axis] - below[axis] + if g { 0.05 * G[axis] } else { 0.0 })
 }
@@ -105,7 +106,7 @@ impl Mechanics for Line {
     }
 }
 
-/// Gravity is in the drift: x += h v + h2/2 g, v += h g.
+/// Drift with gravity: x += h v + h^2/2 g, v += h g.
 fn fall(h: f64, x: &mut [f64], v: &mut [f64], g: f64) {
     for (x, v) in x.iter_mut().zip(v) {
         *x += h * *v + 0.5 * h * h * g;
@@ -157,7 +158,7 @@ impl Linearized for Line {
     }
 }
 
-/// A particle a row.
+/// Rows of one particle each.
 impl Rows for Line {
     fn patches(&self) -> usize {
         1
@@ -171,7 +172,7 @@ impl Rows for Line {
         }
     }
 
-    /// The pull from above.
+    /// Columns for the pull of the particle above, one for each axis.
     fn kept_columns(&self) -> usize {
         3
     }
@@ -255,7 +256,7 @@ fn rows_step_to_the_bits_of_whole_arrays() {
             Some(&self.0)
         }
     }
-    // The longer one in bands, on as many threads as there are.
+    // The longest line is stepped in bands, on as many threads as there are.
     for particles in [1, 2, 9, 5000] {
         let y = Line::new(particles, true).state();
         for name in [
@@ -275,7 +276,7 @@ fn rows_step_to_the_bits_of_whole_arrays() {
     }
 }
 
-/// With views and without, every method finds the same motion.
+/// Every method converges to the same motion with views and without.
 #[test]
 fn a_system_without_views_is_served_too() {
     let line = Line::new(7, true);
@@ -297,7 +298,7 @@ fn a_system_without_views_is_served_too() {
     }
 }
 
-/// The midpoint rule with the blocks of the tangent solves its equation.
+/// The implicit midpoint rule solves its equation with the blocks of the tangent.
 #[test]
 fn implicit_methods_solve_with_blocks() {
     for particles in [7, 300] {
@@ -317,8 +318,7 @@ fn implicit_methods_solve_with_blocks() {
     }
 }
 
-/// A line that holds a constraint: what implicit methods cannot serve is refused before anything
-/// opens.
+/// Implicit methods refuse a system with a constraint before a run begins.
 #[test]
 fn constraints_in_the_forces_are_refused_by_implicit_methods() {
     struct Constrained(Line);

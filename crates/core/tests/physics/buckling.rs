@@ -1,4 +1,5 @@
-//! Bend springs that buckle: their force by hand and by other means, and strips that give way smoothly.
+//! Bend springs that buckle: their force against independent formulas, and strips that bend
+//! smoothly.
 
 use crate::common::{distance, integrate, method, scene_with_grid, size};
 use a3_core::elements::Buckling;
@@ -8,7 +9,7 @@ use a3_core::{
 };
 use approx::assert_relative_eq;
 
-/// A straight strip so stiff that it buckles at once.
+/// Straight strip so stiff in compression that it buckles at once.
 const STRIP: Buckling = Buckling {
     i: 0,
     j: 1,
@@ -18,7 +19,7 @@ const STRIP: Buckling = Buckling {
     tension: 3.0,
     damping: 0.0,
 };
-/// One that buckles when it is a tenth shorter.
+/// Strip that buckles when it is shortened by a tenth.
 const SOFT: Buckling = Buckling {
     compression: 12.773_223_695_382_405 * STRIP.bending / (0.7 * 0.7 * 0.07),
     ..STRIP
@@ -30,7 +31,7 @@ fn network(buckling: Buckling) -> Network {
     network
 }
 
-/// What pulls the ends together (N) at this distance.
+/// Force that pulls the ends together (N) at the distance `length` (m).
 fn pull(buckling: Buckling, length: f64) -> f64 {
     let mut f = [f64::NAN; 6];
     network(buckling).forces(0.0, &[0.3, 0.3, length, 0.0, 0.0, 0.0], &[0.0; 6], &mut f);
@@ -38,7 +39,7 @@ fn pull(buckling: Buckling, length: f64) -> f64 {
     -f[2]
 }
 
-/// L / r, and r2 / `k_b` times the force, by forty digits.
+/// Pairs of L / r and the force times r^2 / `k_b`, computed with forty digits.
 const CURVE: [(f64, f64); 5] = [
     (0.2, -25.554_036_506_524_22),
     (0.5, -17.547_251_317_025_06),
@@ -54,7 +55,7 @@ fn the_push_of_an_arc_is_that_of_its_energy() {
         let expected = expected * k / (r * r);
         assert_relative_eq!(pull(STRIP, share * r), expected, max_relative = 2e-14);
     }
-    // Ends that almost meet: the arc is a full circle.
+    // Where the ends almost meet, the arc is a full circle.
     let circle = -4.0 * std::f64::consts::PI.powi(2) * k / (r * r);
     assert_relative_eq!(pull(STRIP, 1e-12), circle, max_relative = 1e-11);
 }
@@ -79,7 +80,7 @@ fn a_strip_is_straight_until_its_arc_would_push_less() {
 #[test]
 fn the_force_is_continuous_and_grows_with_length() {
     let r = SOFT.rest_length;
-    // Where it buckles, and where it is straight and at rest.
+    // The force is continuous where the strip buckles and at its rest length.
     for (at, slope) in [(0.9 * r, SOFT.compression), (r, SOFT.compression)] {
         for e in [1e-6, 1e-9, 1e-12] {
             let jump = pull(SOFT, at + e) - pull(SOFT, at - e);
@@ -111,13 +112,14 @@ fn the_derivative_of_the_energy_is_the_force() {
             assert_relative_eq!(slope, pull(of, l), max_relative = 1e-6);
         }
     }
-    // No jump where it buckles.
+    // The energy is continuous where the strip buckles.
     let jump = energy(SOFT, 0.63 + 1e-9) - energy(SOFT, 0.63 - 1e-9);
     assert_relative_eq!(jump, 2e-9 * pull(SOFT, 0.63), max_relative = 1e-5);
     assert_eq!(energy(SOFT, SOFT.rest_length), 0.0);
 }
 
-/// Two masses that fly to and fro, the strip between them straight, bent and stretched by turns.
+/// Energy of two oscillating masses is conserved while the strip between them is straight, bent and
+/// stretched in turn.
 #[test]
 fn energy_is_conserved() {
     let network = network(SOFT);
@@ -183,7 +185,8 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
 const PARTICLES: usize = 11;
 const SPACING: f64 = 0.1;
 
-/// A strip of 1 m, ends held, that are led together to 0.7 m within five seconds. It is bent a little.
+/// Slightly bent strip of 1 m, whose ends are held and move together to a distance of 0.7 m within
+/// 5 s.
 fn strip() -> Scene {
     let mut network = Network::new(vec![0.01; PARTICLES]).unwrap();
     for i in 0..PARTICLES - 1 {
@@ -228,7 +231,7 @@ fn strip() -> Scene {
     Scene::new("strip", Model::Network(Box::new(network)), state)
 }
 
-/// What each particle but the ends turns the strip by (rad), in the plane.
+/// Angles (rad) by which the strip turns in the plane at each particle but the ends.
 fn turns(run: &Simulation) -> Vec<f64> {
     let way = |i: usize| run.position(i + 1) - run.position(i);
     (0..PARTICLES - 2)
@@ -255,7 +258,7 @@ fn a_compressed_strip_buckles_to_one_side_in_a_smooth_arch() {
             let turns = turns(&run);
             let change = turns.windows(2).map(|w| (w[1] - w[0]).abs());
             let rough = change.fold(0.0, f64::max);
-            // As it gives way to the jerk it still swings.
+            // The strip still oscillates after the jerk at the start.
             assert!(rough < 0.7, "{name}: {rough}");
             if run.time() > 2.0 {
                 roughest = roughest.max(rough);
@@ -266,19 +269,19 @@ fn a_compressed_strip_buckles_to_one_side_in_a_smooth_arch() {
             "{name}: roughest {roughest:.3}, top {:.4}, turns {turns:.3?}",
             run.position(5).y
         );
-        // Pushed together, it bows upwards, everywhere, and most in the middle.
+        // The compressed strip bows upwards everywhere, and most in the middle.
         assert!(
             turns.iter().all(|turn| *turn < -0.1 && *turn > -0.4),
             "{name}"
         );
         assert!(turns[..5].is_sorted_by(|a, b| a >= b), "{name}");
-        // It bows alike all along, and never in folds.
+        // The strip bows smoothly and does not fold.
         assert!(roughest < 0.1, "{name}: {roughest}");
         assert!(run.velocities().iter().all(|v| v.abs() < 1e-4), "{name}");
         shapes.push(run.position(5).y);
     }
     for top in &shapes {
-        // Euler's elastica of length 1 over a span of 0.7, by elliptic integrals.
+        // Height of Euler's elastica of length 1 m over a span of 0.7 m, by elliptic integrals.
         assert_relative_eq!(*top, shapes[0], max_relative = 1e-3);
         assert_relative_eq!(*top, 0.314_312_613, max_relative = 0.01);
     }
@@ -316,7 +319,7 @@ fn strips_are_springs_to_those_who_ask() {
     assert_eq!(pull(stiffer, 0.3), 4.0 * pull(STRIP, 0.3));
 }
 
-/// They pull beside the vectors of a sheet, and its sweeps are off.
+/// Strips act on the particles of a sheet, which is then stepped without sweeps.
 #[test]
 fn a_sheet_may_have_strips() {
     let scene = scene_with_grid("mit", 5, 6);
@@ -389,7 +392,7 @@ fn strips_that_make_no_sense_are_refused() {
     let error = network.add_buckling(weak).unwrap_err().to_string();
     assert!(error.contains("at least 23.01"), "{error}");
     assert_eq!(network.buckling().count(), 0);
-    // The weakest: both push alike where the ends meet.
+    // The weakest strip that can buckle: where the ends meet, it pushes equally straight and bent.
     let least = 4.0 * std::f64::consts::PI.powi(2) * 0.2 / 0.343;
     let weakest = Buckling {
         compression: least * (1.0 + 1e-12),

@@ -1,4 +1,4 @@
-//! Constraints hold to rounding, forces that hold them do no work, and methods keep their orders with them.
+//! Constraints hold to rounding, their forces do no work, and methods keep their orders with them.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -16,7 +16,7 @@ fn vector(x: f64, y: f64, z: f64) -> Vector3<f64> {
     Vector3::new(x, y, z)
 }
 
-/// Particles of these masses under gravity, held by these constraints.
+/// Network of particles of these masses (kg) under gravity with these constraints.
 fn network(masses: &[f64], constraints: &[Constraint]) -> Network {
     let mut network = weightless(masses, constraints);
     network.set_gravity(vector(0.0, -G, 0.0));
@@ -44,7 +44,7 @@ fn wire() -> Constraint {
     }
 }
 
-/// y of particles at x that move with v.
+/// State y of particles at positions x (m) with velocities v (m/s).
 fn state(x: &[Vector3<f64>], v: &[Vector3<f64>]) -> Vec<f64> {
     [x, v]
         .into_iter()
@@ -52,7 +52,7 @@ fn state(x: &[Vector3<f64>], v: &[Vector3<f64>]) -> Vec<f64> {
         .collect()
 }
 
-/// Particle i of y.
+/// Position (m) and velocity (m/s) of particle i in the state y.
 fn of(y: &[f64], i: usize) -> [Vector3<f64>; 2] {
     let n = y.len() / 6;
     [0, 3].map(|c| vector(y[c * n + i], y[(c + 1) * n + i], y[(c + 2) * n + i]))
@@ -67,7 +67,8 @@ fn error(network: &Network, y: &[f64]) -> f64 {
     network.constraint_error(&y[..y.len() / 2]).unwrap()
 }
 
-/// The largest error of the constraints (m) and change of the energy (J) in so many steps, and the state after them.
+/// Largest error of the constraints (m) and largest change of the energy (J) during `steps` steps
+/// of h (s), and the state after them.
 fn watch(network: &Network, y: &[f64], name: &str, h: f64, steps: u64) -> (f64, f64, Vec<f64>) {
     let mut integrator = method(name).integrator(network).unwrap();
     let mut y = y.to_vec();
@@ -81,7 +82,8 @@ fn watch(network: &Network, y: &[f64], name: &str, h: f64, steps: u64) -> (f64, 
     (off, change, y)
 }
 
-/// How long a pendulum of that frequency at small angles (1/s) takes to and fro, let go at this angle: Gauss's formula.
+/// Period (s) of a pendulum that is released at this angle (rad), by Gauss's arithmetic-geometric
+/// mean; `frequency` is its angular frequency at small angles (rad/s).
 fn period(frequency: f64, angle: f64) -> f64 {
     let (mut a, mut b) = (1.0, (0.5 * angle).cos());
     while f64::abs(a - b) > 1e-15 {
@@ -162,7 +164,7 @@ fn a_spherical_pendulum_keeps_what_it_turns_with() {
     assert!((turn(&end) - turn(&y)).abs() < 1e-8);
 }
 
-/// Rods end to end from particle 0, which is pinned there, level and at rest.
+/// Level chain of rods at rest; particle 0, at its end, is pinned.
 fn chain(rods: usize) -> (Network, Vec<f64>) {
     let rod = |i| rod(i, i + 1, 0.5);
     let constraints: Vec<_> = (0..rods).map(rod).collect();
@@ -190,7 +192,7 @@ fn a_chain_of_rods_falls_and_holds() {
     assert!(off < 1e-5 && change < 1e-4, "{off:e} m, {change:e} J");
 }
 
-/// Rods from a pin that swings, drag and a spring of that damping (N s/m).
+/// Rods that hang from a swinging pin, with drag and a spring of this damping (N s/m).
 fn driven(damping: f64) -> (Network, Vec<f64>) {
     let mut network = network(&[1.0, 0.7, 1.3], &[rod(0, 1, 0.8), rod(2, 1, 1.0)]);
     let path = Path::Sine {
@@ -210,7 +212,8 @@ fn driven(damping: f64) -> (Network, Vec<f64>) {
     (network, state(&x, &[v; 3]))
 }
 
-/// Also where nothing but the constraints reads velocities.
+/// Explicit methods keep their order with constraints, also where only the constraints depend on
+/// velocities.
 #[test]
 fn every_explicit_method_keeps_its_order() {
     for damping in [0.5, 0.0] {
@@ -238,7 +241,8 @@ fn every_explicit_method_keeps_its_order() {
     }
 }
 
-/// C'' = -ks C - kd C' along every rod of a long chain that is off its constraints and on its way, to rounding.
+/// C'' = -ks C - kd C' to rounding for every rod of a long moving chain that violates its
+/// constraints.
 #[test]
 fn accelerations_are_what_the_constraints_ask_for() {
     let rods = 40;
@@ -271,7 +275,7 @@ fn a_rod_to_a_pin_that_swings_keeps_its_length() {
     assert!(off < 1e-9, "{off:e} m");
 }
 
-/// What holds a pin to its path is among the forces too: all of them move the middle of the masses.
+/// Rods pull at pins: the sum of all forces, those on pins included, moves the centre of mass.
 #[test]
 fn rods_pull_at_pins_as_pins_pull_at_them() {
     let mut network = network(&[1.0, 0.5], &[rod(0, 1, 1.0)]);
@@ -350,7 +354,7 @@ fn a_rod_too_many_changes_nothing() {
     for more in [&plain[..], &[rod(2, 1, 2.0), rod(1, 2, 2.0)]] {
         assert!(distance(&run(more, 1), &expected) < 1e-10);
     }
-    // Between pins, where nothing can be done and nothing needs to be.
+    // A constraint between pins adds no force.
     let of_one = {
         let mut network = network(&[1.0, 0.5, 2.0], &plain[1..]);
         for i in 0..2 {
@@ -363,7 +367,7 @@ fn a_rod_too_many_changes_nothing() {
     assert!(distance(&far, &of_one) < 1e-12);
 }
 
-/// Where three are in a line, their rods say the same thing twice.
+/// Constraints may be redundant, as those of three rods between particles on a line are.
 #[test]
 fn a_flat_triangle_of_rods_turns_as_one() {
     let network = weightless(&[1.0; 3], &[rod(0, 1, 1.0), rod(1, 2, 1.0), rod(0, 2, 2.0)]);
@@ -390,7 +394,7 @@ fn what_cannot_be_held_stays_finite() {
         1e-3,
         5_000,
     );
-    // What comes nearest to both.
+    // Contradictory constraints are met as nearly as possible.
     assert!(distance(&y, &state(&[vector(0.5, 0.0, 0.0)], &[ZERO])) < 1e-9);
     let rods = [
         rod(0, 1, 1.0),
@@ -407,7 +411,7 @@ fn what_cannot_be_held_stays_finite() {
     assert!(size(&y) < 10.0, "{y:?}");
 }
 
-/// There is no way out of a centre to be told, and no NaN.
+/// At the centre of a sphere no direction is defined: the constraint adds no force, and no NaN.
 #[test]
 fn in_a_centre_nothing_holds() {
     let sphere = Constraint::Sphere {
@@ -422,7 +426,8 @@ fn in_a_centre_nothing_holds() {
     assert_eq!(network.constraint_error(&[0.0; 6]), Some(1.0));
 }
 
-/// C'' = -w2 C - 2 w C', for every kind: 0.1 m become 0.1 (1 + w t) exp(-w t).
+/// Errors of every kind of constraint decay by C'' = -w^2 C - 2 w C': 0.1 m becomes 0.1 (1 + w t)
+/// exp(-w t) m.
 #[test]
 fn what_is_off_comes_back() {
     let slope = vector(0.6, 0.8, 0.0);
@@ -543,7 +548,7 @@ fn constraints_that_make_no_sense_are_refused() {
     assert_eq!(network.baumgarte_frequency(), Some(10.0));
 }
 
-/// Scratch that evaluations share leaves nothing behind.
+/// Evaluations do not depend on earlier ones, with which they share scratch.
 #[test]
 fn evaluations_are_functions_of_their_arguments() {
     let ((network, y), (other, z)) = (driven(0.5), chain(10));
@@ -563,14 +568,14 @@ fn scene((network, state): (Network, Vec<f64>)) -> Scene {
     Scene::new("rods", Model::Network(Box::new(network)), state)
 }
 
-/// A hand that pulls at rods in every way neither tears them nor makes them fly.
+/// A hand that pulls at rods in any direction keeps their lengths and bounds their velocities.
 #[test]
 fn a_hand_gets_no_farther_than_rods_let_it() {
     for grabbed in [3, 10] {
         let run = Simulation::new(scene(chain(10)), method("rk4"), Control::Step(0.005));
         let mut run = run.unwrap();
         run.grab(grabbed).unwrap();
-        // Within the chain's reach it comes.
+        // Within the chain's reach, the particle comes to the target.
         let target = vector(0.3, 0.5, 0.4) * (0.15 * grabbed as f64);
         for _ in 0..150 {
             run.pull(target);
@@ -596,7 +601,8 @@ fn a_hand_gets_no_farther_than_rods_let_it() {
     }
 }
 
-/// A hand leads the pinned end of a rod between pins to 1.05 lengths from the other one at most, and no nearer than 0.95.
+/// A hand moves the end of a rod between pins to at least 0.95 and at most 1.05 lengths from the
+/// other end.
 #[test]
 fn a_hand_keeps_the_length_of_a_rod() {
     let mut network = weightless(&[1.0; 2], &[rod(0, 1, 2.0)]);
@@ -622,7 +628,8 @@ fn a_hand_keeps_the_length_of_a_rod() {
     }
 }
 
-/// What takes errors back limits a step too, and nothing is brought to rest by a method that refuses.
+/// Baumgarte stabilisation limits the step too, and a scene with constraints has no state of rest,
+/// as implicit methods do not support it.
 #[test]
 fn stability_knows_of_the_feedback() {
     let scene = scene(chain(3));
@@ -637,7 +644,8 @@ fn stability_knows_of_the_feedback() {
     assert!(rest(&scene).unwrap().is_none());
 }
 
-/// Rows that a sweep takes one after another know of no constraints: with one it is not taken.
+/// A sheet that hangs from point constraints moves like one that hangs from pins; it is stepped by
+/// whole arrays, as sweeps do not support constraints.
 #[test]
 fn a_sheet_hangs_from_points_as_from_pins() {
     let grid = Grid::new(4, 5).unwrap();

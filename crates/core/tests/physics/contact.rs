@@ -1,4 +1,4 @@
-//! Contact with obstacles: nearest points of surfaces, and what is left of velocities.
+//! Contact with obstacles: nearest points of surfaces, and velocities after contact.
 
 use a3_core::contact::{Obstacle, Shape, Step, resolve};
 use a3_core::{Mechanics, Network, Path, Vector3};
@@ -30,7 +30,7 @@ fn with_capsule(path: Path) -> Network {
     network
 }
 
-/// Where a particle is put, and what is left of its velocity.
+/// Position (m) and velocity (m/s) of a particle after contact at time t (s).
 fn resolved(network: &Network, t: f64, x: Vector3<f64>, v: Vector3<f64>) -> [Vector3<f64>; 2] {
     let mut y = [x.x, x.y, x.z, v.x, v.y, v.z];
     let (y0, h) = (y, 0.01);
@@ -47,7 +47,7 @@ fn resolved(network: &Network, t: f64, x: Vector3<f64>, v: Vector3<f64>) -> [Vec
     ]
 }
 
-/// Points through and around something.
+/// Points of a grid inside and around an obstacle at the centre.
 fn points() -> impl Iterator<Item = Vector3<f64>> {
     (0..13 * 13 * 13).map(|k| {
         let step = |k: i32| f64::from(k % 13 - 6) * 0.237;
@@ -55,7 +55,7 @@ fn points() -> impl Iterator<Item = Vector3<f64>> {
     })
 }
 
-/// The turned box by another road: nalgebra's rotation.
+/// The turned box agrees with a computation by nalgebra's rotation.
 #[test]
 fn a_particle_in_a_box_is_put_on_the_nearest_face_and_one_outside_stays() {
     let network = with_box(Path::Still(CENTER));
@@ -93,7 +93,7 @@ fn corners_and_edges_of_a_turned_box_are_sharp() {
         let [outside, _] = resolved(&network, 0.0, at(1.0 + 1e-12), Vector3::zeros());
         assert_eq!(outside, at(1.0 + 1e-12));
         let [x, _] = resolved(&network, 0.0, at(0.99), Vector3::zeros());
-        // The thinnest of the sides is a hundredth of 0.6 away.
+        // Least distance of the particle from one of the faces (m).
         let thinnest = (0..3)
             .filter(|axis| signs[*axis] != 0.0)
             .map(|axis| 0.01 * HALVES[axis])
@@ -106,7 +106,7 @@ fn corners_and_edges_of_a_turned_box_are_sharp() {
 #[test]
 fn a_particle_in_a_capsule_is_put_on_the_nearest_point_and_one_outside_stays() {
     let network = with_capsule(Path::Still(CENTER));
-    // The middle of the segment that is nearest, by looking at many.
+    // Nearest point of the segment, by search among many.
     let distance = |p: Vector3<f64>| {
         let at = |s: f64| (p - CENTER - ENDS[0].lerp(&ENDS[1], s)).norm();
         let s = (0..=1000).map(|k| f64::from(k) / 1000.0);
@@ -131,7 +131,8 @@ fn a_particle_in_a_capsule_is_put_on_the_nearest_point_and_one_outside_stays() {
     assert!(inside > 50 && beyond > 2, "{inside} {beyond}");
 }
 
-/// Both move at (2, -1, 0.5) m/s.
+/// Contact with an obstacle that moves at (2, -1, 0.5) m/s takes only the inward normal part of the
+/// relative velocity.
 #[test]
 fn contact_takes_the_inward_part_of_the_relative_velocity_and_nothing_else() {
     let velocity = Vector3::new(2.0, -1.0, 0.5);
@@ -149,7 +150,8 @@ fn contact_takes_the_inward_part_of_the_relative_velocity_and_nothing_else() {
                 let v = sign * Vector3::new(k.sin(), (1.7 * k).cos(), (2.3 * k).sin());
                 let [x, after] = resolved(&network, 1.0, p, velocity + v);
                 let normal = x - p;
-                // On the surface as good as already, there is no way to tell.
+                // For a particle on the surface, the direction of the displacement is lost in
+                // rounding.
                 if normal.norm() < 1e-6 {
                     assert!(normal.norm() > 0.0 || after == velocity + v);
                     continue;
@@ -173,7 +175,7 @@ fn what_has_no_nearest_point_is_put_somewhere_all_the_same() {
         CENTER,
         Vector3::new(1.0, 2.0, 3.0),
     );
-    // The nearest faces are those across the second edge.
+    // The nearest faces are those perpendicular to the second edge.
     assert_relative_eq!(x, CENTER + turn * Vector3::y() * HALVES.y, epsilon = 1e-14);
     assert!(v.iter().all(|v| v.is_finite()));
     let still = Path::Still(Vector3::zeros());

@@ -1,4 +1,4 @@
-//! Elements side by side act as the same springs one by one.
+//! Several elements together act like the same springs as single ones.
 
 use a3_core::{Coupling, Grid, Linearized, Matrix, Mechanics, Network, Sheet, Splitting};
 
@@ -119,7 +119,7 @@ fn the_product_with_the_matrix_is_that_of_its_couplings() {
     }
 }
 
-/// Where the particles of a broken spring meet, it pulls at neither, and at nothing else.
+/// A broken spring has no force where its particles meet, and does not affect others.
 #[test]
 fn a_broken_spring_between_particles_at_one_place_has_no_force() {
     for damping in [0.0, 0.1] {

@@ -1,4 +1,5 @@
-//! Forces: pure, their differentials against central differences, and what they conserve.
+//! Forces: they depend on their arguments alone, their differentials agree with central
+//! differences, and they conserve momentum and energy.
 
 use crate::common::{distance, integrate, method, scene, scene_with_grid, size};
 use a3_core::elements::{Air, Buckling, Wind};
@@ -8,7 +9,7 @@ use a3_core::{
 };
 use approx::assert_relative_eq;
 
-/// A repeatable number between -1 and 1 for each k.
+/// Pseudorandom number between -1 and 1 that k determines.
 fn noise(k: usize) -> f64 {
     let x = (k as f64 * 12.9898 + 4.1).sin() * 43758.5453;
     2.0 * (x - x.floor()) - 1.0
@@ -28,7 +29,7 @@ fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
         let Model::Network(mut network) = scene.model else {
             return None;
         };
-        // What constraints add has no differential, which implicit methods alone would need.
+        // The forces of constraints have no differential; only implicit methods would need it.
         if !network.constraints().is_empty() {
             return None;
         }
@@ -120,7 +121,7 @@ fn differentials_match_central_differences() {
     }
 }
 
-/// The kernel over the sheet's rows against the plain formula, spring by spring.
+/// The kernel over the rows of a sheet agrees with the plain formula, spring by spring.
 #[test]
 fn sheets_agree_with_the_plain_formula() {
     for (rows, cols) in [
@@ -237,7 +238,8 @@ fn a_fixed_particle_has_no_derivative() {
     }
 }
 
-/// A free cloth under springs and their damping alone: nothing outside pushes, so momentum stays, linear and angular.
+/// Linear and angular momentum of a free cloth under damped springs alone are conserved, as no
+/// external force acts.
 #[test]
 fn momentum_is_conserved() {
     let scene = scene("cloth");
@@ -271,7 +273,8 @@ fn momentum_is_conserved() {
     }
 }
 
-/// Without drag and damping, the total energy stays: to the order of the method, and for ever with Verlet.
+/// Total energy without drag and damping is conserved to the order of the method, and by Verlet's
+/// method for any time.
 #[test]
 fn energy_is_conserved() {
     let scene = scene("mit");
@@ -291,7 +294,8 @@ fn energy_is_conserved() {
         (after.total() - before).abs()
     };
     assert!(drift("rk4", 0.001, 2.0) < 1e-5);
-    // Second order, and no trend: ten times as long costs no more than a few times as much.
+    // The error is of second order and has no trend: over ten times the time it grows only a few
+    // times.
     let (short, finer, long) = (
         drift("verlet", 0.002, 2.0),
         drift("verlet", 0.001, 2.0),
@@ -301,7 +305,8 @@ fn energy_is_conserved() {
     assert!(long < 0.2, "{long:e}");
 }
 
-/// Energy by hand: a spring of 100 N/m stretched by 0.5 m, 2 kg at 3 m/s, 4 m up.
+/// Energy computed by hand: a spring of 100 N/m stretched by 0.5 m, and 2 kg at 3 m/s at a height
+/// of 4 m.
 #[test]
 fn energy_by_kind() {
     let mut network = Network::new(vec![2.0; 2]).unwrap();

@@ -1,4 +1,5 @@
-//! Coulomb friction: what sticks, what slides and how fast, and what obstacles carry along.
+//! Coulomb friction: sticking, the acceleration of sliding, and obstacles that carry particles
+//! along.
 
 use crate::common::{described, method, simulation};
 use a3_core::contact::{Obstacle, Shape, Step, resolve};
@@ -8,7 +9,7 @@ use a3_core::{Control, Method, Model, Network, Path, Scene, Simulation, Vector3}
 /// Acceleration down a slope of 30 degrees (m/s2) with mu = 0.3: g (sin - mu cos).
 const DOWN: f64 = 9.81 * (0.5 - 0.3 * 0.866_025_403_784_438_6);
 
-/// Cloth on a slope of 30 degrees: a floor, and gravity that is tilted.
+/// Cloth on a slope of 30 degrees: a floor with tilted gravity.
 fn on_a_tilted_floor(mu: f64) -> Scene {
     let (sin, cos) = (30.0f64.to_radians().sin(), 30.0f64.to_radians().cos());
     described(&format!(
@@ -21,7 +22,7 @@ fn on_a_tilted_floor(mu: f64) -> Scene {
     ))
 }
 
-/// The same cloth on the top of a turned box that is 400 m long, with upright gravity.
+/// The same cloth on the top of a turned box, 400 m long, with vertical gravity.
 fn on_a_turned_box(mu: f64) -> Scene {
     let (sin, cos) = (30.0f64.to_radians().sin(), 30.0f64.to_radians().cos());
     described(&format!(
@@ -36,7 +37,7 @@ fn on_a_turned_box(mu: f64) -> Scene {
     ))
 }
 
-/// Block of jelly on the tilted floor. It is soft: it settles first.
+/// Block of soft jelly on the tilted floor, which has to settle first.
 fn block(mu: f64) -> Scene {
     let (sin, cos) = (30.0f64.to_radians().sin(), 30.0f64.to_radians().cos());
     described(&format!(
@@ -49,7 +50,7 @@ fn block(mu: f64) -> Scene {
     ))
 }
 
-/// Fixed steps (s) that hold for all of the scenes above, or tolerances of an adaptive method.
+/// Fixed steps (s) that are stable on all of the scenes above, or tolerances of an adaptive method.
 fn settings(method: &Method) -> [f64; 2] {
     if method.is_adaptive() {
         [1e-4, 1e-7]
@@ -85,7 +86,8 @@ fn with_enough_friction_nothing_moves() {
                 let mut run =
                     Simulation::new(scene.clone(), method, method.control(setting)).unwrap();
                 while run.time() < 10.0 {
-                    // To the end of a step: within one, an adaptive method's state falls freely.
+                    // The run goes to the end of a step: within one, an adaptive method's state
+                    // falls freely.
                     run.take_steps(1).unwrap();
                 }
                 let moved = moved(&run, &scene.state);
@@ -163,7 +165,7 @@ fn particle(obstacle: Obstacle, x: Vector3<f64>, v: Vector3<f64>) -> Scene {
     Scene::new("particle", Model::Network(Box::new(network)), state)
 }
 
-/// A box that is 2 m high, on its way along x at 2 m/s; a floor that does the same.
+/// Conveyors that move along x at 2 m/s: a box that is 2 m high, and a floor.
 fn conveyors() -> [Obstacle; 2] {
     let path = |height: f64| Path::Line {
         from: Vector3::new(0.0, height, 0.0),
@@ -179,7 +181,7 @@ fn conveyors() -> [Obstacle; 2] {
     })
 }
 
-/// The conveyor accelerates the particle by mu g, until it sticks.
+/// A conveyor accelerates a particle by mu g until the particle sticks to it.
 #[test]
 fn a_conveyor_carries_a_particle_along() {
     let g = 9.81;
@@ -198,7 +200,7 @@ fn a_conveyor_carries_a_particle_along() {
             run.take_steps(1).unwrap();
             assert_eq!(run.velocities(), [2.0, 0.0, 0.0], "{name}");
             let (before, at) = (run.time(), run.position(0).x);
-            // It lagged behind while it slid: by v2 / (2 mu g).
+            // While it slid, the particle fell behind by v^2 / (2 mu g).
             let lag = 2.0 * before - at;
             assert!((lag / (4.0 / g) - 1.0).abs() < 0.01, "{name}: {lag}");
             run.advance_to(5.0).unwrap();
@@ -212,14 +214,15 @@ fn a_conveyor_carries_a_particle_along() {
     }
 }
 
-/// A particle that hits a floor within a step, and stops at once, stops where it hit the floor.
+/// A particle that hits a floor within a step, and that friction stops at once, stops where it hit
+/// the floor.
 #[test]
 fn after_an_impact_a_particle_stops_where_it_should() {
     let floor = Obstacle {
         friction: 0.5,
         ..Obstacle::smooth(Shape::Floor, Path::Still(Vector3::zeros()))
     };
-    // It falls for 0.1 s, and goes 0.1 m along x in that time. Friction stops it at once.
+    // The particle falls for 0.1 s and moves 0.1 m along x in that time. Friction stops it at once.
     let (x, v) = (
         Vector3::new(0.0, 0.3 + 0.5 * 9.81 * 0.01, 0.0),
         Vector3::new(1.0, -3.0, 0.0),
@@ -229,7 +232,7 @@ fn after_an_impact_a_particle_stops_where_it_should() {
         let mut run = run.unwrap();
         run.advance_to(0.5).unwrap();
         assert_eq!(run.velocities(), [0.0; 3]);
-        // The way within a step is curved: hence an error of the second order.
+        // The path within a step is curved, which gives an error of second order.
         let off = (run.position(0).x - 0.1).abs();
         assert!(off < h * h, "{h}: {off:e}");
     }
@@ -255,8 +258,9 @@ fn a_moving_sphere_drags_cloth_along() {
     assert!(rough.x - smooth.x > 0.1, "{smooth} {rough}");
 }
 
-/// Contact never adds kinetic energy relative to an obstacle at rest. What it takes of a velocity
-/// along the surface is at most mu times what it takes across it, and less only where all is taken.
+/// Contact never adds kinetic energy relative to an obstacle at rest. It changes the tangential
+/// velocity by at most mu times the change of the normal velocity, and by less only where no
+/// tangential velocity is left.
 #[test]
 fn contact_takes_energy_and_gives_none() {
     let shapes = [
@@ -297,7 +301,7 @@ fn contact_takes_energy_and_gives_none() {
                 assert!(after.norm() <= before.norm() * (1.0 + 1e-15));
                 let taken = before - after;
                 assert!((found.impulse - 0.5 * taken.norm()).abs() < 1e-15);
-                // Without friction, all of it is across the surface.
+                // Without friction, the velocity changes along the normal only.
                 let mut smooth = free.clone();
                 resolve(
                     &[Obstacle {
@@ -329,7 +333,7 @@ fn contact_takes_energy_and_gives_none() {
     );
 }
 
-/// A friction of 0 gives the same bits as none.
+/// Friction of 0 gives the same bits as no friction.
 #[test]
 fn without_friction_nothing_changes() {
     let text = |friction: &str, floor: &str| {

@@ -1,4 +1,4 @@
-//! Forces, constraints and obstacles against what physics says of them.
+//! Tests of forces, constraints and obstacles against laws of physics.
 
 #[path = "../common/mod.rs"]
 mod common;

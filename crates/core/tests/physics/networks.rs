@@ -1,9 +1,10 @@
-//! Networks that a seed chooses: several sheets, torn ones, single springs between them.
+//! Random networks that a seed determines: several sheets, also torn ones, with single springs
+//! between them.
 
 use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{Grid, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3};
 
-/// Numbers that a seed determines.
+/// Pseudorandom numbers that a seed determines.
 pub struct Random(pub u64);
 
 impl Random {
@@ -22,16 +23,19 @@ impl Random {
 
 pub const SPACING: f64 = 0.1;
 
-/// What a network consists of.
+/// Kinds of parts of a network.
 #[derive(Clone, Copy)]
 pub struct Kinds {
-    /// Particles in no sheet, single springs, springs that buckle, and air around triangles.
+    /// Whether there are particles in no sheet, single springs, springs that buckle, and air around
+    /// triangles.
     pub mixed: bool,
+    /// Whether springs are torn.
     pub torn: bool,
+    /// Whether springs are damped.
     pub damped: bool,
 }
 
-/// A network of up to three sheets, some of them wide, and a state not far from rest.
+/// Network of up to three sheets, some of them wide, and a state near rest.
 pub fn network(seed: u64, kinds: Kinds) -> (Network, Vec<f64>) {
     let mut random = Random(seed);
     let (mut sheets, mut triangles, mut positions) = (vec![], vec![], vec![]);
@@ -64,7 +68,7 @@ pub fn network(seed: u64, kinds: Kinds) -> (Network, Vec<f64>) {
         }
     });
     let mut network = Network::new(masses.collect()).unwrap();
-    // In any order.
+    // The sheets are added in reverse order, as the order must not matter.
     for sheet in sheets.into_iter().rev() {
         network.add(sheet).unwrap();
     }
@@ -132,7 +136,7 @@ pub fn network(seed: u64, kinds: Kinds) -> (Network, Vec<f64>) {
     (network, y)
 }
 
-/// All kinds of networks.
+/// Networks of all kinds with their names and states.
 pub fn networks() -> impl Iterator<Item = (String, Network, Vec<f64>)> {
     (0..48).map(|seed| {
         let kinds = Kinds {
@@ -145,7 +149,7 @@ pub fn networks() -> impl Iterator<Item = (String, Network, Vec<f64>)> {
     })
 }
 
-/// The same network with all its springs one by one.
+/// The same network with all its springs as single ones.
 pub fn listed(network: &Network) -> Network {
     let mut list = Network::new(network.masses().to_vec()).unwrap();
     list.add_springs(network.springs()).unwrap();

@@ -1,4 +1,5 @@
-//! Sheets step in sweeps over their rows, also several and torn ones, to the bits of whole arrays.
+//! Sweeps over the rows of sheets, also of several and of torn ones, give the same bits as whole
+//! arrays.
 
 use a3_core::elements::{Air, Wind};
 use a3_core::{
@@ -9,7 +10,7 @@ use a3_core::{
 use crate::common::{distance, integrate, method, size};
 use crate::networks::{Kinds, SPACING, listed, network};
 
-/// A network as one that has no rows.
+/// Network that offers no rows.
 struct WholeArrays<'a>(&'a Network);
 
 impl Mechanics for WholeArrays<'_> {
@@ -112,7 +113,8 @@ fn threads_change_no_bit() {
     }
 }
 
-/// Elements that sweeps cannot serve keep them away, and wind on particles does not.
+/// Sweeps are offered unless the network has elements that they do not support; wind on particles
+/// is supported.
 #[test]
 fn rows_are_offered_where_nothing_joins_them() {
     let kinds = Kinds {
@@ -146,7 +148,8 @@ fn rows_are_offered_where_nothing_joins_them() {
     assert!(error.contains("no particle 5"), "{error}");
 }
 
-/// Cloth that tears on its way goes on in sweeps, and like the same springs one by one.
+/// Cloth that tears during a run goes on in sweeps, and moves like a network of the same single
+/// springs.
 #[test]
 fn torn_cloth_goes_on_in_sweeps() {
     let kinds = Kinds {
@@ -171,7 +174,7 @@ fn torn_cloth_goes_on_in_sweeps() {
     assert!(Mechanics::rows(&of(&torn)).is_some());
     let error = distance(torn.state(), expected.state()) / size(expected.state());
     assert!(error < 1e-9, "{error:e}");
-    // Every method goes on with it.
+    // Every method can go on with the torn cloth.
     for m in integrators::METHODS {
         let after = integrate(&of(&torn), m, torn.state(), 1e-4, 2);
         assert!(after.iter().all(|y| y.is_finite()), "{}", m.name);

@@ -1,4 +1,4 @@
-//! What is stretched too far tears, and nothing else does.
+//! Tearing: exactly the springs that are stretched too far tear, and the bend springs along them.
 
 use crate::common::{described, distance, method, scene, scene_with_grid, size};
 use a3_core::elements::{Air, Buckling, Wind};
@@ -16,7 +16,7 @@ fn spring(kind: SpringKind, i: usize, j: usize, stiffness: f64, rest_length: f64
     Spring { kind, i, j, law }
 }
 
-/// Three masses that hang from a pin by springs, the second one weak.
+/// Three masses that hang from a pin by springs, of which the second is weak.
 fn chain(limit: Option<f64>) -> Scene {
     let mut network = Network::new(vec![1.0; 4]).unwrap();
     for (i, stiffness) in [(0, 400.0), (1, 60.0), (2, 400.0)] {
@@ -37,7 +37,7 @@ fn network_of(run: &Simulation) -> &Network {
     run.model().network().unwrap()
 }
 
-/// Length over rest length of the springs that are left, the largest.
+/// Largest length over rest length of the springs that are left.
 fn stretch(run: &Simulation) -> f64 {
     network_of(run)
         .springs()
@@ -73,7 +73,7 @@ fn the_weak_link_breaks_as_it_passes_the_limit_and_the_rest_falls_freely() {
         let network = network_of(&run);
         assert!(network.is_torn(1, 2) && network.is_torn(2, 1) && !network.is_torn(0, 1));
         times.push(run.time());
-        // The two below fall with the speed that they had.
+        // The two masses below the tear fall freely with their initial speed.
         let speed = |run: &Simulation| 0.5 * (run.velocities()[4 + 2] + run.velocities()[4 + 3]);
         let (since, had) = (run.time(), speed(&run));
         run.advance_to(since + 0.7).unwrap();
@@ -120,7 +120,7 @@ fn a_limit_that_makes_no_sense_is_refused() {
     assert_eq!(network.forces_in_use(), ["tearing"]);
 }
 
-/// The cloth, with triangles, that tears at 1.6.
+/// Cloth with triangles that tears at 1.6 rest lengths.
 fn weak_cloth() -> Scene {
     let mut scene = scene("cloth");
     let Model::Network(network) = &mut scene.model else {
@@ -134,7 +134,7 @@ fn weak_cloth() -> Scene {
     scene
 }
 
-/// A hand takes one particle after another, and pulls.
+/// Pulls at one particle after another.
 fn pull_about(run: &mut Simulation) {
     run.advance_to(0.5).unwrap();
     for (k, i) in [210, 150, 390, 285].into_iter().enumerate() {
@@ -179,7 +179,7 @@ fn cloth_pulled_by_a_hand_tears_stays_finite_and_is_mended_by_a_reset() {
         let whole: Vec<_> = grid.triangles().filter(|t| network.is_whole(*t)).collect();
         assert!(triangles.len() < 2 * 19 * 19 - 5);
         assert!(triangles.iter().map(|t| t.map(|i| i as usize)).eq(whole));
-        // Again, to the bit.
+        // After a reset, the run repeats itself to the bit.
         let first = run.state().to_vec();
         run.reset();
         assert_eq!(run.tears(), 0);
@@ -191,7 +191,7 @@ fn cloth_pulled_by_a_hand_tears_stays_finite_and_is_mended_by_a_reset() {
     }
 }
 
-/// A flat sheet, of which one particle is moved away from another.
+/// In a flat sheet, bend springs tear with the structural springs along them.
 #[test]
 fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
     let scene = scene_with_grid("mit", 5, 6);
@@ -207,8 +207,8 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
     network.set_tear(Some(1.9)).unwrap();
     assert_eq!(network.tear(&x), 0);
     assert!(network.sheets().next().is_some());
-    // Everything right of the third column moves to the right by a spacing: 5 structural springs are 2 long, shear
-    // springs sqrt 5 / sqrt 2 = 1.58, and bend springs 1.5.
+    // All particles right of the third column move to the right by one spacing. Then 5 structural
+    // springs are 2 rest lengths long, shear springs sqrt 5 / sqrt 2 = 1.58, and bend springs 1.5.
     for (_, x) in x
         .iter_mut()
         .enumerate()
@@ -218,7 +218,8 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
         *x += spacing;
     }
     let all = network.springs().count();
-    // Bend springs across: from the second column to the fourth and from the third to the fifth, five each.
+    // Ten bend springs cross the gap: five from the second column to the fourth, and five from the
+    // third to the fifth.
     assert_eq!(network.tear(&x), 5 + 10);
     assert_eq!((network.tears(), network.springs().count()), (15, all - 15));
     for row in 0..5 {
@@ -228,7 +229,7 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
         assert!(!network.is_torn(at(0), at(2)) && !network.is_torn(at(3), at(5)));
     }
     assert_eq!(network.tear(&x), 0);
-    // What is left pulls as it did.
+    // The springs that are left pull as before.
     let v = vec![0.0; 90];
     let mut f = vec![0.0; 90];
     network.spring_forces(&x, &v, &mut f);
@@ -241,11 +242,12 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
     assert!(distance(&f, &expected) < 1e-13 * size(&expected));
 }
 
-/// Without structural springs along it, or with another way round, a bend spring holds until it is too long itself.
+/// A bend spring without structural springs along it, or with another path of them, holds until it
+/// is too long itself.
 #[test]
 fn bend_springs_with_nothing_along_them_or_another_way_round_hold() {
     let line = |shift: f64| {
-        // 0, 1, 2 on a line, and 3 beside 1.
+        // Particles 0, 1, 2 are on a line, and particle 3 is beside particle 1.
         let (x, y) = ([0.0, 1.0 + shift, 2.0, 1.0], [0.0, 0.0, 0.0, 0.5]);
         [x, y, [0.0; 4]].concat()
     };
@@ -286,7 +288,7 @@ fn bend_springs_with_nothing_along_them_or_another_way_round_hold() {
                 network.buckling().count(),
                 usize::from(buckles && torn != 2)
             );
-            // Far apart, all go.
+            // With the particles far apart, all springs tear.
             let far: Vec<f64> = line(0.0).iter().map(|x| x * 4.0).collect();
             assert_eq!(network.tear(&far), links.len() + 1 - torn);
             assert_eq!(network.springs().count() + network.buckling().count(), 0);
@@ -305,7 +307,7 @@ fn no_wind_blows_on_a_hole() {
     let air = Air::new(1.2, 1.0, 0.0).unwrap();
     network.set_wind(Some(Wind::on_triangles(1, Vector3::z() * 5.0, air)));
     network.set_tear(Some(2.0)).unwrap();
-    // Particle 3 is far away.
+    // Particle 3 is far from the others.
     let x = [
         0.0, 1.0, 0.5, 9.0, //
         0.0, 0.0, 0.8, 0.8, //
@@ -340,7 +342,7 @@ fn every_method_tears_alike() {
     }
 }
 
-/// Back before something tore it is whole, and tears again as it did; between tears it has those that there were.
+/// A run that goes back to a moment has only the tears of that moment, and tears again as before.
 #[test]
 fn what_tore_after_a_moment_is_mended_there() {
     let scene = described(

@@ -1,4 +1,5 @@
-//! Air that streams past triangles: its force by hand, which way round does not matter, and it takes energy only.
+//! Air that streams past triangles: its force is as computed by hand, does not depend on the
+//! winding order, and only takes energy.
 
 use crate::common::{distance, integrate, method, scene_with_grid};
 use a3_core::elements::{Air, Wind};
@@ -12,13 +13,13 @@ const DENSITY: f64 = 1.2;
 const DRAG: f64 = 1.3;
 const LIFT: f64 = 0.7;
 
-/// Still air, through which things move.
+/// Still air with these coefficients of drag and lift.
 fn calm(drag: f64, lift: f64) -> Wind {
     let air = Air::new(DENSITY, drag, lift).unwrap();
     Wind::on_triangles(1, Vector3::zeros(), air)
 }
 
-/// The force (N) of still air on a triangle whose corners move at these velocities, corner by corner.
+/// Forces (N) of still air on the corners of a triangle that move at these velocities (m/s).
 fn forces(
     wind: &Wind,
     corners: [Vector3<f64>; 3],
@@ -35,7 +36,7 @@ fn forces(
     [0, 1, 2].map(|i| Vector3::new(f[i], f[3 + i], f[6 + i]))
 }
 
-/// In the plane z = 0, 3 m2 large.
+/// Corners (m) of a triangle of 3 m2 in the plane z = 0.
 const CORNERS: [Vector3<f64>; 3] = [
     Vector3::new(-1.0, -0.5, 0.0),
     Vector3::new(2.0, -0.5, 0.0),
@@ -43,7 +44,7 @@ const CORNERS: [Vector3<f64>; 3] = [
 ];
 const AREA: f64 = 3.0;
 
-/// The whole force of air that streams at u.
+/// Total force (N) on the triangle of air that streams at u (m/s).
 fn total(wind: &Wind, u: Vector3<f64>) -> Vector3<f64> {
     forces(wind, CORNERS, [-u; 3], [0, 1, 2]).iter().sum()
 }
@@ -69,7 +70,7 @@ fn a_plate_edge_on_and_one_that_drifts_along_feel_nothing() {
         Vector3::zeros()
     );
     assert_eq!(total(&calm(DRAG, LIFT), Vector3::zeros()), Vector3::zeros());
-    // Nor does one without an area.
+    // A triangle without area feels no force either.
     let line = [0.0, 1.0, 3.0].map(|s| Vector3::new(s, 2.0 * s, -s));
     let moving = [Vector3::new(1.0, 2.0, 3.0); 3];
     let none = [Vector3::zeros(); 3];
@@ -81,7 +82,8 @@ fn a_plate_edge_on_and_one_that_drifts_along_feel_nothing() {
     assert_eq!(forces(&calm(DRAG, LIFT), CORNERS, moving, [0, 1, 1]), none);
 }
 
-/// Air that comes from below at 45 degrees: `C_d` cos 45 along it, `C_l` cos 45 sin 45 across it, towards the plate's normal.
+/// Air from below at 45 degrees exerts `C_d` cos 45 along its direction, and `C_l` cos 45 sin 45
+/// perpendicular to it, towards the plate's normal.
 #[test]
 fn at_45_degrees_drag_and_lift_are_those_of_the_formula() {
     let along = Vector3::new(1.0, 0.0, 1.0).normalize();
@@ -99,7 +101,7 @@ fn at_45_degrees_drag_and_lift_are_those_of_the_formula() {
         pressure * LIFT * 0.5,
         max_relative = 1e-14
     );
-    // From the other side as well.
+    // The same holds for air from the other side.
     let force = total(&calm(DRAG, LIFT), 4.0 * across);
     assert_relative_eq!(
         force.dot(&across),
@@ -133,7 +135,8 @@ fn which_side_is_the_front_does_not_matter() {
     }
 }
 
-/// The gusts are those of a wind on particles, as velocities, at the middle of the triangle.
+/// Gusts on a triangle are those of a wind on particles, as velocities, at the centroid of the
+/// triangle.
 #[test]
 fn gusts_are_felt_where_the_triangle_is() {
     let mean = Vector3::new(2.0, -1.0, 3.0);
@@ -147,7 +150,7 @@ fn gusts_are_felt_where_the_triangle_is() {
     assert_relative_eq!(found, total(&calm(DRAG, LIFT), u), max_relative = 1e-14);
 }
 
-/// The cloth, let go of, in air.
+/// Cloth with triangles, on which this wind can be turned on.
 fn flying(wind: &Wind) -> Scene {
     let mut scene = scene_with_grid("cloth", 9, 11);
     let grid = scene.grid().unwrap();
@@ -215,7 +218,8 @@ fn every_method_flies_in_gusts_alike_and_again_to_the_bit() {
     assert!(fly("verlet").state() == fly("verlet").state());
 }
 
-/// Springs without damping: what a kick reads of velocities is the air's doing alone.
+/// Methods keep their order in air. The springs are undamped, so that only the force of the air
+/// depends on velocities in a kick.
 #[test]
 fn methods_keep_their_order_in_the_air() {
     let mut network = Network::new(vec![1.0; 3]).unwrap();
@@ -256,7 +260,7 @@ fn methods_keep_their_order_in_the_air() {
     }
 }
 
-/// Off the sweeps of a sheet, and back.
+/// Wind that ends the sweeps of a sheet and stops again leaves no trace.
 #[test]
 fn wind_that_comes_and_goes_leaves_nothing_behind() {
     let air = Air::new(DENSITY, DRAG, LIFT).unwrap();

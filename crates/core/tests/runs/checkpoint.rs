@@ -1,14 +1,14 @@
-//! A run that was put down and taken up again goes on to the same bits.
+//! Checkpoints: a restored run goes on to the same bits.
 
 use a3_core::integrators::METHODS;
 use a3_core::{Checkpoint, Control, Method, Network, Path, Scene, Simulation, Vector3};
 
 use super::common::{described, method, scene, simulation};
 
-/// Something that is done to a run, and then steps.
+/// Action on a run, after which it takes steps.
 type Act = fn(&mut Simulation);
 
-/// Everything of a run that can be seen, to the bit.
+/// Everything that can be observed of a run, to the bit.
 fn seen(run: &Simulation) -> String {
     let network = run.model().network();
     let pins: Vec<_> = network.into_iter().flat_map(Network::pins).collect();
@@ -27,7 +27,7 @@ fn seen(run: &Simulation) -> String {
     )
 }
 
-/// To JSON and back.
+/// Checkpoint after writing it as JSON and reading it again.
 fn through_text(checkpoint: &Checkpoint) -> Checkpoint {
     let text = serde_json::to_string(checkpoint).unwrap();
     let again = serde_json::from_str(&text).unwrap();
@@ -35,14 +35,15 @@ fn through_text(checkpoint: &Checkpoint) -> Checkpoint {
     again
 }
 
-/// A new run that goes on from where another one is.
+/// New run, restored from a checkpoint of `run`.
 fn taken_up(scene: &Scene, run: &Simulation) -> Simulation {
     let mut fresh = Simulation::new(scene.clone(), method("euler"), Control::Step(0.01)).unwrap();
     fresh.restore(&through_text(&run.checkpoint())).unwrap();
     fresh
 }
 
-/// Does one thing after the other to a run. After each it is put down, and goes on beside itself taken up again.
+/// Performs the actions on a run one after another. After each, a run restored from its checkpoint
+/// goes on beside it, and all stay equal.
 fn check(scene: &Scene, method: &'static Method, control: Control, acts: &[Act]) {
     let mut run = Simulation::new(scene.clone(), method, control).unwrap();
     let mut others: Vec<Simulation> = vec![];
@@ -59,7 +60,8 @@ fn check(scene: &Scene, method: &'static Method, control: Control, acts: &[Act])
     for (k, act) in acts.iter().enumerate() {
         for run in std::iter::once(&mut run).chain(&mut others) {
             act(run);
-            // Between the ends of an adaptive method's steps, and at one.
+            // First to the end of a step, then to a time between the ends of an adaptive method's
+            // steps.
             let _ = run.take_steps(2);
             let _ = run.advance_to(run.time() + 0.013);
         }
@@ -67,7 +69,7 @@ fn check(scene: &Scene, method: &'static Method, control: Control, acts: &[Act])
         others.truncate(2);
         others.insert(0, taken_up(scene, &run));
         assert_eq!(run.checkpoint(), others[0].checkpoint());
-        // Within the step that was put down.
+        // Still within the step in which the checkpoint was made.
         for run in std::iter::once(&mut run).chain(&mut others) {
             let _ = run.advance_to(run.time() + 0.0017);
         }
@@ -151,7 +153,7 @@ fn what_is_torn_stays_torn() {
     }
 }
 
-/// A run that blows up later goes back to the same state as the one that was put down.
+/// A restored run that blows up later goes back to the same state as the original run.
 #[test]
 fn a_run_that_is_lost_later_is_lost_alike() {
     let mut run = simulation("mit", "rk4", 0.05);
@@ -160,13 +162,14 @@ fn a_run_that_is_lost_later_is_lost_alike() {
     while run.take_steps(1).is_ok() {}
     while again.take_steps(1).is_ok() {}
     assert!(run.blow_up().is_some() && seen(&run) == seen(&again));
-    // What is lost is put down as it was when it was in shape, and goes on.
+    // The checkpoint of a lost run holds the last good state, from which a run can go on.
     let mut on = taken_up(run.scene(), &run);
     assert_eq!((on.state(), on.blow_up()), (run.state(), None));
     assert!(on.take_steps(1).is_ok());
 }
 
-/// A moment has all but the last step of an adaptive method: what goes on from it begins a new one.
+/// A moment is a checkpoint without the stages of an adaptive method's last step: a run restored
+/// from it begins a new step.
 #[test]
 fn a_moment_is_small_and_goes_on() {
     let mut run = simulation("cloth", "dop853", 1e-8);

@@ -1,4 +1,5 @@
-//! The jelly: springs and skin of its lattice, its fall, its wobble, its rest.
+//! The jelly: the springs and the skin of its lattice, its fall, its oscillation, and its state of
+//! rest.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +7,7 @@ use crate::common::{method, scene, simulation};
 use a3_core::{Control, Scene, Simulation, SpringKind, Vector3};
 use a3_scenes::Description;
 
-/// A jelly of that many particles along its edges, in a world without gravity.
+/// Jelly with these numbers of particles along its edges, without gravity.
 fn lattice(grid: [usize; 3]) -> Scene {
     let text = format!(
         "[[jelly]]\ngrid = {grid:?}\nsize = [1, 2, 3]\nmass = 1\nstiffness = [1, 1, 1]\nat = [0, 0, 0]"
@@ -19,7 +20,7 @@ fn lattice(grid: [usize; 3]) -> Scene {
         .scene
 }
 
-/// Six times the volume within a surface is the sum of a . (b x c) over its triangles.
+/// Volume within the skin (m3): a sixth of the sum of a . (b x c) over its triangles.
 fn volume(run: &Simulation) -> f64 {
     let triangles = run.model().network().unwrap().triangles().iter();
     let spat = triangles.map(|t| {
@@ -53,7 +54,7 @@ fn springs_are_counted_by_kind() {
     }
 }
 
-/// No spring joins what is farther than it says, none is there twice, and none is stretched at first.
+/// All springs are at their rest length at first, and no two join the same particles.
 #[test]
 fn springs_are_at_rest_at_first() {
     let scene = lattice([3, 4, 5]);
@@ -67,7 +68,8 @@ fn springs_are_at_rest_at_first() {
     assert!(run.energy().unwrap().elastic < 1e-24);
 }
 
-/// Every edge of the skin is run through once in each direction: it is closed, and wound alike, outwards.
+/// The skin is closed, and all its triangles face outwards: they run through each edge once in each
+/// direction.
 #[test]
 fn the_skin_is_closed_and_faces_outwards() {
     let scene = lattice([3, 4, 5]);
@@ -86,7 +88,7 @@ fn the_skin_is_closed_and_faces_outwards() {
     assert!((volume(&run) - 6.0).abs() < 1e-12);
 }
 
-/// It falls, bounces, and comes to rest on the floor with its volume kept to 5 %.
+/// The jelly falls, bounces, and comes to rest on the floor with its volume kept to 5 %.
 #[test]
 fn it_wobbles_and_keeps_its_volume() {
     let mut run = simulation("jelly", "r", 0.01);
@@ -98,7 +100,7 @@ fn it_wobbles_and_keeps_its_volume() {
         assert!(run.lowest() >= 0.0);
     }
     assert!(least < 0.99 && least > 0.7, "{least}");
-    // Quickly to rest.
+    // Implicit Euler brings it to rest quickly.
     run.set_method(method("i"), Control::Step(0.02)).unwrap();
     run.advance_to(20.0).unwrap();
     let rest = volume(&run);
@@ -107,7 +109,7 @@ fn it_wobbles_and_keeps_its_volume() {
     assert!(run.lowest() < 1e-9);
 }
 
-/// Rotation turns it, and leaves its springs alone.
+/// Rotation turns the jelly and does not change its springs.
 #[test]
 fn turned_it_is_the_same() {
     let scene = scene("jelly");

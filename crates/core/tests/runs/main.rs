@@ -1,4 +1,4 @@
-//! Simulations and the built-in scenes: what a run does, survives and reports.
+//! Tests of simulations and of the built-in scenes.
 
 #[path = "../common/mod.rs"]
 mod common;

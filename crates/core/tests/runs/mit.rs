@@ -1,4 +1,5 @@
-//! What is known of the course's cloth: which runs survive, when the others are lost, and how it hangs at rest.
+//! Known facts of the course's cloth: which runs survive, when the others are lost, and the state
+//! of rest.
 
 use crate::common::simulation;
 use a3_core::{Error, Mechanics};

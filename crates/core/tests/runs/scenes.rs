@@ -1,4 +1,4 @@
-//! The table of scenes: counts, and every scene with every method.
+//! The table of scenes: numbers of particles and springs, and every scene with every method.
 
 use crate::common::{scene, scene_with_grid};
 use a3_core::{Control, Grid, MAX_PARTICLES, Simulation, SpringKind, integrators};
@@ -27,7 +27,8 @@ fn cloth_springs_are_counted_by_kind() {
     );
 }
 
-/// Every spring joins the particles it should: neighbours, diagonals, next but one.
+/// Springs join the right particles: structural ones neighbours, shear ones diagonals, and bend
+/// ones the particles next but one.
 #[test]
 fn cloth_springs_join_the_right_particles() {
     let (rows, cols) = (4, 6);
@@ -63,8 +64,8 @@ fn grids_that_make_no_sense_are_refused() {
     assert!(a3_scenes::find("chain").unwrap().build(Some(grid)).is_err());
 }
 
-/// With its default step, each method holds on each scene that it serves, for ten seconds of wind and swing; where these take
-/// minutes, for two.
+/// With its default step, each method is stable on each scene that it supports, for 10 s of wind
+/// and swing, or for 2 s where 10 s would take minutes.
 #[test]
 fn default_controls_hold_everywhere() {
     for entry in a3_scenes::SCENES {
@@ -90,7 +91,7 @@ fn default_controls_hold_everywhere() {
     }
 }
 
-/// A finer cloth has a faster fastest motion: its default steps are shortened, and hold.
+/// Default steps are shortened for a finer cloth, whose fastest mode is faster, and are stable.
 #[test]
 fn default_controls_hold_on_other_grids() {
     for (rows, cols) in [(8, 8), (40, 40), (60, 20), (20, 60)] {

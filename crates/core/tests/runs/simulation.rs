@@ -1,4 +1,5 @@
-//! Stepping, and the hands: swing, wind, grab, pull, release, other methods and steps on the way.
+//! Simulations: steps, swing, wind, grab, pull, release, and changes of method and step during a
+//! run.
 
 use std::sync::Arc;
 
@@ -24,7 +25,8 @@ fn the_end_is_hit_exactly_and_no_step_is_longer() {
         run.advance_to(until).unwrap();
         assert_eq!(run.steps(), steps);
     }
-    // The shortened step counts: RK4's error after 1 s in steps of 0.3 is below that of one step of 1.
+    // The last step is shortened: RK4's error after 1 s in steps of 0.3 s is below that of one step
+    // of 1 s.
     let mut run = simulation("simple", "rk4", 0.3);
     run.advance_to(1.0).unwrap();
     assert_relative_eq!(run.position(0).x, 1.0f64.cos(), epsilon = 1e-4);
@@ -76,7 +78,7 @@ fn swinging_pins_start_and_stop_where_they_are() {
     assert_eq!(at(&run), home);
     run.set_swinging(true);
     run.advance_to(1.5).unwrap();
-    // z = 2 sin(t / 1.5), from the moment it was switched on.
+    // z = 2 sin(t / 1.5), with t from the time at which the swing was turned on.
     assert_relative_eq!(
         at(&run),
         home + Vector3::z() * 2.0 * (1.0f64 / 1.5).sin(),
@@ -108,7 +110,7 @@ fn a_pulled_particle_goes_where_it_is_pulled_and_is_let_go_with_its_speed() {
     }
     assert_relative_eq!(run.position(i), target, epsilon = 1e-9);
     assert!(run.model().network().unwrap().is_pinned(i));
-    // On the move when it is let go.
+    // The particle moves when it is released, and keeps its velocity.
     let from = run.position(i);
     run.pull(from + Vector3::z() * 0.3);
     run.advance_to(run.time() + 0.02).unwrap();
@@ -221,8 +223,9 @@ fn bare(model: Model, state: Vec<f64>) -> Scene {
     Scene::new("bare", model, state)
 }
 
-/// A sphere that comes along at 2 m/s hits a particle that slides past at 3 m/s: the particle is put on the surface,
-/// gets the sphere's velocity along the normal, and keeps its own across.
+/// A sphere moving at 2 m/s hits a particle with a tangential velocity of 3 m/s: the particle is
+/// put on the surface, gets the sphere's velocity along the normal, and keeps its tangential
+/// velocity.
 #[test]
 fn a_moving_sphere_pushes_without_friction() {
     let mut network = Network::new(vec![1.0]).unwrap();
@@ -234,7 +237,8 @@ fn a_moving_sphere_pushes_without_friction() {
     };
     let ball = Obstacle::smooth(Shape::Sphere { radius: 1.0 }, path);
     network.add_obstacle(ball).unwrap();
-    // Towards the sphere at 1 m/s; at t = 0.1 it would be 0.7 m from its centre, on the line of its motion.
+    // The particle moves towards the sphere at 1 m/s. At t = 0.1 s it would be 0.7 m from the
+    // sphere's centre, on the line of the sphere's motion.
     let state = vec![1.0, 0.0, -0.3, -1.0, 0.0, 3.0];
     let mut run = Simulation::new(
         bare(Model::Network(Box::new(network)), state),
@@ -254,7 +258,7 @@ fn a_moving_sphere_pushes_without_friction() {
         Vector3::new(2.0, 0.0, 3.0),
         epsilon = 1e-12
     );
-    // Faster than the sphere, it leaves, and nothing holds it.
+    // A particle that is faster than the sphere leaves it freely.
     let mut network = Network::new(vec![1.0]).unwrap();
     network.add_obstacle(ball).unwrap();
     let state = vec![0.9, 0.0, 0.0, 5.0, 0.0, 0.0];
@@ -272,7 +276,8 @@ fn a_moving_sphere_pushes_without_friction() {
 fn a_sphere_goes_where_it_is_pulled_pushes_cloth_and_comes_back_with_a_reset() {
     for name in ["rk4", "dopri5"] {
         let mut run = simulation("mit-sphere", name, method(name).default_control.value());
-        // Between its steps, an adaptive method shows particles that have not been put out of the sphere yet.
+        // Between its steps, an adaptive method shows particles that have not been put out of the
+        // sphere yet.
         let sunk = if run.method().is_adaptive() {
             1e-3 * run.extent().1
         } else {
@@ -298,7 +303,7 @@ fn a_sphere_goes_where_it_is_pulled_pushes_cloth_and_comes_back_with_a_reset() {
         }
         assert!(touched, "{name}");
         assert_relative_eq!(sphere(&run).0, target, epsilon = 1e-12);
-        // On the move when it is let go: it stops there, and a pull moves nothing any more.
+        // The sphere moves when it is released: it stops there, and a pull no longer moves it.
         run.pull_obstacle(home);
         run.advance_to(run.time() + 0.01).unwrap();
         run.release_obstacle();
@@ -311,7 +316,7 @@ fn a_sphere_goes_where_it_is_pulled_pushes_cloth_and_comes_back_with_a_reset() {
         run.reset();
         assert_eq!((run.grabbed_obstacle(), sphere(&run).0), (None, home));
     }
-    // A floor stays, and there is nothing else.
+    // A floor cannot be grabbed, and the scene has no other obstacle.
     let mut run = simulation("cloth", "rk4", 0.01);
     assert!(run.grab_obstacle(1).is_err());
     assert!(
@@ -323,7 +328,7 @@ fn a_sphere_goes_where_it_is_pulled_pushes_cloth_and_comes_back_with_a_reset() {
     simulation("simple", "rk4", 0.01).grab_obstacle(0).unwrap();
 }
 
-/// A system that fails in one way or another at t > 0.35.
+/// System at rest whose derivative, at t > 0.35 s, takes the function's value at this index.
 struct Failing(fn() -> f64, usize);
 
 impl ParticleSystem for Failing {
@@ -380,7 +385,7 @@ fn the_state_goes_back_to_the_time_it_had_whatever_the_step_is_by_then() {
     }
     run.set_control(Control::Step(0.7)).unwrap();
     while run.take_steps(1).is_ok() {}
-    // The radius after n steps of 0.5 is 1.25^(n/2), so it tells the time.
+    // The radius after n steps of 0.5 s is 1.25^(n/2), which determines the time.
     assert_relative_eq!(
         run.position(0).norm(),
         1.25f64.powf(run.time()),
@@ -412,7 +417,7 @@ fn scenes_that_do_not_fit_their_model_are_refused() {
     }
 }
 
-/// The chain hangs stretched to several times its length, and can be pulled all the same.
+/// The chain can be pulled although it hangs stretched to several times its rest length.
 #[test]
 fn soft_springs_give_way() {
     let mut run = simulation("chain", "verlet", 0.005);
@@ -427,7 +432,8 @@ fn soft_springs_give_way() {
     assert_relative_eq!(run.position(2), target, epsilon = 1e-9);
 }
 
-/// Pinned where it is on the way, and let go from there; swinging with the others where they swing.
+/// A particle is pinned where it is during a run, and released from there. It swings with the other
+/// pins while they do.
 #[test]
 fn a_particle_is_pinned_and_let_go() {
     let mut run = simulation("cloth", "rk4", 0.005);
@@ -437,7 +443,7 @@ fn a_particle_is_pinned_and_let_go() {
     assert_eq!(run.toggle_pin(210), Ok(true));
     run.advance_to(1.0).unwrap();
     assert_eq!(run.position(210), place);
-    // Seen when the hand lets go.
+    // Unpinning a grabbed particle takes effect when the hand releases it.
     run.grab(210).unwrap();
     assert_eq!(run.toggle_pin(210), Ok(false));
     assert!(pinned(&run, 210));
@@ -479,13 +485,14 @@ fn a_rewound_run_repeats_itself() {
         assert_eq!(run.state(), then.y);
         run.advance_to(1.0).unwrap();
         let worst = run.state().iter().zip(&end).map(|(a, b)| (a - b).abs());
-        // An adaptive method chooses its steps anew.
+        // An adaptive method chooses other steps.
         let bound = if method == "dop853" { 1e-5 } else { 0.0 };
         assert!(worst.fold(0.0, f64::max) <= bound, "{method}");
     }
 }
 
-/// Whatever the hands did since: pins are where they were, and stay there.
+/// After a rewind, pins are at their former positions and stay there, whatever hands did in
+/// between.
 #[test]
 fn rewinding_puts_pins_back_where_they_were_and_ends_a_blow_up() {
     let mut run = simulation("cloth", "trapezoid", 0.01);

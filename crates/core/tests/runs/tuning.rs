@@ -1,4 +1,4 @@
-//! What is changed while it runs, and descriptions of runs as they are.
+//! Changes of a scene during a run, and scene descriptions of runs in progress.
 
 use crate::common::scene;
 use a3_core::contact::{Obstacle, Shape};
@@ -14,7 +14,7 @@ fn network(run: &Simulation) -> &Network {
     run.model().network().unwrap()
 }
 
-/// All of a run's forces now (N).
+/// Derivative of a run's current state: velocities (m/s), then accelerations (m/s2).
 fn forces(run: &Simulation) -> Vec<f64> {
     let mut f = vec![0.0; run.state().len()];
     run.model().system().eval_f(run.time(), run.state(), &mut f);
@@ -56,7 +56,8 @@ fn torn_springs_stay_torn_when_the_others_are_exchanged() {
     assert!(torn.springs().all(|s| !torn.is_torn(s.i, s.j)));
 }
 
-/// With any method, also one that had made room for damped kicks: the same bits as a run that began so.
+/// With any method, a run after an adjustment has the same bits as a run that began with the
+/// adjusted scene, even if the method had scratch for damped kicks.
 #[test]
 fn an_adjusted_run_is_that_of_the_adjusted_scene() {
     for method in integrators::METHODS {
@@ -131,7 +132,7 @@ fn pins_are_freed_and_hold_again_where_they_are() {
     run.reset();
     assert_eq!(network(&run).pins().count(), 0, "a reset leaves them free");
     run.advance_to(0.2).unwrap();
-    // The hand keeps what it holds.
+    // Pinning and unpinning everything leaves the grabbed particle in the hand.
     run.grab(3).unwrap();
     run.set_pinned(true);
     assert_eq!(network(&run).pins().count(), 20);
@@ -148,7 +149,8 @@ fn pins_are_freed_and_hold_again_where_they_are() {
     assert!(!run.pinned());
 }
 
-/// Every scene after a second with all that can be changed: written, read, and gone on with.
+/// Every scene, with everything changed that can be changed, goes on after a second from its
+/// description, written and read.
 #[test]
 fn a_run_goes_on_from_its_description() {
     for entry in a3_scenes::SCENES {
@@ -220,7 +222,8 @@ fn what_was_freed_is_described_as_free() {
     assert_eq!(scene.model.network().unwrap().pins().count(), 0);
 }
 
-/// A path in a straight line is gone on with too, before it, on it and after it; and so is that of a sphere.
+/// Paths go on in a description: that of a pin in a straight line before, during and after its
+/// motion, and that of a sphere.
 #[test]
 fn paths_go_on_from_where_they_are() {
     let text = "gravity = [0, -9.81, 0]
@@ -255,7 +258,8 @@ fn paths_go_on_from_where_they_are() {
     }
 }
 
-/// Boxes and capsules that move are where they were, and go on as they did; buckling strips are as stiff as they were.
+/// Moving boxes and capsules go on along their paths in a description, and buckling strips keep
+/// their stiffness.
 #[test]
 fn obstacles_and_strips_go_on_too() {
     let text = "\

@@ -1,17 +1,18 @@
-//! Stages of a small system without masses: Newton's method with its Jacobian by central
-//! differences.
+//! Implicit stages of a small system without masses, by Newton's method with the Jacobian J from
+//! central differences.
 
 use super::{CLOSE, MOST, Newton, norm};
 use crate::error::Error;
 use crate::integrators::{Work, check_dim};
 use crate::system::ParticleSystem;
 
-/// Largest dimension: the Jacobian of a larger system takes too long.
+/// Largest dimension; the Jacobian of a larger system takes too long.
 const LARGEST: usize = 1024;
 
+/// Solver of the implicit stages of a small system, with its scratch.
 pub(super) struct Dense {
     dim: usize,
-    /// The matrix 1 - a J, row by row.
+    /// Matrix 1 - a J, row by row.
     matrix: Vec<f64>,
     change: Vec<f64>,
     at: Vec<f64>,
@@ -32,6 +33,7 @@ impl Dense {
         }
     }
 
+    /// Takes y from a guess to the solution of y = base + a f(t, y).
     pub fn solve(
         &mut self,
         system: &dyn ParticleSystem,
@@ -105,7 +107,8 @@ impl Dense {
     }
 }
 
-/// Solves the system in place by elimination with row pivots. Returns whether it has a solution.
+/// Solves the linear system in place by Gaussian elimination with partial pivoting. Returns false
+/// if the matrix is singular or not finite.
 fn eliminate(matrix: &mut [f64], b: &mut [f64]) -> bool {
     let n = b.len();
     for k in 0..n {

@@ -1,9 +1,9 @@
-//! Implicit Euler, y1 = y + h f(t + h, y1), by one step of Newton's method, as in Baraff and
-//! Witkin, *Large Steps in Cloth Simulation*, 1998: any step is stable, and motion is damped the
-//! more the longer it is. Order 1.
+//! Implicit Euler: y1 = y + h f(t + h, y1), by one iteration of Newton's method (Baraff, Witkin,
+//! *Large Steps in Cloth Simulation*, 1998). Any step is stable, and longer steps damp the motion
+//! more. Order 1.
 
 use super::super::{Integrator, Method, Work, check_dim};
-use super::{Newton, Stage};
+use super::{Newton, StageSolver};
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -22,14 +22,14 @@ pub(in super::super) const METHOD: Method = Method {
     needs_mechanics: false,
     create: |system| {
         Box::new(ImplicitEuler {
-            stage: Stage::new(system),
+            stage: StageSolver::new(system),
             base: vec![0.0; system.dim()],
         })
     },
 };
 
 struct ImplicitEuler {
-    stage: Stage,
+    stage: StageSolver,
     base: Vec<f64>,
 }
 

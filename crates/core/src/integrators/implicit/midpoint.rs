@@ -1,9 +1,9 @@
-//! The implicit midpoint rule, Y = y + h/2 f(t + h/2, Y), y1 = 2 Y - y, its equations solved to the
-//! end: symplectic, so that energy is kept, and any step is stable while they have a solution.
-//! Order 2.
+//! The implicit midpoint rule: Y = y + h/2 f(t + h/2, Y), y1 = 2 Y - y. Its equations are solved to
+//! rounding. The method is symplectic, so that the energy error stays bounded, and any step is
+//! stable for which the equations have a solution. Order 2.
 
 use super::super::{Integrator, Method, Work, check_dim};
-use super::{Newton, Stage, place};
+use super::{Newton, StageSolver, place};
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -22,14 +22,14 @@ pub(in super::super) const METHOD: Method = Method {
     needs_mechanics: false,
     create: |system| {
         Box::new(ImplicitMidpoint {
-            stage: Stage::new(system),
+            stage: StageSolver::new(system),
             base: vec![0.0; system.dim()],
         })
     },
 };
 
 struct ImplicitMidpoint {
-    stage: Stage,
+    stage: StageSolver,
     base: Vec<f64>,
 }
 

@@ -1,9 +1,12 @@
-//! The equation of an implicit stage, y = base + a f(t, y), solved by Newton's method from a guess.
+//! Implicit stages y = base + a f(t, y), solved by Newton's method from a guess.
 //!
-//! For a mechanical system with the guess (x, v) and A = M + a (C + D) + a2 K: it is A dv = M (bv -
-//! v) + a F(t, x, v) - a K (bx + a v - x), dx = bx + a v - x + a dv. Particles that are pinned are
-//! put in their places before, and filtered (Baraff and Witkin, *Large Steps in Cloth Simulation*,
-//! 1998). The Jacobian of any other system is taken by central differences, and eliminated.
+//! In a mechanical system with masses M, drag C, damping D and stiffness K, the guess (x, v) and
+//! base = (bx, bv), an iteration solves
+//! A dv = M (bv - v) + a F(t, x, v) - a K g, with the gap g = bx + a v - x and
+//! A = M + a (C + D) + a^2 K, and adds dv to v and dx = g + a dv to x. Pinned particles are put in
+//! their places first and are filtered out of the equations (Baraff, Witkin, *Large Steps in Cloth
+//! Simulation*, 1998). For any other system, the Jacobian is computed by central differences and
+//! the equations are solved by elimination.
 
 mod dense;
 mod euler;
@@ -23,10 +26,10 @@ use super::Work;
 
 /// Largest number of iterations of Newton's method.
 const MOST: u32 = 30;
-/// Last change at which the iteration ends, relative to the state: the next would be lost in
+/// Change relative to the state at which the iteration ends: the next change would be lost in
 /// rounding.
 const CLOSE: f64 = 1e-11;
-/// Relative residual to which its linear systems are solved.
+/// Relative residual to which the linear systems of Newton's method are solved.
 const FORCING: f64 = 1e-5;
 
 /// Number of iterations of Newton's method.
@@ -34,17 +37,19 @@ const FORCING: f64 = 1e-5;
 enum Newton {
     /// One iteration, with compressed springs clamped.
     Once,
-    /// As many as it takes until nothing changes any more.
+    /// Iterations until the state no longer changes.
     Full,
 }
 
-/// Solver of the stages of one system.
-enum Stage {
+/// Solver of the implicit stages of one system.
+enum StageSolver {
+    /// Solver for a linearised mechanical system.
     Mechanical(Box<Mechanical>),
+    /// Solver for any other system, of a small dimension.
     Dense(Dense),
 }
 
-impl Stage {
+impl StageSolver {
     fn new(system: &dyn ParticleSystem) -> Self {
         match system.mechanics().and_then(Mechanics::linearized) {
             Some(linearized) => Self::Mechanical(Box::new(Mechanical::new(linearized))),
@@ -72,7 +77,7 @@ impl Stage {
     }
 }
 
-/// Puts pins where they are at time t, if the system has any.
+/// Puts pins in their places at time t (s), if the system has any.
 fn place(system: &dyn ParticleSystem, t: f64, y: &mut [f64]) {
     if let Some(mechanics) = system.mechanics() {
         let (x, v) = y.split_at_mut(y.len() / 2);
@@ -80,11 +85,12 @@ fn place(system: &dyn ParticleSystem, t: f64, y: &mut [f64]) {
     }
 }
 
+/// Solver of the implicit stages of a mechanical system, with its scratch.
 struct Mechanical {
     solver: Solver,
     f: Vec<f64>,
     rhs: Vec<f64>,
-    /// The gap bx + a v - x (m).
+    /// Gap bx + a v - x (m).
     gap: Vec<f64>,
     dv: Vec<f64>,
 }
@@ -179,15 +185,16 @@ impl Mechanical {
             solver.tangent.filter(rhs);
             let tolerance = match newton {
                 Newton::Full => FORCING,
-                // Small steps are solved closely, so that errors fall with the step as they should.
+                // Short steps are solved more closely, so that errors fall with the step to the
+                // method's order.
                 Newton::Once => 1e-4 * solver.stiffness().clamp(1e-2, 1.0).powi(4),
             };
             let (cost, solved) = solver.solve(mechanics, rhs, dv, tolerance);
             *work += cost;
             match solved {
                 Some(_) => break,
-                // What is compressed makes the matrix indefinite: without it Newton's method
-                // converges more slowly.
+                // Compressed springs can make the matrix indefinite. With these clamped, Newton's
+                // method converges more slowly.
                 None if !clamped => clamped = true,
                 None => return Err(Error::NoConvergence { residual: 1.0 }),
             }

@@ -1,12 +1,13 @@
 //! TR-BDF2 (Bank et al. 1985) as a diagonally implicit Runge-Kutta method (Hosea, Shampine,
-//! *Analysis and implementation of TR-BDF2*, 1996): with g = 1 - 1/sqrt 2 and w = sqrt 2 / 4, Y2 =
-//! y + g h (f(t, y) + f(t + 2 g h, Y2)), y1 = y + h (w f(t, y) + w f2 + g f(t + h, y1)). Any step
-//! is stable, and what is stiff dies out. Order 2.
+//! *Analysis and implementation of TR-BDF2*, 1996). With g = 1 - 1/sqrt 2 and w = sqrt 2 / 4:
+//! f1 = f(t, y), Y2 = y + g h (f1 + f2), f2 = f(t + 2 g h, Y2),
+//! y1 = y + h (w f1 + w f2 + g f(t + h, y1)). Any step is stable, and stiff modes are damped out.
+//! Order 2.
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::super::{Integrator, Method, Work, check_dim};
-use super::{Newton, Stage};
+use super::{Newton, StageSolver};
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -26,7 +27,7 @@ pub(in super::super) const METHOD: Method = Method {
     create: |system| {
         let zeros = || vec![0.0; system.dim()];
         Box::new(TrBdf2 {
-            stage: Stage::new(system),
+            stage: StageSolver::new(system),
             f1: zeros(),
             base: zeros(),
             last: zeros(),
@@ -38,10 +39,10 @@ const G: f64 = 1.0 - FRAC_1_SQRT_2;
 const W: f64 = SQRT_2 / 4.0;
 
 struct TrBdf2 {
-    stage: Stage,
+    stage: StageSolver,
     f1: Vec<f64>,
     base: Vec<f64>,
-    /// The base of the last stage.
+    /// Base of the last stage.
     last: Vec<f64>,
 }
 
@@ -67,7 +68,7 @@ impl Integrator for TrBdf2 {
             *last = y + W * h * f1;
         }
         work += stage.solve(system, t + 2.0 * G * h, G * h, base, y, Newton::Full)?;
-        // f2 is what the stage was solved for.
+        // The solution of the stage gives f2 = (Y2 - base) / (g h).
         for ((last, y), base) in last.iter_mut().zip(&*y).zip(&*base) {
             *last += W / G * (y - base);
         }
