@@ -9,8 +9,8 @@ use toml::de::{DeTable, DeValue};
 pub struct Fault {
     /// Line of the text, counted from 1, once it is known.
     pub line: Option<usize>,
-    /// Key, such as `cloth.spacing`, or `cloth.1.spacing` of the second of several cloths. It is empty
-    /// for the description as a whole.
+    /// Key, such as `cloth.spacing`, or `cloth.1.spacing` of the second of several cloths. It is
+    /// empty for the description as a whole.
     pub key: String,
     /// Reason, and what would be right.
     pub why: String,

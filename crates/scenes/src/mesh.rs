@@ -16,8 +16,9 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh with points at equal positions made one, since files have such points where normals or
-    /// textures change. Triangles with two equal corners and points without triangles are left out.
+    /// The mesh with points at equal positions made one, since files have such points where normals
+    /// or textures change. Triangles with two equal corners and points without triangles are left
+    /// out.
     #[must_use]
     pub fn welded(&self) -> Self {
         let key = |p: &Triple| p.map(|x| (x + 0.0).to_bits());
@@ -59,8 +60,8 @@ impl Mesh {
         areas
     }
 
-    /// Springs: a structural one on each edge, and a bend one between the two corners opposite to an
-    /// edge of two triangles. `law` gives the law of a kind of spring of that length (m).
+    /// Springs: a structural one on each edge, and a bend one between the two corners opposite to
+    /// an edge of two triangles. `law` gives the law of a kind of spring of that length (m).
     pub(crate) fn springs(
         &self,
         law: impl Fn(SpringKind, f64) -> Result<SpringLaw, Error>,

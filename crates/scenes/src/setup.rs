@@ -72,8 +72,8 @@ impl Default for Defaults {
 }
 
 impl Defaults {
-    /// The step or tolerance of a method on this scene: the scene's own, or else the method's default.
-    /// A step that is scaled has two digits, as one would type it.
+    /// The step or tolerance of a method on this scene: the scene's own, or else the method's
+    /// default. A step that is scaled has two digits, as one would type it.
     #[must_use]
     pub fn control_of(&self, method: &Method) -> Control {
         let own = self.control.filter(|_| {

@@ -1,5 +1,5 @@
-//! A description of a run as it is now, so that another goes on from there. Its clock begins at 0 again: what depends on
-//! time is shifted.
+//! Descriptions of runs as they are now, from which other runs go on. The clock of such a run
+//! begins at 0 again: paths and gusts are shifted in time.
 
 use a3_core::contact::Shape;
 use a3_core::{Checkpoint, Model, Network, Path};
@@ -10,9 +10,10 @@ use crate::description::{
 };
 
 impl Description {
-    /// Makes the springs of every body so many times as stiff, and so many times as damped.
+    /// Multiplies the stiffness and the damping of the springs of every body by these factors.
     pub fn scale_springs(&mut self, stiffness: f64, damping: f64) {
-        // Damping over stiffness, and damping over the critical one, which grows with the root of the stiffness.
+        // Factors of damping over stiffness, and of damping over the critical one, which grows with
+        // the root of the stiffness.
         let (time, ratio) = (damping / stiffness, damping / stiffness.sqrt());
         let scale = |number: &mut Option<f64>, factor: f64| {
             *number = number.map(|number| number * factor);
@@ -60,21 +61,22 @@ impl Description {
         scale_list(&mut self.springs);
     }
 
-    /// Blows so many times as strongly, if there is wind.
+    /// Multiplies the force or velocity of the wind by this factor, if there is wind.
     pub fn scale_wind(&mut self, factor: f64) {
         if let Some(wind) = &mut self.wind {
-            for blow in [
+            for mean in [
                 &mut wind.force,
                 &mut wind.force_per_mass,
                 &mut wind.velocity,
             ] {
-                *blow = blow.map(|blow| blow.map(|x| x * factor));
+                *mean = mean.map(|mean| mean.map(|x| x * factor));
             }
         }
     }
 
-    /// Begins with a run as it is `now`, by its method, and with what pulls and stands in the way there: pins, obstacles,
-    /// wind, gravity and drag. Springs stay as they are described, but for those that have broken. Hands let go.
+    /// Makes the description begin with a run as it is `now`: its method, state, pins, obstacles,
+    /// wind, gravity and drag. Springs stay as they are described, except for those that have
+    /// broken. A particle in a hand is let go of.
     pub fn begin_with(&mut self, model: &Model, now: &Checkpoint) {
         let (n, t) = (model.particles(), now.time());
         self.solver = Some(now.method.name.into());
@@ -106,8 +108,8 @@ impl Description {
         self.pin = pins(now);
     }
 
-    /// Writes the obstacles as they are at time t (s). Each kind is described in the order in which it was added; a floor
-    /// may have gone.
+    /// Describes the obstacles as they are at time t (s). Those of each kind are in the order in
+    /// which they were added; the floor may have been removed.
     fn write_obstacles(&mut self, network: &Network, t: f64) {
         let mut spheres = self.sphere.iter_mut();
         let mut boxes = self.boxes.iter_mut();
@@ -157,6 +159,7 @@ impl Description {
         }
     }
 
+    /// Pins of each body.
     fn body_pins(&mut self) -> impl Iterator<Item = &mut Vec<Pin>> {
         let cloths = self.cloth.iter_mut().map(|body| &mut body.pin);
         let jellies = self.jelly.iter_mut().map(|body| &mut body.pin);
@@ -171,8 +174,8 @@ impl Description {
     }
 }
 
-/// The pins as they go on from now: those that move alike together. One in the hand stays where it is, if it was pinned
-/// before.
+/// Pins as they go on from now, with those that move alike put together. A particle in a hand stays
+/// pinned where it is if it was pinned before.
 fn pins(now: &Checkpoint) -> Vec<Pin> {
     let mut pins: Vec<Pin> = vec![];
     for &(i, path) in &now.pins {
@@ -197,7 +200,7 @@ fn pins(now: &Checkpoint) -> Vec<Pin> {
     pins
 }
 
-/// How a path goes on from where it is at time t (s), which is 0 from then on.
+/// Continuation of a path from time t (s), which becomes time 0.
 fn motion(path: &Path, t: f64) -> (Option<Sine>, Option<Shift>) {
     match *path {
         Path::Sine {

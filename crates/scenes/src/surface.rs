@@ -1,12 +1,14 @@
 //! Surfaces of bodies.
 
-/// Surface of the first particles of a scene. Other particles are drawn one by one, with their springs.
+/// Surface of the first particles of a scene. Other particles are drawn one by one, with their
+/// springs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Surface {
-    /// Corners of the triangles, counterclockwise as seen from outside, or from the front of a cloth.
+    /// Corners of the triangles, counterclockwise as seen from outside, or from the front of a
+    /// cloth.
     pub triangles: Vec<[u32; 3]>,
-    /// Ends of the bodies: each body has the particles from the end of the one before up to its own.
-    /// Particles inside a body are in no triangle.
+    /// Ends of the bodies: each body has the particles from the end of the one before up to its
+    /// own. Particles inside a body are in no triangle.
     pub bodies: Vec<usize>,
 }
 

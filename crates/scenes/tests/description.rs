@@ -1,4 +1,5 @@
-//! Scenes as text: what is read is what was written, and what is wrong is named with its line and key.
+//! Scenes as text: what is read is what was written, and what is wrong is named with its line and
+//! key.
 
 use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Grid, Model, Path, Scene, SpringKind, Vector3};
@@ -496,7 +497,8 @@ fn editors_get_a_schema() {
     }
 }
 
-/// Texts that were damaged at random are read or refused, and nothing else; what is read can be evaluated.
+/// Texts that were damaged at random are read or refused, and nothing else; what is read can be
+/// evaluated.
 #[test]
 fn damaged_texts_are_refused_or_read() {
     let mut seed = 1u64;

@@ -1,5 +1,5 @@
-//! Lattice of a jelly: structural springs along the axes, shear springs across faces and cells, bend
-//! springs to the next particle but one.
+//! Lattice of a jelly: structural springs along the axes, shear springs across faces and cells,
+//! bend springs to the next particle but one.
 
 use a3_core::{Spring, SpringKind, SpringLaw};
 
@@ -45,8 +45,8 @@ impl Lattice {
         (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
     }
 
-    /// The springs of a lattice of that spacing (m). `law` gives the law of a kind of spring of that
-    /// length (m).
+    /// The springs of a lattice of that spacing (m). `law` gives the law of a kind of spring of
+    /// that length (m).
     pub fn springs(
         self,
         spacing: [f64; 3],

@@ -26,8 +26,8 @@ pub(super) fn springs(specs: &[SpringSpec], particles: usize) -> Result<Vec<Spri
     specs.iter().enumerate().map(spring).collect()
 }
 
-/// Damping over stiffness (s), given directly or by the damping ratio of a particle of that mass (kg)
-/// on a spring of that stiffness (N/m).
+/// Damping over stiffness (s), given directly or by the damping ratio of a particle of that mass
+/// (kg) on a spring of that stiffness (N/m).
 pub(super) fn damping_time(
     damping: Option<f64>,
     ratio: Option<f64>,

@@ -29,8 +29,8 @@ use circle::Circling;
 use network::NetworkParts;
 
 impl Description {
-    /// The scene, with this grid of its first cloth instead of its own, if one is given. `mesh` reads
-    /// a file of triangles.
+    /// The scene, with this grid of its first cloth instead of its own, if one is given. `mesh`
+    /// reads a file of triangles.
     ///
     /// # Errors
     /// A number makes no sense, or a file cannot be read.

@@ -32,8 +32,8 @@ pub struct Cloth {
     pub stiffness: [f64; 3],
     /// Damping over stiffness of every spring (s). An alternative is `damping_ratio`.
     pub damping: Option<f64>,
-    /// Damping over the critical damping of a particle on a structural spring, which is the same for
-    /// every grid. An alternative is `damping`.
+    /// Damping over the critical damping of a particle on a structural spring, which is the same
+    /// for every grid. An alternative is `damping`.
     pub damping_ratio: Option<f64>,
     /// Law of bend springs that buckle; under tension they have the stiffness given above.
     pub buckling: Option<BucklingSpec>,
@@ -166,8 +166,8 @@ pub struct Particles {
     /// Masses of the particles (kg). An alternative is `mass`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub masses: Vec<f64>,
-    /// Springs: [i, j, stiffness (N/m), rest length (m), damping (N s/m)], with the particles numbered
-    /// from 0 among these.
+    /// Springs: [i, j, stiffness (N/m), rest length (m), damping (N s/m)], with the particles
+    /// numbered from 0 among these.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,
     /// Pins of this body.

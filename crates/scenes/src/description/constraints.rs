@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::motion::Triple;
 
-/// Constraint: either a `rod` between two particles, or a `point`, a `line`, a `circle` or a `sphere`
-/// that one `particle` stays on.
+/// Constraint: either a `rod` between two particles, or a `point`, a `line`, a `circle` or a
+/// `sphere` that one `particle` stays on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ConstraintSpec {

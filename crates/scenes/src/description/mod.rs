@@ -42,11 +42,13 @@ pub struct Description {
     pub gravity: Option<Triple>,
     /// Viscous drag on each particle (kg/s). An alternative is `drag_per_mass`.
     pub drag: Option<f64>,
-    /// Viscous drag on each particle over the mean mass of a particle (1/s). An alternative is `drag`.
+    /// Viscous drag on each particle over the mean mass of a particle (1/s). An alternative is
+    /// `drag`.
     pub drag_per_mass: Option<f64>,
     /// Level floor: its height (m), or a table with `height` and `friction`.
     pub floor: Option<Floor>,
-    /// Largest stretch, in rest lengths, to which a hand pulls the springs of the particle it holds.
+    /// Largest stretch, in rest lengths, to which a hand pulls the springs of the particle it
+    /// holds.
     pub reach: Option<f64>,
     /// Number of the particle whose path is drawn.
     pub trail: Option<usize>,
