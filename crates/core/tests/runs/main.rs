@@ -5,6 +5,7 @@ mod common;
 
 mod checkpoint;
 mod default_cloth;
+mod hands;
 mod jelly;
 mod mit;
 mod scenes;

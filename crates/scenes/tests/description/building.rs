@@ -1,0 +1,206 @@
+//! Building: every body, obstacle and force of a description is in the scene.
+
+use a3_core::contact::{Obstacle, Shape};
+use a3_core::{Model, Path, Scene, SpringKind, Vector3};
+use a3_scenes::{Description, SCENES, Setup};
+
+use super::*;
+
+/// Every built-in file can be read, has a summary, and is written as what is read as the same.
+#[test]
+fn what_is_written_is_read_as_the_same() {
+    for entry in SCENES {
+        let description = entry.description().unwrap();
+        assert_eq!(description.name.as_deref(), Some(entry.name));
+        assert!(description.summary.is_some());
+        let text = description.to_toml().unwrap();
+        assert_eq!(Description::parse(&text).unwrap(), description, "{text}");
+    }
+}
+
+/// Bodies of every kind in one scene, numbered one after another, with springs between them.
+#[test]
+fn bodies_are_numbered_through() {
+    let text = format!(
+        "{CLOTH}
+[[cloth]]
+grid = [2, 2]
+width = 1
+density = 2
+stiffness = [1, 1, 1]
+
+[[jelly]]
+grid = [2, 2, 2]
+size = [1, 1, 1]
+density = 8
+stiffness = [1, 1, 1]
+at = [5, 0, 0]
+pin = [{{ at = [\"bottom\"] }}]
+
+[[mesh]]
+file = \"square.obj\"
+density = 3
+stiffness = [7, 2]
+pin = [{{ at = [\"top\"] }}]
+
+[[chain]]
+particles = 3
+from = [0, 0, 0]
+to = [0, 2, 0]
+mass = 4
+stiffness = 1
+pin = [{{ at = [\"last\"], sine = {{ amplitude = [1, 0, 0], rate = 2 }} }}]
+
+[particles]
+positions = [[9, 9, 9], [8, 8, 8]]
+velocities = [[1, 2, 3], [0, 0, 0]]
+masses = [5, 6]
+springs = [[0, 1, 3, 1, 0]]
+
+[[pin]]
+particles = [0]
+"
+    );
+    // At the root, before the tables.
+    let setup = set_up(&format!("springs = [[11, 27, 2, 1, 0]]\n{text}")).unwrap();
+    let (scene, surface) = (setup.scene, &setup.presentation.surface);
+    let network = scene.model.network().unwrap();
+    assert_eq!(network.particles(), 12 + 4 + 8 + 4 + 3 + 2);
+    assert_eq!(surface.bodies, [12, 16, 24, 28]);
+    assert_eq!(surface.triangles.len(), 12 + 2 + 12 + 2);
+    assert!(surface.triangles.iter().flatten().all(|i| *i < 28));
+    let masses = network.masses();
+    assert_eq!(
+        (masses[0], masses[12], masses[16], masses[31]),
+        (0.1, 2.0, 1.0, 5.0)
+    );
+    // Corners of the square belong to both triangles or to one.
+    let thirds = [24, 25, 26, 27].map(|i| masses[i]);
+    assert_eq!(thirds, [1.0, 0.5, 1.0, 0.5]);
+    let pins: Vec<_> = network.pins().map(|(i, _)| i).collect();
+    assert_eq!(pins, [0, 16, 17, 20, 21, 26, 27, 30]);
+    let Some((_, Path::Sine { center, .. })) = network.pins().last() else {
+        panic!("the chain's end swings")
+    };
+    assert_eq!(center, Vector3::new(0.0, 2.0, 0.0));
+    let joins = |i, j| {
+        network
+            .springs()
+            .any(|s| (s.i, s.j) == (i, j) || (s.i, s.j) == (j, i))
+    };
+    assert!(joins(11, 27) && joins(31, 32) && joins(28, 29) && joins(12, 13) && !joins(11, 12));
+    let across: Vec<_> = network
+        .springs_of(25)
+        .filter(|s| s.kind == SpringKind::Bend)
+        .collect();
+    assert!(matches!(across[..], [s] if s.i + s.j == 25 + 27 && s.law.stiffness == 2.0));
+    assert_eq!(scene.state[3 * 33 + 31], 1.0);
+}
+
+/// A second cloth is held together as the first is.
+#[test]
+fn every_cloth_has_its_springs() {
+    let one = build(CLOTH).unwrap();
+    let body = CLOTH.split_once("\n\n").unwrap().1;
+    let two = build(&format!("{CLOTH}\n{body}")).unwrap();
+    let count = |scene: &Scene| scene.model.network().unwrap().springs().count();
+    assert_eq!(count(&two), 2 * count(&one));
+}
+
+/// The grid asked for samples the same cloth: as wide, as heavy, and damped alike.
+#[test]
+fn another_grid_is_the_same_cloth() {
+    let (coarse, fine) = (scene("cloth", None), scene("cloth", Some([39, 39])));
+    let mass = |setup: &Setup| {
+        let network = setup.scene.model.network().unwrap();
+        // Border particles stand for half a cell too much.
+        network.masses()[0] * ((setup.scene.grid().unwrap().cols() - 1) as f64).powi(2)
+    };
+    assert!((mass(&coarse) - mass(&fine)).abs() < 1e-9);
+    assert!((fine.defaults.step_scale - 0.5).abs() < 1e-12);
+    assert!(scene("mit", Some([30, 30])).defaults.step_scale == 1.0);
+}
+
+#[test]
+fn a_state_stands_for_that_of_the_bodies() {
+    let text = "[state]\npositions = [[3, 4, 0]]\n\n[circle]\nstart = [1, 0, 0]\n";
+    let scene = build(text).unwrap();
+    assert!(matches!(scene.model, Model::FirstOrder(_)));
+    assert_eq!(scene.state, [3.0, 4.0, 0.0]);
+    let of = |rows: usize| {
+        format!(
+            "state = {{ positions = {:?} }}\n{CLOTH}",
+            vec![[1.0, 2.0, 3.0]; rows]
+        )
+    };
+    let scene = build(&of(12)).unwrap();
+    assert_eq!(
+        (scene.state[0], scene.state[12], scene.state[40]),
+        (1.0, 2.0, 0.0)
+    );
+    assert!(said(&of(11)).starts_with("line 1: state.positions: there are 11, but 12 particles"));
+}
+
+#[test]
+fn obstacles_wind_and_buckling_are_there() {
+    let scene = build(&format!(
+        "floor = {{ height = -1, friction = 0.4 }}
+tear = 2
+box = [{{ center = [0, 0, 0], size = [1, 2, 3], rotation = [0, 1, 0] }}]
+capsule = [{{ from = [0, 0, 0], to = [1, 0, 0], radius = 0.1, friction = 0.5 }}]
+sphere = [{{ center = [0, 0, 0], radius = 1, friction = 0.25, shift = {{ by = [1, 0, 0], end = 2 }} }}]
+wind = {{ on = true, velocity = [1, 0, 0] }}
+{}",
+        CLOTH.replace(
+            "[10, 5, 2]",
+            "[10, 5, 2]\nbuckling = { bending = 0.001, compression = 10 }"
+        )
+    ))
+    .unwrap();
+    let network = scene.model.network().unwrap();
+    assert_eq!(
+        network
+            .forces_in_use()
+            .iter()
+            .filter(|name| ["box", "capsule", "sphere", "wind", "floor"].contains(name))
+            .count(),
+        5
+    );
+    let [sphere, cuboid, capsule, floor] = network.obstacles() else {
+        panic!("{:?}", network.obstacles());
+    };
+    assert_eq!(
+        (sphere.path.at(1.0).position, sphere.friction),
+        (Vector3::new(0.5, 0.0, 0.0), 0.25)
+    );
+    let half = Vector3::new(0.5, 1.0, 1.5);
+    assert!(matches!(cuboid.shape, Shape::Box { half_extents, .. } if half_extents == half));
+    assert!(matches!(capsule.shape, Shape::Capsule { radius: 0.1, .. }));
+    assert_eq!((cuboid.friction, capsule.friction), (0.0, 0.5));
+    assert_eq!(
+        *floor,
+        Obstacle {
+            friction: 0.4,
+            ..Obstacle::smooth(Shape::Floor, Path::Still(Vector3::new(0.0, -1.0, 0.0)))
+        }
+    );
+    assert_eq!(network.buckling().count(), 3 * 2 + 4);
+    assert_eq!(
+        (network.triangles().len(), network.tear_limit()),
+        (12, Some(2.0))
+    );
+}
+
+#[test]
+fn editors_get_a_schema() {
+    let schema = Description::schema();
+    for word in [
+        "cloth",
+        "damping_ratio",
+        "additionalProperties",
+        "top-left",
+        "\"box\"",
+    ] {
+        assert!(schema.contains(word), "{word}");
+    }
+}

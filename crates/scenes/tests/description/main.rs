@@ -1,0 +1,60 @@
+//! Scenes as text: what is read is what was written, and what is wrong is named with its line and
+//! key.
+
+mod building;
+mod faults;
+
+use a3_core::{Grid, Scene};
+use a3_scenes::{Description, Fault, Mesh, Setup, find};
+
+/// A built-in scene, with this grid or its own.
+fn scene(name: &str, grid: Option<[usize; 2]>) -> Setup {
+    let grid = grid.map(|[rows, cols]| Grid::new(rows, cols).unwrap());
+    find(name).unwrap().build(grid).unwrap()
+}
+
+fn mesh(name: &str) -> Result<Mesh, String> {
+    match name {
+        // Two triangles of a unit square, with a corner twice.
+        "square.obj" => Ok(Mesh {
+            positions: vec![
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                [1.0, 1.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [1.0, 1.0, 0.0],
+                [0.0, 0.0, 0.0],
+            ],
+            triangles: vec![[0, 1, 2], [5, 4, 3]],
+        }),
+        _ => Err(format!("{name}: there is no such file")),
+    }
+}
+
+fn set_up(text: &str) -> Result<Setup, Fault> {
+    let built = Description::parse(text).and_then(|d| d.build(None, &mut mesh));
+    built.map_err(|fault| fault.locate(text))
+}
+
+fn build(text: &str) -> Result<Scene, Fault> {
+    set_up(text).map(|setup| setup.scene)
+}
+
+/// What is said of a text that is wrong.
+fn said(text: &str) -> String {
+    match build(text) {
+        Ok(_) => panic!("this was taken:\n{text}"),
+        Err(fault) => fault.to_string(),
+    }
+}
+
+const CLOTH: &str = "\
+gravity = [0, -9.81, 0]
+
+[[cloth]]
+grid = [3, 4]
+spacing = 0.5
+mass = 0.1
+stiffness = [10, 5, 2]
+at = [0, 2, 0]
+";
