@@ -16,11 +16,11 @@ const PULL_TIME: f64 = 1.0 / 30.0;
 /// ... unless that is faster than this many radii of the scene per second.
 const PULL_SPEED: f64 = 10.0;
 
-/// What constraints hold is drawn by a spring, as if from so many radii of the scene away at most.
+/// Greatest distance, in radii of the scene, from which a spring attracts what constraints hold.
 const PULL_REACH: f64 = 0.05;
 
-/// How short and how long a hand makes a rod, in lengths: what it does faster than the other end
-/// follows.
+/// Least and greatest length that a hand gives to a rod whose other end has not followed yet, in
+/// lengths of the rod.
 const ROD: (f64, f64) = (0.95, 1.05);
 
 impl Grabbed {
@@ -120,9 +120,9 @@ impl Simulation {
         self.grabbed.map(|grabbed| grabbed.particle)
     }
 
-    /// Takes hold of particle i, and lets go of any other: it is a pin then; or, if it is free but
-    /// for constraints, a spring draws it. Does nothing in a scene without masses, where there is
-    /// nothing to hold against.
+    /// Takes hold of particle i, and lets go of any other. The particle is a pin then, or, if it is
+    /// free but for constraints, a spring attracts it. Does nothing in a scene without masses,
+    /// where there is nothing to hold against.
     ///
     /// # Errors
     /// There is no such particle.
@@ -157,9 +157,9 @@ impl Simulation {
         network.is_some_and(|network| grabbed.is_attracted(network))
     }
 
-    /// Draws the grabbed particle towards `target` (m): there at once to the eye, unless springs or
-    /// rods hold it back. A hand is strong and not almighty: it stretches a spring it holds as far
-    /// as the scene allows, a rod hardly at all, and gets farther as the other end comes along.
+    /// Pulls the grabbed particle towards `target` (m), where it arrives at once to the eye, unless
+    /// springs or rods hold it back: the hand stretches a spring as far as the scene allows, a rod
+    /// hardly at all, and gets farther as the other end follows.
     pub fn pull(&mut self, target: Vector3<f64>) {
         let Some(grabbed) = self.grabbed else { return };
         let i = grabbed.particle;
@@ -186,8 +186,8 @@ impl Simulation {
     }
 
     /// The point on the way of particle i to `target` up to which no spring of its own is stretched
-    /// too far, and no rod stretched or squeezed. One that is already may not get longer, or
-    /// shorter.
+    /// too far, and no rod stretched or squeezed. A spring or rod that is already may not become
+    /// worse.
     fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
         let way = target - from;
         let network = || self.model.network().into_iter();
@@ -221,9 +221,9 @@ impl Simulation {
         }
     }
 
-    /// Pins particle i where it is, swinging if the pins do, or lets it go freely. That of a
-    /// grabbed one is seen when the hand lets go. Whether it is pinned now. Does nothing in a scene
-    /// without masses.
+    /// Pins particle i where it is, swinging if the pins do, or unpins it. Returns whether it is
+    /// pinned now. For a grabbed particle this takes effect when the hand lets go. Does nothing in
+    /// a scene without masses.
     ///
     /// # Errors
     /// There is no such particle.
@@ -281,7 +281,7 @@ impl Simulation {
         self.grabbed_obstacle = None;
     }
 
-    /// Gives the grabbed obstacle the path that `path` makes of its place.
+    /// Gives the grabbed obstacle a path, which `path` makes of its position (m).
     fn lead_obstacle(&mut self, path: impl FnOnce(&Self, Vector3<f64>) -> Path) {
         let network = self.model.network().zip(self.grabbed_obstacle);
         let Some(obstacle) = network.and_then(|(network, k)| network.obstacles().get(k)) else {
@@ -295,8 +295,8 @@ impl Simulation {
     }
 }
 
-/// How much of a way is left to what is at d (m) from the other end, until it is as near or as far
-/// as it may get, or as it is already: at most all, 1.
+/// The share, at most 1, of a `way` (m) that a particle at d (m) from the other end of a spring or
+/// rod may go before it is nearer than `shortest` or farther than `longest` (m).
 fn share(d: Vector3<f64>, way: Vector3<f64>, shortest: f64, longest: f64) -> f64 {
     let (a, b, distance) = (way.norm_squared(), d.dot(&way), d.norm());
     if a == 0.0 {

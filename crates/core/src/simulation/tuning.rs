@@ -29,8 +29,7 @@ impl Simulation {
         }
     }
 
-    /// The wind that blows when it does, instead of the scene's. A scene without wind stays
-    /// without.
+    /// Puts another wind in the place of the scene's. A scene without wind stays without.
     pub fn change_wind(&mut self, wind: Wind) {
         if self.scene.wind.is_some() {
             self.scene.wind = Some(wind);
