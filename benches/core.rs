@@ -1,6 +1,4 @@
-//! Forces and steps, over the tables of scenes and methods.
-//!
-//! `cargo bench` runs all; `cargo bench -- forces` a part; `cargo bench -- --test` each once, to see that it runs.
+//! Forces and steps, over the tables of scenes and methods; `cargo bench -- forces` runs a part.
 
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 

@@ -1,6 +1,6 @@
 //! Pseudorandom numbers that a seed determines.
 
-/// SplitMix64 generator with its state (Steele, Lea, Flood, *Fast splittable pseudorandom number
+/// `SplitMix64` generator with its state (Steele, Lea, Flood, *Fast splittable pseudorandom number
 /// generators*, 2014).
 pub(crate) struct SplitMix(pub u64);
 

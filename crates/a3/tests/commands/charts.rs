@@ -222,8 +222,8 @@ fn seconds_are_measured() {
 #[test]
 fn a_long_horizon_is_warned_of() {
     let folder = tempfile::tempdir().unwrap();
-    let mut words = vec!["chart", "--scene", "mit-sphere", "--until", "2"];
-    words.extend(["--solvers", "v", "--work", "evaluations"]);
+    let mut words = vec!["chart", "--scene", "double-pendulum", "--until", "8"];
+    words.extend(["--solvers", "r", "--work", "evaluations"]);
     let output = a3(folder.path(), &words);
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(

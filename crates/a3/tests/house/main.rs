@@ -114,7 +114,6 @@ fn the_map_of_the_architecture_is_the_territory() {
             }
         }
     }
-    // What is inside a folder that is named may go by that name.
     let missing: Vec<_> = rooms.iter().filter(|room| !named.contains(*room)).collect();
     assert!(
         missing.is_empty(),

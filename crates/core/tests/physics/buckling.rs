@@ -1,11 +1,9 @@
-//! Bend springs that buckle: their force against independent formulas, and strips that bend
-//! smoothly.
+//! Bend springs that buckle: their force by independent formulas, and strips that bend smoothly.
 
 use crate::common::{distance, integrate, method, scene_with_grid, size};
-use a3_core::elements::Buckling;
 use a3_core::{
     Control, Coupling, Linearized, Mechanics, Model, Network, Path, Scene, Simulation, Splitting,
-    Spring, SpringKind, SpringLaw, Vector3,
+    Spring, SpringKind, SpringLaw, Vector3, elements::Buckling,
 };
 use approx::assert_relative_eq;
 
@@ -118,8 +116,7 @@ fn the_derivative_of_the_energy_is_the_force() {
     assert_eq!(energy(SOFT, SOFT.rest_length), 0.0);
 }
 
-/// Energy of two oscillating masses is conserved while the strip between them is straight, bent and
-/// stretched in turn.
+/// Two masses conserve energy while the strip between them is straight, bent and stretched.
 #[test]
 fn energy_is_conserved() {
     let network = network(SOFT);

@@ -72,20 +72,17 @@ impl Description {
     }
 
     fn assemble(&self, mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>) -> Result<Setup, Fault> {
-        let (model, mut state, surface) = match &self.circle {
-            Some(circle) => {
-                let start = vector("circle.start", circle.start)?;
-                let model = Model::FirstOrder(Arc::new(Circling));
-                (model, start.as_slice().to_vec(), Surface::default())
-            }
-            None => {
-                let NetworkParts {
-                    network,
-                    state,
-                    surface,
-                } = network::build(self, mesh)?;
-                (Model::Network(Box::new(network)), state, surface)
-            }
+        let (model, mut state, surface) = if let Some(circle) = &self.circle {
+            let start = vector("circle.start", circle.start)?;
+            let model = Model::FirstOrder(Arc::new(Circling));
+            (model, start.as_slice().to_vec(), Surface::default())
+        } else {
+            let NetworkParts {
+                network,
+                state,
+                surface,
+            } = network::build(self, mesh)?;
+            (Model::Network(Box::new(network)), state, surface)
         };
         if self.circle.is_some() && network::bodies(self) > 0 {
             return Err(Fault::new(
