@@ -131,7 +131,7 @@ fn forces_of_a_list(c: &mut Criterion) {
     group.finish();
 }
 
-/// The cloth of 100 x 100 particles alone and with other elements beside it, and what has about as many particles.
+/// Cloth of 100 x 100 particles, alone and beside other elements, and bodies of about that size.
 fn mixed() -> Vec<(&'static str, Scene)> {
     const SIDE: usize = 100;
     let pure = cloth("cloth", SIDE);
@@ -342,7 +342,7 @@ fn main() {
     ratios(begun);
 }
 
-/// Prints the springs per second of what this run measured, and how many times those of the plain list they are.
+/// Prints springs per second as this run measured them, and their ratio to the plain list.
 fn ratios(begun: SystemTime) {
     let home = std::env::var_os("CRITERION_HOME").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/criterion"),

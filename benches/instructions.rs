@@ -1,8 +1,9 @@
-//! Instructions of the main kernels, counted by callgrind: a guard against what makes them slower, on any machine.
+//! Instructions of the main kernels, counted by callgrind: a guard against what makes them slower,
+//! on any machine.
 //!
-//! `cargo bench --bench instructions` compares with the limits below, some 15 % above what was counted when they were set.
-//! Callgrind knows vectors of four numbers, so those are what is counted. Without `valgrind` nothing is, unless
-//! `A3_REQUIRE_VALGRIND` is set.
+//! `cargo bench --bench instructions` compares with the limits below, some 15 % above what was
+//! counted when they were set. Callgrind knows vectors of four numbers, so those are what is
+//! counted. Without `valgrind` nothing is, unless `A3_REQUIRE_VALGRIND` is set.
 
 use std::hint::black_box;
 use std::process::{Command, ExitCode};

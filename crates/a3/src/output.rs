@@ -9,7 +9,8 @@ use tempfile::NamedTempFile;
 use crate::failure::Failure;
 use crate::interrupt::Temporary;
 
-/// `Ok` if the path has one of the extensions and its folder exists. Commands check before they work.
+/// `Ok` if the path has one of the extensions and its folder exists. Commands check before they
+/// work.
 pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     if !extensions.iter().any(|extension| ends_in(path, extension)) {
         let (last, others) = extensions.split_last().unwrap_or((&"", &[]));

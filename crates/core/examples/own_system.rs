@@ -1,12 +1,12 @@
-//! A system of one's own, by several methods: the Lorenz equations, which are chaotic, so that every
-//! error grows until the solutions have nothing in common.
+//! A system of one's own, by several methods: the Lorenz equations, which are chaotic, so that
+//! every error grows until the solutions have nothing in common.
 //!
 //! `cargo run -p a3-core --example own_system`
 
 use a3_core::{Error, ParticleSystem, integrators};
 
-/// x' = 10 (y - x), y' = x (28 - z) - y, z' = x y - 8/3 z (Lorenz, *Deterministic nonperiodic flow*,
-/// 1963).
+/// x' = 10 (y - x), y' = x (28 - z) - y, z' = x y - 8/3 z (Lorenz, *Deterministic nonperiodic
+/// flow*, 1963).
 struct Lorenz;
 
 impl ParticleSystem for Lorenz {

@@ -1,5 +1,5 @@
-//! Pictures against golden ones, with a tolerance in what an eye would notice. `UPDATE_GOLDEN=1` writes them anew; a
-//! failure leaves the picture beside its golden one.
+//! Pictures against golden ones, with a tolerance in what an eye would notice. `UPDATE_GOLDEN=1`
+//! writes them anew; a failure leaves the picture beside its golden one.
 
 mod common;
 
@@ -21,8 +21,9 @@ fn draw(gpu: &Gpu, sheet: &Sheet, style: Style) -> RgbaImage {
     RgbaImage::from_raw(SIZE.0, SIZE.1, pixels).unwrap()
 }
 
-/// Share of pixels that are off by more than 12 of 255 in some channel, and the mean error of all channels.
-/// Adapters differ along edges, so a few pixels may; a shader that is a little too dark moves the mean.
+/// Share of pixels that are off by more than 12 of 255 in some channel, and the mean error of all
+/// channels. Adapters differ along edges, so a few pixels may; a shader that is a little too dark
+/// moves the mean.
 fn difference(a: &RgbaImage, b: &RgbaImage) -> (f64, f64) {
     assert_eq!(a.dimensions(), b.dimensions());
     let (mut off, mut sum) = (0u32, 0u64);
@@ -205,7 +206,8 @@ fn transparent_pictures_show_the_same_things() {
     }
 }
 
-/// A solid without extents is a ball; with them it is as long as it should be, turned or not, and its faces are lit flat.
+/// A solid without extents is a ball; with them it is as long as it should be, turned or not, and
+/// its faces are lit flat.
 #[test]
 fn solids_have_the_shape_asked_for() {
     let Some(gpu) = gpu() else { return };

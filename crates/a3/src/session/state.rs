@@ -66,7 +66,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session on these runs, at least one, of the scene from `origin`, which was built as `setup`.
+    /// A session on these runs, at least one, of the scene from `origin`, which was built as
+    /// `setup`.
     pub fn new(
         origin: Origin,
         setup: Setup,

@@ -1,4 +1,5 @@
-//! What the modules of a crate import from one another, read from their text, and the circles that this makes.
+//! What the modules of a crate import from one another, read from their text, and the circles that
+//! this makes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -170,7 +171,8 @@ fn defines(text: &str, item: &str) -> bool {
     })
 }
 
-/// Every path that begins with one of these words (or follows it, where that is `use`), with the name that it brings.
+/// Every path that begins with one of these words (or follows it, where that is `use`), with the
+/// name that it brings.
 fn paths(text: &str, words: &[&str]) -> Vec<(Vec<String>, String)> {
     let mut tokens: Vec<String> = vec![];
     let mut characters = text.chars().peekable();

@@ -1,5 +1,5 @@
-//! The rules of the house: no file of more than 400 lines, no circle of imports between the modules of a crate, and a map
-//! in ARCHITECTURE.md that names every room and none that is not there.
+//! The rules of the house: no file of more than 400 lines, no circle of imports between the modules
+//! of a crate, and a map in ARCHITECTURE.md that names every room and none that is not there.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -74,7 +74,8 @@ fn no_module_imports_one_that_imports_it() {
     assert!(circles.is_empty(), "{circles:#?}");
 }
 
-/// The map's rows name a file or folder by its path from the root, and then others beside it by their names alone.
+/// The map's rows name a file or folder by its path from the root, and then others beside it by
+/// their names alone.
 #[test]
 fn the_map_of_the_architecture_is_the_territory() {
     let text = fs::read_to_string(Path::new(ROOT).join("ARCHITECTURE.md")).unwrap();

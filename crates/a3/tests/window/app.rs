@@ -21,7 +21,8 @@ pub struct App<'d> {
 }
 
 impl<'d> App<'d> {
-    /// Starts the program. Now and then its window does not show up, and why is not known: up to three tries, said aloud.
+    /// Starts the program. Now and then its window does not show up, and why is not known: up to
+    /// three tries, said aloud.
     pub fn open(display: &'d Display, folder: &Path, words: &[&str]) -> Self {
         (0..3)
             .find_map(|_| Self::try_open(display, folder, words))

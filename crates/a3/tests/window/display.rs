@@ -32,7 +32,8 @@ pub fn until<T>(what: &str, mut probe: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// One display at a time: two servers and two software renderers on two cores are in one another's way.
+/// One display at a time: two servers and two software renderers on two cores are in one another's
+/// way.
 static TURN: Mutex<()> = Mutex::new(());
 
 /// A display with a window manager, gone when dropped.

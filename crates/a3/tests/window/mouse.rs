@@ -46,7 +46,8 @@ fn pulling() {
         hx.abs_diff(x) < 40 && hy.abs_diff(y) < 40,
         "the particle {hx},{hy} is near the pointer {x},{y}"
     );
-    // A fast drag: all of the way at once, then here and there. The particle stays where it is under the pointer.
+    // A fast drag: all of the way at once, then here and there. The particle stays where it is
+    // under the pointer.
     let (mut seen, off) = (0, (hx - x, hy - y));
     for (dx, dy) in [(150, -60), (-170, -40), (120, 60)] {
         go(x + dx, y + dy);
@@ -79,7 +80,8 @@ fn pulling() {
     assert!(app.exit().success());
 }
 
-/// A right click pins and lets go, a right drag does not; a double click lists springs; time goes slowly, and back.
+/// A right click pins and lets go, a right drag does not; a double click lists springs; time goes
+/// slowly, and back.
 #[test]
 fn clicks_slow_motion_and_going_back() {
     let Some(display) = Display::open() else {

@@ -3,7 +3,8 @@
 use crate::app::App;
 use crate::display::{Display, until};
 
-/// By keys and by the mouse, which turns nothing else then; and what was tuned is written and goes on.
+/// By keys and by the mouse, which turns nothing else then; and what was tuned is written and goes
+/// on.
 #[test]
 fn tuning() {
     let Some(display) = Display::open() else {

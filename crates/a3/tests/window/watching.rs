@@ -7,8 +7,8 @@ use std::time::Duration;
 use crate::app::App;
 use crate::display::Display;
 
-/// A scene file that is saved is loaded again; one with a fault leaves the scene as it is, until it is mended. Also while
-/// all stands still.
+/// A scene file that is saved is loaded again; one with a fault leaves the scene as it is, until it
+/// is mended. Also while all stands still.
 #[test]
 fn watching() {
     let Some(display) = Display::open() else {

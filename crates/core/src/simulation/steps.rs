@@ -10,9 +10,9 @@ use crate::network::Network;
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem, place_pins};
 
-/// Largest depth, as a share of the scene's radius, to which a step of an adaptive method may take a
-/// particle into an obstacle: a state between the ends of the step is shown as it is, and must not
-/// sink visibly.
+/// Largest depth, as a share of the scene's radius, to which a step of an adaptive method may take
+/// a particle into an obstacle: a state between the ends of the step is shown as it is, and must
+/// not sink visibly.
 const SUNK: f64 = 1e-3;
 
 /// Length (s) below which a step is not shortened for that.

@@ -60,7 +60,8 @@ fn check(scene: &Scene, method: &'static Method, control: Control, acts: &[Act])
     for (k, act) in acts.iter().enumerate() {
         for run in std::iter::once(&mut run).chain(&mut others) {
             act(run);
-            // First to a time between the ends of an adaptive method's steps, then to the end of one.
+            // First to a time between the ends of an adaptive method's steps, then to the end of
+            // one.
             let _ = run.advance_to(run.time() + 0.013);
             let _ = run.take_steps(2);
         }

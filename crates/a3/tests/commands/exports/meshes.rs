@@ -124,7 +124,8 @@ fn what_has_no_surface_is_points_and_lines() {
     }
 }
 
-/// By the format's definition: 12 letters, four bytes each of version, points, start, rate and samples, then the points.
+/// By the format's definition: 12 letters, four bytes each of version, points, start, rate and
+/// samples, then the points.
 #[test]
 fn pc2_has_the_positions_of_all_frames() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! Files for other programs, read back by readers that were written elsewhere, and compared with the
-//! run that they are of.
+//! Files for other programs, read back by readers that were written elsewhere, and compared with
+//! the run that they are of.
 //!
 //! Khronos' own validator is asked too where it is installed: `npm install gltf-validator`, and
 //! `A3_GLTF_VALIDATOR` set to that `node_modules`.
@@ -64,7 +64,8 @@ fn triangles(simulation: &Simulation) -> Vec<[u32; 3]> {
     network.map_or(vec![], |network| network.triangles().to_vec())
 }
 
-/// Normals by the textbook: cross products of two sides, which are as long as the areas, summed over the triangles around.
+/// Normals by the textbook: cross products of two sides, which are as long as the areas, summed
+/// over the triangles around.
 fn normals(simulation: &Simulation) -> Vec<[f64; 3]> {
     let mut sums = vec![a3_core::Vector3::zeros(); simulation.particles()];
     for triangle in triangles(simulation) {

@@ -110,7 +110,8 @@ fn what_has_torn_is_not_drawn() {
         let red: Vec<_> = (0..320)
             .filter(|x| (0..120).any(|y| is_red(*x, y)))
             .collect();
-        // The pins are 2.8 m apart, which are 83 px; the cloth that they let go is 1 m wide at most.
+        // The pins are 2.8 m apart, which are 83 px; the cloth that they let go is 1 m wide at
+        // most.
         assert!((15..35).contains(&red.len()), "{name}: {red:?}");
     }
 }

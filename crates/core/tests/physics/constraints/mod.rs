@@ -1,5 +1,5 @@
-//! Constraints hold to rounding, forces that hold them do no work, and methods keep their orders with
-//! them.
+//! Constraints hold to rounding, forces that hold them do no work, and methods keep their orders
+//! with them.
 
 mod limits;
 mod motion;
