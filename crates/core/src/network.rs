@@ -296,10 +296,7 @@ impl Network {
             .iter()
             .partition(|element| element.is_elastic());
         for element in &elastic {
-            list(
-                element.force().cost().couplings > 0.0,
-                element.force().name(),
-            );
+            list(!element.is_empty(), element.force().name());
         }
         let damped = elastic
             .iter()

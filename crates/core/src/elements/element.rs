@@ -93,6 +93,11 @@ impl Element {
         }
     }
 
+    /// Whether it couples no particles.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.force().cost().couplings == 0.0
+    }
+
     /// Whether it is made of springs, which can be scaled, copied and torn.
     pub(crate) fn is_elastic(&self) -> bool {
         matches!(

@@ -38,7 +38,11 @@ impl Network {
         let added = springs
             .into_iter()
             .try_for_each(|spring| self.add_spring(spring));
-        self.change_springs(Springs::sort);
+        for element in &mut self.elements {
+            if let Element::Springs(springs) = element {
+                springs.sort();
+            }
+        }
         added
     }
 

@@ -4,6 +4,7 @@
 //! that have lost a side are holes.
 
 use super::Network;
+use crate::elements::Element;
 use crate::elements::force::{distance_squared, ends};
 use crate::error::Error;
 use crate::spring::{Spring, SpringKind};
@@ -107,6 +108,9 @@ impl Network {
             for element in &mut self.elements {
                 element.force_mut().remove_springs(&self.torn);
             }
+            // What is empty would still keep sweeps away.
+            let is_left = |e: &Element| e.sheet().is_some() || !e.is_elastic() || !e.is_empty();
+            self.elements.retain(is_left);
         }
     }
 
