@@ -180,7 +180,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "gravity = [0, -9.81, 0]",
         "circle = { start = [1, 0, 0] }",
-        "line 1: circle: it is of first order",
+        "line 1: circle: a circle is a first-order system and must be the only body",
     ),
     (
         "gravity = [0, -9.81, 0]",
