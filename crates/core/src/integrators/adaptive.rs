@@ -1,11 +1,11 @@
-//! Adaptive steps: as long as the error estimate of a pair stays within the tolerance (Hairer,
+//! Adaptive steps: as long as a method's estimate of its error stays within the tolerance (Hairer,
 //! Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.4).
 
 use serde::{Deserialize, Serialize};
 
 use super::Work;
-use super::embedded::{EmbeddedPair, PairStep, Tableau};
 use super::error_norm::{ErrorNorm, Tolerance};
+use super::trial::{LastStep, Trial};
 use crate::error::Error;
 use crate::system::ParticleSystem;
 
@@ -35,31 +35,35 @@ pub struct AdaptiveState {
     next: f64,
     last: Taken,
     /// The last step, if the next one may go on from its end.
-    step: Option<PairStep>,
+    step: Option<LastStep>,
 }
 
-/// An adaptive method: a pair with its tolerance.
+/// An adaptive method: one that estimates its error, with its tolerance.
 ///
 /// Beside scratch it remembers the length of its last step, as the first guess for the next, and
 /// the derivative at its end, which [`restart`](Self::restart) forgets.
 pub struct Adaptive {
-    pair: EmbeddedPair,
+    trial: Box<dyn Trial>,
     tolerance: Tolerance,
     /// The length to try next (s); 0 before the first step.
     next: f64,
     last: Taken,
-    /// Whether the pair may go on from the end of its last step.
+    /// Whether the method may go on from the end of its last step.
     goes_on: bool,
+    /// Scratch of the first step: f, a state, and f there.
+    first: [Vec<f64>; 3],
 }
 
 impl Adaptive {
-    pub(super) fn new(tableau: &'static Tableau, dim: usize, tolerance: Tolerance) -> Self {
+    pub(super) fn new(trial: Box<dyn Trial>, tolerance: Tolerance) -> Self {
+        let first = [(); 3].map(|()| vec![0.0; trial.dim()]);
         Self {
-            pair: EmbeddedPair::new(tableau, dim),
+            trial,
             tolerance,
             next: 0.0,
             last: Taken::default(),
             goes_on: false,
+            first,
         }
     }
 
@@ -76,17 +80,17 @@ impl Adaptive {
         AdaptiveState {
             next: self.next,
             last: self.last,
-            step: (stages && self.goes_on).then(|| self.pair.last().clone()),
+            step: (stages && self.goes_on).then(|| self.trial.last().clone()),
         }
     }
 
-    /// Goes on from what a method of the same pair remembered.
+    /// Goes on from what the same method remembered.
     ///
     /// # Errors
-    /// The state is of another pair or of another system; nothing changes then.
+    /// The state is of another method or of another system; nothing changes then.
     pub fn resume(&mut self, state: &AdaptiveState) -> Result<(), Error> {
         if let Some(step) = &state.step {
-            self.pair.resume(step)?;
+            self.trial.resume(step)?;
         }
         (self.next, self.last) = (state.next, state.last);
         self.goes_on = state.step.is_some();
@@ -120,13 +124,13 @@ impl Adaptive {
         t: f64,
         y: &mut [f64],
     ) -> Result<Taken, Error> {
-        super::check_dim(self.pair.dim(), y)?;
+        super::check_dim(self.trial.dim(), y)?;
         let mut work = Work::default();
         // What contact put right after the last step has another derivative.
-        if self.goes_on && self.pair.end() == &*y {
-            self.pair.go_on();
+        if self.goes_on && self.trial.end() == &*y {
+            self.trial.go_on();
         } else {
-            work += self.pair.begin(system, t, y);
+            work += self.trial.begin(system, t, y);
         }
         self.goes_on = false;
         let norm = ErrorNorm {
@@ -142,7 +146,7 @@ impl Adaptive {
             self.next = self.first_step(system, t, y, &norm);
             work += Work::of(1);
         }
-        let exponent = -1.0 / self.pair.exponent();
+        let exponent = -1.0 / self.trial.exponent();
         let mut h = self.next;
         loop {
             if h < SHORTEST.max(16.0 * f64::EPSILON * t.abs()) {
@@ -150,11 +154,11 @@ impl Adaptive {
                 self.next = 0.0;
                 return Err(Error::StepTooSmall { time: t, step: h });
             }
-            let (cost, error) = self.pair.attempt(system, t, h, &norm);
+            let (cost, error) = self.trial.attempt(system, t, h, &norm);
             work += cost;
             let change = SAFETY * libm::pow(error, exponent);
             if error <= 1.0 {
-                y.copy_from_slice(self.pair.end());
+                y.copy_from_slice(self.trial.end());
                 // Not longer at once after it had to be shorter.
                 let most = if work.rejections > 0 { 1.0 } else { CHANGE.1 };
                 self.next = h * change.clamp(CHANGE.0, most);
@@ -172,7 +176,7 @@ impl Adaptive {
     /// from the second time on within one step.
     pub fn interpolate(&mut self, system: &dyn ParticleSystem, time: f64, out: &mut [f64]) -> Work {
         let Taken { t, h, .. } = self.last;
-        self.pair.interpolate(system, t, (time - t) / h, out)
+        self.trial.interpolate(system, t, (time - t) / h, out)
     }
 
     /// A guess of the first step (s), from one step of Euler's method.
@@ -183,19 +187,25 @@ impl Adaptive {
         y: &[f64],
         norm: &ErrorNorm,
     ) -> f64 {
-        let f0 = self.pair.derivative();
+        let [f0, y1, f1] = &mut self.first;
+        self.trial.derivative(f0);
         let (size, slope) = (norm.of(y, y, y), norm.of(y, y, f0));
         let h0 = if size < 1e-5 || slope < 1e-5 {
             1e-6
         } else {
             0.01 * size / slope
         };
-        let bend = norm.of(y, y, self.pair.second_derivative(system, t, h0));
+        super::scaled_sum(y1, y, h0, f0);
+        system.eval_f(t + h0, y1, f1);
+        for (f1, f0) in f1.iter_mut().zip(f0) {
+            *f1 = (*f1 - *f0) / h0;
+        }
+        let bend = norm.of(y, y, f1);
         let steepest = slope.max(bend);
         let h1 = if steepest <= 1e-15 {
             (1e-3 * h0).max(1e-6)
         } else {
-            libm::pow(0.01 / steepest, 1.0 / self.pair.exponent())
+            libm::pow(0.01 / steepest, 1.0 / self.trial.exponent())
         };
         (100.0 * h0).min(h1)
     }

@@ -16,9 +16,9 @@ pub(super) const METHOD: Method = Method {
     evaluations: 12,
     damped_evaluations: 12,
     implicit: false,
-    pair: Some(&TABLEAU),
     needs_mechanics: false,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
+    trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };
 
 static TABLEAU: Tableau = Tableau {

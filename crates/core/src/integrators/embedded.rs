@@ -3,9 +3,9 @@
 //! (Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.4 to II.6).
 
 use pulp::{Arch, Simd, WithSimd};
-use serde::{Deserialize, Serialize};
 
 use super::error_norm::ErrorNorm;
+use super::trial::{LastStep, Trial};
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -14,7 +14,7 @@ use crate::threads::{fork, threads};
 /// Coefficients of a pair. After its stages comes k = f(t + h, y1), the first stage of the next
 /// step, and after that the stages that only the polynomial needs.
 #[derive(Debug)]
-pub struct Tableau {
+pub(super) struct Tableau {
     /// Time `c_i` and weights `a_ij` of each stage from the second on.
     pub(super) stages: &'static [(f64, &'static [f64])],
     /// Weights of y1.
@@ -42,23 +42,7 @@ pub(super) struct EmbeddedPair {
     tableau: &'static Tableau,
     /// State at which a stage is evaluated, and later the error estimate.
     stage: Vec<f64>,
-    last: PairStep,
-}
-
-/// The last step of a pair, from which the next one goes on, and off which states within it are
-/// read.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct PairStep {
-    /// Length of the step (s).
-    h: f64,
-    /// State at the beginning.
-    y0: Vec<f64>,
-    /// State at the end.
-    y1: Vec<f64>,
-    /// Derivatives: of the stages, at the end, and of the polynomial's own stages.
-    k: Vec<Vec<f64>>,
-    /// Whether the polynomial's own stages have been computed.
-    dense: bool,
+    last: LastStep,
 }
 
 impl EmbeddedPair {
@@ -67,79 +51,8 @@ impl EmbeddedPair {
         Self {
             tableau,
             stage: vec![0.0; dim],
-            last: PairStep {
-                h: 0.0,
-                y0: vec![0.0; dim],
-                y1: vec![0.0; dim],
-                k: vec![vec![0.0; dim]; stages],
-                dense: false,
-            },
+            last: LastStep::new(dim, stages),
         }
-    }
-
-    /// The last step.
-    pub fn last(&self) -> &PairStep {
-        &self.last
-    }
-
-    /// Goes on after another step. Fails if the step is of another pair or of another system.
-    pub fn resume(&mut self, step: &PairStep) -> Result<(), Error> {
-        let stages = self.last.k.len();
-        if step.k.len() != stages {
-            return Err(Error::Invalid(format!(
-                "the last step has {} stages, but the method has {stages}",
-                step.k.len()
-            )));
-        }
-        for y in [&step.y0, &step.y1].into_iter().chain(&step.k) {
-            check_dim(self.dim(), y)?;
-        }
-        self.last.clone_from(step);
-        Ok(())
-    }
-
-    pub fn dim(&self) -> usize {
-        self.last.y0.len()
-    }
-
-    pub fn exponent(&self) -> f64 {
-        self.tableau.exponent
-    }
-
-    /// The state at the end of the step.
-    pub fn end(&self) -> &[f64] {
-        &self.last.y1
-    }
-
-    /// Begins a step at y, whose derivative is not known.
-    pub fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
-        self.last.y0.copy_from_slice(y);
-        system.eval_f(t, y, &mut self.last.k[0]);
-        Work::of(1)
-    }
-
-    /// Begins a step at the end of the last one, whose derivative is its last stage.
-    pub fn go_on(&mut self) {
-        let last = self.tableau.stages.len() + 1;
-        self.last.k.swap(0, last);
-        std::mem::swap(&mut self.last.y0, &mut self.last.y1);
-    }
-
-    /// The derivative at the beginning of the step.
-    pub fn derivative(&self) -> &[f64] {
-        &self.last.k[0]
-    }
-
-    /// The second derivative at the beginning of the step, from one step of Euler's method.
-    pub fn second_derivative(&mut self, system: &dyn ParticleSystem, t: f64, h: f64) -> &[f64] {
-        let (first, rest) = self.last.k.split_at_mut(1);
-        let (f0, f1) = (&first[0], &mut rest[0]);
-        super::scaled_sum(&mut self.stage, &self.last.y0, h, f0);
-        system.eval_f(t + h, &self.stage, f1);
-        for (f1, f0) in f1.iter_mut().zip(f0) {
-            *f1 = (*f1 - f0) / h;
-        }
-        f1
     }
 
     /// Evaluates the stages of a step of h (s) from where [`begin`](Self::begin) or
@@ -162,9 +75,40 @@ impl EmbeddedPair {
         tableau.stages.len() as u64
     }
 
-    /// Tries a step of h (s). Returns its cost, and its estimated error over the tolerated one,
-    /// which is at most 1 for an accepted step.
-    pub fn attempt(
+    /// Evaluates the derivative at the end of the step.
+    fn finish(&mut self, system: &dyn ParticleSystem, t: f64) -> Work {
+        let last = self.tableau.stages.len() + 1;
+        system.eval_f(t + self.last.h, &self.last.y1, &mut self.last.k[last]);
+        Work::of(1)
+    }
+}
+
+impl Trial for EmbeddedPair {
+    fn dim(&self) -> usize {
+        self.last.y0.len()
+    }
+
+    fn exponent(&self) -> f64 {
+        self.tableau.exponent
+    }
+
+    fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
+        self.last.y0.copy_from_slice(y);
+        system.eval_f(t, y, &mut self.last.k[0]);
+        Work::of(1)
+    }
+
+    fn go_on(&mut self) {
+        let last = self.tableau.stages.len() + 1;
+        self.last.k.swap(0, last);
+        std::mem::swap(&mut self.last.y0, &mut self.last.y1);
+    }
+
+    fn derivative(&self, out: &mut [f64]) {
+        out.copy_from_slice(&self.last.k[0]);
+    }
+
+    fn attempt(
         &mut self,
         system: &dyn ParticleSystem,
         t: f64,
@@ -198,16 +142,11 @@ impl EmbeddedPair {
         (work, error)
     }
 
-    /// Evaluates the derivative at the end of the step.
-    fn finish(&mut self, system: &dyn ParticleSystem, t: f64) -> Work {
-        let last = self.tableau.stages.len() + 1;
-        system.eval_f(t + self.last.h, &self.last.y1, &mut self.last.k[last]);
-        Work::of(1)
+    fn end(&self) -> &[f64] {
+        &self.last.y1
     }
 
-    /// Writes the state at the fraction theta of an accepted step that began at t (s) to `out`.
-    /// Returns the cost.
-    pub fn interpolate(
+    fn interpolate(
         &mut self,
         system: &dyn ParticleSystem,
         t: f64,
@@ -235,7 +174,7 @@ impl EmbeddedPair {
         let [p, q, r, rest @ ..] = factors;
         // F0 = y1 - y0, F1 = h k0 - F0, F2 = 2 F0 - h (k0 + k1).
         let (of_f0, of_k0, of_k1) = (p - q + 2.0 * r, h * (q - r), -h * r);
-        let PairStep { y0, y1, k, .. } = &self.last;
+        let LastStep { y0, y1, k, .. } = &self.last;
         let ends = y0.iter().zip(y1).zip(&k[0]).zip(&k[last]);
         for (out, (((y0, y1), k0), k1)) in out.iter_mut().zip(ends) {
             *out = y0 + of_f0 * (y1 - y0) + of_k0 * k0 + of_k1 * k1;
@@ -244,6 +183,14 @@ impl EmbeddedPair {
             add_combination(out, factor * h, weights, &self.last.k);
         }
         work
+    }
+
+    fn last(&self) -> &LastStep {
+        &self.last
+    }
+
+    fn resume(&mut self, step: &LastStep) -> Result<(), Error> {
+        self.last.resume(step)
     }
 }
 

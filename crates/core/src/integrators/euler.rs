@@ -14,7 +14,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 1,
     implicit: false,
-    pair: None,
     needs_mechanics: false,
     create: |system| Box::new(RungeKutta::new(EULER, system)),
+    trial: None,
 };

@@ -15,7 +15,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 2,
     damped_evaluations: 2,
     implicit: false,
-    pair: None,
     needs_mechanics: false,
     create: |system| Box::new(RungeKutta::new(HEUN, system)),
+    trial: None,
 };

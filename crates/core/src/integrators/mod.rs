@@ -17,15 +17,16 @@ mod runge_kutta;
 mod splitting;
 mod sweep;
 mod symplectic_euler;
+mod trial;
 mod verlet;
 
 use crate::control::Control;
 use crate::error::{Error, positive};
 use crate::system::{Mechanics, ParticleSystem};
+use trial::Trial;
 
 pub use crate::work::Work;
 pub use adaptive::{Adaptive, AdaptiveState, Taken};
-pub use embedded::Tableau;
 pub use error_norm::Tolerance;
 
 /// Integrator of a system: a method with its scratch.
@@ -67,13 +68,13 @@ pub struct Method {
     /// Whether the method is implicit: a step solves equations, by linear algebra in addition to
     /// the evaluations.
     pub implicit: bool,
-    /// Coefficients of an adaptive method, which chooses its steps by itself to a tolerance; `None`
-    /// for other methods.
-    pub pair: Option<&'static Tableau>,
     /// Whether the method needs forces and masses, and does not support an arbitrary f(t, y).
     pub needs_mechanics: bool,
     /// Constructor of the method's integrator.
     create: fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>,
+    /// Constructor of the steps of an adaptive method, which chooses them by itself to a tolerance;
+    /// `None` for other methods.
+    trial: Option<fn(system: &dyn ParticleSystem) -> Box<dyn Trial>>,
 }
 
 impl Method {
@@ -108,14 +109,14 @@ impl Method {
     /// error.
     #[must_use]
     pub fn adaptive(&self, system: &dyn ParticleSystem, tolerance: Tolerance) -> Option<Adaptive> {
-        self.pair
-            .map(|tableau| Adaptive::new(tableau, system.dim(), tolerance))
+        self.trial
+            .map(|create| Adaptive::new(create(system), tolerance))
     }
 
     /// Whether the method can choose its steps by itself, to a tolerance.
     #[must_use]
     pub fn is_adaptive(&self) -> bool {
-        self.pair.is_some()
+        self.trial.is_some()
     }
 
     /// `Ok` if the method can be controlled like this.

@@ -22,9 +22,9 @@ pub(super) const METHOD: Method = Method {
     evaluations: 4,
     damped_evaluations: 16,
     implicit: false,
-    pair: None,
     needs_mechanics: true,
     create: |system| PLAN.integrator(system),
+    trial: None,
 };
 
 const XI: f64 = 0.178_617_895_844_809_1;

@@ -16,7 +16,7 @@ pub(super) const METHOD: Method = Method {
     evaluations: 4,
     damped_evaluations: 4,
     implicit: false,
-    pair: None,
     needs_mechanics: false,
     create: |system| Box::new(RungeKutta::new(RK4, system)),
+    trial: None,
 };

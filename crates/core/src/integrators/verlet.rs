@@ -28,9 +28,9 @@ pub(super) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 2,
     implicit: false,
-    pair: None,
     needs_mechanics: true,
     create: |system| PLAN.integrator(system),
+    trial: None,
 };
 
 pub(super) static PLAN: Plan = Plan {

@@ -18,7 +18,6 @@ pub(in super::super) const METHOD: Method = Method {
     evaluations: 1,
     damped_evaluations: 1,
     implicit: true,
-    pair: None,
     needs_mechanics: false,
     create: |system| {
         Box::new(ImplicitEuler {
@@ -26,6 +25,7 @@ pub(in super::super) const METHOD: Method = Method {
             base: vec![0.0; system.dim()],
         })
     },
+    trial: None,
 };
 
 struct ImplicitEuler {

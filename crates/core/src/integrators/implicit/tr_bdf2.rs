@@ -22,7 +22,6 @@ pub(in super::super) const METHOD: Method = Method {
     evaluations: 7,
     damped_evaluations: 7,
     implicit: true,
-    pair: None,
     needs_mechanics: false,
     create: |system| {
         let zeros = || vec![0.0; system.dim()];
@@ -33,6 +32,7 @@ pub(in super::super) const METHOD: Method = Method {
             last: zeros(),
         })
     },
+    trial: None,
 };
 
 const G: f64 = 1.0 - FRAC_1_SQRT_2;

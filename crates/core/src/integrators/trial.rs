@@ -1,0 +1,108 @@
+//! Steps that are tried: what an adaptive method asks of the method whose steps it chooses.
+
+use serde::{Deserialize, Serialize};
+
+use super::Work;
+use super::error_norm::ErrorNorm;
+use crate::error::Error;
+use crate::system::ParticleSystem;
+
+/// A method that estimates the error of its step, and holds the state in the midst of it.
+pub(super) trait Trial: Send {
+    /// Length of the state.
+    fn dim(&self) -> usize;
+
+    /// Power of h with which the estimated local error falls.
+    fn exponent(&self) -> f64;
+
+    /// Begins a step at y, of which nothing is known.
+    fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work;
+
+    /// Begins a step at the end of the last one, with what is known there.
+    fn go_on(&mut self);
+
+    /// Writes f at the beginning of the step to `out`.
+    fn derivative(&self, out: &mut [f64]);
+
+    /// Tries a step of h (s). Returns its cost, and its estimated error over the tolerated one,
+    /// which is at most 1 for an accepted step.
+    fn attempt(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        norm: &ErrorNorm,
+    ) -> (Work, f64);
+
+    /// State at the end of the step.
+    fn end(&self) -> &[f64];
+
+    /// Writes the state at the fraction theta of an accepted step that began at t (s) to `out`.
+    /// Returns the cost.
+    fn interpolate(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        theta: f64,
+        out: &mut [f64],
+    ) -> Work;
+
+    /// Memory of the last step.
+    fn last(&self) -> &LastStep;
+
+    /// Goes on after another step.
+    ///
+    /// # Errors
+    /// The step is of another method or of another system; nothing changes then.
+    fn resume(&mut self, step: &LastStep) -> Result<(), Error>;
+}
+
+/// The last step of a method, from which the next one goes on, and off which states within it are
+/// read.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct LastStep {
+    /// Length of the step (s).
+    pub h: f64,
+    /// State at the beginning.
+    pub y0: Vec<f64>,
+    /// State at the end.
+    pub y1: Vec<f64>,
+    /// Derivatives or other vectors of the stages, in the method's own order.
+    pub k: Vec<Vec<f64>>,
+    /// Whether the stages that only states within the step need have been computed.
+    pub dense: bool,
+}
+
+impl LastStep {
+    /// Memory of a method with so many stages, of a system of this dimension.
+    pub fn new(dim: usize, stages: usize) -> Self {
+        Self {
+            h: 0.0,
+            y0: vec![0.0; dim],
+            y1: vec![0.0; dim],
+            k: vec![vec![0.0; dim]; stages],
+            dense: false,
+        }
+    }
+
+    /// Becomes another step of the same shape.
+    ///
+    /// # Errors
+    /// The step is of another method or of another system; nothing changes then.
+    pub fn resume(&mut self, step: &Self) -> Result<(), Error> {
+        let stages = self.k.len();
+        if step.k.len() != stages {
+            return Err(Error::Invalid(format!(
+                "the last step has {} stages, but the method has {stages}",
+                step.k.len()
+            )));
+        }
+        let own = [&self.y0, &self.y1].into_iter().chain(&self.k);
+        let others = [&step.y0, &step.y1].into_iter().chain(&step.k);
+        for (own, other) in own.zip(others) {
+            super::check_dim(own.len(), other)?;
+        }
+        self.clone_from(step);
+        Ok(())
+    }
+}
