@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use crate::elements::{Sheet, Wind};
 use crate::grid::Grid;
 use crate::network::Network;
-use crate::system::ParticleSystem;
+use crate::system::{ParticleSystem, hold_pins};
 
 /// First-order system, shared among runs.
 pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
@@ -75,9 +75,14 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Scene without swing and wind, in which a hand pulls springs to at most ten rest lengths.
+    /// Scene without swing and wind, in which a hand pulls springs to at most ten rest lengths. It
+    /// starts from `state` with the pins in their places, at rest or with the velocity of their
+    /// paths: whatever else they were given would be felt by the springs in the first step alone.
     #[must_use]
-    pub fn new(name: impl Into<String>, model: Model, state: Vec<f64>) -> Self {
+    pub fn new(name: impl Into<String>, model: Model, mut state: Vec<f64>) -> Self {
+        if state.len() == model.system().dim() {
+            hold_pins(model.system(), 0.0, &mut state);
+        }
         Self {
             name: name.into(),
             model,

@@ -205,6 +205,14 @@ pub(crate) fn place_pins<M: Mechanics + ?Sized>(system: &M, t: f64, x: &mut [f64
     });
 }
 
+/// Puts pins in their places at time t (s).
+pub(crate) fn hold_pins(system: &dyn ParticleSystem, t: f64, y: &mut [f64]) {
+    if let Some(mechanics) = system.mechanics() {
+        let (x, v) = y.split_at_mut(y.len() / 2);
+        place_pins(mechanics, t, x, v);
+    }
+}
+
 /// A mechanical system as a first-order one: x' = v, v' = F/m; a pin follows its path.
 impl<M: Mechanics> ParticleSystem for M {
     fn dim(&self) -> usize {

@@ -8,7 +8,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::network::Network;
 use crate::scene::Model;
-use crate::system::{Mechanics, ParticleSystem, place_pins};
+use crate::system::{Mechanics, hold_pins};
 
 /// Largest depth, as a share of the scene's radius, to which a step of an adaptive method may take
 /// a particle into an obstacle: a state between the ends of the step is shown as it is, and must
@@ -204,12 +204,4 @@ fn settle(model: &Model, contact: &mut Contact, (t, h): (f64, f64), y1: &mut [f6
     });
     hold_pins(model.system(), t + h, y1);
     met
-}
-
-/// Puts pins in their places at time t (s).
-fn hold_pins(system: &dyn ParticleSystem, t: f64, y: &mut [f64]) {
-    if let Some(mechanics) = system.mechanics() {
-        let (x, v) = y.split_at_mut(y.len() / 2);
-        place_pins(mechanics, t, x, v);
-    }
 }

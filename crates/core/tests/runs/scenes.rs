@@ -133,3 +133,53 @@ fn default_controls_hold_on_other_grids() {
         }
     }
 }
+
+/// A pin has the place and the velocity of its path from the first moment on, whatever the body it
+/// is part of does; else the first step would depend on its length.
+#[test]
+fn pins_begin_in_their_places() {
+    let moving = "[[chain]]
+        particles = 3
+        from = [0, 0, 0]
+        to = [1, 0, 0]
+        mass = 1
+        stiffness = 25
+        pin = [{ at = ['first'], sine = { amplitude = [0, 0.5, 0], rate = 3, center = [0, 2, 0] } }]
+        [state]
+        positions = [[0, 0, 0], [0.5, 0, 0], [1, 0, 0]]
+        velocities = [[7, 7, 7], [0, 0, 0], [0, 0, 0]]";
+    let scene = described(moving);
+    assert_eq!(row(&scene.state, 0), [0.0, 2.0, 0.0, 0.0, 1.5, 0.0]);
+    assert_eq!(row(&scene.state, 1), [0.5, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    for name in a3_scenes::SCENES.iter().map(|entry| entry.name) {
+        let scene = self::scene(name);
+        let Some(network) = scene.model.network() else {
+            continue;
+        };
+        for i in (0..network.particles()).filter(|i| network.is_pinned(*i)) {
+            assert_eq!(row(&scene.state, i)[3..], [0.0; 3], "{name}, particle {i}");
+        }
+    }
+}
+
+/// The flag moves as one at first, all but the particles at the pole.
+#[test]
+fn a_flag_takes_the_same_way_in_steps_of_any_length() {
+    let after = |method: &str, control| {
+        let method = integrators::find(method).unwrap();
+        let mut run = Simulation::new(scene("flag"), method, control).unwrap();
+        run.advance_to(0.1).unwrap();
+        run.state().to_vec()
+    };
+    let adaptive = after("dop853", Control::Tolerance(1e-8));
+    let fixed = after("rk4", Control::Step(2e-4));
+    let apart = adaptive.iter().zip(&fixed).map(|(a, b)| (a - b).abs());
+    let largest = apart.fold(0.0, f64::max);
+    assert!(largest < 1e-5, "{largest:.1e}");
+}
+
+/// Position and velocity of particle i.
+fn row(state: &[f64], i: usize) -> Vec<f64> {
+    let n = state.len() / 6;
+    (0..6).map(|k| state[k * n + i]).collect()
+}
