@@ -35,7 +35,7 @@ fn main() -> Result<(), Error> {
     let scene = pendulum()?;
     let go_on = || true;
     // The reference is known to `floor`; errors are the largest over the frames of 2 s.
-    let Some(reference) = Reference::new(&scene, Frames::new(2.0), &go_on)? else {
+    let Some(reference) = Reference::finest(&scene, Frames::new(2.0), &go_on)? else {
         return Ok(());
     };
     println!("method                step (s)   evaluations   error (m)");

@@ -37,7 +37,7 @@
 //!
 //! // Errors against the reference, and the number of evaluations, at three step lengths.
 //! let go_on = || true;
-//! let reference = Reference::new(&scene, Frames::new(1.0), &go_on)?.unwrap();
+//! let reference = Reference::finest(&scene, Frames::new(1.0), &go_on)?.unwrap();
 //! let chart: Vec<_> = [0.02, 0.01, 0.005]
 //!     .iter()
 //!     .map(|step| measure(&scene, rk4, Control::Step(*step), &reference, &go_on))

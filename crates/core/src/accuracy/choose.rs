@@ -1,16 +1,21 @@
 //! Choice of the cheapest method, with its step or tolerance, for a given error.
 
-use super::{GoOn, Metric, Outcome, Reference, ladder, measure};
+use super::ladder::FEWEST;
+use super::{GoOn, Metric, Outcome, Reference, coarser, ladder, measure};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{METHODS, Method};
 use crate::scene::Scene;
+use crate::stability::{Mode, spectrum};
 
 /// Ratio of the shortest step that fails to the longest that meets the error, at which the search
 /// ends.
-const CLOSE: f64 = 1.08;
+const CLOSE: f64 = 1.02;
 /// The same ratio for tolerances, on which the cost depends only weakly.
-const CLOSE_TOLERANCE: f64 = 1.7;
+const CLOSE_TOLERANCE: f64 = 1.3;
+/// Least and greatest measured order of the error, over the method's own, by which further steps
+/// are predicted.
+const AS_PREDICTED: (f64, f64) = (0.6, 1.5);
 /// Largest number of steps of a run.
 const MOST_STEPS: u64 = 1_000_000;
 
@@ -41,6 +46,9 @@ pub fn choose(
     go_on: GoOn,
 ) -> Result<Option<Vec<Candidate>>, Error> {
     let mut found: Vec<Candidate> = vec![];
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    // What the reference does not know of the error is no longer there to be made.
+    let error = error - metric.of(&reference.floor);
     // Methods of high order come first: their cost bounds the runs of those of low order.
     let mut methods: Vec<_> = METHODS.iter().collect();
     methods.sort_by_key(|method| std::cmp::Reverse(method.order));
@@ -54,6 +62,7 @@ pub fn choose(
             .map_or(f64::INFINITY, |c| 2.0 * c.outcome.work.total());
         let mut search = Search {
             scene,
+            modes: &modes,
             reference,
             metric,
             error,
@@ -87,6 +96,7 @@ enum Found {
 /// Search for the cheapest step or tolerance of one method.
 struct Search<'a> {
     scene: &'a Scene,
+    modes: &'a [Mode],
     reference: &'a Reference,
     metric: Metric,
     error: f64,
@@ -112,8 +122,10 @@ impl Search<'_> {
 
     fn run(&mut self) -> Result<Found, Error> {
         let frames = self.reference.frames;
-        let rungs = ladder(self.scene, self.method, &frames, MOST_STEPS)?;
-        let (mut fails, mut i) = (None, 0);
+        let rungs = ladder(self.modes, self.method, &frames, MOST_STEPS)?;
+        // The last run that failed: its step or tolerance, and its ratio.
+        let mut fails: Option<(f64, f64)> = None;
+        let mut i = 0;
         let (mut good, mut outcome) = loop {
             let Some(&control) = rungs.get(i) else {
                 return Ok(Found::Nothing);
@@ -135,36 +147,33 @@ impl Search<'_> {
             if outcome.work.total() > self.dearest && outcome.lost.is_none() {
                 return Ok(Found::Nothing);
             }
-            fails = Some(control.value());
-            // By the method's order, rungs coarser than `aim` cannot meet the error: they are
-            // skipped.
-            let order = match control {
-                Control::Step(_) => f64::from(self.method.order),
-                Control::Tolerance(_) => 1.0,
-            };
-            let aim = if ratio.is_finite() {
-                control.value() * (0.5 * ratio).powf(-1.0 / order)
-            } else {
-                control.value()
-            };
+            let aim = self.aim(fails, (control.value(), ratio));
+            fails = Some((control.value(), ratio));
             let next = rungs[i + 1..].iter().position(|rung| rung.value() <= aim);
             i = next.map_or(rungs.len() - 1, |k| i + 1 + k).max(i + 1);
         };
-        let close = match good {
-            Control::Step(_) => CLOSE,
-            Control::Tolerance(_) => CLOSE_TOLERANCE,
-        };
-        while let Some(bad) = fails.filter(|bad| bad / good.value() > close) {
-            let Some(middle) = between(good, bad, &frames) else {
-                break;
+        let mut bad = fails.map(|(value, _)| value);
+        // The limit of stability is that of the start, and may be longer in motion.
+        while bad.is_none()
+            && let Some(longer) = coarser(good, &frames)
+        {
+            let Some(next) = self.measure(longer)? else {
+                return Ok(Found::Stopped);
             };
+            if self.ratio(&next) <= 1.0 {
+                (good, outcome) = (longer, next);
+            } else {
+                bad = Some(longer.value());
+            }
+        }
+        while let Some(middle) = bad.and_then(|bad| between(good, bad, frames.until)) {
             let Some(next) = self.measure(middle)? else {
                 return Ok(Found::Stopped);
             };
             if self.ratio(&next) <= 1.0 {
                 (good, outcome) = (middle, next);
             } else {
-                fails = Some(middle.value());
+                bad = Some(middle.value());
             }
         }
         Ok(Found::Best(Candidate {
@@ -173,25 +182,37 @@ impl Search<'_> {
             outcome,
         }))
     }
+
+    /// Step or tolerance above which no run meets the error: what the order predicts, with a
+    /// margin, once the last two runs failed as it predicts; before that the last one's own.
+    fn aim(&self, before: Option<(f64, f64)>, last: (f64, f64)) -> f64 {
+        let order = if self.method.is_adaptive() {
+            1.0
+        } else {
+            f64::from(self.method.order)
+        };
+        let measured = before.map(|before| (before.1 / last.1).ln() / (before.0 / last.0).ln());
+        match measured {
+            Some(measured) if (AS_PREDICTED.0..AS_PREDICTED.1).contains(&(measured / order)) => {
+                last.0 * (0.5 * last.1).powf(-1.0 / order)
+            }
+            _ => last.0,
+        }
+    }
 }
 
 /// Tolerance between one that meets the error and one that fails, or a step between two such steps
-/// that fits the frames; `None` if there is none.
-fn between(good: Control, bad: f64, frames: &super::Frames) -> Option<Control> {
+/// that divides the time `until` (s); `None` if they are close to each other.
+fn between(good: Control, bad: f64, until: f64) -> Option<Control> {
     let middle = (good.value() * bad).sqrt();
-    let Control::Step(good) = good else {
-        return Some(Control::Tolerance(middle));
-    };
-    let spacing = frames.spacing();
-    let inside = |h: f64| h > good * (1.0 + 1e-9) && h < bad * (1.0 - 1e-9);
-    let step = if middle < spacing {
-        spacing / (spacing / middle).round()
-    } else {
-        let stride = (middle / spacing).round() as u64;
-        // The nearest stride that divides the number of frames.
-        let fits = |stride: &u64| *stride > 0 && frames.count.is_multiple_of(*stride);
-        let near = (0..frames.count).flat_map(|d| [stride + d, stride.saturating_sub(d)]);
-        near.into_iter().find(fits)? as f64 * spacing
-    };
-    inside(step).then_some(Control::Step(step))
+    match good {
+        Control::Tolerance(good) => {
+            (bad > CLOSE_TOLERANCE * good).then_some(Control::Tolerance(middle))
+        }
+        Control::Step(good) => {
+            let (most, least) = ((until / good).round() as u64, (until / bad).round() as u64);
+            let count = ((until / middle).round() as u64).clamp(least + 1, most.max(FEWEST));
+            (bad > CLOSE * good && count < most).then_some(Control::Step(until / count as f64))
+        }
+    }
 }

@@ -7,10 +7,14 @@ use crate::integrators::find;
 use crate::random::SplitMix;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::stability::spectrum;
+use crate::stability::{largest_step, spectrum};
 
 /// Largest factor by which errors may grow by the motion of the scene alone.
 const AMPLIFICATION: f64 = 1e4;
+/// Length of the steps of both runs, over the largest stable step, at most.
+const SHARE: f64 = 1.0 / 6.0;
+/// Least number of steps of the longest run.
+const STEPS: f64 = 600.0;
 /// Largest displacement of a coordinate between the two runs at the start, over the scene's radius.
 const SEPARATION: f64 = 1e-8;
 /// Horizons to choose from, round numbers (s).
@@ -25,16 +29,21 @@ pub struct Horizon {
     /// Lyapunov time, in which that distance grows by the factor e (s); infinite if it grows by no
     /// more than 30 times in all.
     pub lyapunov: f64,
+    /// Largest root mean square distance of the particles from where they start, until then (m).
+    pub motion: f64,
 }
 
 /// Horizon of a scene, estimated from two runs that start side by side. They run for up to 10 s, or
 /// for up to 3 s if the period of the scene's fastest mode is below 0.1 s. `None` if `go_on`
 /// returned false.
 ///
+/// Both runs take the same fixed steps, so that their distance is that of the motion and not of two
+/// sequences of steps.
+///
 /// # Errors
 /// The scene cannot be run.
 pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
-    let accurate = find("dop853")
+    let method = find("rk4")
         .ok_or_else(|| Error::Invalid("no method to look ahead with is in the table".into()))?;
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     let fastest = modes.first().map_or(1.0, crate::stability::Mode::frequency);
@@ -43,7 +52,9 @@ pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
     } else {
         10.0
     };
-    let mut run = Simulation::new(scene.clone(), accurate, Control::Tolerance(1e-8))?;
+    let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
+    let control = Control::Step((SHARE * limit).min(longest / STEPS));
+    let mut run = Simulation::new(scene.clone(), method, control)?;
     let n = 3 * run.particles();
     let mut random = SplitMix(2);
     let mut beside = scene.clone();
@@ -57,12 +68,19 @@ pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
             *x += size * random.between(-1.0, 1.0);
         }
     }
-    let mut beside = Simulation::new(beside, accurate, Control::Tolerance(1e-8))?;
+    let mut beside = Simulation::new(beside, method, control)?;
     let distance = |a: &Simulation, b: &Simulation| {
         let squares = a.state()[..n].iter().zip(&b.state()[..n]);
         squares.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
     };
     let first = distance(&run, &beside);
+    let start = run.state()[..n].to_vec();
+    let moved = |run: &Simulation| {
+        let squares = run.state()[..n].iter().zip(&start);
+        let sum = squares.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        (3.0 * sum / n as f64).sqrt()
+    };
+    let mut motion: f64 = 0.0;
     let (mut until, mut most, mut grown) = (ROUND[0], 1.0f64, (ROUND[0], 1.0f64));
     let parts = 10.0;
     let mut time = 0.0;
@@ -77,6 +95,7 @@ pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
                 break 'rounds;
             }
             most = most.max(distance(&run, &beside) / first);
+            motion = motion.max(moved(&run));
             if most > AMPLIFICATION {
                 grown = (time, most);
                 break 'rounds;
@@ -92,5 +111,9 @@ pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
     } else {
         f64::INFINITY
     };
-    Ok(Some(Horizon { until, lyapunov }))
+    Ok(Some(Horizon {
+        until,
+        lyapunov,
+        motion,
+    }))
 }

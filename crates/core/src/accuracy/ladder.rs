@@ -4,33 +4,32 @@ use super::Frames;
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::Method;
-use crate::scene::Scene;
-use crate::stability::{largest_step, spectrum};
+use crate::stability::{Mode, largest_step};
 
-/// Ratio of a step to the next shorter one, at least, as far as whole numbers allow.
-const RUNG: f64 = 1.5;
+/// Ratio of a step to the next shorter one, as far as whole numbers allow.
+pub(super) const RUNG: f64 = 1.5;
 /// Longest step over the method's stability limit: one or two steps past the limit show where it
 /// is.
 const PAST: f64 = 1.4;
+/// Least number of steps of a run.
+pub(super) const FEWEST: u64 = 4;
 /// Exponents of the largest and the smallest tolerance of adaptive methods, in half powers of ten:
 /// from 10^-1 to 10^-12.
 const TOLERANCES: (i32, i32) = (-2, -24);
 
-/// Steps that fit the frames, from just past the method's stability limit down, or, for an adaptive
-/// method, tolerances from 0.1 down.
+/// Steps that divide the time of all frames, from just past the method's stability limit on the
+/// scene's `modes` down, or, for an adaptive method, tolerances from 0.1 down.
 ///
 /// The coarsest comes first. The list of steps ends where a run would take more than `most` steps.
 ///
 /// # Errors
-/// The method does not support the scene.
+/// Never fails for a method in [`METHODS`](crate::integrators::METHODS).
 pub fn ladder(
-    scene: &Scene,
+    modes: &[Mode],
     method: &'static Method,
     frames: &Frames,
     most: u64,
 ) -> Result<Vec<Control>, Error> {
-    let system = scene.model.system();
-    method.check(system)?;
     if method.is_adaptive() {
         return Ok((TOLERANCES.1..=TOLERANCES.0)
             .rev()
@@ -41,25 +40,20 @@ pub fn ladder(
             })
             .collect());
     }
-    let modes = spectrum(system, 0.0, &scene.state);
-    let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
-    let longest = (PAST * limit).min(frames.until / 6.0);
+    let limit = largest_step(method, modes)?.map_or(f64::INFINITY, |limit| limit.step);
+    let mut count = ((frames.until / (PAST * limit)).ceil() as u64).max(FEWEST);
     let mut steps = vec![];
-    // Steps of several frames, where they divide the number of frames.
-    let spacing = frames.spacing();
-    let mut last = f64::INFINITY;
-    for stride in (2..=frames.count).rev() {
-        let h = stride as f64 * spacing;
-        if frames.count.is_multiple_of(stride) && h <= longest && h <= last / RUNG {
-            steps.push(Control::Step(h));
-            last = h;
-        }
-    }
-    // Several steps in each frame.
-    let mut parts = (spacing / longest).ceil().max(1.0) as u64;
-    while parts * frames.count <= most {
-        steps.push(Control::Step(spacing / parts as f64));
-        parts = ((parts as f64 * RUNG) as u64).max(parts + 1);
+    while count <= most {
+        steps.push(Control::Step(frames.until / count as f64));
+        count = ((count as f64 * RUNG) as u64).max(count + 1);
     }
     Ok(steps)
+}
+
+/// Steps of the frames' time longer by one rung than those of a ladder; `None` past the longest.
+#[must_use]
+pub fn coarser(control: Control, frames: &Frames) -> Option<Control> {
+    let count = (frames.until / control.step()?).round();
+    let fewer = ((count / RUNG) as u64).max(FEWEST);
+    ((fewer as f64) < count).then(|| Control::Step(frames.until / fewer as f64))
 }

@@ -1,23 +1,55 @@
 //! Reference solution of a scene, and its uncertainty.
 //!
 //! The reference is a run of DOP853 at a tight tolerance. It is compared with a run of DOP853 at a
-//! looser tolerance, and with PEFRL (for a first-order system, the classical Runge-Kutta method) at
-//! a step h and at h/2, extrapolated to zero step by Richardson's formula. The largest disagreement
-//! is the uncertainty of the reference.
+//! tolerance ten times as large, and with a method of another family at the steps h, h/2, h/4, ...,
+//! extrapolated to zero step (Richardson; Hairer, Norsett, Wanner, *Solving Ordinary Differential
+//! Equations I*, 1993, II.9). That method is PEFRL, or the classical Runge-Kutta method where
+//! forces depend on the velocity. The largest disagreement is the uncertainty of the reference.
 
-use super::{Errors, Frames, GoOn, Snapshot, run};
+use super::errors::Snapshot;
+use super::{Errors, Frames, GoOn, Metric, Scope, run};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, Work, find};
-use crate::scene::Scene;
+use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
 use crate::stability::{largest_step, spectrum};
+use crate::system::{Mechanics, ParticleSystem};
 
-/// Tolerances of DOP853, that of the reference first. Tighter ones lose more to rounding than they
-/// gain.
-const TOLERANCES: [f64; 2] = [1e-12, 1e-11];
-/// Step h of the other method, the longer of its two, over its largest stable step, at most.
-const SHARE: f64 = 1.0 / 16.0;
+/// Largest and smallest tolerance of the reference. A tighter one loses more to rounding than it
+/// gains.
+const TOLERANCES: (f64, f64) = (1e-6, 1e-12);
+/// Tolerance of the run that is compared with the reference, over that of the reference.
+const LOOSER: f64 = 10.0;
+/// Longest step of the other method over its largest stable step.
+const SHARE: f64 = 0.25;
+/// Order of the other methods.
+const ORDER: i32 = 4;
+/// Most powers of the step that are extrapolated away.
+const POWERS: usize = 3;
+/// Disagreement after two refinements over that before them, above which it no longer falls.
+const FALLS: f64 = 0.5;
+
+/// Precision that is asked of a reference: it is made no finer than this.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Precision {
+    /// Quantity that has to be precise.
+    pub metric: Metric,
+    /// Uncertainty that is enough, in the unit of the metric.
+    pub uncertainty: f64,
+    /// Most work of a single run of the reference, in evaluations, by what the runs before it
+    /// predict.
+    pub most: f64,
+}
+
+impl Precision {
+    /// The finest precision that double precision allows.
+    pub const FINEST: Self = Self {
+        metric: Metric::Position,
+        uncertainty: 0.0,
+        most: 4e6,
+    };
+}
 
 /// Reference solution of a scene at each frame.
 pub struct Reference {
@@ -25,73 +57,255 @@ pub struct Reference {
     pub frames: Frames,
     /// Uncertainty of the reference: the largest disagreement of its runs over the frames.
     pub floor: Errors,
+    /// Errors of a run in which nothing moves: larger errors say nothing.
+    pub still: Errors,
     /// Work of all runs that make the reference.
     pub work: Work,
+    scope: Scope,
+    trajectory: Trajectory,
+}
+
+/// States at each frame, which errors are taken from.
+struct Trajectory {
     snapshots: Vec<Snapshot>,
+    /// Largest mean square speed in the scope (m2/s2).
+    square_speed: f64,
+}
+
+impl Trajectory {
+    fn new(snapshots: Vec<Snapshot>, scope: Scope) -> Self {
+        let speeds = snapshots.iter().map(|s| s.square_speed(scope));
+        Self {
+            square_speed: speeds.fold(f64::MIN_POSITIVE, f64::max),
+            snapshots,
+        }
+    }
+
+    /// Errors of a snapshot at frame k, counted from 1.
+    fn errors(&self, k: u64, other: &Snapshot, scope: Scope) -> Errors {
+        let errors = self.snapshots[k as usize - 1].errors_of(other, scope);
+        Errors {
+            phase: errors.phase / self.square_speed,
+            ..errors
+        }
+    }
 }
 
 impl Reference {
-    /// Reference of a scene from its start. `None` if `go_on` returned false.
+    /// Finest reference of a scene from its start, for errors of all particles at all frames.
+    /// `None` if `go_on` returned false.
     ///
     /// # Errors
-    /// The scene cannot be run, or one of the runs of the reference blows up.
-    pub fn new(scene: &Scene, frames: Frames, go_on: GoOn) -> Result<Option<Self>, Error> {
-        let mut work = Work::default();
-        let mut trajectory = |method: &'static Method, control: Control| {
-            let mut simulation = Simulation::new(scene.clone(), method, control)?;
-            let mut snapshots = vec![];
-            let end = run(&mut simulation, &frames, go_on, |_, run| {
-                snapshots.push(Snapshot::of(run));
-            })?;
-            work += simulation.work();
-            match end {
-                None => Ok(None),
-                Some(Some(lost)) => Err(Error::BlowUp(lost)),
-                Some(None) => Ok(Some(snapshots)),
-            }
-        };
-        let accurate = find("dop853").ok_or_else(missing)?;
-        let Some(best) = trajectory(accurate, Control::Tolerance(TOLERANCES[0]))? else {
-            return Ok(None);
-        };
-        let Some(looser) = trajectory(accurate, Control::Tolerance(TOLERANCES[1]))? else {
-            return Ok(None);
-        };
-        let system = scene.model.system();
-        let name = if system.mechanics().is_some() {
-            "pefrl"
-        } else {
-            "rk4"
-        };
-        let other = find(name).ok_or_else(missing)?;
-        let modes = spectrum(system, 0.0, &scene.state);
-        let limit = largest_step(other, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
-        let parts = (frames.spacing() / (SHARE * limit)).ceil().max(1.0);
-        let h = frames.spacing() / parts;
-        let Some(coarse) = trajectory(other, Control::Step(h))? else {
-            return Ok(None);
-        };
-        let Some(fine) = trajectory(other, Control::Step(0.5 * h))? else {
-            return Ok(None);
-        };
-        let mut floor = Errors::default();
-        for (k, best) in best.iter().enumerate() {
-            floor = floor
-                .max(best.errors(&looser[k]))
-                .max(best.errors(&extrapolate(&coarse[k], &fine[k])));
-        }
-        Ok(Some(Self {
-            frames,
-            floor,
-            work,
-            snapshots: best,
-        }))
+    /// The scene cannot be run, or the run of the reference blows up.
+    pub fn finest(scene: &Scene, frames: Frames, go_on: GoOn) -> Result<Option<Self>, Error> {
+        Self::new(scene, frames, Scope::default(), Precision::FINEST, go_on)
     }
 
-    /// Errors of a run that is at frame k, counted from 1.
+    /// Reference of a scene from its start, for errors in a scope, as precise as asked for or as
+    /// possible. `None` if `go_on` returned false.
+    ///
+    /// # Errors
+    /// The scene cannot be run, the run of the reference blows up, or the scope's particle does not
+    /// exist.
+    pub fn new(
+        scene: &Scene,
+        frames: Frames,
+        scope: Scope,
+        precision: Precision,
+        go_on: GoOn,
+    ) -> Result<Option<Self>, Error> {
+        let particles = scene.model.particles();
+        if let Some(i) = scope.particle.filter(|i| *i >= particles) {
+            return Err(Error::Invalid(format!(
+                "there is no particle {i}: the scene has particles 0 to {}",
+                particles.max(1) - 1
+            )));
+        }
+        let start = Snapshot::of(&scene.model, 0.0, &scene.state);
+        let mut making = Making {
+            scene,
+            precision,
+            go_on,
+            work: Work::default(),
+            reference: Self {
+                frames,
+                floor: Errors::default(),
+                still: Errors::default(),
+                work: Work::default(),
+                scope,
+                trajectory: Trajectory::new(vec![], scope),
+            },
+        };
+        let Some(own) = making.by_tolerances()? else {
+            return Ok(None);
+        };
+        let Some(others) = making.by_steps(own)? else {
+            return Ok(None);
+        };
+        let mut reference = making.reference;
+        reference.floor = own.max(others);
+        reference.work = making.work;
+        let still = (1..=frames.count).filter(|k| reference.counts(*k));
+        let still = still.map(|k| reference.trajectory.errors(k, &start, scope));
+        reference.still = still.fold(Errors::default(), Errors::max);
+        Ok(Some(reference))
+    }
+
+    /// Errors of the state y of a model at frame k, counted from 1.
     #[must_use]
-    pub fn errors(&self, k: u64, run: &Simulation) -> Errors {
-        Snapshot::of(run).errors(&self.snapshots[k as usize - 1])
+    pub fn errors(&self, k: u64, model: &Model, y: &[f64]) -> Errors {
+        let found = Snapshot::of(model, self.frames.time(k), y);
+        self.trajectory.errors(k, &found, self.scope)
+    }
+
+    /// Whether errors at frame k, counted from 1, count.
+    #[must_use]
+    pub fn counts(&self, k: u64) -> bool {
+        !self.scope.at_end || k == self.frames.count
+    }
+
+    /// Largest errors of a trajectory over the frames that count.
+    fn disagreement(&self, others: &[Snapshot]) -> Errors {
+        let frames = (1..=self.frames.count).filter(|k| self.counts(*k));
+        let errors = frames.map(|k| {
+            self.trajectory
+                .errors(k, &others[k as usize - 1], self.scope)
+        });
+        errors.fold(Errors::default(), Errors::max)
+    }
+}
+
+/// A reference in the making.
+struct Making<'a> {
+    scene: &'a Scene,
+    precision: Precision,
+    go_on: GoOn<'a>,
+    work: Work,
+    reference: Reference,
+}
+
+/// States at each frame, and the work of their run.
+type Run = (Vec<Snapshot>, f64);
+
+impl Making<'_> {
+    /// Run of a method. `None` if `go_on` returned false.
+    fn run(&mut self, method: &'static Method, control: Control) -> Result<Option<Run>, Error> {
+        let mut simulation = Simulation::new(self.scene.clone(), method, control)?;
+        let frames = self.reference.frames;
+        let mut snapshots = Vec::with_capacity(frames.count as usize);
+        let mut visit = |k: u64, run: &Simulation, state: &[f64]| {
+            snapshots.push(Snapshot::of(run.model(), frames.time(k), state));
+        };
+        let end = run(&mut simulation, &frames, self.go_on, Some(&mut visit))?;
+        self.work += simulation.work();
+        match end {
+            None => Ok(None),
+            Some(Some(lost)) => Err(Error::BlowUp(lost)),
+            Some(None) => Ok(Some((snapshots, simulation.work().total()))),
+        }
+    }
+
+    /// Whether errors are small enough.
+    fn is_enough(&self, errors: &Errors) -> bool {
+        self.precision.metric.of(errors) <= self.precision.uncertainty
+    }
+
+    /// Finds the reference by DOP853 at smaller and smaller tolerances. Returns the disagreement of
+    /// the last two.
+    fn by_tolerances(&mut self) -> Result<Option<Errors>, Error> {
+        let method = find("dop853").ok_or_else(missing)?;
+        let (loosest, tightest) = TOLERANCES;
+        let mut tolerance = self.precision.uncertainty.clamp(tightest, loosest);
+        let Some((mut looser, mut work)) =
+            self.run(method, Control::Tolerance(LOOSER * tolerance))?
+        else {
+            return Ok(None);
+        };
+        let mut history = vec![];
+        loop {
+            let Some((best, next)) = self.run(method, Control::Tolerance(tolerance))? else {
+                return Ok(None);
+            };
+            let scope = self.reference.scope;
+            self.reference.trajectory = Trajectory::new(best, scope);
+            let found = self.reference.disagreement(&looser);
+            history.push(self.precision.metric.of(&found));
+            let predicted = next * next / work;
+            if self.is_enough(&found)
+                || is_stuck(&history)
+                || tolerance <= tightest
+                || predicted > self.precision.most
+            {
+                return Ok(Some(found));
+            }
+            work = next;
+            looser = std::mem::take(&mut self.reference.trajectory.snapshots);
+            tolerance = (tolerance / LOOSER).max(tightest);
+        }
+    }
+
+    /// Disagreement of the reference with the other method, whose step is halved until that is as
+    /// small as asked for, or as the reference's `own` uncertainty, or no longer falls.
+    fn by_steps(&mut self, own: Errors) -> Result<Option<Errors>, Error> {
+        let system = self.scene.model.system();
+        let method = find(other(system)).ok_or_else(missing)?;
+        let modes = spectrum(system, 0.0, &self.scene.state);
+        let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
+        let spacing = self.reference.frames.spacing();
+        let mut step = spacing / (spacing / (SHARE * limit)).ceil().max(1.0);
+        let metric = self.precision.metric;
+        let mut least = Errors::with_all(f64::INFINITY);
+        let mut history = vec![];
+        let mut row: Vec<Vec<Snapshot>> = vec![];
+        loop {
+            match self.run(method, Control::Step(step)) {
+                Ok(None) => return Ok(None),
+                // Steps that are too long to stay in shape.
+                Err(Error::BlowUp(lost)) => {
+                    if history.len() > 8 {
+                        return Err(Error::BlowUp(lost));
+                    }
+                    row.clear();
+                    history.push(f64::INFINITY);
+                }
+                Err(error) => return Err(error),
+                Ok(Some((snapshots, work))) => {
+                    row = extrapolate(row, snapshots);
+                    for column in &row {
+                        least = least.min(self.reference.disagreement(column));
+                    }
+                    history.push(metric.of(&least));
+                    let as_good = metric.of(&least) <= metric.of(&own);
+                    if self.is_enough(&least)
+                        || as_good
+                        || is_stuck(&history)
+                        || 2.0 * work > self.precision.most
+                    {
+                        return Ok(Some(least));
+                    }
+                }
+            }
+            step *= 0.5;
+        }
+    }
+}
+
+/// Whether disagreements no longer fall.
+fn is_stuck(history: &[f64]) -> bool {
+    match history {
+        [.., before, _, last] => before.is_finite() && *last > FALLS * before,
+        _ => false,
+    }
+}
+
+/// Name of the method that checks the reference: PEFRL takes four evaluations for each kick of
+/// forces that depend on the velocity, and serves no first-order system.
+fn other(system: &dyn ParticleSystem) -> &'static str {
+    let splitting = system.mechanics().and_then(Mechanics::splitting);
+    if splitting.is_some_and(|splitting| !splitting.kick_reads_velocity()) {
+        "pefrl"
+    } else {
+        "rk4"
     }
 }
 
@@ -100,17 +314,15 @@ fn missing() -> Error {
     Error::Invalid("the methods that make a reference are not in the table".into())
 }
 
-/// Richardson's extrapolation from the steps h and h/2 of a method of order 4, whose leading error
-/// cancels: fine + (fine - coarse) / 15.
-fn extrapolate(coarse: &Snapshot, fine: &Snapshot) -> Snapshot {
-    let both = |coarse: f64, fine: f64| fine + (fine - coarse) / 15.0;
-    let all = |coarse: &[f64], fine: &[f64]| {
-        let pairs = coarse.iter().zip(fine);
-        pairs.map(|(c, f)| both(*c, *f)).collect()
-    };
-    Snapshot {
-        positions: all(&coarse.positions, &fine.positions),
-        energy: both(coarse.energy, fine.energy),
-        strains: all(&coarse.strains, &fine.strains),
+/// Next row of the extrapolation: the run with half of the step, and its combinations with the row
+/// before, each of which lacks one more power of the step.
+fn extrapolate(row: Vec<Vec<Snapshot>>, halved: Vec<Snapshot>) -> Vec<Vec<Snapshot>> {
+    let mut next = vec![halved];
+    for (power, coarse) in row.into_iter().take(POWERS).enumerate() {
+        let share = 1.0 / (f64::powi(2.0, ORDER + power as i32) - 1.0);
+        let pairs = coarse.iter().zip(&next[power]);
+        let column = pairs.map(|(coarse, fine)| Snapshot::extrapolate(coarse, fine, share));
+        next.push(column.collect());
     }
+    next
 }

@@ -1,0 +1,198 @@
+//! Errors of states: what of a state is compared, and with what result.
+
+use nalgebra::Vector3;
+
+use crate::elements::force::distance;
+use crate::network::Network;
+use crate::scene::Model;
+use crate::spring::SpringKind;
+use crate::system::Mechanics;
+
+/// Particles and times at which errors are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Scope {
+    /// The only particle whose position and phase count; `None` for all of them.
+    pub particle: Option<usize>,
+    /// Whether only the last frame counts, instead of the largest error of all frames.
+    pub at_end: bool,
+}
+
+/// Quantities of a state that are compared.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Snapshot {
+    /// Positions (m): all x, all y, all z.
+    positions: Vec<f64>,
+    /// Velocities (m/s).
+    velocities: Vec<f64>,
+    /// Total energy (J); 0 for a first-order scene.
+    energy: f64,
+    /// Momentum of the particles that are not pinned (kg m/s); 0 for a first-order scene.
+    momentum: Vector3<f64>,
+    /// Length over rest length of each structural spring.
+    strains: Vec<f64>,
+}
+
+impl Snapshot {
+    /// Quantities of the state y of a model at time t (s).
+    pub fn of(model: &Model, t: f64, y: &[f64]) -> Self {
+        let Some(network) = model.network() else {
+            let mut velocities = vec![0.0; y.len()];
+            model.system().eval_f(t, y, &mut velocities);
+            return Self {
+                positions: y.to_vec(),
+                velocities,
+                ..Self::default()
+            };
+        };
+        let (positions, velocities) = y.split_at(y.len() / 2);
+        let inverse_masses = network.inverse_masses();
+        let momentum = Vector3::from_fn(|axis, _| {
+            let n = inverse_masses.len();
+            let column = velocities[axis * n..(axis + 1) * n].iter();
+            let free = column.zip(inverse_masses).filter(|(_, w)| **w > 0.0);
+            free.map(|(v, w)| v / w).sum()
+        });
+        Self {
+            energy: network.energy(positions, velocities).total(),
+            momentum,
+            strains: structural(network)
+                .map(|s| distance(positions, s.i, s.j) / s.law.rest_length)
+                .collect(),
+            positions: positions.to_vec(),
+            velocities: velocities.to_vec(),
+        }
+    }
+
+    /// Differences of another snapshot of the same scene from this one, which is exact. The phase
+    /// is not yet divided by the [`square_speed`](Self::square_speed).
+    pub fn errors_of(&self, other: &Self, scope: Scope) -> Errors {
+        let springs = self.strains.len().max(1) as f64;
+        let stretch = self.strains.iter().zip(&other.strains);
+        let moved = || {
+            let pairs = self.positions.iter().zip(&other.positions);
+            pairs.map(|(own, other)| other - own)
+        };
+        let along = moved().zip(&self.velocities).map(|(d, v)| d * v);
+        Errors {
+            position: self.mean(scope, moved().map(|d| d * d)).sqrt(),
+            energy: (self.energy - other.energy).abs(),
+            strain: (stretch.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / springs).sqrt(),
+            momentum: (self.momentum - other.momentum).norm(),
+            phase: self.mean(scope, along).abs(),
+        }
+    }
+
+    /// Mean square speed of the particles in the scope (m2/s2).
+    pub fn square_speed(&self, scope: Scope) -> f64 {
+        self.mean(scope, self.velocities.iter().map(|v| v * v))
+    }
+
+    /// Sum over the axes of the mean over the particles in the scope.
+    fn mean(&self, scope: Scope, numbers: impl Iterator<Item = f64>) -> f64 {
+        let n = (self.positions.len() / 3).max(1);
+        match scope.particle {
+            None => numbers.sum::<f64>() / n as f64,
+            Some(i) => numbers.skip(i).step_by(n).sum(),
+        }
+    }
+
+    /// Extrapolation of fine + (fine - coarse) * `share` in each quantity.
+    pub fn extrapolate(coarse: &Self, fine: &Self, share: f64) -> Self {
+        let both = |coarse: &f64, fine: &f64| fine + (fine - coarse) * share;
+        let all = |coarse: &[f64], fine: &[f64]| {
+            let pairs = coarse.iter().zip(fine);
+            pairs.map(|(c, f)| both(c, f)).collect()
+        };
+        Self {
+            positions: all(&coarse.positions, &fine.positions),
+            velocities: all(&coarse.velocities, &fine.velocities),
+            energy: both(&coarse.energy, &fine.energy),
+            momentum: fine.momentum + (fine.momentum - coarse.momentum) * share,
+            strains: all(&coarse.strains, &fine.strains),
+        }
+    }
+}
+
+/// Structural springs of a network whose rest length is above 0.
+fn structural(network: &Network) -> impl Iterator<Item = crate::Spring> {
+    network
+        .springs()
+        .filter(|s| s.kind == SpringKind::Structural && s.law.rest_length > 0.0)
+}
+
+/// Errors of a state, or the largest ones over the frames of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Root mean square over the particles of the distance from their reference positions (m).
+    pub position: f64,
+    /// Absolute error of the total energy (J); 0 for a first-order scene.
+    pub energy: f64,
+    /// Root mean square over the structural springs of the error of length over rest length; 0
+    /// without such springs.
+    pub strain: f64,
+    /// Length of the error of the total momentum of the particles that are not pinned (kg m/s); 0
+    /// for a first-order scene.
+    pub momentum: f64,
+    /// Time (s) by which the run is ahead of the reference or behind it: the error of the positions
+    /// along the reference velocities, over the largest speed squared of the reference.
+    pub phase: f64,
+}
+
+impl Errors {
+    /// Errors that are all the same.
+    pub(super) fn with_all(error: f64) -> Self {
+        let zero = Self::default();
+        zero.with(zero, |_, _| error)
+    }
+
+    /// Result of a function of each quantity of both errors.
+    fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        Self {
+            position: f(self.position, other.position),
+            energy: f(self.energy, other.energy),
+            strain: f(self.strain, other.strain),
+            momentum: f(self.momentum, other.momentum),
+            phase: f(self.phase, other.phase),
+        }
+    }
+
+    /// Larger of both errors in each quantity; NaN is larger than any number.
+    pub(super) fn max(self, other: Self) -> Self {
+        self.with(other, |a, b| if a >= b || a.is_nan() { a } else { b })
+    }
+
+    /// Smaller of both errors in each quantity.
+    pub(super) fn min(self, other: Self) -> Self {
+        self.with(other, f64::min)
+    }
+}
+
+/// Choice of one of the [`Errors`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Metric {
+    /// Error of the positions (m).
+    #[default]
+    Position,
+    /// Error of the total energy (J).
+    Energy,
+    /// Error of length over rest length.
+    Strain,
+    /// Error of the total momentum (kg m/s).
+    Momentum,
+    /// Error of the phase (s).
+    Phase,
+}
+
+impl Metric {
+    /// Error that the metric chooses, in its unit.
+    #[must_use]
+    pub fn of(self, errors: &Errors) -> f64 {
+        match self {
+            Self::Position => errors.position,
+            Self::Energy => errors.energy,
+            Self::Strain => errors.strain,
+            Self::Momentum => errors.momentum,
+            Self::Phase => errors.phase,
+        }
+    }
+}
