@@ -2,16 +2,20 @@
 
 use std::fmt::Write;
 
-use a3_core::accuracy::{Candidate, Frames, Metric, Reference, choose, ladder, measure};
+use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, choose, ladder, measure};
+use a3_core::stability::spectrum;
 use a3_core::{Control, Method, Scene};
 
-use crate::chart::measure::time;
-use crate::chart::{describe, look_ahead, methods};
+use crate::chart::measure::{FINE, MOST_EVALUATIONS, reference, time, words};
+use crate::chart::{describe, look_ahead, methods, metric, scope, unit};
 use crate::cli::{Choose, What};
 use crate::failure::Failure;
 use crate::progress::Bar;
 use crate::{interrupt, list, output, setup};
 
+/// Error that is asked for over the uncertainty of the reference: at least, and where the reference
+/// is fine enough.
+const MARGIN: (f64, f64) = (3.0, 100.0);
 /// Simulated time of a frame (s).
 const FRAME: f64 = 1.0 / 60.0;
 
@@ -20,40 +24,75 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
     interrupt::listen();
     let stopped = || Failure::Interrupted("interrupted: nothing was chosen".into());
     let scene = setup::scene(&options.what)?;
-    let until = look_ahead(&scene, options.until, 1.0)?.ok_or_else(stopped)?;
-    let reference = Reference::new(&scene, Frames::new(until), &interrupt::go_on)
-        .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))?
-        .ok_or_else(stopped)?;
+    let (metric, scope) = (metric(options.of), scope(&options.scope, &scene)?);
+    if !matches!(metric, Metric::Position | Metric::Phase) && scene.model.network().is_none() {
+        return Err(Failure::usage(format!(
+            "the scene {} has neither energy nor momentum nor springs: choose by position or phase",
+            scene.name
+        )));
+    }
+    let methods = methods(&scene, &[])?.len();
+    let bar = Bar::new(methods as f64);
+    bar.say("looking ahead  ".into());
+    let horizon = look_ahead(&scene, options.until, 1.0, &bar)?.ok_or_else(stopped)?;
+    let until = horizon.until;
+    bar.say("reference  ".into());
+    let precision = match options.error {
+        Some(error) => Precision {
+            metric,
+            uncertainty: error / MARGIN.1,
+            most: Precision::FINEST.most,
+        },
+        None => Precision {
+            metric: Metric::Position,
+            uncertainty: FINE * horizon.motion,
+            most: MOST_EVALUATIONS,
+        },
+    };
+    let reference = reference(&scene, Frames::new(until), scope, precision)?.ok_or_else(stopped)?;
     let (found, goal) = match (options.error, options.budget) {
         (Some(error), _) => {
-            let floor = reference.floor.position;
-            if error < 10.0 * floor {
+            let (floor, still) = (metric.of(&reference.floor), metric.of(&reference.still));
+            let unit = unit(metric);
+            if error < MARGIN.0 * floor {
                 return Err(Failure::usage(format!(
-                    "the reference of this scene over {until} s is itself known to {floor:.0e} m only: ask for an \
-                     error of at least {:.0e}",
-                    10.0 * floor
+                    "the reference of this scene over {until} s is itself known to {floor:.0e} {unit} only: ask for \
+                     an error of at least {:.0e}",
+                    MARGIN.0 * floor
                 )));
             }
+            if metric == Metric::Position && error > still {
+                bar.warn(&format!(
+                    "warning: nothing moves further than {still:.0e} m in {until} s: an error of {error:e} m says nothing"
+                ));
+            }
+            bar.start();
+            let mut begun = 0;
             let found = choose(
                 &scene,
                 &reference,
-                Metric::Position,
+                metric,
                 error,
                 &interrupt::go_on,
-            )
-            .map_err(Failure::run)?
-            .ok_or_else(stopped)?;
+                |method| {
+                    bar.say(format!("{:<10} ", method.name));
+                    bar.advance(f64::from(u8::from(begun > 0)));
+                    begun += 1;
+                },
+            );
+            bar.clear();
+            let found = found.map_err(Failure::run)?.ok_or_else(stopped)?;
             let found = found.into_iter().take(3).map(|candidate| {
                 let cost = milliseconds(&scene, &candidate, &reference)?.ok_or_else(stopped)?;
                 Ok((candidate, cost))
             });
             (
                 found.collect::<Result<Vec<_>, Failure>>()?,
-                format!("an error of {error:e} m"),
+                format!("an error of {error:e} {unit} ({})", words(scope)),
             )
         }
         (None, Some(budget)) => (
-            within(&scene, &reference, budget)?.ok_or_else(stopped)?,
+            within(&scene, &reference, metric, budget, &bar)?.ok_or_else(stopped)?,
             format!("{budget} ms per frame"),
         ),
         (None, None) => return Err(Failure::usage("give --error or --budget")),
@@ -69,10 +108,16 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
             }
         )));
     };
-    output::say(&report(&options.what, &scene, until, &goal, &found))?;
+    output::say(&report(
+        &options.what,
+        &scene,
+        until,
+        &goal,
+        (metric, &found),
+    ))?;
     output::say(&format!(
         "run it:  {}\n",
-        command(&options.what, best.method, best.control)
+        command(&options.what, best.method, best.control, until)
     ))
 }
 
@@ -96,15 +141,18 @@ fn milliseconds(
 fn within(
     scene: &Scene,
     reference: &Reference,
+    metric: Metric,
     budget: f64,
+    bar: &Bar,
 ) -> Result<Option<Vec<(Candidate, f64)>>, Failure> {
     let mut found = vec![];
-    let methods = methods(scene, &[])?;
-    let bar = Bar::new(methods.len() as f64);
-    for method in methods {
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    let error = |c: &Candidate| metric.of(&c.outcome.errors);
+    bar.start();
+    for method in methods(scene, &[])? {
         bar.say(format!("{:<10} ", method.name));
         let mut best: Option<(Candidate, f64)> = None;
-        for control in ladder(scene, method, &reference.frames, 1_000_000).map_err(Failure::run)? {
+        for control in ladder(&modes, method, &reference.frames, 1_000_000).map_err(Failure::run)? {
             let outcome = measure(scene, method, control, reference, &interrupt::go_on)
                 .map_err(Failure::run)?;
             let Some(outcome) = outcome else {
@@ -121,7 +169,6 @@ fn within(
             if cost > budget {
                 break;
             }
-            let error = |c: &Candidate| c.outcome.errors.position;
             if outcome.lost.is_none()
                 && best
                     .as_ref()
@@ -129,7 +176,7 @@ fn within(
             {
                 best = Some((candidate, cost));
             }
-            if error(&candidate) < 10.0 * reference.floor.position {
+            if error(&candidate) < MARGIN.1 * metric.of(&reference.floor) {
                 break;
             }
         }
@@ -137,10 +184,7 @@ fn within(
         bar.advance(1.0);
     }
     bar.clear();
-    found.sort_by(|(a, _), (b, _)| {
-        let error = |c: &Candidate| c.outcome.errors.position;
-        error(a).total_cmp(&error(b))
-    });
+    found.sort_by(|(a, _), (b, _)| error(a).total_cmp(&error(b)));
     found.truncate(3);
     Ok(Some(found))
 }
@@ -151,16 +195,17 @@ fn report(
     scene: &Scene,
     until: f64,
     goal: &str,
-    found: &[(Candidate, f64)],
+    (metric, found): (Metric, &[(Candidate, f64)]),
 ) -> String {
+    let error = format!(" error ({})", unit(metric));
     let mut rows = vec![
         [
             "",
             "solver",
             " setting",
-            " error (m)",
+            &*error,
             " evaluations/s",
-            " ms/frame",
+            " time/frame",
         ]
         .map(String::from)
         .to_vec(),
@@ -170,12 +215,16 @@ fn report(
             ["best", "runner-up", "then"][k.min(2)].into(),
             c.method.title.into(),
             match c.control {
-                Control::Step(step) => format!("step {} s", typed(step)),
-                Control::Tolerance(tolerance) => format!("tolerance {}", typed(tolerance)),
+                Control::Step(_) => format!("step {} s", typed(c.control, until)),
+                Control::Tolerance(_) => format!("tolerance {}", typed(c.control, until)),
             },
-            format!("{:.1e}", c.outcome.errors.position),
+            format!("{:.1e}", metric.of(&c.outcome.errors)),
             format!("{:.0}", c.outcome.work.total() / until),
-            format!("{cost:.3}"),
+            if *cost < 0.1 {
+                format!("{:.2} µs", 1e3 * cost)
+            } else {
+                format!("{cost:.2} ms")
+            },
         ]);
     }
     format!(
@@ -185,9 +234,23 @@ fn report(
     )
 }
 
-/// A step or a tolerance as it would be typed: to four digits, rounded down, so that the run is no
+/// A step or a tolerance as it would be typed: a step of a run of `until` (s) exactly, as a fraction
+/// if a few digits do not tell it; a tolerance to four digits, rounded down, so that the run is no
 /// coarser.
-fn typed(value: f64) -> String {
+fn typed(control: Control, until: f64) -> String {
+    let value = control.value();
+    if let Control::Step(step) = control {
+        let short = format!("{step}");
+        if short.len() <= 6 {
+            return short;
+        }
+        let (count, per_second) = ((until / step).round(), 1.0 / step);
+        return if (per_second - per_second.round()).abs() < 1e-9 * per_second {
+            format!("1/{}", per_second.round())
+        } else {
+            format!("{until}/{count}")
+        };
+    }
     let power = 10f64.powi(3 - value.log10().floor() as i32);
     let rounded = (value * power * (1.0 + 1e-12)).floor() / power;
     if rounded < 1e-3 {
@@ -198,8 +261,8 @@ fn typed(value: f64) -> String {
 }
 
 /// The command line that runs the scene with a method at a step or a tolerance.
-fn command(what: &What, method: &Method, control: Control) -> String {
-    let mut words = format!("a3 {} {}", method.letter, typed(control.value()));
+fn command(what: &What, method: &Method, control: Control, until: f64) -> String {
+    let mut words = format!("a3 {} {}", method.letter, typed(control, until));
     if what.scene.typed != "cloth" {
         let _ = write!(words, " --scene {}", what.scene.typed);
     }
@@ -221,13 +284,16 @@ mod tests {
     #[test]
     fn values_are_typed_short_and_never_coarser() {
         for (value, expected) in [
-            (1.0 / 60.0, "0.01666"),
+            (1.0 / 60.0, "1/60"),
             (0.01, "0.01"),
-            (1.0 / 120.0, "0.008333"),
-            (1.7783e-5, "1.778e-5"),
+            (3.0 / 291.0, "1/97"),
+            (3.0 / 292.0, "3/292"),
             (0.5, "0.5"),
         ] {
-            assert_eq!(typed(value), expected);
+            assert_eq!(typed(Control::Step(value), 3.0), expected);
         }
+        assert_eq!(typed(Control::Step(0.3 / 37.0), 0.3), "0.3/37");
+        assert_eq!(typed(Control::Tolerance(1.7783e-5), 3.0), "1.778e-5");
+        assert_eq!(typed(Control::Tolerance(0.1), 3.0), "0.1");
     }
 }

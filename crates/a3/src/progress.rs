@@ -49,7 +49,7 @@ pub fn march(
         // Whole steps that end before the last one. If only rounding makes the last one shorter, it
         // is whole too.
         let left = (until - simulation.time()) / step;
-        let whole = (left - 1.0 - 1e-9).ceil().min(stride);
+        let whole = (left - 1.0 - Simulation::SLIVER).ceil().min(stride);
         if whole < 1.0 {
             break;
         }
@@ -69,7 +69,7 @@ pub fn march(
 /// A bar that is shown at once, for work in any unit.
 pub struct Bar {
     drawn: ProgressBar,
-    expected: f64,
+    expected: Cell<f64>,
     done: Cell<f64>,
 }
 
@@ -80,7 +80,7 @@ impl Bar {
         bar.enable_steady_tick(Duration::from_millis(250));
         Self {
             drawn: bar,
-            expected,
+            expected: Cell::new(expected),
             done: Cell::new(0.0),
         }
     }
@@ -89,7 +89,24 @@ impl Bar {
     pub fn advance(&self, work: f64) {
         self.done.set(self.done.get() + work);
         self.drawn
-            .set_position((1000.0 * self.done.get() / self.expected) as u64);
+            .set_position((1000.0 * self.done.get() / self.expected.get()) as u64);
+    }
+
+    /// Sets how much work there is in all, of which none is done yet.
+    pub fn expect(&self, work: f64) {
+        self.expected.set(work);
+        self.done.set(0.0);
+        self.drawn.set_position(0);
+    }
+
+    /// Takes the bar off the terminal while something else is written.
+    pub fn pause<T>(&self, write: impl FnOnce() -> T) -> T {
+        self.drawn.suspend(write)
+    }
+
+    /// Writes a warning to stderr.
+    pub fn warn(&self, line: &str) {
+        self.pause(|| eprintln!("{line}"));
     }
 
     /// Estimates the time that is left from here on.

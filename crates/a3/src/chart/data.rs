@@ -31,18 +31,32 @@ pub struct Record {
     pub solver: String,
     /// Step (s), or relative tolerance.
     pub setting: f64,
+    /// Particles and times that count, in words.
+    pub scope: String,
     /// Error of the positions over the frames that the run reached (m).
     pub error_position: f64,
     /// Error of the energy (J).
     pub error_energy: f64,
     /// Error of the springs' stretch.
     pub error_strain: f64,
+    /// Error of the momentum (kg m/s).
+    pub error_momentum: f64,
+    /// Error of the phase (s).
+    pub error_phase: f64,
     /// Error of the reference itself: of the positions (m).
     pub floor_position: f64,
     /// Error of the reference itself: of the energy (J).
     pub floor_energy: f64,
     /// Error of the reference itself: of the springs' stretch.
     pub floor_strain: f64,
+    /// Error of the reference itself: of the momentum (kg m/s).
+    pub floor_momentum: f64,
+    /// Error of the reference itself: of the phase (s).
+    pub floor_phase: f64,
+    /// Error of a run in which nothing moves: of the positions (m).
+    pub still_position: f64,
+    /// Error of a run in which nothing moves: of the springs' stretch.
+    pub still_strain: f64,
     /// Simulated time at which the run blew up (s).
     pub lost_at: Option<f64>,
     /// Computing time of the whole run (s), if it was measured.
@@ -62,7 +76,8 @@ impl Record {
         (&self.version, &self.scene, self.rows, self.cols)
             == (&other.version, &other.scene, other.rows, other.cols)
             && (self.wind, self.swing) == (other.wind, other.swing)
-            && (self.stiffness, self.until) == (other.stiffness, other.until)
+            && (self.stiffness, self.until, &self.scope)
+                == (other.stiffness, other.until, &other.scope)
     }
 
     /// Whether both runs are of the same scene, method and setting.
@@ -76,6 +91,8 @@ impl Record {
             position: self.error_position,
             energy: self.error_energy,
             strain: self.error_strain,
+            momentum: self.error_momentum,
+            phase: self.error_phase,
         })
     }
 
@@ -85,7 +102,19 @@ impl Record {
             position: self.floor_position,
             energy: self.floor_energy,
             strain: self.floor_strain,
+            momentum: self.floor_momentum,
+            phase: self.floor_phase,
         })
+    }
+
+    /// The error of a run in which nothing moves, beyond which an error says nothing; infinite for
+    /// quantities that motion may conserve.
+    pub fn still(&self, metric: Metric) -> f64 {
+        match metric {
+            Metric::Position => self.still_position,
+            Metric::Strain => self.still_strain,
+            Metric::Energy | Metric::Momentum | Metric::Phase => f64::INFINITY,
+        }
     }
 }
 

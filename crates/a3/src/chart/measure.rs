@@ -3,7 +3,10 @@
 
 use std::time::{Duration, Instant};
 
-use a3_core::accuracy::{self, Frames, Metric, Outcome, Reference, ladder};
+use a3_core::accuracy::{
+    self, Errors, Frames, Metric, Outcome, Precision, Reference, Scope, coarser, ladder,
+};
+use a3_core::stability::{Mode, spectrum};
 use a3_core::{Control, Method, Model, Scene, Simulation};
 
 use super::data::{Data, Record, VERSION};
@@ -12,9 +15,12 @@ use crate::interrupt;
 use crate::progress::Bar;
 
 /// Most work of a run, in evaluations. A run that fails may take more.
-const MOST_EVALUATIONS: u64 = 60_000;
+pub const MOST_EVALUATIONS: f64 = 60_000.0;
 /// Work of a step of an implicit method, in evaluations, within a factor of three.
 const IMPLICIT: f64 = 25.0;
+/// Uncertainty of the reference over the motion of the scene, below which it is fine enough for any
+/// run.
+pub const FINE: f64 = 1e-10;
 /// Most times that a run is timed. The shortest time counts.
 const RUNS: u32 = 5;
 /// Total computing time after which a run is timed no more, if it was timed twice.
@@ -26,6 +32,10 @@ const ALONE: Duration = Duration::from_secs(2);
 pub struct Study<'a> {
     pub scene: Scene,
     pub frames: Frames,
+    modes: Vec<Mode>,
+    scope: Scope,
+    /// Largest distance of the particles from their start, on average (m).
+    motion: f64,
     /// A record of the scene, whose other fields are filled in for each run.
     blank: Record,
     reference: Option<Reference>,
@@ -35,15 +45,17 @@ pub struct Study<'a> {
 }
 
 impl<'a> Study<'a> {
-    /// A study of the scene. `name`, `wind` and `swing` describe it in the records; `timed` says
-    /// whether computing times are measured.
+    /// A study of the scene. `name`, `wind` and `swing` describe it in the records; errors are of a
+    /// metric in a scope, on a scene whose particles move so far (m); `timed` says whether computing
+    /// times are measured.
     pub fn new(
         scene: Scene,
         (name, wind, swing): (&str, bool, bool),
         stiffness: f64,
         until: f64,
         methods: &'a [&'static Method],
-        (metric, timed): (Metric, bool),
+        (metric, scope, motion): (Metric, Scope, f64),
+        timed: bool,
     ) -> Self {
         let grid = scene.grid();
         let blank = Record {
@@ -57,12 +69,19 @@ impl<'a> Study<'a> {
             until,
             solver: String::new(),
             setting: 0.0,
+            scope: words(scope),
             error_position: 0.0,
             error_energy: 0.0,
             error_strain: 0.0,
+            error_momentum: 0.0,
+            error_phase: 0.0,
             floor_position: 0.0,
             floor_energy: 0.0,
             floor_strain: 0.0,
+            floor_momentum: 0.0,
+            floor_phase: 0.0,
+            still_position: 0.0,
+            still_strain: 0.0,
             lost_at: None,
             seconds: None,
             work: 0.0,
@@ -74,6 +93,9 @@ impl<'a> Study<'a> {
         };
         Self {
             frames: Frames::new(until),
+            modes: spectrum(scene.model.system(), 0.0, &scene.state),
+            scope,
+            motion,
             scene,
             blank,
             reference: None,
@@ -88,6 +110,11 @@ impl<'a> Study<'a> {
         self.blank.stiffness
     }
 
+    /// Where errors are taken.
+    pub fn scope(&self) -> Scope {
+        self.scope
+    }
+
     /// The runs of this study.
     pub fn records<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
         data.records.iter().filter(|r| r.same_scene(&self.blank))
@@ -95,8 +122,8 @@ impl<'a> Study<'a> {
 
     /// The steps or tolerances at which a method is run, from the coarsest on.
     fn rungs(&self, method: &'static Method) -> Result<Vec<Control>, Failure> {
-        let most = MOST_EVALUATIONS as f64 / each(method);
-        ladder(&self.scene, method, &self.frames, most as u64).map_err(Failure::run)
+        let most = MOST_EVALUATIONS / each(method);
+        ladder(&self.modes, method, &self.frames, most as u64).map_err(Failure::run)
     }
 
     /// Expected work of all runs, in evaluations.
@@ -129,22 +156,21 @@ impl<'a> Study<'a> {
         for &method in self.methods {
             let rungs = self.rungs(method)?;
             for (i, &control) in rungs.iter().enumerate() {
-                let like = Record {
-                    solver: method.name.into(),
-                    setting: control.value(),
-                    ..self.blank.clone()
+                let Some(record) = self.record(method, control, data, bar)? else {
+                    return Ok(false);
                 };
-                bar.say(format!("{:<10} ", method.name));
-                let record = match data.find(&like, self.timed) {
-                    Some(record) => record.clone(),
-                    None => match self.measure(method, like, bar)? {
-                        Some(record) => {
-                            data.add(record.clone());
-                            record
-                        }
-                        None => return Ok(false),
-                    },
-                };
+                // The limit of stability is that of the start, and may be longer in motion.
+                let mut longest = (control, record.clone());
+                while i == 0
+                    && longest.1.lost_at.is_none()
+                    && longest.1.error(self.metric) < longest.1.still(self.metric)
+                    && let Some(longer) = coarser(longest.0, &self.frames)
+                {
+                    let Some(record) = self.record(method, longer, data, bar)? else {
+                        return Ok(false);
+                    };
+                    longest = (longer, record);
+                }
                 bar.advance(self.expected_of(method, control));
                 // Errors below that of the reference tell nothing. The work of linear algebra is
                 // known only after a run.
@@ -152,7 +178,7 @@ impl<'a> Study<'a> {
                 let next = rungs
                     .get(i + 1)
                     .map_or(1.0, |next| control.value() / next.value());
-                let dear = control.step().is_some() && record.work * next > MOST_EVALUATIONS as f64;
+                let dear = control.step().is_some() && record.work * next > MOST_EVALUATIONS;
                 if record.lost_at.is_none() && (record.error(self.metric) < enough || dear) {
                     let rest = rungs[i + 1..].iter();
                     bar.advance(rest.map(|s| self.expected_of(method, *s)).sum());
@@ -164,6 +190,31 @@ impl<'a> Study<'a> {
         Ok(true)
     }
 
+    /// The run of a method, measured now if the data do not have it yet. `None` if it was
+    /// interrupted.
+    fn record(
+        &mut self,
+        method: &'static Method,
+        control: Control,
+        data: &mut Data,
+        bar: &Bar,
+    ) -> Result<Option<Record>, Failure> {
+        let like = Record {
+            solver: method.name.into(),
+            setting: control.value(),
+            ..self.blank.clone()
+        };
+        bar.say(format!("{:<10} ", method.name));
+        if let Some(record) = data.find(&like, self.timed) {
+            return Ok(Some(record.clone()));
+        }
+        let record = self.measure(method, like, bar)?;
+        if let Some(record) = &record {
+            data.add(record.clone());
+        }
+        Ok(record)
+    }
+
     /// Measures one run. `None` if it was interrupted.
     fn measure(
         &mut self,
@@ -173,8 +224,12 @@ impl<'a> Study<'a> {
     ) -> Result<Option<Record>, Failure> {
         if self.reference.is_none() {
             bar.say("reference  ".into());
-            self.reference = Reference::new(&self.scene, self.frames, &interrupt::go_on)
-                .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))?;
+            let precision = Precision {
+                metric: Metric::Position,
+                uncertainty: FINE * self.motion,
+                most: MOST_EVALUATIONS,
+            };
+            self.reference = reference(&self.scene, self.frames, self.scope, precision)?;
             bar.start();
             bar.say(format!("{:<10} ", method.name));
         }
@@ -195,14 +250,27 @@ impl<'a> Study<'a> {
         } else {
             None
         };
-        let floor = reference.floor;
+        let Errors {
+            position,
+            energy,
+            strain,
+            momentum,
+            phase,
+        } = errors;
+        let (floor, still) = (reference.floor, reference.still);
         Ok(Some(Record {
-            error_position: errors.position,
-            error_energy: errors.energy,
-            error_strain: errors.strain,
+            error_position: position,
+            error_energy: energy,
+            error_strain: strain,
+            error_momentum: momentum,
+            error_phase: phase,
             floor_position: floor.position,
             floor_energy: floor.energy,
             floor_strain: floor.strain,
+            floor_momentum: floor.momentum,
+            floor_phase: floor.phase,
+            still_position: still.position,
+            still_strain: still.strain,
             lost_at: lost.map(|lost| lost.time),
             seconds,
             work: work.total(),
@@ -213,6 +281,26 @@ impl<'a> Study<'a> {
             rejections: work.rejections,
             ..like
         }))
+    }
+}
+
+/// Reference of a scene from its start. `None` if it was interrupted.
+pub fn reference(
+    scene: &Scene,
+    frames: Frames,
+    scope: Scope,
+    precision: Precision,
+) -> Result<Option<Reference>, Failure> {
+    Reference::new(scene, frames, scope, precision, &interrupt::go_on)
+        .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))
+}
+
+/// A scope in words.
+pub fn words(scope: Scope) -> String {
+    let when = if scope.at_end { " at the end" } else { "" };
+    match scope.particle {
+        Some(i) => format!("particle {i}{when}"),
+        None => format!("all particles{when}"),
     }
 }
 
@@ -236,7 +324,7 @@ pub fn time(
     for runs in 1..=RUNS {
         let mut run = Simulation::new(scene.clone(), method, control).map_err(Failure::run)?;
         let begun = Instant::now();
-        let end = accuracy::run(&mut run, frames, &interrupt::go_on, |_, _| {});
+        let end = accuracy::run(&mut run, frames, &interrupt::go_on, None);
         let elapsed = begun.elapsed();
         if end.map_err(Failure::run)?.is_none() {
             return Ok(None);

@@ -8,11 +8,11 @@ mod table;
 
 use std::path::{Path, PathBuf};
 
-use a3_core::accuracy::{Horizon, Metric, horizon};
+use a3_core::accuracy::{Horizon, Metric, Scope, horizon};
 use a3_core::{Method, Scene, integrators};
 use a3_plot::Figure;
 
-use crate::cli::{Chart, ErrorMeasure, What, WorkMeasure};
+use crate::cli::{Chart, ErrorMeasure, ErrorScope, What, WorkMeasure};
 use crate::failure::Failure;
 use crate::progress::Bar;
 use crate::{interrupt, output, setup};
@@ -29,24 +29,27 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
         None => PathBuf::from(format!("a3-chart-{}.svg", scene.name)),
     };
     output::check(&path, &["svg", "png"])?;
-    let metric = metric(options.error);
+    let (metric, scope) = (metric(options.error), scope(&options.scope, &scene)?);
     let timed = options.work == WorkMeasure::Seconds;
-    if metric != Metric::Position && scene.model.network().is_none() {
+    if !matches!(metric, Metric::Position | Metric::Phase) && scene.model.network().is_none() {
         return Err(Failure::usage(format!(
-            "the scene {} has neither energy nor springs: leave out --error",
+            "the scene {} has neither energy nor momentum nor springs: ask for position or phase",
             scene.name
         )));
     }
     let mut data = Data::open(options.data.as_deref())?;
     let mut studies = vec![];
     let mut until = options.until;
+    let bar = Bar::new(1.0);
     for &factor in &options.stiffness {
+        bar.say("looking ahead  ".into());
         let scene = stiffened(&scene, factor)?;
         // All panels have the shortest horizon, which is that of the stiffest scene.
-        if let Some(found) = look_ahead(&scene, options.until, factor)? {
-            until = Some(until.map_or(found, |until: f64| until.min(found)));
-        }
-        studies.push((factor, scene));
+        let Some(found) = look_ahead(&scene, options.until, factor, &bar)? else {
+            continue;
+        };
+        until = Some(until.map_or(found.until, |until: f64| until.min(found.until)));
+        studies.push((factor, scene, found.motion));
     }
     let until = until.ok_or_else(|| Failure::run("interrupted before anything was measured"))?;
     let what = &options.what;
@@ -54,13 +57,16 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     let flags = (&*name, what.wind, what.swing);
     let mut studies: Vec<_> = studies
         .into_iter()
-        .map(|(factor, scene)| Study::new(scene, flags, factor, until, &methods, (metric, timed)))
+        .map(|(factor, scene, motion)| {
+            let of = (metric, scope, motion);
+            Study::new(scene, flags, factor, until, &methods, of, timed)
+        })
         .collect();
     let mut expected = 0.0;
     for study in &studies {
         expected += study.expected()?;
     }
-    let bar = Bar::new(expected);
+    bar.expect(expected);
     let mut complete = true;
     for study in &mut studies {
         if !study.run(&mut data, &bar)? {
@@ -130,21 +136,52 @@ pub fn metric(error: ErrorMeasure) -> Metric {
         ErrorMeasure::Position => Metric::Position,
         ErrorMeasure::Energy => Metric::Energy,
         ErrorMeasure::Strain => Metric::Strain,
+        ErrorMeasure::Momentum => Metric::Momentum,
+        ErrorMeasure::Phase => Metric::Phase,
     }
 }
 
-/// The end of the runs: the one that was asked for, or else the time up to which the motion can be
-/// predicted (s). Prints that time and the reason. `None` if it was interrupted.
+/// Where errors were asked to be taken.
+pub fn scope(asked: &ErrorScope, scene: &Scene) -> Result<Scope, Failure> {
+    let particles = scene.model.particles();
+    match asked.particle {
+        Some(i) if i >= particles => Err(Failure::usage(format!(
+            "the scene {} has no particle {i}: its particles are 0 to {}",
+            scene.name,
+            particles.max(1) - 1
+        ))),
+        particle => Ok(Scope {
+            particle,
+            at_end: asked.at_end,
+        }),
+    }
+}
+
+/// Unit of a metric, in words.
+pub fn unit(metric: Metric) -> &'static str {
+    match metric {
+        Metric::Position => "m",
+        Metric::Energy => "J",
+        Metric::Strain => "of length",
+        Metric::Momentum => "kg m/s",
+        Metric::Phase => "s",
+    }
+}
+
+/// How far the motion of a scene can be predicted, with the end of its runs: the one that was asked
+/// for, or else the predicted one. Prints that time and the reason. `None` if it was interrupted.
 pub fn look_ahead(
     scene: &Scene,
     asked: Option<f64>,
     stiffness: f64,
-) -> Result<Option<f64>, Failure> {
-    let Some(Horizon { until, lyapunov }) =
-        horizon(scene, &interrupt::go_on).map_err(Failure::run)?
-    else {
+    bar: &Bar,
+) -> Result<Option<Horizon>, Failure> {
+    let Some(found) = horizon(scene, &interrupt::go_on).map_err(Failure::run)? else {
         return Ok(None);
     };
+    let Horizon {
+        until, lyapunov, ..
+    } = found;
     let of = if stiffness == 1.0 {
         scene.name.clone()
     } else {
@@ -156,14 +193,17 @@ pub fn look_ahead(
         "errors hardly grow by themselves".to_owned()
     };
     match asked {
-        Some(asked) if asked > until * (1.0 + 1e-9) && lyapunov.is_finite() => eprintln!(
+        Some(asked) if asked > until * (1.0 + 1e-9) && lyapunov.is_finite() => bar.warn(&format!(
             "warning: {of}: {why}: past {until} s an error in position says little; compare \
              --error energy or strain, or leave out --until"
-        ),
+        )),
         Some(_) => {}
-        None => output::say(&format!("{of}: {why}; runs of {until} s\n"))?,
+        None => bar.pause(|| output::say(&format!("{of}: {why}; runs of {until} s\n")))?,
     }
-    Ok(Some(asked.unwrap_or(until)))
+    Ok(Some(Horizon {
+        until: asked.unwrap_or(until),
+        ..found
+    }))
 }
 
 /// The scene in words: its name, its grid, and what is switched on.

@@ -1,12 +1,12 @@
 //! The work-precision diagram of the runs.
 
 use a3_core::Method;
-use a3_core::accuracy::Metric;
+use a3_core::accuracy::{Metric, Scope};
 use a3_plot::{Curve, Measurement, Problem, WorkPrecision};
 
 use super::data::{Data, Record};
 use super::measure::Study;
-use super::{describe, style, table};
+use super::{describe, style, table, unit};
 use crate::cli::What;
 
 /// The diagram, with a panel for each study.
@@ -18,7 +18,7 @@ pub fn chart(
     timed: bool,
     what: &What,
 ) -> WorkPrecision {
-    let until = studies[0].frames.until;
+    let (until, scope) = (studies[0].frames.until, studies[0].scope());
     let problems = studies
         .iter()
         .map(|study| {
@@ -32,22 +32,36 @@ pub fn chart(
     WorkPrecision {
         title: format!("Speed against accuracy: {}", describe(what, &studies[0].scene)),
         subtitle: format!("{until} s of motion; each point is a run with another step or tolerance"),
-        x_label: match metric {
-            Metric::Position => "largest RMS error of positions (m)",
-            Metric::Energy => "largest error of the energy (J)",
-            Metric::Strain => "largest RMS error of the springs' stretch (1)",
-        }
-        .into(),
+        x_label: x_label(metric, scope),
         y_label: if timed {
             "computing time per simulated second (s)"
         } else {
-            "force evaluations per simulated second"
+            "evaluations per simulated second, linear algebra included"
         }
         .into(),
         problems,
-        foot: "Errors are true ones, against DOP853 at two tolerances and PEFRL extrapolated, whose disagreement is the \
-               shaded floor."
+        foot: "Errors are true ones, against DOP853 at two tolerances and a method of order 4 extrapolated, whose \
+               disagreement is the shaded floor."
             .into(),
+    }
+}
+
+/// What the horizontal axis shows.
+fn x_label(metric: Metric, scope: Scope) -> String {
+    let what = match (metric, scope.particle) {
+        (Metric::Position, None) => "RMS error of the positions".to_owned(),
+        (Metric::Position, Some(i)) => format!("error of the position of particle {i}"),
+        (Metric::Energy, _) => "error of the energy".to_owned(),
+        (Metric::Strain, _) => "RMS error of the springs' stretch".to_owned(),
+        (Metric::Momentum, _) => "error of the momentum".to_owned(),
+        (Metric::Phase, None) => "error of the phase".to_owned(),
+        (Metric::Phase, Some(i)) => format!("error of the phase of particle {i}"),
+    };
+    let unit = unit(metric);
+    if scope.at_end {
+        format!("{what} at the end ({unit})")
+    } else {
+        format!("largest {what} ({unit})")
     }
 }
 
@@ -95,9 +109,14 @@ fn problem(
         .records(data)
         .map(|r| r.floor(metric))
         .reduce(f64::max);
+    let still = study
+        .records(data)
+        .map(|r| r.still(metric))
+        .fold(f64::INFINITY, f64::min);
     Problem {
         title: String::new(),
         curves: curves.collect(),
         floor,
+        still: Some(still).filter(|still| still.is_finite()),
     }
 }

@@ -61,15 +61,11 @@ pub fn text(
     metric: Metric,
     timed: bool,
 ) -> String {
-    let unit = match metric {
-        Metric::Position => "m",
-        Metric::Energy => "J",
-        Metric::Strain => "of length",
-    };
+    let unit = super::unit(metric);
     let what = if timed {
         "computing time (ms)"
     } else {
-        "work (force evaluations)"
+        "work (evaluations of the forces, linear algebra included)"
     };
     let parts = studies.iter().map(|study| {
         let head = if studies.len() == 1 && study.stiffness() == 1.0 {
@@ -142,11 +138,17 @@ fn winners(
         .records(data)
         .map(|r| r.floor(metric))
         .fold(0.0, f64::max);
+    let still = study
+        .records(data)
+        .map(|r| r.still(metric))
+        .fold(f64::INFINITY, f64::min);
     let mut text = String::from("* cheapest:\n");
     for digits in ERRORS {
         let error = 10f64.powi(-digits);
         let line = if error < 10.0 * floor {
             format!("the reference itself is known to {floor:.0e} {unit} only")
+        } else if error > still {
+            format!("nothing moves further than {still:.0e} {unit}: such an error says nothing")
         } else {
             match cheapest(study.records(data), metric, timed, error) {
                 None => "no run was that accurate".to_owned(),

@@ -203,6 +203,21 @@ pub enum ErrorMeasure {
     Energy,
     /// Lengths of the springs over their rest lengths, root mean square
     Strain,
+    /// Total momentum of the particles that are not pinned (kg m/s)
+    Momentum,
+    /// Time by which the motion is ahead or behind (s)
+    Phase,
+}
+
+/// Where errors are taken.
+#[derive(Args)]
+pub struct ErrorScope {
+    /// Count the position and the phase of particle I alone
+    #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
+    pub particle: Option<usize>,
+    /// Count the error at the end alone, instead of the largest on the way
+    #[arg(long)]
+    pub at_end: bool,
 }
 
 /// What counts as the cost.
@@ -227,6 +242,8 @@ pub struct Chart {
     /// What counts as the error
     #[arg(long, default_value = "position")]
     pub error: ErrorMeasure,
+    #[command(flatten)]
+    pub scope: ErrorScope,
     /// What counts as the cost
     #[arg(long, default_value = "seconds")]
     pub work: WorkMeasure,
@@ -267,9 +284,14 @@ pub struct Stability {
 pub struct Choose {
     #[command(flatten)]
     pub what: What,
-    /// Largest RMS error of the positions that is allowed, in m, such as 1e-3
+    /// Largest error that is allowed, such as 1e-3: of the positions in m, if --of says nothing else
     #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true, required_unless_present = "budget", conflicts_with = "budget")]
     pub error: Option<f64>,
+    /// What counts as the error
+    #[arg(long, value_name = "QUANTITY", default_value = "position")]
+    pub of: ErrorMeasure,
+    #[command(flatten)]
+    pub scope: ErrorScope,
     /// Computing time in ms for each frame of 1/60 s: the most accurate solver within it is chosen
     #[arg(long, value_name = "MS_PER_FRAME", value_parser = budget, allow_negative_numbers = true)]
     pub budget: Option<f64>,

@@ -10,12 +10,20 @@ use crate::bounds::{LARGEST_STEP, SMALLEST_STEP, TOLERANCES};
 /// Beginning of the error for a name that no solver has.
 pub const UNKNOWN_SOLVER: &str = "the solvers are";
 
+/// A number, or a fraction such as 1/60.
+fn number(text: &str) -> Option<f64> {
+    match text.split_once('/') {
+        Some((above, below)) => Some(above.parse::<f64>().ok()? / below.parse::<f64>().ok()?),
+        None => text.parse().ok(),
+    }
+}
+
 /// A step (s) or a tolerance.
 pub fn step(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(step) if (*TOLERANCES.start()..=LARGEST_STEP).contains(&step) => Ok(step),
+    match number(text) {
+        Some(step) if (*TOLERANCES.start()..=LARGEST_STEP).contains(&step) => Ok(step),
         _ => Err(format!(
-            "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01; the tolerance of an \
+            "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01 or 1/60; the tolerance of an \
              adaptive solver is a number from {:e} to {}",
             TOLERANCES.start(),
             TOLERANCES.end()

@@ -57,11 +57,24 @@ pub fn begin(
         return Ok((last, Box::new(json::Json::to_stdout())));
     }
     output::check(path, &["json", "csv", "obj", "pc2", "glb"])?;
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let sequence = Sequence::of(path);
+    let is_obj = ending == "obj" && sequence.is_none();
+    if is_obj && options.fps.is_some() {
+        return Err(Failure::usage(
+            "an .obj has one frame: leave out --fps, or write a sequence such as cloth-####.obj",
+        ));
+    }
+    if is_obj {
+        return Ok((last, Box::new(obj(obj::Files::One(path.into())))));
+    }
+    if ending == "json" && options.fps.is_none() {
+        return Ok((last, Box::new(json::Json::new(path, false)?)));
+    }
     let several = FrameTimes::new(0.0, until, options.fps.unwrap_or(RATE))?;
     let particles = simulation.particles() as f64;
     let check = |size: f64, largest: f64| check_size(size, largest).map(|()| several);
-    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-    Ok(match (ending.to_str(), Sequence::of(path)) {
+    Ok(match (ending.to_str(), sequence) {
         (Some("csv"), _) => {
             let frames = check(csv::ROW * particles * several.count as f64, LARGEST.0)?;
             (frames, Box::new(csv::Csv::new(path)?))
@@ -94,19 +107,10 @@ pub fn begin(
             )?;
             (frames, Box::new(obj(obj::Files::Many(sequence, 0))))
         }
-        (Some("obj"), None) => {
-            if options.fps.is_some() {
-                return Err(Failure::usage(
-                    "an .obj has one frame: leave out --fps, or write a sequence such as cloth-####.obj",
-                ));
-            }
-            (last, Box::new(obj(obj::Files::One(path.into()))))
-        }
-        _ if options.fps.is_some() => {
+        _ => {
             let frames = check(json::ROW * particles * several.count as f64, LARGEST.0)?;
             (frames, Box::new(json::Json::new(path, true)?))
         }
-        _ => (last, Box::new(json::Json::new(path, false)?)),
     })
 }
 

@@ -34,7 +34,7 @@ pub struct Candidate {
 /// metric; the cheapest method comes first.
 ///
 /// The search gives up a method that would cost more than twice as much as the second cheapest so
-/// far. Returns `None` if `go_on` returned false.
+/// far. `begin` is called with each method before its runs. Returns `None` if `go_on` returned false.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -44,6 +44,7 @@ pub fn choose(
     metric: Metric,
     error: f64,
     go_on: GoOn,
+    mut begin: impl FnMut(&'static Method),
 ) -> Result<Option<Vec<Candidate>>, Error> {
     let mut found: Vec<Candidate> = vec![];
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
@@ -56,6 +57,7 @@ pub fn choose(
         if method.check(scene.model.system()).is_err() {
             continue;
         }
+        begin(method);
         // Cost limit: twice that of the second cheapest candidate so far.
         let dearest = found
             .get(1)

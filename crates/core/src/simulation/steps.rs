@@ -19,6 +19,10 @@ const SUNK: f64 = 1e-3;
 const SHORT: f64 = 1e-6;
 
 impl Simulation {
+    /// Share of a step by which its end may miss a time that is asked for: 1/60 s written as
+    /// 0.01666667 meets sixty frames a second.
+    pub const SLIVER: f64 = 1e-6;
+
     /// Takes `count` steps. When one of them blows up, the state is again the last at the beginning
     /// of such a call that was still in shape, and no more steps are taken until
     /// [`reset`](Self::reset).
@@ -61,8 +65,8 @@ impl Simulation {
                 continue;
             };
             let left = time - self.time();
-            // A last sliver of a rounding error's size is no step of its own.
-            if left > step * (1.0 + 1e-9) {
+            // A sliver that is left is no step of its own: the step before it is longer by that.
+            if left > step * (1.0 + Self::SLIVER) {
                 self.step_by(step)?;
                 self.taken += 1;
             } else {

@@ -161,7 +161,7 @@ fn a_run_can_be_stopped() {
             .is_none()
     );
     assert!(
-        choose(&mit, &reference, Metric::Position, 1e-3, stop)
+        choose(&mit, &reference, Metric::Position, 1e-3, stop, |_| ())
             .unwrap()
             .is_none()
     );
@@ -196,7 +196,7 @@ fn the_choice_is_the_best() {
                 .filter(|(e, _)| *e <= error)
                 .map(|(_, work)| *work)
                 .fold(f64::INFINITY, f64::min);
-            let found = choose(&scene, &reference, Metric::Position, error, GO_ON)
+            let found = choose(&scene, &reference, Metric::Position, error, GO_ON, |_| ())
                 .unwrap()
                 .unwrap();
             let Some(pick) = found.first() else {

@@ -170,7 +170,8 @@ impl WorkPrecision {
         let mut seen = vec![];
         let mut entries: Vec<(String, Sign)> = vec![];
         for curve in self.problems.iter().flat_map(|problem| &problem.curves) {
-            if seen.contains(&(curve.style, &curve.name)) {
+            let is_drawn = curve.runs.iter().any(Measurement::is_drawn);
+            if !is_drawn || seen.contains(&(curve.style, &curve.name)) {
                 continue;
             }
             seen.push((curve.style, &curve.name));

@@ -94,6 +94,7 @@ impl<'a> Drawing<'a> {
         if limit > 0.0 {
             self.explain_shade(figure, shade);
         }
+        self.still(figure);
         self.name_front(figure, &front);
         self.name_steps(figure, &front);
     }
@@ -103,17 +104,13 @@ impl<'a> Drawing<'a> {
         let radius = 0.38 * self.fine;
         for curve in &self.problem.curves {
             let style = curve.style;
-            let mut runs: Vec<_> = curve
-                .runs
-                .iter()
-                .filter(|run| run.is_drawn() && !run.is_lost())
-                .collect();
-            runs.sort_by(|a, b| a.work.total_cmp(&b.work));
-            let points: Vec<_> = runs.into_iter().map(|run| self.at(run)).collect();
-            figure.line(&points, &style.stroke(0.14 * self.fine));
+            let line: Vec<_> = curve.joined().iter().map(|run| self.at(run)).collect();
+            figure.line(&line, &style.stroke(0.14 * self.fine));
             self.lines
-                .extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
-            for point in points {
+                .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
+            let runs = curve.runs.iter();
+            for run in runs.filter(|run| run.is_drawn() && !run.is_lost()) {
+                let point = self.at(run);
                 style.draw_marker(figure, point, radius, false);
                 self.taken.push(Rect::around(point, 1.2 * radius));
             }
@@ -141,6 +138,31 @@ impl<'a> Drawing<'a> {
                 style.draw_marker(figure, point, radius, true);
             }
         }
+    }
+
+    /// Draws the error of a run in which nothing moves, as a line with its name.
+    fn still(&self, figure: &mut Figure) {
+        let Some(still) = self
+            .problem
+            .still
+            .filter(|still| self.axes[0].is_inside(*still))
+        else {
+            return;
+        };
+        let x = self.axes[0].at(still);
+        let ends = [[x, self.main.y0], [x, self.main.y1]];
+        let style = stroke(GREY, 0.08 * self.fine) + " stroke-dasharray=\"4 3\"";
+        figure.line(&ends, &style);
+        let size = 0.85 * self.size;
+        let label = Label::new("nothing moves", size).colour(GREY).turned();
+        let places = (0..120).map(|k| {
+            let side = if k % 2 == 0 { 1.1 } else { -0.4 };
+            [
+                x + side * size,
+                self.main.y1 - (0.6 + 0.3 * f64::from(k)) * size,
+            ]
+        });
+        self.place(figure, label, places);
     }
 
     /// Whether a label there would cover nothing.

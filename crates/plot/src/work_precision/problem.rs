@@ -35,6 +35,9 @@ pub struct Problem {
     pub curves: Vec<Curve>,
     /// The error of the reference itself. Errors below ten times this are shaded.
     pub floor: Option<f64>,
+    /// The error of a run in which nothing moves, beyond which errors say nothing: the front ends
+    /// there.
+    pub still: Option<f64>,
 }
 
 impl Measurement {
@@ -46,6 +49,26 @@ impl Measurement {
     /// Whether the run is drawn beside the chart.
     pub(super) fn is_lost(&self) -> bool {
         self.lost || !self.error.is_finite() || self.error < 0.0
+    }
+}
+
+impl Curve {
+    /// The runs that a line joins, from the dearest on: those that no other run of the method beats
+    /// in both error and work. The steps of an adaptive method at its limit of stability cost about
+    /// the same whatever their error, and a line through them would only go to and fro.
+    pub(super) fn joined(&self) -> Vec<&Measurement> {
+        let drawn = self.runs.iter();
+        let mut runs: Vec<_> = drawn
+            .filter(|run| run.is_drawn() && !run.is_lost())
+            .collect();
+        runs.sort_by(|a, b| a.error.total_cmp(&b.error).then(a.work.total_cmp(&b.work)));
+        let mut least = f64::INFINITY;
+        runs.retain(|run| {
+            let better = run.work < least;
+            least = least.min(run.work);
+            better
+        });
+        runs
     }
 }
 
@@ -77,7 +100,9 @@ impl Problem {
         runs.retain(|(_, run)| {
             let better = run.work < least;
             least = least.min(run.work);
-            better && run.error > self.trusted()
+            better
+                && run.error > self.trusted()
+                && self.still.is_none_or(|still| run.error <= still)
         });
         runs.into_iter().map(|(place, _)| place).collect()
     }
@@ -119,7 +144,10 @@ mod tests {
                 ]),
             ],
             floor: Some(1e-9),
+            still: None,
         };
         assert_eq!(problem.front(), [[1, 2], [1, 1], [0, 0]]);
+        let still = Some(5e-3);
+        assert_eq!(Problem { still, ..problem }.front(), [[1, 2], [1, 1]]);
     }
 }
