@@ -14,6 +14,7 @@ struct ReferenceFile {
     positions: Vec<[f64; 3]>,
     velocities: Vec<[f64; 3]>,
     springs: Vec<(usize, usize, f64, f64, f64)>,
+    #[serde(default)]
     states: Vec<State>,
 }
 
@@ -36,7 +37,12 @@ fn column_major(positions: &[[f64; 3]], velocities: &[[f64; 3]]) -> Vec<f64> {
         .collect()
 }
 
-fn simulate(reference: &ReferenceFile, name: &str, h: f64) -> Simulation {
+/// Scene of a file.
+pub fn scene_of(name: &str) -> Scene {
+    scene(&load(name))
+}
+
+fn scene(reference: &ReferenceFile) -> Scene {
     let mut network = Network::new(reference.mass.clone()).unwrap();
     for &(i, j, k, rest, damping) in &reference.springs {
         let law = SpringLaw::new(k, rest, damping).unwrap();
@@ -56,12 +62,16 @@ fn simulate(reference: &ReferenceFile, name: &str, h: f64) -> Simulation {
     }
     network.set_gravity(Vector3::from(reference.gravity));
     network.set_drag(reference.drag).unwrap();
-    let scene = Scene::new(
+    Scene::new(
         "reference",
         Model::Network(Box::new(network)),
         column_major(&reference.positions, &reference.velocities),
-    );
-    Simulation::new(scene, method(name), method(name).control(h)).unwrap()
+    )
+}
+
+fn simulate(reference: &ReferenceFile, name: &str, h: f64) -> Simulation {
+    let method = method(name);
+    Simulation::new(scene(reference), method, method.control(h)).unwrap()
 }
 
 /// Largest error over all states of the reference, velocities included.
