@@ -6,7 +6,7 @@ use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, choose,
 use a3_core::stability::spectrum;
 use a3_core::{Control, Method, Scene};
 
-use crate::chart::measure::{FINE, MOST_EVALUATIONS, reference, time, words};
+use crate::chart::measure::{FINE, MOST_OF_REFERENCE, reference, time, words};
 use crate::chart::{describe, look_ahead, methods, metric, scope, unit};
 use crate::cli::{Choose, What};
 use crate::failure::Failure;
@@ -46,7 +46,7 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         None => Precision {
             metric: Metric::Position,
             uncertainty: FINE * horizon.motion,
-            most: MOST_EVALUATIONS,
+            most: MOST_OF_REFERENCE,
         },
     };
     let reference = reference(&scene, Frames::new(until), scope, precision)?.ok_or_else(stopped)?;

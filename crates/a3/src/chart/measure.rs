@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use a3_core::accuracy::{
     self, Errors, Frames, Metric, Outcome, Precision, Reference, Scope, coarser, ladder,
 };
-use a3_core::stability::{Mode, spectrum};
+use a3_core::stability::{Mode, largest_step, spectrum};
 use a3_core::{Control, Method, Model, Scene, Simulation};
 
 use super::data::{Data, Record, VERSION};
@@ -15,7 +15,11 @@ use crate::interrupt;
 use crate::progress::Bar;
 
 /// Most work of a run, in evaluations. A run that fails may take more.
-pub const MOST_EVALUATIONS: f64 = 60_000.0;
+const MOST_EVALUATIONS: f64 = 30_000.0;
+/// Most work of a run of the reference, in evaluations.
+pub const MOST_OF_REFERENCE: f64 = 60_000.0;
+/// Least ratio of the longest step of a method to its shortest, however much work that is.
+const RANGE: f64 = 6.0;
 /// Work of a step of an implicit method, in evaluations, within a factor of three.
 const IMPLICIT: f64 = 25.0;
 /// Uncertainty of the reference over the motion of the scene, below which it is fine enough for any
@@ -26,7 +30,7 @@ const RUNS: u32 = 5;
 /// Total computing time after which a run is timed no more, if it was timed twice.
 const TOGETHER: Duration = Duration::from_millis(600);
 /// Computing time of a single run after which it is timed no more.
-const ALONE: Duration = Duration::from_secs(2);
+const ALONE: Duration = Duration::from_millis(250);
 
 /// A scene at one stiffness, and how it is measured.
 pub struct Study<'a> {
@@ -122,8 +126,15 @@ impl<'a> Study<'a> {
 
     /// The steps or tolerances at which a method is run, from the coarsest on.
     fn rungs(&self, method: &'static Method) -> Result<Vec<Control>, Failure> {
-        let most = MOST_EVALUATIONS / each(method);
+        let most = self.most(method)? / each(method);
         ladder(&self.modes, method, &self.frames, most as u64).map_err(Failure::run)
+    }
+
+    /// Most work of a run of a method, in evaluations.
+    fn most(&self, method: &'static Method) -> Result<f64, Failure> {
+        let limit = largest_step(method, &self.modes).map_err(Failure::run)?;
+        let steps = limit.map_or(0.0, |limit| RANGE * self.frames.until / limit.step);
+        Ok(MOST_EVALUATIONS.max(steps * each(method)))
     }
 
     /// Expected work of all runs, in evaluations.
@@ -154,7 +165,7 @@ impl<'a> Study<'a> {
     /// Measures the runs that the data do not have yet. `false` if it was interrupted.
     pub fn run(&mut self, data: &mut Data, bar: &Bar) -> Result<bool, Failure> {
         for &method in self.methods {
-            let rungs = self.rungs(method)?;
+            let (rungs, most) = (self.rungs(method)?, self.most(method)?);
             for (i, &control) in rungs.iter().enumerate() {
                 let Some(record) = self.record(method, control, data, bar)? else {
                     return Ok(false);
@@ -178,7 +189,7 @@ impl<'a> Study<'a> {
                 let next = rungs
                     .get(i + 1)
                     .map_or(1.0, |next| control.value() / next.value());
-                let dear = control.step().is_some() && record.work * next > MOST_EVALUATIONS;
+                let dear = control.step().is_some() && record.work * next > most;
                 if record.lost_at.is_none() && (record.error(self.metric) < enough || dear) {
                     let rest = rungs[i + 1..].iter();
                     bar.advance(rest.map(|s| self.expected_of(method, *s)).sum());
@@ -227,7 +238,7 @@ impl<'a> Study<'a> {
             let precision = Precision {
                 metric: Metric::Position,
                 uncertainty: FINE * self.motion,
-                most: MOST_EVALUATIONS,
+                most: MOST_OF_REFERENCE,
             };
             self.reference = reference(&self.scene, self.frames, self.scope, precision)?;
             bar.start();

@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 use a3_core::stability::{LargestMode, Limit, Mode, largest_step, spectrum};
 use a3_core::{Control, Mechanics, Method, Simulation};
 
+use crate::bounds::LARGEST_STEP;
+
 /// The least time from one estimate to the next.
 const INTERVAL: Duration = Duration::from_millis(250);
 /// The least time from one estimate to the next, over the time that the estimate took: estimates
@@ -12,8 +14,9 @@ const INTERVAL: Duration = Duration::from_millis(250);
 const IDLE: u32 = 50;
 /// Simulated time (s) for which a step was seen to hold before it is said to hold.
 const HOLDING: f64 = 10.0;
-/// Real time after which a step counts as holding, however far the run came.
-const PATIENCE: Duration = Duration::from_millis(300);
+/// Most work of the runs that try steps, in steps times particles, after which a step counts as
+/// holding: the same on every machine, so that the step that is named is the same too.
+const MOST_WORK: u64 = 4_000_000;
 
 /// The largest stable step for the fastest motion of a run, estimated every now and then.
 #[derive(Default)]
@@ -48,12 +51,16 @@ impl LimitWatch {
         if wait {
             return;
         }
-        // The state of a lost run is crumpled: the limit that counts is that of the scene.
-        let y = if lost {
-            &run.scene().state
-        } else {
-            run.state()
-        };
+        if lost {
+            // The state of a lost run is crumpled: the limits that count are those of the scene.
+            let scene = run.scene();
+            let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+            self.mode = modes.first().copied();
+            self.ask(run.method());
+            self.would_hold = would_hold(run, &modes);
+            return;
+        }
+        let y = run.state();
         let system = run.model().system();
         self.mode = match system.mechanics().and_then(Mechanics::linearized) {
             Some(linearized) => {
@@ -63,9 +70,6 @@ impl LimitWatch {
             None => spectrum(system, run.time(), y).first().copied(),
         };
         self.ask(run.method());
-        if let (true, Some(limit), Control::Step(step)) = (lost, self.limit, run.control()) {
-            self.would_hold = Some(would_hold(run, limit.step.min(step)));
-        }
         let after = Instant::now();
         self.next = Some(after + INTERVAL.max(IDLE * after.duration_since(begun)));
     }
@@ -84,24 +88,31 @@ impl LimitWatch {
     }
 }
 
-/// The longest step (s) below a limit that was seen to hold: not every method is limited by the
-/// fastest motion.
-fn would_hold(run: &Simulation, limit: f64) -> f64 {
-    let deadline = Instant::now() + PATIENCE;
-    let mut step = rounded(0.9 * limit);
-    while Instant::now() < deadline && !holds(run, step, deadline) {
+/// The longest step (s) that was seen to hold, from just below the limit of all motion at the start
+/// of the scene. It depends on the scene and the method alone: not on the state that was lost, nor
+/// on the step that was too long. `None` for a run to a tolerance.
+fn would_hold(run: &Simulation, modes: &[Mode]) -> Option<f64> {
+    run.control().step()?;
+    // Never fails for a method in METHODS.
+    let limit = largest_step(run.method(), modes).ok().flatten()?;
+    let mut step = rounded(0.9 * limit.step.min(LARGEST_STEP));
+    let mut left = MOST_WORK / run.particles() as u64;
+    while left > 0 && !holds(run, step, &mut left) {
         step = rounded(0.6 * step);
     }
-    step
+    Some(step)
 }
 
-/// Whether a run from the start of the scene is not lost with steps of h (s).
-fn holds(run: &Simulation, h: f64, deadline: Instant) -> bool {
+/// Whether a run from the start of the scene is not lost with steps of h (s), of which it takes no
+/// more than are `left`.
+fn holds(run: &Simulation, h: f64, left: &mut u64) -> bool {
     let Ok(mut again) = Simulation::new(run.scene().clone(), run.method(), Control::Step(h)) else {
         return true;
     };
-    while again.time() < HOLDING && Instant::now() < deadline {
-        if again.take_steps(16).is_err() {
+    while again.time() < HOLDING && *left > 0 {
+        let steps = 16.min(*left);
+        *left -= steps;
+        if again.take_steps(steps).is_err() {
             return false;
         }
     }
@@ -135,12 +146,17 @@ mod tests {
         // knows nothing.
         let scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         let euler = integrators::find("euler").unwrap();
-        let mut run = Simulation::new(scene.clone(), euler, Control::Step(0.02)).unwrap();
-        assert!(run.advance_to(10.0).is_err());
-        let mut watch = LimitWatch::default();
-        watch.look(&run);
-        let step = watch.would_hold().unwrap();
-        assert!(step > 0.001 && step < watch.limit().unwrap().step, "{step}");
+        let named = [0.02, 0.01, 0.007].map(|step| {
+            let mut run = Simulation::new(scene.clone(), euler, Control::Step(step)).unwrap();
+            assert!(run.advance_to(10.0).is_err());
+            let mut watch = LimitWatch::default();
+            watch.look(&run);
+            watch.would_hold().unwrap()
+        });
+        // Whatever step was too long, the step that would have held is the same.
+        let step = named[0];
+        assert_eq!(named, [step; 3]);
+        assert_eq!(step, 0.003);
         let mut run = Simulation::new(scene, euler, Control::Step(step)).unwrap();
         run.advance_to(10.0).unwrap();
     }
