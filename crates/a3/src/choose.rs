@@ -24,13 +24,8 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
     interrupt::listen();
     let stopped = || Failure::Interrupted("interrupted: nothing was chosen".into());
     let scene = setup::scene(&options.what)?;
-    let (metric, scope) = (metric(options.of), scope(&options.scope, &scene)?);
-    if !matches!(metric, Metric::Position | Metric::Phase) && scene.model.network().is_none() {
-        return Err(Failure::usage(format!(
-            "the scene {} has neither energy nor momentum nor springs: choose by position or phase",
-            scene.name
-        )));
-    }
+    let metric = metric(options.of, &scene)?;
+    let scope = scope(&options.scope, &scene)?;
     let methods = methods(&scene, &[])?.len();
     let bar = Bar::new(methods as f64);
     bar.say("looking ahead  ".into());
@@ -244,11 +239,15 @@ fn typed(control: Control, until: f64) -> String {
         if short.len() <= 6 {
             return short;
         }
-        let (count, per_second) = ((until / step).round(), 1.0 / step);
-        return if (per_second - per_second.round()).abs() < 1e-9 * per_second {
-            format!("1/{}", per_second.round())
-        } else {
-            format!("{until}/{count}")
+        // The least whole number of such seconds that holds a whole number of steps.
+        let count = (until / step).round();
+        let parts = (1..=100).map(f64::from).find(|part| {
+            let steps = part / step;
+            *part <= until && (steps - steps.round()).abs() < 1e-9 * steps
+        });
+        return match parts {
+            Some(part) => format!("{part}/{}", (part / step).round()),
+            None => format!("{until}/{count}"),
         };
     }
     let power = 10f64.powi(3 - value.log10().floor() as i32);
@@ -288,6 +287,7 @@ mod tests {
             (0.01, "0.01"),
             (3.0 / 291.0, "1/97"),
             (3.0 / 292.0, "3/292"),
+            (3.0 / 4.5, "2/3"),
             (0.5, "0.5"),
         ] {
             assert_eq!(typed(Control::Step(value), 3.0), expected);

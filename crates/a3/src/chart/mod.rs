@@ -29,14 +29,9 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
         None => PathBuf::from(format!("a3-chart-{}.svg", scene.name)),
     };
     output::check(&path, &["svg", "png"])?;
-    let (metric, scope) = (metric(options.error), scope(&options.scope, &scene)?);
+    let metric = metric(options.error, &scene)?;
+    let scope = scope(&options.scope, &scene)?;
     let timed = options.work == WorkMeasure::Seconds;
-    if !matches!(metric, Metric::Position | Metric::Phase) && scene.model.network().is_none() {
-        return Err(Failure::usage(format!(
-            "the scene {} has neither energy nor momentum nor springs: ask for position or phase",
-            scene.name
-        )));
-    }
     let mut data = Data::open(options.data.as_deref())?;
     let mut studies = vec![];
     let mut until = options.until;
@@ -130,14 +125,23 @@ pub fn methods(scene: &Scene, asked: &[&'static Method]) -> Result<Vec<&'static 
     Ok(methods)
 }
 
-/// The metric that was asked for.
-pub fn metric(error: ErrorMeasure) -> Metric {
-    match error {
+/// The metric that was asked for. Refuses one that the scene does not have.
+pub fn metric(error: ErrorMeasure, scene: &Scene) -> Result<Metric, Failure> {
+    let metric = match error {
         ErrorMeasure::Position => Metric::Position,
         ErrorMeasure::Energy => Metric::Energy,
         ErrorMeasure::Strain => Metric::Strain,
         ErrorMeasure::Momentum => Metric::Momentum,
         ErrorMeasure::Phase => Metric::Phase,
+    };
+    let of_motion = matches!(metric, Metric::Position | Metric::Phase);
+    if of_motion || scene.model.network().is_some() {
+        Ok(metric)
+    } else {
+        Err(Failure::usage(format!(
+            "the scene {} has neither energy nor momentum nor springs: ask for position or phase",
+            scene.name
+        )))
     }
 }
 

@@ -44,7 +44,7 @@ fn a_chart_of_evaluations_has_the_same_bits_every_time() {
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
     for word in [
         "Speed against accuracy: chain",
-        "force evaluations",
+        "evaluations per simulated second, linear algebra included",
         "blew up",
     ] {
         assert!(svg.contains(word), "{word}");
@@ -251,7 +251,19 @@ fn wrong_usage_is_one_line() {
         (vec!["chart", "--error", "speed"], "position", 2),
         (
             vec!["chart", "--error", "energy", "--scene", "simple"],
-            "neither energy nor springs",
+            "ask for position or phase",
+            2,
+        ),
+        (
+            vec![
+                "choose", "--error", "1e-3", "--of", "strain", "--scene", "simple",
+            ],
+            "ask for position or phase",
+            2,
+        ),
+        (
+            vec!["chart", "--particle", "4", "--scene", "chain"],
+            "its particles are 0 to 3",
             2,
         ),
         (vec!["chart", "--work", "joules"], "evaluations", 2),

@@ -58,7 +58,7 @@ fn a_choice_comes_with_its_command() {
         folder.path(),
         &["choose", "--error", "1e-4", "--scene", "chain"],
     );
-    for word in ["best", "runner-up", "an error of 1e-4 m", "ms/frame"] {
+    for word in ["best", "runner-up", "an error of 1e-4 m", "time/frame"] {
         assert!(text.contains(word), "{word} in\n{text}");
     }
     let line = text

@@ -86,6 +86,44 @@ fn steps_are_counted_right() {
     }
 }
 
+/// Steps as fractions meet frames exactly, and a step that misses them by less than a millionth of
+/// itself does too: no sliver of a step is taken at each frame. A single state needs no frames.
+#[test]
+fn fractions_of_a_second_meet_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    let steps = |step: &str| {
+        let words = [
+            "simulate",
+            "p",
+            step,
+            "--scene",
+            "chain",
+            "--until",
+            "2",
+            "--fps",
+            "60",
+            "-o",
+            "frames.json",
+            "--summary",
+            "summary.json",
+        ];
+        assert!(a3(folder.path(), &words).status.success());
+        let text = fs::read_to_string(folder.path().join("summary.json")).unwrap();
+        serde_json::from_str::<Value>(&text).unwrap()["steps"].clone()
+    };
+    assert_eq!(steps("1/60"), 120);
+    assert_eq!(steps("0.01666666666"), 120);
+    assert_eq!(steps("0.016666666"), 120);
+    assert_eq!(steps("0.01666"), 240);
+    let words = ["implicit", "10", "--scene", "simple", "--until", "40000"];
+    assert_eq!(simulate(folder.path(), &words)["steps"], 4000);
+    let folder = tempfile::tempdir().unwrap();
+    for step in ["1/0", "1/x", "/", "1/1e9"] {
+        let line = refused(folder.path(), &["simulate", "r", step, "-o", "x.json"], 2);
+        assert!(line.contains("such as 0.01 or 1/60"), "{line}");
+    }
+}
+
 #[test]
 #[cfg(unix)]
 fn links_stay_links_and_modes_stay_modes() {
