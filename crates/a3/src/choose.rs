@@ -6,7 +6,7 @@ use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, choose,
 use a3_core::stability::spectrum;
 use a3_core::{Control, Method, Scene};
 
-use crate::chart::measure::{FINE, MOST_OF_REFERENCE, reference, time, words};
+use crate::chart::measure::{precision, reference, time, words};
 use crate::chart::{describe, look_ahead, methods, metric, scope, unit};
 use crate::cli::{Choose, What};
 use crate::failure::Failure;
@@ -36,13 +36,9 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         Some(error) => Precision {
             metric,
             uncertainty: error / MARGIN.1,
-            most: Precision::FINEST.most,
+            most: f64::INFINITY,
         },
-        None => Precision {
-            metric: Metric::Position,
-            uncertainty: FINE * horizon.motion,
-            most: MOST_OF_REFERENCE,
-        },
+        None => precision(&scene, horizon.motion),
     };
     let reference = reference(&scene, Frames::new(until), scope, precision)?.ok_or_else(stopped)?;
     let (found, goal) = match (options.error, options.budget) {

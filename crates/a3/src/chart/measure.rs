@@ -16,15 +16,16 @@ use crate::progress::Bar;
 
 /// Most work of a run, in evaluations. A run that fails may take more.
 const MOST_EVALUATIONS: f64 = 30_000.0;
-/// Most work of a run of the reference, in evaluations.
-pub const MOST_OF_REFERENCE: f64 = 60_000.0;
+/// Work of the runs of the reference at which it is no longer refined: in evaluations, and in those
+/// times the length of the state, whichever is more work.
+const MOST_OF_REFERENCE: (f64, f64) = (80_000.0, 1.5e8);
 /// Least ratio of the longest step of a method to its shortest, however much work that is.
 const RANGE: f64 = 6.0;
 /// Work of a step of an implicit method, in evaluations, within a factor of three.
 const IMPLICIT: f64 = 25.0;
 /// Uncertainty of the reference over the motion of the scene, below which it is fine enough for any
 /// run.
-pub const FINE: f64 = 1e-10;
+const FINE: f64 = 1e-10;
 /// Most times that a run is timed. The shortest time counts.
 const RUNS: u32 = 5;
 /// Total computing time after which a run is timed no more, if it was timed twice.
@@ -235,11 +236,7 @@ impl<'a> Study<'a> {
     ) -> Result<Option<Record>, Failure> {
         if self.reference.is_none() {
             bar.say("reference  ".into());
-            let precision = Precision {
-                metric: Metric::Position,
-                uncertainty: FINE * self.motion,
-                most: MOST_OF_REFERENCE,
-            };
+            let precision = precision(&self.scene, self.motion);
             self.reference = reference(&self.scene, self.frames, self.scope, precision)?;
             bar.start();
             bar.say(format!("{:<10} ", method.name));
@@ -292,6 +289,17 @@ impl<'a> Study<'a> {
             rejections: work.rejections,
             ..like
         }))
+    }
+}
+
+/// Precision of a reference for all errors that a chart may show, of a scene whose particles move so
+/// far (m).
+pub fn precision(scene: &Scene, motion: f64) -> Precision {
+    let (evaluations, numbers) = MOST_OF_REFERENCE;
+    Precision {
+        metric: Metric::Position,
+        uncertainty: FINE * motion,
+        most: evaluations.max(numbers / scene.state.len() as f64),
     }
 }
 

@@ -4,7 +4,8 @@
 //! tolerance ten times as large, and with a method of another family at the steps h, h/2, h/4, ...,
 //! extrapolated to zero step (Richardson; Hairer, Norsett, Wanner, *Solving Ordinary Differential
 //! Equations I*, 1993, II.9). That method is PEFRL, or the classical Runge-Kutta method where
-//! forces depend on the velocity. The largest disagreement is the uncertainty of the reference.
+//! forces depend on the velocity. Its disagreement with the reference is the uncertainty: two
+//! tolerances of one method may share an error, two families do not.
 
 use super::errors::Snapshot;
 use super::{Errors, Frames, GoOn, Metric, Scope, run};
@@ -25,6 +26,11 @@ const LOOSER: f64 = 10.0;
 const SHARE: f64 = 0.25;
 /// Order of the other methods.
 const ORDER: i32 = 4;
+/// Disagreement with the other method over that of the tolerances, below which it is the former that
+/// is in doubt: the looser tolerance makes nearly all of the latter.
+const SURE: f64 = 0.3;
+/// Most times that the step is halved.
+const REFINEMENTS: usize = 12;
 /// Most powers of the step that are extrapolated away.
 const POWERS: usize = 3;
 /// Disagreement after two refinements over that before them, above which it no longer falls.
@@ -37,8 +43,8 @@ pub struct Precision {
     pub metric: Metric,
     /// Uncertainty that is enough, in the unit of the metric.
     pub uncertainty: f64,
-    /// Most work of a single run of the reference, in evaluations, by what the runs before it
-    /// predict.
+    /// Most work of the runs at tolerances, each by what those before it predict, and of all runs at
+    /// steps together, in evaluations. Infinite where the uncertainty has to be reached at any cost.
     pub most: f64,
 }
 
@@ -47,7 +53,7 @@ impl Precision {
     pub const FINEST: Self = Self {
         metric: Metric::Position,
         uncertainty: 0.0,
-        most: 4e6,
+        most: f64::INFINITY,
     };
 }
 
@@ -55,7 +61,8 @@ impl Precision {
 pub struct Reference {
     /// Times of the reference.
     pub frames: Frames,
-    /// Uncertainty of the reference: the largest disagreement of its runs over the frames.
+    /// Uncertainty of the reference: the largest disagreement over the frames with a method of
+    /// another family.
     pub floor: Errors,
     /// Errors of a run in which nothing moves: larger errors say nothing.
     pub still: Errors,
@@ -143,7 +150,7 @@ impl Reference {
             return Ok(None);
         };
         let mut reference = making.reference;
-        reference.floor = own.max(others);
+        reference.floor = others;
         reference.work = making.work;
         let still = (1..=frames.count).filter(|k| reference.counts(*k));
         let still = still.map(|k| reference.trajectory.errors(k, &start, scope));
@@ -215,7 +222,11 @@ impl Making<'_> {
     fn by_tolerances(&mut self) -> Result<Option<Errors>, Error> {
         let method = find("dop853").ok_or_else(missing)?;
         let (loosest, tightest) = TOLERANCES;
-        let mut tolerance = self.precision.uncertainty.clamp(tightest, loosest);
+        let mut tolerance = if self.precision.most.is_finite() {
+            loosest
+        } else {
+            self.precision.uncertainty.clamp(tightest, loosest)
+        };
         let Some((mut looser, mut work)) =
             self.run(method, Control::Tolerance(LOOSER * tolerance))?
         else {
@@ -255,14 +266,14 @@ impl Making<'_> {
         let mut step = spacing / (spacing / (SHARE * limit)).ceil().max(1.0);
         let metric = self.precision.metric;
         let mut least = Errors::with_all(f64::INFINITY);
-        let mut history = vec![];
+        let (mut history, mut sum) = (vec![], 0.0);
         let mut row: Vec<Vec<Snapshot>> = vec![];
         loop {
             match self.run(method, Control::Step(step)) {
                 Ok(None) => return Ok(None),
                 // Steps that are too long to stay in shape.
                 Err(Error::BlowUp(lost)) => {
-                    if history.len() > 8 {
+                    if history.len() == REFINEMENTS {
                         return Err(Error::BlowUp(lost));
                     }
                     row.clear();
@@ -275,11 +286,13 @@ impl Making<'_> {
                         least = least.min(self.reference.disagreement(column));
                     }
                     history.push(metric.of(&least));
-                    let as_good = metric.of(&least) <= metric.of(&own);
+                    sum += work;
+                    let as_good = metric.of(&least) <= SURE * metric.of(&own);
                     if self.is_enough(&least)
                         || as_good
                         || is_stuck(&history)
-                        || 2.0 * work > self.precision.most
+                        || sum + 2.0 * work > self.precision.most
+                        || history.len() > REFINEMENTS
                     {
                         return Ok(Some(least));
                     }
