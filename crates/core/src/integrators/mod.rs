@@ -24,7 +24,6 @@ mod symplectic_euler;
 mod trial;
 mod verlet;
 mod verner65;
-mod verner76;
 
 use crate::control::Control;
 use crate::error::{Error, positive};
@@ -183,15 +182,14 @@ pub static METHODS: &[Method] = &[
     pefrl::METHOD,
     dormand_prince::METHOD,
     dop853::METHOD,
-    verner65::METHOD,
-    verner76::METHOD,
-    srkn11::METHOD,
-    dprkn86::METHOD,
-    dprkn1210::METHOD,
     implicit::EULER,
     rkf45::METHOD,
     implicit::TR_BDF2,
     implicit::MIDPOINT,
+    verner65::METHOD,
+    srkn11::METHOD,
+    dprkn86::METHOD,
+    dprkn1210::METHOD,
 ];
 
 /// Method with this letter, name or alias.

@@ -42,5 +42,5 @@ pub(super) static PLAN: Plan = Plan {
     ],
     last: XI,
     terms: Terms::KickForces,
-    damped: RK4,
+    damped: Some(RK4),
 };

@@ -7,7 +7,6 @@
 //! that do not depend on the velocity.
 
 use super::Method;
-use super::runge_kutta::RK4;
 use super::splitting::Plan;
 use crate::control::Control;
 use crate::rows::Terms;
@@ -59,5 +58,5 @@ pub(super) static PLAN: Plan = Plan {
     ],
     last: 0.0,
     terms: Terms::KickForces,
-    damped: RK4,
+    damped: None,
 };

@@ -27,5 +27,5 @@ pub(super) static PLAN: Plan = Plan {
     steps: &[(0.0, 1.0)],
     last: 1.0,
     terms: Terms::AllForces,
-    damped: EULER,
+    damped: Some(EULER),
 };

@@ -39,5 +39,5 @@ pub(super) static PLAN: Plan = Plan {
     steps: &[(0.5, 1.0)],
     last: 0.5,
     terms: Terms::KickForces,
-    damped: MIDPOINT,
+    damped: Some(MIDPOINT),
 };

@@ -251,7 +251,7 @@ fn limits_are_seen_on_the_cloth() {
     let rest = rest(&cloth).unwrap().unwrap();
     let moving = modes_in_motion(&cloth).unwrap();
     let truth = Truth::of(&cloth).unwrap();
-    for m in integrators::METHODS {
+    for m in integrators::METHODS.iter().filter(|m| !m.positions_only) {
         let predicted = largest_step(m, &rest.modes).unwrap().unwrap();
         let seen = observe_at_rest(&rest, m, Some(&predicted), || true)
             .unwrap()
