@@ -60,7 +60,8 @@ fn every_method_has_its_order() {
             // order 6 and above hardly both is possible.
             let (steps, slack) = match m.order {
                 9.. => (4, 1.5),
-                6.. => (20, 0.6),
+                8 => (20, 0.6),
+                6.. => (20, 0.9),
                 5 => (256, 0.1),
                 4 => (512, 0.05),
                 _ => (4096, 0.05),

@@ -106,7 +106,8 @@ fn every_explicit_method_keeps_its_order() {
             .filter(|m| m.check(&network).is_ok())
         {
             let (steps, slack) = match m.order {
-                6.. => (20, 0.6),
+                8.. => (20, 0.6),
+                6.. => (20, 0.9),
                 5 => (512, 0.3),
                 4 => (256, 0.05),
                 _ => (2048, 0.05),
