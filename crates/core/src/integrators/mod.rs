@@ -5,6 +5,7 @@ mod adaptive;
 mod dop853;
 mod dormand_prince;
 mod dprkn1210;
+mod dprkn1210_dense;
 mod dprkn86;
 mod embedded;
 mod error_norm;
