@@ -1,10 +1,10 @@
-//! DPRKN 12(10): the Nyström pair of orders 12 and 10 of Dormand, El-Mikkawy and Prince (*High-order
-//! embedded Runge-Kutta-Nyström formulae*, IMA J. Numer. Anal. 7, 1987). Seventeen
+//! DPRKN 12(10): the Nyström pair of orders 12 and 10 of Dormand, El-Mikkawy and Prince
+//! (*High-order embedded Runge-Kutta-Nyström formulae*, IMA J. Numer. Anal. 7, 1987). Seventeen
 //! stages.
 //!
 //! The polynomial for x has degree 11 and needs no further stage but the first of the next step. It
-//! meets all conditions up to order 6 and both ends of the step exactly, and those of orders 7 to 11
-//! in the sense of least squares: its error within a step is as small as that of the step.
+//! meets all conditions up to order 6 and both ends of the step exactly, and those of orders 7 to
+//! 11 in the sense of least squares: its error within a step is of the size of that of the step.
 
 use super::Method;
 use super::dprkn1210_dense::DENSE;

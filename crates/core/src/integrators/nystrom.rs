@@ -4,9 +4,9 @@
 //! Ordinary Differential Equations I*, 1993, II.14). They take fewer stages than a Runge-Kutta
 //! method of the same order, but the forces must not depend on the velocity.
 //!
-//! Viscous drag of coefficient c is the exception. With g = c / (2 m) and x = x0 + exp(-g s) w, where
-//! s is the time since the step began, w'' = exp(g s) (a + g^2 (x - x0)) is free of w', and w(0) =
-//! 0, w'(0) = v0. Each particle has its own g. The orders are those without drag.
+//! Viscous drag of coefficient c is the exception. With g = c / (2 m) and x = x0 + exp(-g s) w,
+//! where s is the time since the step began, w'' = exp(g s) (a + g^2 (x - x0)) is free of w', and
+//! w(0) = 0, w'(0) = v0. Each particle has its own g. The orders are those without drag.
 
 use std::ops::Range;
 
@@ -47,6 +47,7 @@ pub(super) struct NystromPair {
     x: Vec<f64>,
     /// Velocity with which a stage is evaluated: 0, but for pins.
     v: Vec<f64>,
+    /// Estimated error of the state.
     error: Vec<f64>,
     /// The last step, whose last but one k is the acceleration at its end as a stage, and whose
     /// last k is that acceleration itself.
@@ -75,7 +76,8 @@ pub(super) fn check(method: &'static str, system: &dyn ParticleSystem) -> Result
     }
 }
 
-/// Visits runs of equal masses along each axis, with g = c / (2 m) (1/s) of each; none without drag.
+/// Visits runs of equal masses along each axis, with g = c / (2 m) (1/s) of each; none without
+/// drag.
 fn runs(inverse_masses: &[f64], drag: f64, mut visit: impl FnMut(Range<usize>, f64)) {
     if drag == 0.0 {
         return;
@@ -190,7 +192,7 @@ impl NystromPair {
     }
 
     /// The step of h (s) from t (s) with this system.
-    fn of<'a>(system: &'a dyn ParticleSystem, t: f64, h: f64) -> Option<Step<'a>> {
+    fn of(system: &dyn ParticleSystem, t: f64, h: f64) -> Option<Step<'_>> {
         let (mechanics, drag) = drag(system)?;
         Some(Step {
             mechanics,
@@ -201,7 +203,7 @@ impl NystromPair {
     }
 
     /// Evaluates the stages of a step from where [`begin`](Trial::begin) or
-    /// [`go_on`](Trial::go_on) left it, and finds its end. Returns their number.
+    /// [`go_on`](Trial::go_on) left it, and finds its end. Returns the cost.
     fn stages(&mut self, step: &Step) -> Work {
         let tableau = self.tableau;
         let LastStep { h, y0, y1, k, .. } = &mut self.last;
@@ -219,7 +221,7 @@ impl NystromPair {
         Work::of(tableau.stages.len() as u64)
     }
 
-    /// Evaluates the acceleration at the end of the step.
+    /// Evaluates the acceleration at the end of the step. Returns the cost.
     fn finish(&mut self, step: &Step) -> Work {
         let LastStep { y0, y1, k, .. } = &mut self.last;
         let x1 = &y1[..self.x.len()];

@@ -1,6 +1,6 @@
-//! Verner 6(5): the most efficient of Verner's pairs of orders 6 and 5 (Verner, *Numerically optimal
-//! Runge-Kutta pairs with interpolants*, Numer. Algorithms 53, 2010). Nine stages, of which the last
-//! is the first of the next step.
+//! Verner 6(5): the most efficient of Verner's pairs of orders 6 and 5 (Verner, *Numerically
+//! optimal Runge-Kutta pairs with interpolants*, Numer. Algorithms 53, 2010). Nine stages, of which
+//! the last is the first of the next step.
 //!
 //! The dense output takes no further stage. Its polynomial has degree 6 and order 4, and meets the
 //! conditions of orders 5 and 6 in the sense of least squares.
