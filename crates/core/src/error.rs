@@ -92,8 +92,8 @@ pub enum Cause {
 }
 
 /// What a method says that serves no velocities in forces.
-const SERVES_POSITIONS: &str = "forces must not depend on the velocity, except by drag: with wind, air, \
-    damped springs or constraints, take another explicit solver";
+const SERVES_POSITIONS: &str = "forces must not depend on the velocity, except by drag: with wind, \
+    air, damped springs or constraints, take another explicit solver";
 
 impl fmt::Display for BlowUp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,8 +1,8 @@
-//! Runge-Kutta-Nyström pairs by their tables, for `x'' = a(t, x)` and, by a substitution, for `x''
-//! = a(t, x) - 2 g x'`: `X_i = x0 + c_i h v0 + h^2 sum a_ij k_j` with `k_i = a(t + c_i h, X_i)`, `x1
-//! = x0 + h v0 + h^2 sum b_i k_i`, `v1 = v0 + h sum b'_i k_i` (Hairer, Norsett, Wanner, *Solving
-//! Ordinary Differential Equations I*, 1993, II.14). They take fewer stages than a Runge-Kutta
-//! method of the same order, but the forces must not depend on the velocity.
+//! Runge-Kutta-Nyström pairs by their tables, for `x'' = a(t, x)` and, by a substitution, for
+//! `x'' = a(t, x) - 2 g x'`: `X_i = x0 + c_i h v0 + h^2 sum a_ij k_j`, `k_i = a(t + c_i h, X_i)`,
+//! `x1 = x0 + h v0 + h^2 sum b_i k_i`, `v1 = v0 + h sum b'_i k_i` (Hairer, Norsett, Wanner,
+//! *Solving Ordinary Differential Equations I*, 1993, II.14). They take fewer stages than a
+//! Runge-Kutta method of the same order, but the forces must not depend on the velocity.
 //!
 //! Viscous drag of coefficient c is the exception. With g = c / (2 m) and x = x0 + exp(-g s) w,
 //! where s is the time since the step began, w'' = exp(g s) (a + g^2 (x - x0)) is free of w', and

@@ -1,7 +1,7 @@
 //! SRKN11, a symplectic Runge-Kutta-Nyström method of order 6 (Blanes, Moan, *Practical symplectic
-//! partitioned Runge-Kutta and Runge-Kutta-Nyström methods*, J. Comput. Appl. Math. 142, 2002, table
-//! 3): a symmetric sequence of twelve kicks and eleven drifts. The kick at the end of a step is not
-//! kept for the next one.
+//! partitioned Runge-Kutta and Runge-Kutta-Nyström methods*, J. Comput. Appl. Math. 142, 2002,
+//! table 3): a symmetric sequence of twelve kicks and eleven drifts. The kick at the end of a step
+//! is not kept for the next one.
 //!
 //! Each drift is the exact flow under drag and gravity. The order of the sequence rests on kicks
 //! that do not depend on the velocity.
