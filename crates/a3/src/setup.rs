@@ -122,6 +122,9 @@ fn simulate(
     // Without --wind the wind stays as it is: some scenes begin with it.
     if what.wind {
         simulation.set_wind(true);
+        solver
+            .check(simulation.model().system())
+            .map_err(Failure::usage)?;
     }
     simulation.set_swinging(what.swing);
     Ok(simulation)

@@ -17,6 +17,11 @@ pub enum Error {
         /// Name of the method.
         method: &'static str,
     },
+    /// Method that serves forces without velocities only, applied to a system with others.
+    ReadsVelocity {
+        /// Full title of the method.
+        method: &'static str,
+    },
     /// State whose length is not that of the system.
     Dimension {
         /// Length of the system's state (numbers).
@@ -82,7 +87,13 @@ pub enum Cause {
         /// not be solved.
         residual: f64,
     },
+    /// Force that depends on the velocity, which the method does not serve.
+    ReadsVelocity,
 }
+
+/// What a method says that serves no velocities in forces.
+const SERVES_POSITIONS: &str = "forces must not depend on the velocity, except by drag: with wind, \
+    air, damped springs or constraints, take another explicit solver";
 
 impl fmt::Display for BlowUp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -110,6 +121,7 @@ impl fmt::Display for BlowUp {
                 f,
                 "the equations of the step were not solved (relative residual {residual:.1e})"
             ),
+            Cause::ReadsVelocity => write!(f, "{SERVES_POSITIONS}"),
         }
     }
 }
@@ -124,6 +136,7 @@ impl fmt::Display for Error {
                     "{method} needs forces and masses, but this system is of first order"
                 )
             }
+            Self::ReadsVelocity { method } => write!(f, "{method}: {SERVES_POSITIONS}"),
             Self::Dimension { expected, found } => {
                 write!(
                     f,

@@ -20,6 +20,7 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     let limit = pane.limit.limit().map(|limit| limit.step);
     let hold = limit.zip(pane.limit.would_hold());
     ui.label(text(match (lost.control, hold) {
+        _ if lost.cause == Cause::ReadsVelocity => format!("{method} does not serve such forces."),
         (Control::Tolerance(tolerance), _) if matches!(lost.cause, Cause::StepTooSmall { .. }) => {
             format!("{method} found no step to a tolerance of {tolerance:e}: a larger one may do.")
         }

@@ -82,7 +82,7 @@ impl LimitWatch {
     /// Finds the limit of another method, for the motion that was seen last.
     pub fn ask(&mut self, method: &Method) {
         let modes = self.mode.as_slice();
-        // Never fails for a method in METHODS.
+        // Fails for a method that does not serve damped springs, on a mode that they damp.
         self.limit = largest_step(method, modes).ok().flatten();
         self.would_hold = None;
     }

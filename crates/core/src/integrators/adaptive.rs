@@ -116,7 +116,8 @@ impl Adaptive {
     /// Takes y from t to the end of one step.
     ///
     /// # Errors
-    /// The state has another length than the system's; or no step that gets anywhere meets the
+    /// The state has another length than the system's; a force depends on the velocity, and the
+    /// method does not serve such forces; or no step that gets anywhere meets the
     /// tolerance: y is as it was then.
     pub fn advance(
         &mut self,
@@ -125,6 +126,7 @@ impl Adaptive {
         y: &mut [f64],
     ) -> Result<Taken, Error> {
         super::check_dim(self.trial.dim(), y)?;
+        self.trial.check(system)?;
         let mut work = Work::default();
         // What contact put right after the last step has another derivative.
         if self.goes_on && self.trial.end() == &*y {
@@ -188,7 +190,7 @@ impl Adaptive {
         norm: &ErrorNorm,
     ) -> f64 {
         let [f0, y1, f1] = &mut self.first;
-        self.trial.derivative(f0);
+        self.trial.derivative(system, f0);
         let (size, slope) = (norm.of(y, y, y), norm.of(y, y, f0));
         let h0 = if size < 1e-5 || slope < 1e-5 {
             1e-6

@@ -104,7 +104,7 @@ impl Trial for EmbeddedPair {
         std::mem::swap(&mut self.last.y0, &mut self.last.y1);
     }
 
-    fn derivative(&self, out: &mut [f64]) {
+    fn derivative(&self, _system: &dyn ParticleSystem, out: &mut [f64]) {
         out.copy_from_slice(&self.last.k[0]);
     }
 
@@ -219,7 +219,7 @@ fn combine(out: &mut [f64], y: &[f64], h: f64, weights: &[f64], k: &[Vec<f64>]) 
 }
 
 /// out += h sum weights k
-fn add_combination(out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
+pub(super) fn add_combination(out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
     blocks(out, |start, out| add_to_block(start, out, h, weights, k));
 }
 

@@ -4,21 +4,27 @@
 mod adaptive;
 mod dop853;
 mod dormand_prince;
+mod dprkn1210;
+mod dprkn1210_dense;
+mod dprkn86;
 mod embedded;
 mod error_norm;
 mod euler;
 mod heun;
 mod implicit;
 mod midpoint;
+mod nystrom;
 mod pefrl;
 mod rk4;
 mod rkf45;
 mod runge_kutta;
 mod splitting;
+mod srkn11;
 mod sweep;
 mod symplectic_euler;
 mod trial;
 mod verlet;
+mod verner65;
 
 use crate::control::Control;
 use crate::error::{Error, positive};
@@ -70,6 +76,8 @@ pub struct Method {
     pub implicit: bool,
     /// Whether the method needs forces and masses, and does not support an arbitrary f(t, y).
     pub needs_mechanics: bool,
+    /// Whether the method serves only forces that depend on positions and time, drag aside.
+    pub positions_only: bool,
     /// Constructor of the method's integrator.
     create: fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>,
     /// Constructor of the steps of an adaptive method, which chooses them by itself to a tolerance;
@@ -81,8 +89,9 @@ impl Method {
     /// `Ok` if the method supports this system.
     ///
     /// # Errors
-    /// The method needs forces and masses, and the system has none; or the method is implicit, and
-    /// the system has constraints.
+    /// The method needs forces and masses, and the system has none; or it serves only forces that
+    /// do not depend on the velocity, and others act; or the method is implicit, and the system has
+    /// constraints.
     pub fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
         match system.mechanics() {
             None if self.needs_mechanics => Err(Error::NeedsMechanics { method: self.name }),
@@ -92,6 +101,7 @@ impl Method {
                     self.title
                 )))
             }
+            Some(_) if self.positions_only => nystrom::check(self.title, system),
             _ => Ok(()),
         }
     }
@@ -177,6 +187,10 @@ pub static METHODS: &[Method] = &[
     rkf45::METHOD,
     implicit::TR_BDF2,
     implicit::MIDPOINT,
+    verner65::METHOD,
+    srkn11::METHOD,
+    dprkn86::METHOD,
+    dprkn1210::METHOD,
 ];
 
 /// Method with this letter, name or alias.

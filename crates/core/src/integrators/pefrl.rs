@@ -23,6 +23,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 16,
     implicit: false,
     needs_mechanics: true,
+    positions_only: false,
     create: |system| PLAN.integrator(system),
     trial: None,
 };
@@ -41,5 +42,5 @@ pub(super) static PLAN: Plan = Plan {
     ],
     last: XI,
     terms: Terms::KickForces,
-    damped: RK4,
+    damped: Some(RK4),
 };

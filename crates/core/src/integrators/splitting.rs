@@ -26,8 +26,9 @@ pub(super) struct Plan {
     /// Terms that act in kicks: [`Terms::KickForces`] if drifts carry gravity and drag exactly, and
     /// otherwise [`Terms::AllForces`].
     pub terms: Terms,
-    /// Runge-Kutta method of a kick where forces depend on v.
-    pub damped: Table,
+    /// Runge-Kutta method of a kick where forces depend on v; `None` for a method that does not
+    /// serve such forces.
+    pub damped: Option<Table>,
 }
 
 /// Splitting method with its scratch.
@@ -70,14 +71,12 @@ impl Plan {
         })
     }
 
-    /// Runge-Kutta method of a kick of this system.
+    /// Runge-Kutta method of a kick of this system: that of forces without velocities, if the
+    /// method does not serve others.
     fn kick(&self, system: &dyn ParticleSystem) -> Table {
-        let splitting = system.mechanics().and_then(Mechanics::splitting);
-        if splitting.is_none_or(Splitting::kick_reads_velocity) {
-            self.damped
-        } else {
-            EULER
-        }
+        self.damped
+            .filter(|_| reads_velocity(system))
+            .unwrap_or(EULER)
     }
 
     /// Number of stages of a sweep: as many whole kicks as fit, at least one.
@@ -100,6 +99,9 @@ impl Integrator for SplittingMethod {
         let mechanics = system
             .mechanics()
             .ok_or(Error::NeedsMechanics { method: plan.name })?;
+        if plan.damped.is_none() && reads_velocity(system) {
+            return Err(Error::ReadsVelocity { method: plan.name });
+        }
         let kick = plan.kick(system);
         let lead = (t, plan.steps[0].0 * h);
         let mut now = t;
@@ -162,6 +164,12 @@ impl SplittingMethod {
             drift(mechanics, terms, stage.t, stage.drift, x, v);
         }
     }
+}
+
+/// Whether kicks depend on v, or the system does not say.
+fn reads_velocity(system: &dyn ParticleSystem) -> bool {
+    let splitting = system.mechanics().and_then(Mechanics::splitting);
+    splitting.is_none_or(Splitting::kick_reads_velocity)
 }
 
 /// Takes x and v through a drift from t to t + h (s), and pins to their places at its end.

@@ -17,6 +17,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 1,
     implicit: false,
     needs_mechanics: true,
+    positions_only: false,
     create: |system| PLAN.integrator(system),
     trial: None,
 };
@@ -26,5 +27,5 @@ pub(super) static PLAN: Plan = Plan {
     steps: &[(0.0, 1.0)],
     last: 1.0,
     terms: Terms::AllForces,
-    damped: EULER,
+    damped: Some(EULER),
 };

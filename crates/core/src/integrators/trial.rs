@@ -9,6 +9,14 @@ use crate::system::ParticleSystem;
 
 /// A method that estimates the error of its step, and holds the state in the midst of it.
 pub(super) trait Trial: Send {
+    /// `Ok` if the method serves the system as it is now.
+    ///
+    /// # Errors
+    /// It does not.
+    fn check(&self, _system: &dyn ParticleSystem) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// Length of the state.
     fn dim(&self) -> usize;
 
@@ -22,7 +30,7 @@ pub(super) trait Trial: Send {
     fn go_on(&mut self);
 
     /// Writes f at the beginning of the step to `out`.
-    fn derivative(&self, out: &mut [f64]);
+    fn derivative(&self, system: &dyn ParticleSystem, out: &mut [f64]);
 
     /// Tries a step of h (s). Returns its cost, and its estimated error over the tolerated one,
     /// which is at most 1 for an accepted step.

@@ -29,6 +29,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 2,
     implicit: false,
     needs_mechanics: true,
+    positions_only: false,
     create: |system| PLAN.integrator(system),
     trial: None,
 };
@@ -38,5 +39,5 @@ pub(super) static PLAN: Plan = Plan {
     steps: &[(0.5, 1.0)],
     last: 0.5,
     terms: Terms::KickForces,
-    damped: MIDPOINT,
+    damped: Some(MIDPOINT),
 };

@@ -91,6 +91,7 @@ pub(super) fn blow_up_by(error: Error) -> Result<Cause, Error> {
     match error {
         Error::StepTooSmall { step, .. } => Ok(Cause::StepTooSmall { step }),
         Error::NoConvergence { residual } => Ok(Cause::NoConvergence { residual }),
+        Error::ReadsVelocity { .. } => Ok(Cause::ReadsVelocity),
         error => Err(error),
     }
 }

@@ -42,6 +42,7 @@ impl Stepper {
         system: &dyn ParticleSystem,
         control: Control,
     ) -> Result<Self, Error> {
+        method.check(system)?;
         method.check_control(control)?;
         let adaptive = match control {
             Control::Step(_) => None,

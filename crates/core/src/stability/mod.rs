@@ -174,7 +174,7 @@ impl Growth {
     /// Growth of `mode` by `method`.
     ///
     /// # Errors
-    /// Never fails for a method in [`METHODS`](crate::integrators::METHODS).
+    /// The method does not serve damped springs, which damp the mode.
     pub fn new(method: &Method, mode: Mode) -> Result<Self, Error> {
         let system = Tied(mode);
         let integrator = method.integrator(&system)?;
@@ -225,7 +225,7 @@ pub struct Limit {
 /// `None` if no mode is left.
 ///
 /// # Errors
-/// Never fails for a method in [`METHODS`](crate::integrators::METHODS).
+/// The method does not serve damped springs, which damp a mode.
 pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Error> {
     let mut limit: Option<Limit> = None;
     for (k, mode) in modes.iter().enumerate().filter(|(_, m)| m.stiffness > 0.0) {

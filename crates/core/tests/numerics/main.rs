@@ -9,6 +9,7 @@ mod adaptive;
 mod foreign;
 mod implicit;
 mod limits;
+mod nystrom;
 mod order;
 mod reference;
 mod stability;

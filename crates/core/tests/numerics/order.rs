@@ -2,7 +2,9 @@
 //! damped springs and a moving pin.
 
 use crate::common::{distance, integrate, method};
-use a3_core::{Grid, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3, integrators};
+use a3_core::{
+    Grid, Method, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3, integrators,
+};
 
 fn network(spring_damping: f64) -> Network {
     let mut network = Network::new(vec![1.0, 0.7, 1.3]).unwrap();
@@ -52,12 +54,15 @@ fn every_method_has_its_order() {
         let network = network(spring_damping);
         let y0 = start(&network);
         let exact = integrate(&network, method("dop853"), &y0, 1.0 / 512.0, 512);
-        for m in integrators::METHODS {
+        let serving = |m: &&Method| m.check(&network).is_ok();
+        for m in integrators::METHODS.iter().filter(serving) {
             // Steps are short enough for the leading term and long enough to avoid rounding; for
-            // order 8 hardly both is possible.
+            // order 6 and above hardly both is possible.
             let (steps, slack) = match m.order {
-                8.. => (20, 0.6),
-                5.. => (256, 0.1),
+                9.. => (4, 1.5),
+                8 => (20, 0.6),
+                6.. => (20, 0.9),
+                5 => (256, 0.1),
                 4 => (512, 0.05),
                 _ => (4096, 0.05),
             };

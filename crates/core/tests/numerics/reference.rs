@@ -2,7 +2,9 @@
 //! agree with them to 1e-9.
 
 use crate::common::method;
-use a3_core::{Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3};
+use a3_core::{
+    Method, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
+};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -120,7 +122,9 @@ fn every_method_meets_the_references_in_the_limit() {
         let reference = load(name);
         let state = &reference.states[0];
         let expected = column_major(&state.positions, &state.velocities);
-        for method in a3_core::integrators::METHODS {
+        let damped = reference.springs.iter().any(|spring| spring.4 > 0.0);
+        let serving = |m: &&Method| !(damped && m.positions_only);
+        for method in a3_core::integrators::METHODS.iter().filter(serving) {
             if method.is_adaptive() {
                 let mut simulation = simulate(&reference, method.name, 1e-12);
                 simulation.advance_to(state.time).unwrap();

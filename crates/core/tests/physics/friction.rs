@@ -81,7 +81,8 @@ fn moved(run: &Simulation, from: &[f64]) -> f64 {
 #[test]
 fn with_enough_friction_nothing_moves() {
     for scene in [on_a_tilted_floor(0.6), on_a_turned_box(0.6)] {
-        for method in METHODS {
+        let serving = |method: &&Method| method.check(scene.model.system()).is_ok();
+        for method in METHODS.iter().filter(serving) {
             for setting in settings(method) {
                 let mut run =
                     Simulation::new(scene.clone(), method, method.control(setting)).unwrap();
@@ -100,7 +101,8 @@ fn with_enough_friction_nothing_moves() {
 #[test]
 fn with_little_friction_it_slides_as_coulomb_says() {
     for scene in [on_a_tilted_floor(0.3), on_a_turned_box(0.3)] {
-        for method in METHODS {
+        let serving = |method: &&Method| method.check(scene.model.system()).is_ok();
+        for method in METHODS.iter().filter(serving) {
             for setting in settings(method) {
                 let mut run =
                     Simulation::new(scene.clone(), method, method.control(setting)).unwrap();

@@ -3,8 +3,8 @@
 use crate::common::{described, distance, method, scene, scene_with_grid, size};
 use a3_core::elements::{Air, Buckling, Wind};
 use a3_core::{
-    Control, Mechanics, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
-    Vector3, integrators,
+    Control, Mechanics, Method, Model, Network, Path, Scene, Simulation, Spring, SpringKind,
+    SpringLaw, Vector3, integrators,
 };
 use approx::assert_relative_eq;
 
@@ -328,7 +328,9 @@ fn no_wind_blows_on_a_hole() {
 
 #[test]
 fn every_method_tears_alike() {
-    for m in integrators::METHODS {
+    let whole = chain(Some(LIMIT));
+    let serving = |m: &&Method| m.check(whole.model.system()).is_ok();
+    for m in integrators::METHODS.iter().filter(serving) {
         let control = m.control(if m.is_adaptive() { 1e-6 } else { 0.0005 });
         let mut run = Simulation::new(chain(Some(LIMIT)), m, control).unwrap();
         while run.tears() == 0 && run.time() < 2.0 {

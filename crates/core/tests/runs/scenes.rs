@@ -115,7 +115,7 @@ fn default_controls_hold_everywhere() {
 #[test]
 fn default_controls_hold_on_other_grids() {
     for (rows, cols) in [(8, 8), (40, 40), (60, 20), (20, 60)] {
-        for method in integrators::METHODS {
+        for method in integrators::METHODS.iter().filter(|m| !m.positions_only) {
             let grid = Grid::new(rows, cols).unwrap();
             let setup = a3_scenes::find("cloth").unwrap().build(Some(grid)).unwrap();
             let control = match method.default_control {

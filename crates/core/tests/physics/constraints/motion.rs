@@ -101,10 +101,14 @@ fn every_explicit_method_keeps_its_order() {
     for damping in [0.5, 0.0] {
         let (network, y0) = driven(damping);
         let exact = integrate(&network, method("dop853"), &y0, 1.0 / 512.0, 512);
-        for m in integrators::METHODS.iter().filter(|m| !m.implicit) {
+        for m in integrators::METHODS
+            .iter()
+            .filter(|m| m.check(&network).is_ok())
+        {
             let (steps, slack) = match m.order {
                 8.. => (20, 0.6),
-                5.. => (512, 0.3),
+                6.. => (20, 0.9),
+                5 => (512, 0.3),
                 4 => (256, 0.05),
                 _ => (2048, 0.05),
             };

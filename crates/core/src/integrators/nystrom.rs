@@ -1,0 +1,363 @@
+//! Runge-Kutta-Nyström pairs by their tables, for `x'' = a(t, x)` and, by a substitution, for
+//! `x'' = a(t, x) - 2 g x'`: `X_i = x0 + c_i h v0 + h^2 sum a_ij k_j`, `k_i = a(t + c_i h, X_i)`,
+//! `x1 = x0 + h v0 + h^2 sum b_i k_i`, `v1 = v0 + h sum b'_i k_i` (Hairer, Norsett, Wanner,
+//! *Solving Ordinary Differential Equations I*, 1993, II.14). They take fewer stages than a
+//! Runge-Kutta method of the same order, but the forces must not depend on the velocity.
+//!
+//! Viscous drag of coefficient c is the exception. With g = c / (2 m) and x = x0 + exp(-g s) w,
+//! where s is the time since the step began, w'' = exp(g s) (a + g^2 (x - x0)) is free of w', and
+//! w(0) = 0, w'(0) = v0. Each particle has its own g. The orders are those without drag.
+
+use std::ops::Range;
+
+use super::embedded::add_combination;
+use super::error_norm::ErrorNorm;
+use super::trial::{LastStep, Trial};
+use super::{Integrator, Work, add_scaled, check_dim};
+use crate::error::Error;
+use crate::system::{Mechanics, ParticleSystem, Splitting, place_pins};
+
+/// Coefficients of a pair. After its stages comes the acceleration at the end of the step, the
+/// first of the next step, which error estimate and polynomial may use as a stage.
+#[derive(Debug)]
+pub(super) struct NystromTableau {
+    /// Time `c_i` and weights `a_ij` of each stage from the second on.
+    pub stages: &'static [(f64, &'static [f64])],
+    /// Weights of x1 and of v1.
+    pub weights: [&'static [f64]; 2],
+    /// Weights of the estimated errors of x1 and of v1.
+    pub errors: [&'static [f64]; 2],
+    /// Power of h with which the estimated local error falls.
+    pub exponent: f64,
+    /// Coefficients of each stage's weight in the polynomial for x, from that of the fraction
+    /// squared on.
+    pub dense: &'static [&'static [f64]],
+}
+
+/// Largest number of stages of a polynomial.
+const STAGES: usize = 18;
+
+/// A pair with its scratch: a method of fixed steps by itself, and an adaptive one in
+/// [`Adaptive`](super::Adaptive).
+pub(super) struct NystromPair {
+    /// Full title of the method.
+    method: &'static str,
+    tableau: &'static NystromTableau,
+    /// Position at which a stage is evaluated.
+    x: Vec<f64>,
+    /// Velocity with which a stage is evaluated: 0, but for pins.
+    v: Vec<f64>,
+    /// Estimated error of the state.
+    error: Vec<f64>,
+    /// The last step, whose last but one k is the acceleration at its end as a stage, and whose
+    /// last k is that acceleration itself.
+    last: LastStep,
+}
+
+/// The drag coefficient (kg/s) of a system whose other forces do not depend on the velocity; `None`
+/// for other systems.
+fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, f64)> {
+    let mechanics = system.mechanics()?;
+    let reads_velocity = mechanics
+        .splitting()
+        .is_none_or(Splitting::kick_reads_velocity);
+    let drag = mechanics.linearized()?.drag_coefficient();
+    (!reads_velocity).then_some((mechanics, drag))
+}
+
+/// `Ok` if forces depend on the velocity by viscous drag at most.
+///
+/// # Errors
+/// They depend on it otherwise, or the system does not say how.
+pub(super) fn check(method: &'static str, system: &dyn ParticleSystem) -> Result<(), Error> {
+    match drag(system) {
+        None => Err(Error::ReadsVelocity { method }),
+        Some(_) => Ok(()),
+    }
+}
+
+/// Visits runs of equal masses along each axis, with g = c / (2 m) (1/s) of each; none without
+/// drag.
+fn runs(inverse_masses: &[f64], drag: f64, mut visit: impl FnMut(Range<usize>, f64)) {
+    if drag == 0.0 {
+        return;
+    }
+    let n = inverse_masses.len();
+    let mut start = 0;
+    for run in inverse_masses.chunk_by(|a, b| a == b) {
+        for axis in 0..3 {
+            let first = axis * n + start;
+            visit(first..first + run.len(), 0.5 * drag * run[0]);
+        }
+        start += run.len();
+    }
+}
+
+/// A system of forces without velocities beside drag, and the step that is taken with it.
+struct Step<'a> {
+    mechanics: &'a dyn Mechanics,
+    /// Drag coefficient (kg/s).
+    drag: f64,
+    /// Time at the beginning (s).
+    t: f64,
+    /// Length (s).
+    h: f64,
+}
+
+impl Step<'_> {
+    fn runs(&self, visit: impl FnMut(Range<usize>, f64)) {
+        runs(self.mechanics.inverse_masses(), self.drag, visit);
+    }
+
+    /// Writes `h^2 sum weights k` to `x`, and x0 and s v0 on top of it from a state `y0`, by which
+    /// drag has shrunk w to x - x0.
+    fn positions(
+        &self,
+        s: f64,
+        weights: &[f64],
+        y0: Option<&[f64]>,
+        k: &[Vec<f64>],
+        x: &mut [f64],
+    ) {
+        x.fill(0.0);
+        add_combination(x, self.h * self.h, weights, k);
+        let start = y0.map(|y0| y0.split_at(x.len()));
+        if let Some((_, v0)) = start {
+            add_scaled(x, s, v0);
+        }
+        self.runs(|run, g| {
+            let shrunk = libm::exp(-g * s);
+            x[run].iter_mut().for_each(|x| *x *= shrunk);
+        });
+        if let Some((x0, _)) = start {
+            add_scaled(x, 1.0, x0);
+        }
+    }
+
+    /// Writes the state at the time s (s) into the step from `y0` to `out`, by the weights of x and
+    /// of v; without `y0`, the differences that other weights make.
+    fn state(
+        &self,
+        s: f64,
+        weights: [&[f64]; 2],
+        y0: Option<&[f64]>,
+        k: &[Vec<f64>],
+        out: &mut [f64],
+    ) {
+        let (x, v) = out.split_at_mut(out.len() / 2);
+        self.positions(s, weights[0], y0, k, x);
+        v.fill(0.0);
+        add_combination(v, self.h, weights[1], k);
+        let start = y0.map(|y0| y0.split_at(x.len()));
+        if let Some((_, v0)) = start {
+            add_scaled(v, 1.0, v0);
+        }
+        self.runs(|run, g| {
+            let shrunk = libm::exp(-g * s);
+            for i in run {
+                let moved = x[i] - start.map_or(0.0, |(x0, _)| x0[i]);
+                v[i] = shrunk * v[i] - g * moved;
+            }
+        });
+        if start.is_some() {
+            place_pins(self.mechanics, self.t + s, x, v);
+        }
+    }
+
+    /// Makes w'' of the accelerations `k` at the positions x, at the time s (s) into the step.
+    fn substitute(&self, s: f64, x: &[f64], x0: &[f64], k: &mut [f64]) {
+        self.runs(|run, g| {
+            let grown = libm::exp(g * s);
+            for i in run {
+                k[i] = grown * (k[i] + g * g * (x[i] - x0[i]));
+            }
+        });
+    }
+}
+
+impl NystromPair {
+    pub fn new(method: &'static str, tableau: &'static NystromTableau, dim: usize) -> Self {
+        let mut last = LastStep::new(dim, tableau.stages.len() + 3);
+        for k in &mut last.k {
+            k.truncate(dim / 2);
+        }
+        Self {
+            method,
+            tableau,
+            x: vec![0.0; dim / 2],
+            v: vec![0.0; dim / 2],
+            error: vec![0.0; dim],
+            last,
+        }
+    }
+
+    /// The step of h (s) from t (s) with this system.
+    fn of(system: &dyn ParticleSystem, t: f64, h: f64) -> Option<Step<'_>> {
+        let (mechanics, drag) = drag(system)?;
+        Some(Step {
+            mechanics,
+            drag,
+            t,
+            h,
+        })
+    }
+
+    /// Evaluates the stages of a step from where [`begin`](Trial::begin) or
+    /// [`go_on`](Trial::go_on) left it, and finds its end. Returns the cost.
+    fn stages(&mut self, step: &Step) -> Work {
+        let tableau = self.tableau;
+        let LastStep { h, y0, y1, k, .. } = &mut self.last;
+        *h = step.h;
+        for (i, (c, a)) in tableau.stages.iter().enumerate() {
+            let s = c * step.h;
+            step.positions(s, a, Some(y0), k, &mut self.x);
+            self.v.fill(0.0);
+            place_pins(step.mechanics, step.t + s, &mut self.x, &mut self.v);
+            step.mechanics
+                .accelerations(step.t + s, &self.x, &self.v, &mut k[i + 1]);
+            step.substitute(s, &self.x, y0, &mut k[i + 1]);
+        }
+        step.state(step.h, tableau.weights, Some(y0), k, y1);
+        Work::of(tableau.stages.len() as u64)
+    }
+
+    /// Evaluates the acceleration at the end of the step. Returns the cost.
+    fn finish(&mut self, step: &Step) -> Work {
+        let LastStep { y0, y1, k, .. } = &mut self.last;
+        let x1 = &y1[..self.x.len()];
+        let [.., as_stage, end] = &mut k[..] else {
+            return Work::default();
+        };
+        self.v.fill(0.0);
+        step.mechanics
+            .accelerations(step.t + step.h, x1, &self.v, end);
+        as_stage.copy_from_slice(end);
+        step.substitute(step.h, x1, y0, as_stage);
+        Work::of(1)
+    }
+}
+
+impl Trial for NystromPair {
+    fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
+        check(self.method, system)
+    }
+
+    fn dim(&self) -> usize {
+        self.last.y0.len()
+    }
+
+    fn exponent(&self) -> f64 {
+        self.tableau.exponent
+    }
+
+    fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
+        let Some(step) = Self::of(system, t, 0.0) else {
+            return Work::default();
+        };
+        self.last.y0.copy_from_slice(y);
+        self.v.fill(0.0);
+        let x0 = &y[..self.x.len()];
+        step.mechanics
+            .accelerations(t, x0, &self.v, &mut self.last.k[0]);
+        Work::of(1)
+    }
+
+    fn go_on(&mut self) {
+        let end = self.last.k.len() - 1;
+        self.last.k.swap(0, end);
+        std::mem::swap(&mut self.last.y0, &mut self.last.y1);
+    }
+
+    fn derivative(&self, system: &dyn ParticleSystem, out: &mut [f64]) {
+        let (dx, dv) = out.split_at_mut(self.x.len());
+        dx.copy_from_slice(&self.last.y0[self.x.len()..]);
+        dv.copy_from_slice(&self.last.k[0]);
+        if let Some(step) = Self::of(system, 0.0, 0.0) {
+            step.runs(|run, g| add_scaled(&mut dv[run.clone()], -2.0 * g, &dx[run]));
+        }
+    }
+
+    fn attempt(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        norm: &ErrorNorm,
+    ) -> (Work, f64) {
+        let Some(step) = Self::of(system, t, h) else {
+            return (Work::default(), f64::NAN);
+        };
+        let mut work = self.stages(&step);
+        let reads_end = self.tableau.errors[1].len() > self.tableau.stages.len() + 1;
+        if reads_end {
+            work += self.finish(&step);
+        }
+        let LastStep { y0, y1, k, .. } = &self.last;
+        step.state(h, self.tableau.errors, None, k, &mut self.error);
+        let error = norm.of(y0, y1, &self.error);
+        if !reads_end && error <= 1.0 {
+            work += self.finish(&step);
+        }
+        (work, error)
+    }
+
+    fn end(&self) -> &[f64] {
+        &self.last.y1
+    }
+
+    fn interpolate(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        theta: f64,
+        out: &mut [f64],
+    ) -> Work {
+        let Some(step) = Self::of(system, t, self.last.h) else {
+            return Work::default();
+        };
+        let (mut of_x, mut of_v) = ([0.0; STAGES], [0.0; STAGES]);
+        let stages = of_x.iter_mut().zip(&mut of_v).zip(self.tableau.dense);
+        for ((of_x, of_v), coefficients) in stages {
+            // Horner's scheme for the sum of r theta^m from m = 2 on, and for its derivative.
+            let mut degree = coefficients.len() as f64 + 1.0;
+            for r in coefficients.iter().rev() {
+                *of_x = *of_x * theta + r;
+                *of_v = *of_v * theta + degree * r;
+                degree -= 1.0;
+            }
+            *of_x *= theta * theta;
+            *of_v *= theta;
+        }
+        let LastStep { h, y0, k, .. } = &self.last;
+        step.state(theta * h, [&of_x, &of_v], Some(y0), k, out);
+        Work::default()
+    }
+
+    fn last(&self) -> &LastStep {
+        &self.last
+    }
+
+    fn resume(&mut self, step: &LastStep) -> Result<(), Error> {
+        self.last.resume(step)
+    }
+}
+
+impl Integrator for NystromPair {
+    fn step(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        y: &mut [f64],
+    ) -> Result<Work, Error> {
+        check_dim(self.dim(), y)?;
+        let refused = Error::ReadsVelocity {
+            method: self.method,
+        };
+        let step = Self::of(system, t, h).ok_or(refused)?;
+        let mut work = self.begin(system, t, y);
+        work += self.stages(&step);
+        y.copy_from_slice(&self.last.y1);
+        Ok(work)
+    }
+}
