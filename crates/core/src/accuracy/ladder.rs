@@ -13,8 +13,8 @@ const RUNG: f64 = 1.5;
 /// is.
 const PAST: f64 = 1.4;
 /// Exponents of the largest and the smallest tolerance of adaptive methods, in half powers of ten:
-/// from 10^-1 to 10^-12.
-const TOLERANCES: (i32, i32) = (-2, -24);
+/// from 10^-1 to 10^-12, and to 10^-8 for implicit methods, whose orders are low.
+const TOLERANCES: (i32, [i32; 2]) = (-2, [-24, -16]);
 
 /// Steps that fit the frames, from just past the method's stability limit down, or, for an adaptive
 /// method, tolerances from 0.1 down.
@@ -32,7 +32,8 @@ pub fn ladder(
     let system = scene.model.system();
     method.check(system)?;
     if method.is_adaptive() {
-        return Ok((TOLERANCES.1..=TOLERANCES.0)
+        let least = TOLERANCES.1[usize::from(method.implicit)];
+        return Ok((least..=TOLERANCES.0)
             .rev()
             .map(|half| {
                 let digits = if half % 2 == 0 { 1.0 } else { 3.0 };

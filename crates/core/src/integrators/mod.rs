@@ -92,6 +92,7 @@ impl Method {
                     self.title
                 )))
             }
+            _ if self.implicit => implicit::check(system),
             _ => Ok(()),
         }
     }
@@ -177,6 +178,7 @@ pub static METHODS: &[Method] = &[
     rkf45::METHOD,
     implicit::TR_BDF2,
     implicit::MIDPOINT,
+    implicit::BDF,
 ];
 
 /// Method with this letter, name or alias.

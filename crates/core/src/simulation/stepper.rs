@@ -43,6 +43,7 @@ impl Stepper {
         control: Control,
     ) -> Result<Self, Error> {
         method.check_control(control)?;
+        method.check(system)?;
         let adaptive = match control {
             Control::Step(_) => None,
             Control::Tolerance(relative) => method.adaptive(system, Tolerance::new(relative)?),
