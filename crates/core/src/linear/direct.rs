@@ -61,6 +61,12 @@ impl Direct {
         })
     }
 
+    /// Whether the matrix is factorised by blocks.
+    #[cfg(test)]
+    pub fn is_by_blocks(&self) -> bool {
+        matches!(self.factor, Factor::Blocks(_))
+    }
+
     /// Whether the couplings are still those of the pattern.
     pub fn fits(&self, tangent: &Tangent) -> bool {
         match &self.factor {

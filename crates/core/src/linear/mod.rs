@@ -39,8 +39,6 @@ pub(crate) struct Solver {
     direct: Option<Direct>,
     /// Whether the pattern was analysed.
     analysed: bool,
-    /// Number of solves that a matrix is expected to serve.
-    pub reuse: f64,
     /// Evaluations of the system's forces in the time of one spring by spring.
     speed: f64,
     scratch: Vec<f64>,
@@ -63,7 +61,6 @@ impl Solver {
             scratch: vec![0.0; n],
             tangent,
             direct_always: None,
-            reuse: 1.0,
             stiffness: 0.0,
             factorised: false,
         };
@@ -88,6 +85,11 @@ impl Solver {
         } else {
             0.0
         }
+    }
+
+    /// Takes up what the forces of the system cost now.
+    pub fn renew(&mut self, system: &dyn Linearized) {
+        self.speed = system.speed();
     }
 
     /// Gathers A = M + a (C + D) + a2 K at x.
@@ -115,19 +117,19 @@ impl Solver {
         let iterations = SPREAD * (1.0 + self.stiffness).sqrt() * libm::log(2.0 / tolerance);
         let least = match self.least_operations() {
             0.0 => 0.0,
-            operations => direct::sparse_factorisation(operations) / self.reuse,
+            operations => direct::sparse_factorisation(operations),
         };
         let worth_analysing = self.factorised || least * self.speed < ITERATION * iterations;
         if self.direct_always.unwrap_or(worth_analysing) && !self.analysed {
             self.analyse();
         }
         let price = self.direct.as_ref().map_or(f64::INFINITY, |direct| {
-            let shares = if self.factorised {
-                f64::INFINITY
+            let factorisation = if self.factorised {
+                0.0
             } else {
-                self.reuse
+                direct.factorisation
             };
-            direct.factorisation / shares + direct.solution
+            factorisation + direct.solution
         });
         self.direct_always
             .unwrap_or(worth_analysing && price * self.speed < ITERATION * iterations)

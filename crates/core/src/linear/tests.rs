@@ -67,7 +67,12 @@ fn residual(network: &Network, tangent: &Tangent, b: &[f64], x: &[f64]) -> f64 {
 
 #[test]
 fn iterations_and_factors_agree_and_report_the_true_residual() {
-    for (network, x) in [cloth(7, 300.0), chain(30, 1000.0)] {
+    // A factor by blocks of a chain and of a small cloth, and a sparse one of a larger cloth.
+    for ((network, x), by_blocks) in [
+        (chain(30, 1000.0), true),
+        (cloth(5, 300.0), true),
+        (cloth(20, 300.0), false),
+    ] {
         let b = right_hand_side(&network);
         let mut solver = Solver::new(&network);
         let _ = solver.gather(&network, &x, 1.0 / 60.0, true);
@@ -82,6 +87,8 @@ fn iterations_and_factors_agree_and_report_the_true_residual() {
         solver.direct_always = Some(true);
         let (work, _) = solver.solve(&network, &b, &mut by_factors, 1e-12);
         assert_eq!((work.factorizations, work.iterations), (1, 0));
+        let direct = solver.direct.as_ref().unwrap();
+        assert_eq!(direct.is_by_blocks(), by_blocks);
         assert!(residual(&network, &solver.tangent, &b, &by_factors) < 1e-12);
         for (a, b) in by_iterations.iter().zip(&by_factors) {
             assert!((a - b).abs() < 1e-9 * by_factors.iter().fold(0.0, |m: f64, b| m.max(b.abs())));

@@ -237,7 +237,7 @@ impl Trial for Bdf {
             next: 1,
             equal: 0,
         };
-        self.solver.tangent = Tangent::NONE;
+        self.solver.forget(system);
         Work::of(1)
     }
 

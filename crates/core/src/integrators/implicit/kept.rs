@@ -15,9 +15,6 @@ const MOST: i32 = 4;
 /// Relative residual of an iterative linear solve: less than what an iteration of Newton's method
 /// leaves.
 const FORCING: f64 = 0.02;
-/// Number of solves that a tangent serves, as far as the choice between linear solvers expects.
-const REUSE: f64 = 5.0;
-
 /// Tangent that is kept: where it was formed, and how well the iterations converge with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tangent {
@@ -61,15 +58,21 @@ pub(super) struct KeptSolver {
 
 impl KeptSolver {
     pub fn new(system: &dyn ParticleSystem) -> Self {
-        let mut stage = StageSolver::new(system);
-        if let StageSolver::Mechanical(mechanical) = &mut stage {
-            mechanical.solver.reuse = REUSE;
-        }
         Self {
-            stage,
+            stage: StageSolver::new(system),
             tangent: Tangent::NONE,
             at: vec![0.0; system.dim()],
             change: vec![0.0; system.dim()],
+        }
+    }
+
+    /// Forgets the tangent: the system may be another one than before.
+    pub fn forget(&mut self, system: &dyn ParticleSystem) {
+        self.tangent = Tangent::NONE;
+        if let (StageSolver::Mechanical(stage), Some(linearized)) =
+            (&mut self.stage, linearized(system))
+        {
+            stage.solver.renew(linearized);
         }
     }
 
