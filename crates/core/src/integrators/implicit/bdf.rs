@@ -149,17 +149,32 @@ impl Bdf {
         libm::pow(error.max(1e-12), -1.0 / (order + 1) as f64)
     }
 
-    /// Norm of the error of an order, from the difference above it.
-    fn error_of(&mut self, order: usize, norm: &ErrorNorm) -> f64 {
-        let factor = error_factor(order);
-        for (sum, d) in self.sum.iter_mut().zip(&self.step.k[order]) {
-            *sum = factor * d;
+    /// Norm of the error, without what it is at pins, whose places are known.
+    fn norm_of_error(&mut self, system: &dyn ParticleSystem, norm: &ErrorNorm) -> f64 {
+        if let Some(mechanics) = system.mechanics() {
+            let inverse_masses = mechanics.inverse_masses();
+            for error in self.sum.chunks_exact_mut(inverse_masses.len()) {
+                for (error, w) in error.iter_mut().zip(inverse_masses) {
+                    if *w == 0.0 {
+                        *error = 0.0;
+                    }
+                }
+            }
         }
         norm.of(&self.step.y0, &self.step.y1, &self.sum)
     }
 
+    /// Norm of the error of an order, from the difference above it.
+    fn error_of(&mut self, order: usize, system: &dyn ParticleSystem, norm: &ErrorNorm) -> f64 {
+        let factor = error_factor(order);
+        for (sum, d) in self.sum.iter_mut().zip(&self.step.k[order]) {
+            *sum = factor * d;
+        }
+        self.norm_of_error(system, norm)
+    }
+
     /// Makes D the differences at the end of the step, and chooses order and length of the next.
-    fn accept(&mut self, error: f64, norm: &ErrorNorm) {
+    fn accept(&mut self, error: f64, system: &dyn ParticleSystem, norm: &ErrorNorm) {
         let order = self.orders.next;
         let LastStep { y1, k, .. } = &mut self.step;
         for (i, (y1, predicted)) in y1.iter().zip(&self.predicted).enumerate() {
@@ -179,7 +194,7 @@ impl Bdf {
         let mut best = (Self::ratio(error, order), order);
         if order > 1 {
             let lower = (
-                Self::ratio(self.error_of(order - 1, norm), order - 1),
+                Self::ratio(self.error_of(order - 1, system, norm), order - 1),
                 order - 1,
             );
             if lower.0 > best.0 {
@@ -188,7 +203,7 @@ impl Bdf {
         }
         if order < ORDERS {
             let higher = (
-                Self::ratio(self.error_of(order + 1, norm), order + 1),
+                Self::ratio(self.error_of(order + 1, system, norm), order + 1),
                 order + 1,
             );
             if higher.0 > best.0 {
@@ -276,12 +291,12 @@ impl Trial for Bdf {
             return (work, f64::INFINITY);
         }
         let factor = error_factor(order);
-        for ((sum, y1), predicted) in self.sum.iter_mut().zip(&*y1).zip(&self.predicted) {
+        for ((sum, y1), predicted) in self.sum.iter_mut().zip(&self.step.y1).zip(&self.predicted) {
             *sum = factor * (y1 - predicted);
         }
-        let error = norm.of(&self.step.y0, y1, &self.sum);
+        let error = self.norm_of_error(system, norm);
         if error <= 1.0 {
-            self.accept(error, norm);
+            self.accept(error, system, norm);
         }
         (work, error)
     }
