@@ -37,9 +37,9 @@ pub(super) struct Direct {
 
 enum Factor {
     /// Factor of a chain, a tree, or of another pattern that it hardly fills.
-    Blocks(BlockCholesky),
+    Blocks(Box<BlockCholesky>),
     /// Factor of any other pattern.
-    Sparse(Cholesky),
+    Sparse(Box<Cholesky>),
 }
 
 impl Direct {
@@ -50,14 +50,14 @@ impl Direct {
             return Some(Self {
                 factorisation: BLOCK_PRODUCT * blocks.products / (couplings + OVERHEAD),
                 solution: BLOCK_SOLVE * blocks.size / (couplings + OVERHEAD),
-                factor: Factor::Blocks(blocks),
+                factor: Factor::Blocks(Box::new(blocks)),
             });
         }
         let sparse = Cholesky::new(tangent)?;
         Some(Self {
             factorisation: sparse_factorisation(sparse.operations / couplings),
             solution: SPARSE_SOLVE[0] + SPARSE_SOLVE[1] * sparse.size / couplings,
-            factor: Factor::Sparse(sparse),
+            factor: Factor::Sparse(Box::new(sparse)),
         })
     }
 

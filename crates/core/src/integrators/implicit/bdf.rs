@@ -1,10 +1,10 @@
-//! The numerical differentiation formulas of orders 1 to 5, by backward differences D of the states
-//! at the ends of equal steps (Shampine, Reichelt, *The MATLAB ODE suite*, SIAM J. Sci. Comput. 18,
-//! 1997; Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, V.1). The end y1 of a
-//! step of order k obeys sum(g_j D_j, j = 1..k) - kappa_k g_k D_(k+1) = h f(t + h, y1), with g_j =
-//! 1 + 1/2 + ... + 1/j. Where h changes, the polynomial through the states is read at new places.
-//! Stiff motion is damped out. A step of a given length, which has none before it, is one of
-//! TR-BDF2.
+//! The numerical differentiation formulas of orders 1 to 5, by backward differences `D_j` of the
+//! states at the ends of equal steps (Shampine, Reichelt, *The MATLAB ODE suite*, SIAM J. Sci.
+//! Comput. 18, 1997; Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, V.1). At
+//! the end y1 of a step of order k, `sum(D_j / j, j = 1..k) - kappa_k g_k D_(k+1) = h f(t + h, y1)`
+//! with `g_k = 1 + 1/2 + ... + 1/k`. Where h changes, the polynomial through the states is read at
+//! new places. Stiff motion is damped out. A step of a given length, which has none before it, is
+//! one of TR-BDF2.
 
 use super::super::error_norm::ErrorNorm;
 use super::super::trial::{LastStep, Trial};
@@ -47,7 +47,7 @@ fn harmonic(order: usize) -> f64 {
     (1..=order).map(|j| 1.0 / j as f64).sum()
 }
 
-/// Factor of D_(k+1) in the error of a step of order k.
+/// Factor of `D_(k+1)` in the error of a step of order k.
 fn error_factor(order: usize) -> f64 {
     KAPPA[order] * harmonic(order) + 1.0 / (order + 1) as f64
 }
@@ -75,8 +75,8 @@ struct Bdf {
     base: Vec<f64>,
     /// Error of a step.
     sum: Vec<f64>,
-    /// The last step, whose vectors are D_1, D_2, ..., and in a checkpoint the state at which the
-    /// tangent was formed; its length is the distance of the states that D is made of.
+    /// The last step, whose vectors are `D_1`, `D_2`, ..., and in a checkpoint the state at which
+    /// the tangent was formed; its length is the distance of the states that D is made of.
     step: LastStep,
 }
 

@@ -1,7 +1,7 @@
-//! Simplified Newton's method: the tangent is formed at one state and kept, over iterations and over
-//! steps, as long as the iterations converge with it (Hairer, Wanner, *Solving Ordinary Differential
-//! Equations II*, 1996, IV.8). They end where the rate at which they converge says that the error
-//! of the equations is a small part of the error that a step may make.
+//! Simplified Newton's method: the tangent is formed at one state and kept, over iterations and
+//! over steps, as long as the iterations converge with it (Hairer, Wanner, *Solving Ordinary
+//! Differential Equations II*, 1996, IV.8). They end where the rate at which they converge says
+//! that the error of the equations is a small part of the error that a step may make.
 
 use super::super::error_norm::ErrorNorm;
 use super::super::{Work, add_scaled};
