@@ -32,6 +32,7 @@ pub fn of(letter: char) -> CurveStyle {
         'i' => ("#8bc34a", IMPLICIT, Cross(0.0)),
         'b' => ("#009e73", IMPLICIT, Cross(0.125)),
         'n' => ("#117733", IMPLICIT, Polygon(6, 0.0)),
+        'o' => ("#5a7f1e", IMPLICIT, Star(3, 0.4)),
         _ => return CurveStyle::default(),
     };
     CurveStyle {

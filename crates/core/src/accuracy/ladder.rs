@@ -14,8 +14,8 @@ const PAST: f64 = 1.4;
 /// Least number of steps of a run.
 pub(super) const FEWEST: u64 = 4;
 /// Exponents of the largest and the smallest tolerance of adaptive methods, in half powers of ten:
-/// from 10^-1 to 10^-12.
-const TOLERANCES: (i32, i32) = (-2, -24);
+/// from 10^-1 to 10^-12, and to 10^-8 for implicit methods, whose orders are low.
+const TOLERANCES: (i32, [i32; 2]) = (-2, [-24, -16]);
 
 /// Steps that divide the time of all frames, from just past the method's stability limit on the
 /// scene's `modes` down, or, for an adaptive method, tolerances from 0.1 down.
@@ -31,7 +31,8 @@ pub fn ladder(
     most: u64,
 ) -> Result<Vec<Control>, Error> {
     if method.is_adaptive() {
-        return Ok((TOLERANCES.1..=TOLERANCES.0)
+        let least = TOLERANCES.1[usize::from(method.implicit)];
+        return Ok((least..=TOLERANCES.0)
             .rev()
             .map(|half| {
                 let digits = if half % 2 == 0 { 1.0 } else { 3.0 };

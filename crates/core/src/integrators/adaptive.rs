@@ -12,8 +12,6 @@ use crate::system::ParticleSystem;
 /// Shortest step (s): an equation that asks for less has no solution, or a tolerance below what
 /// double precision holds.
 const SHORTEST: f64 = 1e-10;
-/// Share of the tolerated error that a step aims at.
-const SAFETY: f64 = 0.8;
 /// Least and greatest ratio of a step to the one before it.
 const CHANGE: (f64, f64) = (0.2, 8.0);
 
@@ -80,7 +78,7 @@ impl Adaptive {
         AdaptiveState {
             next: self.next,
             last: self.last,
-            step: (stages && self.goes_on).then(|| self.trial.last().clone()),
+            step: (stages && self.goes_on).then(|| self.trial.last()),
         }
     }
 
@@ -148,7 +146,6 @@ impl Adaptive {
             self.next = self.first_step(system, t, y, &norm);
             work += Work::of(1);
         }
-        let exponent = -1.0 / self.trial.exponent();
         let mut h = self.next;
         loop {
             if h < SHORTEST.max(16.0 * f64::EPSILON * t.abs()) {
@@ -158,7 +155,7 @@ impl Adaptive {
             }
             let (cost, error) = self.trial.attempt(system, t, h, &norm);
             work += cost;
-            let change = SAFETY * libm::pow(error, exponent);
+            let change = self.trial.change(error);
             if error <= 1.0 {
                 y.copy_from_slice(self.trial.end());
                 // Not longer at once after it had to be shorter.

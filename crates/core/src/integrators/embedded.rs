@@ -185,8 +185,8 @@ impl Trial for EmbeddedPair {
         work
     }
 
-    fn last(&self) -> &LastStep {
-        &self.last
+    fn last(&self) -> LastStep {
+        self.last.clone()
     }
 
     fn resume(&mut self, step: &LastStep) -> Result<(), Error> {

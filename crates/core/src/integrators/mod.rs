@@ -102,6 +102,7 @@ impl Method {
                 )))
             }
             Some(_) if self.positions_only => nystrom::check(self.title, system),
+            _ if self.implicit => implicit::check(system),
             _ => Ok(()),
         }
     }
@@ -191,6 +192,7 @@ pub static METHODS: &[Method] = &[
     srkn11::METHOD,
     dprkn86::METHOD,
     dprkn1210::METHOD,
+    implicit::BDF,
 ];
 
 /// Method with this letter, name or alias.

@@ -333,8 +333,8 @@ impl Trial for NystromPair {
         Work::default()
     }
 
-    fn last(&self) -> &LastStep {
-        &self.last
+    fn last(&self) -> LastStep {
+        self.last.clone()
     }
 
     fn resume(&mut self, step: &LastStep) -> Result<(), Error> {

@@ -7,6 +7,9 @@ use super::error_norm::ErrorNorm;
 use crate::error::Error;
 use crate::system::ParticleSystem;
 
+/// Share of the tolerated error that a step aims at.
+const SAFETY: f64 = 0.8;
+
 /// A method that estimates the error of its step, and holds the state in the midst of it.
 pub(super) trait Trial: Send {
     /// `Ok` if the method serves the system as it is now.
@@ -22,6 +25,12 @@ pub(super) trait Trial: Send {
 
     /// Power of h with which the estimated local error falls.
     fn exponent(&self) -> f64;
+
+    /// Ratio of the next step to this one, of which the estimated error over the tolerated one is
+    /// known.
+    fn change(&self, error: f64) -> f64 {
+        SAFETY * libm::pow(error, -1.0 / self.exponent())
+    }
 
     /// Begins a step at y, of which nothing is known.
     fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work;
@@ -56,7 +65,7 @@ pub(super) trait Trial: Send {
     ) -> Work;
 
     /// Memory of the last step.
-    fn last(&self) -> &LastStep;
+    fn last(&self) -> LastStep;
 
     /// Goes on after another step.
     ///
@@ -79,6 +88,12 @@ pub(super) struct LastStep {
     pub k: Vec<Vec<f64>>,
     /// Whether the stages that only states within the step need have been computed.
     pub dense: bool,
+    /// Counts beside these, in the method's own order.
+    #[serde(default)]
+    pub counts: Vec<usize>,
+    /// Numbers beside these, in the method's own order.
+    #[serde(default)]
+    pub numbers: Vec<f64>,
 }
 
 impl LastStep {
@@ -90,6 +105,8 @@ impl LastStep {
             y1: vec![0.0; dim],
             k: vec![vec![0.0; dim]; stages],
             dense: false,
+            counts: vec![],
+            numbers: vec![],
         }
     }
 

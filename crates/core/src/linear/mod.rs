@@ -1,12 +1,14 @@
 //! Linear systems of implicit steps: conjugate gradients or a sparse factorisation, whichever costs
 //! less.
 
+mod blocks;
 mod conjugate_gradients;
+mod direct;
 mod sparse;
 mod tangent;
 
 use conjugate_gradients::ConjugateGradients;
-use sparse::Cholesky;
+use direct::Direct;
 pub(crate) use tangent::Tangent;
 
 use crate::system::Linearized;
@@ -18,12 +20,6 @@ use crate::work::Work;
 const ITERATION: f64 = 2.4;
 /// Price of gathering the matrix, in evaluations of forces spring by spring.
 const GATHERING: f64 = 4.0;
-/// Price of a factorisation, in evaluations of forces spring by spring: the least, and that of its
-/// operations over the number of couplings to the power 2/3.
-const FACTORISATION: [f64; 2] = [45.0, 0.33];
-/// Price of a solve with a factor, in evaluations of forces spring by spring: the least, and that
-/// of its numbers over the number of couplings.
-const SOLVE: [f64; 2] = [6.0, 0.2];
 /// Iterations that conjugate gradients take, over sqrt(1 + a2 w2) ln(2/tolerance).
 const SPREAD: f64 = 0.3;
 /// Least operations of a factorisation for each coupling of particles in two dimensions, over the
@@ -40,7 +36,7 @@ pub(crate) struct Solver {
     iterative: ConjugateGradients,
     /// The factorisation, once it is worth an analysis of the pattern; `None` also if it would be
     /// too large.
-    direct: Option<Cholesky>,
+    direct: Option<Direct>,
     /// Whether the pattern was analysed.
     analysed: bool,
     /// Evaluations of the system's forces in the time of one spring by spring.
@@ -76,7 +72,7 @@ impl Solver {
 
     /// Analyses the pattern for a factorisation.
     fn analyse(&mut self) {
-        self.direct = Cholesky::new(&self.tangent);
+        self.direct = Direct::new(&self.tangent);
         self.analysed = true;
     }
 
@@ -89,6 +85,11 @@ impl Solver {
         } else {
             0.0
         }
+    }
+
+    /// Takes up what the forces of the system cost now.
+    pub fn renew(&mut self, system: &dyn Linearized) {
+        self.speed = system.speed();
     }
 
     /// Gathers A = M + a (C + D) + a2 K at x.
@@ -110,6 +111,48 @@ impl Solver {
         self.stiffness
     }
 
+    /// Whether a solve to a relative residual is cheaper by a factorisation than by conjugate
+    /// gradients. Analyses the pattern where that may be so.
+    fn goes_direct(&mut self, tolerance: f64) -> bool {
+        let iterations = SPREAD * (1.0 + self.stiffness).sqrt() * libm::log(2.0 / tolerance);
+        let least = match self.least_operations() {
+            0.0 => 0.0,
+            operations => direct::sparse_factorisation(operations),
+        };
+        let worth_analysing = self.factorised || least * self.speed < ITERATION * iterations;
+        if self.direct_always.unwrap_or(worth_analysing) && !self.analysed {
+            self.analyse();
+        }
+        let price = self.direct.as_ref().map_or(f64::INFINITY, |direct| {
+            let factorisation = if self.factorised {
+                0.0
+            } else {
+                direct.factorisation
+            };
+            factorisation + direct.solution
+        });
+        self.direct_always
+            .unwrap_or(worth_analysing && price * self.speed < ITERATION * iterations)
+    }
+
+    /// Factorises A if solves to a relative residual are cheaper so. Returns the work, and whether
+    /// A may be positive definite.
+    pub fn prepare(&mut self, tolerance: f64) -> (Work, bool) {
+        let goes_direct = self.goes_direct(tolerance);
+        match &mut self.direct {
+            Some(direct) if goes_direct && !self.factorised => {
+                self.factorised = direct.factorise(&self.tangent);
+                let work = Work {
+                    factorizations: 1,
+                    algebra: direct.factorisation * self.speed,
+                    ..Work::default()
+                };
+                (work, self.factorised)
+            }
+            _ => (Work::default(), true),
+        }
+    }
+
     /// Solves A x = b to a relative residual. Returns the work and the residual; `None` if A is not
     /// positive definite.
     pub fn solve(
@@ -119,40 +162,14 @@ impl Solver {
         x: &mut [f64],
         tolerance: f64,
     ) -> (Work, Option<f64>) {
-        let couplings = self.tangent.couplings().max(1) as f64;
-        let iterations = SPREAD * (1.0 + self.stiffness).sqrt() * libm::log(2.0 / tolerance);
-        let factoring =
-            |operations: f64| FACTORISATION[0] + FACTORISATION[1] * libm::cbrt(operations).powi(2);
-        let worth_analysing = self.factorised
-            || factoring(self.least_operations()) * self.speed < ITERATION * iterations;
-        if self.direct_always.unwrap_or(worth_analysing) && !self.analysed {
-            self.analyse();
+        let (mut work, may_be_definite) = self.prepare(tolerance);
+        work.solves = 1;
+        if !may_be_definite {
+            return (work, None);
         }
-        let direct_price = self.direct.as_ref().map_or(f64::INFINITY, |direct| {
-            let solve = SOLVE[0] + SOLVE[1] * direct.size / couplings;
-            if self.factorised {
-                solve
-            } else {
-                factoring(direct.operations / couplings) + solve
-            }
-        });
-        let goes_direct = self
-            .direct_always
-            .unwrap_or(worth_analysing && direct_price * self.speed < ITERATION * iterations);
         match &mut self.direct {
-            Some(direct) if goes_direct => {
-                let mut work = Work {
-                    solves: 1,
-                    algebra: direct_price * self.speed,
-                    ..Work::default()
-                };
-                if !self.factorised {
-                    work.factorizations = 1;
-                    if !direct.factorise(&self.tangent) {
-                        return (work, None);
-                    }
-                    self.factorised = true;
-                }
+            Some(direct) if self.factorised => {
+                work.algebra += direct.solution * self.speed;
                 direct.solve(b, x);
                 (work, Some(0.0))
             }
@@ -160,17 +177,11 @@ impl Solver {
                 let solution = self
                     .iterative
                     .solve(system, &self.tangent, b, x, tolerance, MOST);
-                let work = Work {
-                    solves: 1,
-                    iterations: solution.iterations,
-                    algebra: ITERATION * solution.iterations as f64,
-                    residual: if solution.indefinite {
-                        0.0
-                    } else {
-                        solution.residual
-                    },
-                    ..Work::default()
-                };
+                work.iterations = solution.iterations;
+                work.algebra += ITERATION * solution.iterations as f64;
+                if !solution.indefinite {
+                    work.residual = solution.residual;
+                }
                 (work, (!solution.indefinite).then_some(solution.residual))
             }
         }

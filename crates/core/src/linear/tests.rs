@@ -67,7 +67,12 @@ fn residual(network: &Network, tangent: &Tangent, b: &[f64], x: &[f64]) -> f64 {
 
 #[test]
 fn iterations_and_factors_agree_and_report_the_true_residual() {
-    for (network, x) in [cloth(7, 300.0), chain(30, 1000.0)] {
+    // A factor by blocks of a chain and of a small cloth, and a sparse one of a larger cloth.
+    for ((network, x), by_blocks) in [
+        (chain(30, 1000.0), true),
+        (cloth(5, 300.0), true),
+        (cloth(20, 300.0), false),
+    ] {
         let b = right_hand_side(&network);
         let mut solver = Solver::new(&network);
         let _ = solver.gather(&network, &x, 1.0 / 60.0, true);
@@ -82,6 +87,8 @@ fn iterations_and_factors_agree_and_report_the_true_residual() {
         solver.direct_always = Some(true);
         let (work, _) = solver.solve(&network, &b, &mut by_factors, 1e-12);
         assert_eq!((work.factorizations, work.iterations), (1, 0));
+        let direct = solver.direct.as_ref().unwrap();
+        assert_eq!(direct.is_by_blocks(), by_blocks);
         assert!(residual(&network, &solver.tangent, &b, &by_factors) < 1e-12);
         for (a, b) in by_iterations.iter().zip(&by_factors) {
             assert!((a - b).abs() < 1e-9 * by_factors.iter().fold(0.0, |m: f64, b| m.max(b.abs())));
@@ -151,9 +158,11 @@ fn time(mut run: impl FnMut()) -> f64 {
 #[ignore = "measures"]
 fn solves_measured() {
     println!(
-        "case                    a w     F us  gather/F  iter/F  iterations (guess)  PCG/F  factor/F  solve/F  ops/coupling  size/coupling  picked  best"
+        "case                    a w     F us  gather/F  iter/F  iterations (guess)  PCG/F  factor/F  solve/F  factor price  solve price   picked  best"
     );
     for (name, (network, x)) in [
+        ("chain 5", chain(5, 1e2)),
+        ("chain 20", chain(20, 1e2)),
         ("chain 100", chain(100, 1e2)),
         ("chain 1000", chain(1000, 1e2)),
         ("cloth 20", cloth(20, 1e2)),
@@ -184,7 +193,7 @@ fn solves_measured() {
             });
             solver.analyse();
             let direct = solver.direct.as_mut().unwrap();
-            let (operations, size) = (direct.operations, direct.size);
+            let prices = (direct.factorisation, direct.solution);
             let factor = time(|| {
                 black_box(direct.factorise(&solver.tangent));
             });
@@ -196,18 +205,17 @@ fn solves_measured() {
                 .0
                 .factorizations
                 == 1;
-            let couplings = solver.tangent.couplings() as f64;
             let guess = SPREAD * (1.0 + solver.stiffness()).sqrt() * (2.0 / tolerance).ln();
             println!(
-                "{name:<18} {a_w:>8} {:>8.2} {:>9.2} {:>7.2} {iterations:>11} ({guess:>5.0}) {:>6.0} {:>9.0} {:>8.1} {:>13.0} {:>14.1}  {}  {:.2}",
+                "{name:<18} {a_w:>8} {:>8.2} {:>9.2} {:>7.2} {iterations:>11} ({guess:>5.0}) {:>6.0} {:>9.1} {:>8.2} {:>13.1} {:>14.1}  {}  {:.2}",
                 1e6 * force,
                 gather / force,
                 pcg / force / iterations as f64,
                 pcg / force,
                 factor / force,
                 solve / force,
-                operations / couplings,
-                size / couplings,
+                prices.0,
+                prices.1,
                 if picked { "direct" } else { "pcg   " },
                 if picked {
                     (factor + solve) / pcg

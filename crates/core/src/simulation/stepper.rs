@@ -44,6 +44,7 @@ impl Stepper {
     ) -> Result<Self, Error> {
         method.check(system)?;
         method.check_control(control)?;
+        method.check(system)?;
         let adaptive = match control {
             Control::Step(_) => None,
             Control::Tolerance(relative) => method.adaptive(system, Tolerance::new(relative)?),

@@ -235,7 +235,13 @@ fn where_no_step_will_do_it_says_so() {
                 Err(error) => break error,
             }
         };
-        assert!(matches!(error, Error::StepTooSmall { time, .. } if (time - 1.0).abs() < 1e-5));
+        // The pole is as far off as the method's error on the way to it.
+        let off = if m.implicit { 1e-4 } else { 1e-5 };
+        assert!(
+            matches!(error, Error::StepTooSmall { time, .. } if (time - 1.0).abs() < off),
+            "{}: {error:?}",
+            m.name
+        );
         assert!(size(&y).is_finite());
         assert!(error.to_string().contains("no step meets the tolerance"));
     }

@@ -8,8 +8,10 @@
 //! Simulation*, 1998). For any other system, the Jacobian is computed by central differences and
 //! the equations are solved by elimination.
 
+mod bdf;
 mod dense;
 mod euler;
+mod kept;
 mod midpoint;
 mod tr_bdf2;
 
@@ -18,6 +20,7 @@ use crate::linear::Solver;
 use crate::system::{Linearized, Mechanics, ParticleSystem, place_pins};
 use dense::Dense;
 
+pub(super) use bdf::METHOD as BDF;
 pub(super) use euler::METHOD as EULER;
 pub(super) use midpoint::METHOD as MIDPOINT;
 pub(super) use tr_bdf2::METHOD as TR_BDF2;
@@ -31,6 +34,23 @@ const MOST: u32 = 30;
 const CLOSE: f64 = 1e-11;
 /// Relative residual to which the linear systems of Newton's method are solved.
 const FORCING: f64 = 1e-5;
+
+/// `Ok` if implicit methods support this system.
+///
+/// # Errors
+/// The system has no forces and masses, and is too large for the Jacobian of its f.
+pub(super) fn check(system: &dyn ParticleSystem) -> Result<(), Error> {
+    let linearized = system.mechanics().and_then(Mechanics::linearized);
+    if linearized.is_none() && system.dim() > dense::LARGEST {
+        return Err(Error::Invalid(format!(
+            "implicit methods serve systems without masses up to a state of {} numbers, and this \
+             has {}: use an explicit one",
+            dense::LARGEST,
+            system.dim()
+        )));
+    }
+    Ok(())
+}
 
 /// Number of iterations of Newton's method.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -155,41 +175,20 @@ impl Mechanical {
         newton: Newton,
         work: &mut Work,
     ) -> Result<f64, Error> {
-        let Self {
-            solver,
-            f,
-            rhs,
-            gap,
-            dv,
-        } = self;
-        mechanics.forces(t, x, v, f);
-        *work += Work::of(1);
-        for (((gap, bx), x), v) in gap.iter_mut().zip(bx).zip(&*x).zip(&*v) {
-            *gap = bx + a * v - x;
-        }
+        *work += self.evaluate(mechanics, t, a, bx, [x, v]);
         let mut clamped = newton == Newton::Once;
         loop {
-            *work += solver.gather(mechanics, x, a, clamped);
-            solver.tangent.filter(gap);
-            let inverse_masses = mechanics.inverse_masses();
-            let n = inverse_masses.len();
-            for (k, rhs) in rhs.iter_mut().enumerate() {
-                let w = inverse_masses[k % n];
-                *rhs = if w == 0.0 {
-                    0.0
-                } else {
-                    (bv[k] - v[k]) / w + a * f[k]
-                };
-            }
-            solver.tangent.subtract_stiffness(a, gap, rhs);
-            solver.tangent.filter(rhs);
+            *work += self.solver.gather(mechanics, x, a, clamped);
+            self.reduce(mechanics, a, bv, v);
             let tolerance = match newton {
                 Newton::Full => FORCING,
                 // Short steps are solved more closely, so that errors fall with the step to the
                 // method's order.
-                Newton::Once => 1e-4 * solver.stiffness().clamp(1e-2, 1.0).powi(4),
+                Newton::Once => 1e-4 * self.solver.stiffness().clamp(1e-2, 1.0).powi(4),
             };
-            let (cost, solved) = solver.solve(mechanics, rhs, dv, tolerance);
+            let (cost, solved) = self
+                .solver
+                .solve(mechanics, &self.rhs, &mut self.dv, tolerance);
             *work += cost;
             match solved {
                 Some(_) => break,
@@ -199,12 +198,53 @@ impl Mechanical {
                 None => return Err(Error::NoConvergence { residual: 1.0 }),
             }
         }
-        for ((((x, v), gap), dv), _) in x.iter_mut().zip(v.iter_mut()).zip(&*gap).zip(&*dv).zip(bx)
-        {
+        let changes = self.gap.iter().zip(&self.dv);
+        for ((x, v), (gap, dv)) in x.iter_mut().zip(v.iter_mut()).zip(changes) {
             *x += gap + a * dv;
             *v += dv;
         }
-        Ok(norm(dv))
+        Ok(norm(&self.dv))
+    }
+
+    /// Evaluates the forces at (x, v), and the gap. Returns the cost.
+    fn evaluate(
+        &mut self,
+        mechanics: &dyn Linearized,
+        t: f64,
+        a: f64,
+        bx: &[f64],
+        [x, v]: [&[f64]; 2],
+    ) -> Work {
+        mechanics.forces(t, x, v, &mut self.f);
+        for (((gap, bx), x), v) in self.gap.iter_mut().zip(bx).zip(x).zip(v) {
+            *gap = bx + a * v - x;
+        }
+        Work::of(1)
+    }
+
+    /// Writes M (bv - v) + a F - a K g for free particles to the right-hand side, with the K that
+    /// was gathered last.
+    fn reduce(&mut self, mechanics: &dyn Linearized, a: f64, bv: &[f64], v: &[f64]) {
+        let Self {
+            solver,
+            f,
+            rhs,
+            gap,
+            ..
+        } = self;
+        solver.tangent.filter(gap);
+        let inverse_masses = mechanics.inverse_masses();
+        let n = inverse_masses.len();
+        for (k, rhs) in rhs.iter_mut().enumerate() {
+            let w = inverse_masses[k % n];
+            *rhs = if w == 0.0 {
+                0.0
+            } else {
+                (bv[k] - v[k]) / w + a * f[k]
+            };
+        }
+        solver.tangent.subtract_stiffness(a, gap, rhs);
+        solver.tangent.filter(rhs);
     }
 }
 

@@ -1,0 +1,362 @@
+//! The numerical differentiation formulas of orders 1 to 5, by backward differences `D_j` of the
+//! states at the ends of equal steps (Shampine, Reichelt, *The MATLAB ODE suite*, SIAM J. Sci.
+//! Comput. 18, 1997; Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, V.1). At
+//! the end y1 of a step of order k, `sum(D_j / j, j = 1..k) - kappa_k g_k D_(k+1) = h f(t + h, y1)`
+//! with `g_k = 1 + 1/2 + ... + 1/k`. Where h changes, the polynomial through the states is read at
+//! new places. Stiff motion is damped out. A step of a given length, which has none before it, is
+//! one of TR-BDF2.
+
+use super::super::error_norm::ErrorNorm;
+use super::super::trial::{LastStep, Trial};
+use super::super::{Method, Work};
+use super::kept::{KeptSolver, Tangent};
+use super::{place, tr_bdf2};
+use crate::control::Control;
+use crate::error::Error;
+use crate::system::ParticleSystem;
+
+pub(in super::super) const METHOD: Method = Method {
+    name: "bdf",
+    letter: 'o',
+    aliases: &["ndf", "ode15s"],
+    title: "BDF of orders 1 to 5, implicit, adaptive",
+    order: tr_bdf2::METHOD.order,
+    default_control: Control::Tolerance(1e-3),
+    evaluations: 3,
+    damped_evaluations: 3,
+    implicit: true,
+    needs_mechanics: false,
+    positions_only: false,
+    create: tr_bdf2::METHOD.create,
+    trial: Some(|system| Box::new(Bdf::new(system))),
+};
+
+/// Highest order.
+const ORDERS: usize = 5;
+/// Number of backward differences: two beyond the highest order, for the errors of the next.
+const DIFFERENCES: usize = ORDERS + 2;
+/// Coefficient kappa of each order: with it the error is smaller than without, and as much is
+/// stable.
+const KAPPA: [f64; ORDERS + 1] = [0.0, -0.185, -1.0 / 9.0, -0.0823, -0.0415, 0.0];
+/// Share of the tolerated error that the next step aims at, at most so many times as long.
+const SAFETY: f64 = 0.8;
+/// Least ratio of steps for which the differences are computed anew.
+const LONGER: f64 = 1.2;
+
+/// Sum g of the inverses of the numbers up to an order.
+fn harmonic(order: usize) -> f64 {
+    (1..=order).map(|j| 1.0 / j as f64).sum()
+}
+
+/// Factor of `D_(k+1)` in the error of a step of order k.
+fn error_factor(order: usize) -> f64 {
+    KAPPA[order] * harmonic(order) + 1.0 / (order + 1) as f64
+}
+
+/// The method's own numbers beside the vectors of a step.
+#[derive(Clone, Copy)]
+struct Orders {
+    /// Order of the last step.
+    last: usize,
+    /// Order of the next step.
+    next: usize,
+    /// Number of steps of this length and order.
+    equal: usize,
+}
+
+/// The method with its scratch.
+struct Bdf {
+    solver: KeptSolver,
+    /// Whether the solver does not have the tangent yet.
+    resumed: bool,
+    orders: Orders,
+    /// Ratio of the next step to the last.
+    change: f64,
+    predicted: Vec<f64>,
+    base: Vec<f64>,
+    /// Error of a step.
+    sum: Vec<f64>,
+    /// The last step, whose vectors are `D_1`, `D_2`, ..., and in a checkpoint the state at which
+    /// the tangent was formed; its length is the distance of the states that D is made of.
+    step: LastStep,
+}
+
+impl Bdf {
+    fn new(system: &dyn ParticleSystem) -> Self {
+        let dim = system.dim();
+        let zeros = || vec![0.0; dim];
+        Self {
+            solver: KeptSolver::new(system),
+            resumed: false,
+            orders: Orders {
+                last: 1,
+                next: 1,
+                equal: 0,
+            },
+            change: 1.0,
+            predicted: zeros(),
+            base: zeros(),
+            sum: zeros(),
+            step: LastStep::new(dim, DIFFERENCES + 1),
+        }
+    }
+
+    /// Makes D the differences of states at a distance of h (s), on the same polynomial.
+    fn rescale(&mut self, h: f64) {
+        let (ratio, order) = (h / self.step.h, self.orders.next);
+        // The polynomial through the ends is y0 + sum s (s + 1) ... (s + j - 1) / j! D_j: the new
+        // differences are sums of the old ones, by a product of two triangular matrices.
+        let of_ratio = |i: usize, j: usize, ratio: f64| -> f64 {
+            (1..=i)
+                .map(|m| (m as f64 - 1.0 - ratio * j as f64) / m as f64)
+                .product()
+        };
+        let mut old = [0.0; ORDERS];
+        let mut weights = [[0.0; ORDERS]; ORDERS];
+        for (i, row) in weights[..order].iter_mut().enumerate() {
+            for (j, weight) in row[..order].iter_mut().enumerate() {
+                *weight = (1..=order)
+                    .map(|m| of_ratio(j + 1, m, ratio) * of_ratio(m, i + 1, 1.0))
+                    .sum();
+            }
+        }
+        for k in 0..self.sum.len() {
+            for (old, d) in old.iter_mut().zip(&self.step.k) {
+                *old = d[k];
+            }
+            for (d, weights) in self.step.k.iter_mut().zip(&weights[..order]) {
+                let terms = weights[..order].iter().zip(&old);
+                d[k] = terms.map(|(weight, old)| weight * old).sum();
+            }
+        }
+        self.step.h = h;
+        self.orders.equal = 0;
+    }
+
+    /// Writes the prediction, and the base of the equations y1 = base + a f(t, y1).
+    fn predict(&mut self) {
+        let order = self.orders.next;
+        let divisor = (1.0 - KAPPA[order]) * harmonic(order);
+        self.predicted.copy_from_slice(&self.step.y0);
+        self.base.copy_from_slice(&self.step.y0);
+        for (j, d) in self.step.k[..order].iter().enumerate() {
+            super::super::add_scaled(&mut self.predicted, 1.0, d);
+            super::super::add_scaled(&mut self.base, 1.0 - harmonic(j + 1) / divisor, d);
+        }
+    }
+
+    /// Ratio of steps by which the error of an order would be the tolerated one.
+    fn ratio(error: f64, order: usize) -> f64 {
+        libm::pow(error.max(1e-12), -1.0 / (order + 1) as f64)
+    }
+
+    /// Norm of the error, without what it is at pins, whose places are known.
+    fn norm_of_error(&mut self, system: &dyn ParticleSystem, norm: &ErrorNorm) -> f64 {
+        if let Some(mechanics) = system.mechanics() {
+            let inverse_masses = mechanics.inverse_masses();
+            for error in self.sum.chunks_exact_mut(inverse_masses.len()) {
+                for (error, w) in error.iter_mut().zip(inverse_masses) {
+                    if *w == 0.0 {
+                        *error = 0.0;
+                    }
+                }
+            }
+        }
+        norm.of(&self.step.y0, &self.step.y1, &self.sum)
+    }
+
+    /// Norm of the error of an order, from the difference above it.
+    fn error_of(&mut self, order: usize, system: &dyn ParticleSystem, norm: &ErrorNorm) -> f64 {
+        let factor = error_factor(order);
+        for (sum, d) in self.sum.iter_mut().zip(&self.step.k[order]) {
+            *sum = factor * d;
+        }
+        self.norm_of_error(system, norm)
+    }
+
+    /// Makes D the differences at the end of the step, and chooses order and length of the next.
+    fn accept(&mut self, error: f64, system: &dyn ParticleSystem, norm: &ErrorNorm) {
+        let order = self.orders.next;
+        let LastStep { y1, k, .. } = &mut self.step;
+        for (i, (y1, predicted)) in y1.iter().zip(&self.predicted).enumerate() {
+            let d = y1 - predicted;
+            k[order + 1][i] = d - k[order][i];
+            k[order][i] = d;
+            for j in (0..order).rev() {
+                k[j][i] += k[j + 1][i];
+            }
+        }
+        self.orders.last = order;
+        self.orders.equal += 1;
+        self.change = 1.0;
+        if self.orders.equal <= order {
+            return;
+        }
+        let mut best = (Self::ratio(error, order), order);
+        if order > 1 {
+            let lower = (
+                Self::ratio(self.error_of(order - 1, system, norm), order - 1),
+                order - 1,
+            );
+            if lower.0 > best.0 {
+                best = lower;
+            }
+        }
+        if order < ORDERS {
+            let higher = (
+                Self::ratio(self.error_of(order + 1, system, norm), order + 1),
+                order + 1,
+            );
+            if higher.0 > best.0 {
+                best = higher;
+            }
+        }
+        let change = SAFETY * best.0;
+        if best.1 != order {
+            self.orders.equal = 0;
+        }
+        self.orders.next = best.1;
+        if !(1.0..LONGER).contains(&change) {
+            self.change = change;
+        }
+    }
+}
+
+impl Trial for Bdf {
+    fn dim(&self) -> usize {
+        self.step.y0.len()
+    }
+
+    fn exponent(&self) -> f64 {
+        (self.orders.next + 1) as f64
+    }
+
+    fn change(&self, error: f64) -> f64 {
+        if error <= 1.0 {
+            self.change
+        } else if error.is_finite() {
+            SAFETY * Self::ratio(error, self.orders.next)
+        } else {
+            0.5
+        }
+    }
+
+    fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
+        // A pin that a hand has just set in motion jumps to the velocity of its path.
+        self.step.y0.copy_from_slice(y);
+        place(system, t, &mut self.step.y0);
+        system.eval_f(t, &self.step.y0, &mut self.step.k[0]);
+        // The difference is f times the distance of the states.
+        self.step.h = 1.0;
+        self.orders = Orders {
+            last: 1,
+            next: 1,
+            equal: 0,
+        };
+        self.solver.forget(system);
+        Work::of(1)
+    }
+
+    fn go_on(&mut self) {
+        self.step.y0.copy_from_slice(&self.step.y1);
+    }
+
+    fn derivative(&self, _: &dyn ParticleSystem, out: &mut [f64]) {
+        out.fill(0.0);
+        for (j, d) in self.step.k[..self.orders.last].iter().enumerate() {
+            super::super::add_scaled(out, 1.0 / ((j + 1) as f64 * self.step.h), d);
+        }
+    }
+
+    fn attempt(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        h: f64,
+        norm: &ErrorNorm,
+    ) -> (Work, f64) {
+        if h.to_bits() != self.step.h.to_bits() {
+            self.rescale(h);
+        }
+        self.predict();
+        let order = self.orders.next;
+        let a = h / ((1.0 - KAPPA[order]) * harmonic(order));
+        if std::mem::take(&mut self.resumed) && self.solver.tangent.a != 0.0 {
+            // The same tangent as before, which was paid for when it was formed.
+            let _ = self.solver.form(system);
+        }
+        let equations = [&*self.base, &*self.predicted];
+        let y1 = &mut self.step.y1;
+        let (work, solved) = self.solver.solve(system, (t + h, a), equations, y1, norm);
+        if !solved {
+            return (work, f64::INFINITY);
+        }
+        let factor = error_factor(order);
+        for ((sum, y1), predicted) in self.sum.iter_mut().zip(&self.step.y1).zip(&self.predicted) {
+            *sum = factor * (y1 - predicted);
+        }
+        let error = self.norm_of_error(system, norm);
+        if error <= 1.0 {
+            self.accept(error, system, norm);
+        }
+        (work, error)
+    }
+
+    fn end(&self) -> &[f64] {
+        &self.step.y1
+    }
+
+    fn interpolate(
+        &mut self,
+        _system: &dyn ParticleSystem,
+        _t: f64,
+        theta: f64,
+        out: &mut [f64],
+    ) -> Work {
+        out.copy_from_slice(&self.step.y1);
+        let mut factor = 1.0;
+        for (j, d) in self.step.k[..self.orders.last].iter().enumerate() {
+            factor *= (theta - 1.0 + j as f64) / (j + 1) as f64;
+            super::super::add_scaled(out, factor, d);
+        }
+        Work::default()
+    }
+
+    fn last(&self) -> LastStep {
+        let Orders { last, next, equal } = self.orders;
+        let Tangent {
+            t,
+            a,
+            clamped,
+            rate,
+        } = self.solver.tangent;
+        let mut step = self.step.clone();
+        step.k[DIFFERENCES].copy_from_slice(&self.solver.at);
+        step.counts = vec![last, next, equal, usize::from(clamped)];
+        step.numbers = vec![t, a, rate];
+        step
+    }
+
+    fn resume(&mut self, step: &LastStep) -> Result<(), Error> {
+        let (&[last, next, equal, clamped], &[t, a, rate]) = (&*step.counts, &*step.numbers) else {
+            return Err(Error::Invalid("the last step is of another method".into()));
+        };
+        if [last, next]
+            .iter()
+            .any(|order| !(1..=ORDERS).contains(order))
+        {
+            return Err(Error::Invalid(format!("there is no BDF of order {next}")));
+        }
+        self.step.resume(step)?;
+        self.orders = Orders { last, next, equal };
+        self.solver.at.copy_from_slice(&step.k[DIFFERENCES]);
+        self.solver.tangent = Tangent {
+            t,
+            a,
+            clamped: clamped != 0,
+            rate,
+        };
+        self.resumed = true;
+        Ok(())
+    }
+}

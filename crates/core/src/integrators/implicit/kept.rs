@@ -1,0 +1,219 @@
+//! Simplified Newton's method: the tangent is formed at one state and kept, over iterations and
+//! over steps, as long as the iterations converge with it (Hairer, Wanner, *Solving Ordinary
+//! Differential Equations II*, 1996, IV.8). They end where the rate at which they converge says
+//! that the error of the equations is a small part of the error that a step may make.
+
+use super::super::error_norm::ErrorNorm;
+use super::super::{Work, add_scaled};
+use super::{Mechanical, StageSolver, place};
+use crate::system::{Linearized, Mechanics, ParticleSystem};
+
+/// Part of the tolerated error that may remain in the equations.
+const CLOSE: f64 = 0.1;
+/// Largest number of iterations with one tangent.
+const MOST: i32 = 4;
+/// Relative residual of an iterative linear solve: less than what an iteration of Newton's method
+/// leaves.
+const FORCING: f64 = 0.02;
+/// Tangent that is kept: where it was formed, and how well the iterations converge with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tangent {
+    /// Time at which it was formed (s).
+    pub t: f64,
+    /// Factor a of the equations y = base + a f(t, y) (s); 0 before one is formed.
+    pub a: f64,
+    /// Whether compressed springs are clamped in it.
+    pub clamped: bool,
+    /// Ratio of a change of the iteration to the one before it.
+    pub rate: f64,
+}
+
+impl Tangent {
+    /// No tangent.
+    pub const NONE: Self = Self {
+        t: 0.0,
+        a: 0.0,
+        clamped: false,
+        rate: 1.0,
+    };
+}
+
+/// Reason for which a solve with the kept tangent failed.
+enum Failure {
+    /// The tangent is not positive definite.
+    Indefinite,
+    /// The iterations do not converge.
+    Diverges,
+}
+
+/// Solver of implicit stages that keeps its tangent.
+pub(super) struct KeptSolver {
+    stage: StageSolver,
+    pub tangent: Tangent,
+    /// State at which the tangent was formed.
+    pub at: Vec<f64>,
+    /// Change of the state by an iteration.
+    change: Vec<f64>,
+}
+
+impl KeptSolver {
+    pub fn new(system: &dyn ParticleSystem) -> Self {
+        Self {
+            stage: StageSolver::new(system),
+            tangent: Tangent::NONE,
+            at: vec![0.0; system.dim()],
+            change: vec![0.0; system.dim()],
+        }
+    }
+
+    /// Forgets the tangent: the system may be another one than before.
+    pub fn forget(&mut self, system: &dyn ParticleSystem) {
+        self.tangent = Tangent::NONE;
+        if let (StageSolver::Mechanical(stage), Some(linearized)) =
+            (&mut self.stage, linearized(system))
+        {
+            stage.solver.renew(linearized);
+        }
+    }
+
+    /// Takes y from the state `predicted` to the solution of y = base + a f(t, y), by the tangent
+    /// that is kept, or by a new one. Returns the cost, and whether y solves the equations.
+    pub fn solve(
+        &mut self,
+        system: &dyn ParticleSystem,
+        (t, a): (f64, f64),
+        [base, predicted]: [&[f64]; 2],
+        y: &mut [f64],
+        norm: &ErrorNorm,
+    ) -> (Work, bool) {
+        let mut work = Work::default();
+        let mut fresh = self.tangent.a.to_bits() != a.to_bits();
+        let mut clamped = false;
+        loop {
+            y.copy_from_slice(predicted);
+            place(system, t, y);
+            let mut solved = Ok(());
+            if fresh {
+                self.at.copy_from_slice(y);
+                self.tangent = Tangent {
+                    t,
+                    a,
+                    clamped,
+                    rate: 1.0,
+                };
+                let (cost, of_use) = self.form(system);
+                work += cost;
+                if !of_use {
+                    solved = Err(Failure::Indefinite);
+                }
+            }
+            if solved.is_ok() {
+                let (cost, converged) = self.converge(system, (t, a), base, y, norm);
+                work += cost;
+                solved = converged;
+            }
+            match solved {
+                Ok(()) => return (work, true),
+                Err(Failure::Indefinite) if !self.tangent.clamped => clamped = true,
+                Err(Failure::Diverges) if !fresh => (),
+                Err(_) => {
+                    self.tangent = Tangent::NONE;
+                    return (work, false);
+                }
+            }
+            fresh = true;
+        }
+    }
+
+    /// Forms the tangent again, where it was formed. Returns the cost, and whether it is of use.
+    pub fn form(&mut self, system: &dyn ParticleSystem) -> (Work, bool) {
+        let Tangent { t, a, clamped, .. } = self.tangent;
+        match (&mut self.stage, linearized(system)) {
+            (StageSolver::Mechanical(stage), Some(linearized)) => {
+                let x = &self.at[..self.at.len() / 2];
+                let mut work = stage.solver.gather(linearized, x, a, clamped);
+                let (cost, of_use) = stage.solver.prepare(FORCING);
+                work += cost;
+                (work, of_use)
+            }
+            (StageSolver::Dense(stage), _) => stage.keep(system, t, a, &self.at),
+            (StageSolver::Mechanical(_), None) => (Work::default(), false),
+        }
+    }
+
+    /// Iterates until the equations are solved. Returns the cost.
+    fn converge(
+        &mut self,
+        system: &dyn ParticleSystem,
+        (t, a): (f64, f64),
+        base: &[f64],
+        y: &mut [f64],
+        norm: &ErrorNorm,
+    ) -> (Work, Result<(), Failure>) {
+        let mut work = Work::default();
+        let mut last: Option<f64> = None;
+        let rate = &mut self.tangent.rate;
+        for left in (0..MOST).rev() {
+            let (cost, solved) = match (&mut self.stage, linearized(system)) {
+                (StageSolver::Mechanical(stage), Some(linearized)) => {
+                    stage.correct(linearized, (t, a), base, y, &mut self.change)
+                }
+                (StageSolver::Dense(stage), _) => {
+                    let work = stage.correct(system, t, a, base, y);
+                    self.change.copy_from_slice(stage.change());
+                    (work, true)
+                }
+                (StageSolver::Mechanical(_), None) => (Work::default(), false),
+            };
+            work += cost;
+            if !solved {
+                return (work, Err(Failure::Indefinite));
+            }
+            let size = norm.of(y, y, &self.change);
+            if let Some(last) = last {
+                let found = if last > 0.0 { size / last } else { 0.0 };
+                // Not a number is as bad as can be.
+                if !(found < 1.0 && size * found.powi(left) <= CLOSE * (1.0 - found)) {
+                    break;
+                }
+                *rate = found.max(0.3 * *rate);
+            }
+            if size * (*rate / (1.0 - *rate)).min(1.0) <= CLOSE {
+                return (work, Ok(()));
+            }
+            last = Some(size);
+        }
+        (work, Err(Failure::Diverges))
+    }
+}
+
+/// View of a system with forces and masses to first order, if it offers one.
+fn linearized(system: &dyn ParticleSystem) -> Option<&dyn Linearized> {
+    system.mechanics().and_then(Mechanics::linearized)
+}
+
+impl Mechanical {
+    /// One iteration: adds its change to y. Returns the cost, and whether the linear system was
+    /// solved.
+    fn correct(
+        &mut self,
+        mechanics: &dyn Linearized,
+        (t, a): (f64, f64),
+        base: &[f64],
+        y: &mut [f64],
+        change: &mut [f64],
+    ) -> (Work, bool) {
+        let (bx, bv) = base.split_at(base.len() / 2);
+        let (x, v) = y.split_at(bx.len());
+        let mut work = self.evaluate(mechanics, t, a, bx, [x, v]);
+        self.reduce(mechanics, a, bv, v);
+        let (dx, dv) = change.split_at_mut(bx.len());
+        let (cost, solved) = self.solver.solve(mechanics, &self.rhs, dv, FORCING);
+        work += cost;
+        for ((dx, gap), dv) in dx.iter_mut().zip(&self.gap).zip(dv) {
+            *dx = gap + a * *dv;
+        }
+        add_scaled(y, 1.0, change);
+        (work, solved.is_some())
+    }
+}
