@@ -39,6 +39,10 @@ const PRECISION: f64 = 0.02;
 const ACCURATE: f64 = 0.01;
 /// Number of times at which the error of a run is taken, about.
 const CHECKS: u64 = 100;
+/// Largest number of evaluations times particles of the accurate run; it ends before.
+const TRUE: u64 = 50_000_000;
+/// Largest number of evaluations times particles of the long runs, which are shorter if need be.
+const LONG: f64 = 2e7;
 /// Length of the runs that tell whether a limit is sharp, as a multiple of that of the others.
 const LONGER: u64 = 10;
 /// Distance from the limit, as a factor, at which they are taken.
@@ -101,7 +105,9 @@ impl Motion {
                 return Ok(None);
             }
             let time = k as f64 * interval;
-            if run.advance_to(time).is_err() {
+            let dear = run.work().evaluations * run.particles() as u64 > TRUE;
+            if dear || run.advance_to(time).is_err() {
+                motion.predictable = motion.predictable.min(time - interval);
                 break;
             }
             if moment == Some(k) {
@@ -114,6 +120,7 @@ impl Motion {
             motion.most[0] = motion.most[0].max(level);
             kinetic = kinetic.max(run.energy().map_or(level, |energy| energy.kinetic));
             if motion.predictable < HORIZON {
+                // Only the energy and the modes are still of interest.
                 continue;
             }
             motion
@@ -148,8 +155,9 @@ impl Motion {
     ///
     /// Runs take [`HORIZON`] and [`STEPS`](super::STEPS) steps at least. The search begins at the
     /// limit by the modes. The limit that is seen is sharp if that one is, if a run ten times as
-    /// long holds with a step a tenth shorter, and if one fails with a step a tenth longer. `None`
-    /// if the runs would take too long, and soon after `go_on` returns false.
+    /// long holds with a step a tenth shorter, and if one fails with a step a tenth longer. If the
+    /// former fails, the limit is that of runs of this length. `None` if the runs would take too
+    /// long, and soon after `go_on` returns false.
     ///
     /// # Errors
     /// The method does not support the scene.
@@ -179,7 +187,8 @@ impl Motion {
                 .fold(1.0, f64::max);
             let most = self.most[0] + self.most[1] * swings.min(SWING);
             let count = steps(h, expected);
-            let affordable = (MOST / (count * particles as u64) as f64) as u64;
+            let cost = count as f64 * particles as f64 * f64::from(method.evaluations);
+            let affordable = (LONG / cost).max(1.0) as u64;
             let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
             Ok(step_and_look(
                 count * times.min(affordable.max(1)),
@@ -187,12 +196,19 @@ impl Motion {
             ))
         };
         let mut seen = bisect(expected, particles, PRECISION, |h| holds(h, 1))?;
-        if let Some(seen) = seen.as_mut().filter(|seen| seen.edge == Edge::Sharp) {
-            let sharp = limit.is_none_or(|limit| limit.is_sharp())
-                && holds(seen.step / NEAR, LONGER)?
-                && !holds(seen.step * NEAR, LONGER)?;
-            if !sharp {
-                seen.edge = Edge::Blurred;
+        let sharp = limit.is_none_or(|limit| limit.is_sharp());
+        if let Some(Observation { step, edge, .. }) = &mut seen
+            && *edge == Edge::Sharp
+        {
+            if !sharp || holds(*step * NEAR, LONGER)? {
+                *edge = Edge::Blurred;
+            } else if !holds(*step / NEAR, LONGER)? {
+                // The energy grows slowly at shorter steps: the long runs tell which of them hold.
+                let long = |h| holds(h, LONGER);
+                seen = bisect(*step / NEAR, particles, PRECISION, long)?;
+                if let Some(seen) = &mut seen {
+                    seen.edge = Edge::Blurred;
+                }
             }
         }
         Ok(seen.filter(|_| go_on()))
@@ -213,7 +229,7 @@ impl Motion {
     ) -> Result<Option<f64>, Error> {
         // A step of a small scene, and one that solves equations, cost more than their particles.
         let dear = if method.implicit { 30.0 } else { 1.0 };
-        let particles = self.scene.model.particles().max(60) as f64;
+        let particles = self.scene.model.particles().max(20) as f64;
         let shortest = self.predictable * particles * dear / MOST;
         if self.size == 0.0 {
             return Ok(None);
