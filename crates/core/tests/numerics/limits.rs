@@ -371,10 +371,15 @@ fn limits_are_seen_on_the_cloth() {
         assert!((0.98..1.01).contains(&ratio), "{} at rest: {ratio}", m.name);
         let in_motion = largest_step(m, &motion.modes).unwrap().unwrap();
         let seen = motion.bounded(m, || true).unwrap().unwrap();
-        // What is not sharp grows so slowly that the cloth changes its shape before it is seen.
-        let most = if seen.edge == Edge::Sharp { 1.1 } else { 3.0 };
+        // A fast mode may pass before it has grown. What is not sharp grows so slowly that the cloth
+        // changes its shape before it is seen.
+        let most = if seen.edge == Edge::Sharp { 1.2 } else { 5.0 };
         let ratio = seen.step / in_motion.step;
-        assert!((0.95..most).contains(&ratio), "{} falling: {ratio}", m.name);
+        assert!(
+            (0.95..most).contains(&ratio),
+            "{} falling: {ratio}, {seen:?}",
+            m.name
+        );
     }
 }
 
