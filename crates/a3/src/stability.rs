@@ -109,7 +109,7 @@ fn measure(
     };
     say(STAGES[1]);
     let mut bounded = motion.bounded(method, interrupt::go_on)?;
-    // What fails at rest at a shorter step does not blow up from the start, but never comes to rest.
+    // What fails at rest at a shorter step may not blow up from the start, but it never rests.
     if let (Some(seen), Some(limit)) = (&mut bounded, at_rest)
         && seen.edge == Edge::Sharp
         && seen.step > 1.1 * limit.step

@@ -166,8 +166,8 @@ impl Growth {
         Ok(Self { system, integrator })
     }
 
-    /// Matrix of a step of h (s) on x times the frequency and v: a, b, c, d row by row. `None` where
-    /// the step fails.
+    /// Matrix of a step of h (s) on x times the frequency and on v: a, b, c, d row by row. `None`
+    /// where the step fails.
     fn matrix(&mut self, h: f64) -> Option<[f64; 4]> {
         let mut y = [0.0; 18];
         // Particle 0 starts with x = 1, particle 1 with v = `unit`: v is scaled by the frequency,

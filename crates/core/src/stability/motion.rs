@@ -3,8 +3,8 @@
 //!
 //! A run is *bounded* while its energy exceeds the true one by no more than a few times that of the
 //! motion. Near the limit of a symplectic method the energy of a mode swings to many times its own,
-//! however long the run, and never grows: this multiple is known (`Growth::swing`) and allowed. A run
-//! is *accurate* while its error is below a hundredth of the motion.
+//! however long the run, and never grows: this multiple is known (`Growth::swing`) and allowed.
+//! A run is *accurate* while its error is below a hundredth of the motion.
 
 use super::search::{MOST, bisect, step_and_look, steps};
 use super::{Edge, GROWTH, Growth, HORIZON, Mode, Observation, largest_step, spectrum};

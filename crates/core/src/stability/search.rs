@@ -56,7 +56,8 @@ pub(super) fn step_and_look(steps: u64, mut look: impl FnMut(u64) -> bool) -> bo
 }
 
 /// Largest step (s) for which `holds` returns true, by bisection of its logarithm from the expected
-/// limit (s), infinity if there is none, to a relative precision. `None` if runs would take too long.
+/// limit (s), infinity if there is none, to a relative precision. `None` if runs would take too
+/// long.
 ///
 /// The limit is open or sharp: whoever calls this finds out whether it is blurred.
 pub(super) fn bisect(

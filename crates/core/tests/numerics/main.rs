@@ -9,6 +9,7 @@ mod adaptive;
 mod foreign;
 mod implicit;
 mod limits;
+mod observed;
 mod order;
 mod reference;
 mod stability;
