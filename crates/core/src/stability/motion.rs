@@ -42,7 +42,7 @@ const CHECKS: u64 = 100;
 /// Largest number of evaluations times particles of the accurate run; it ends before.
 const TRUE: u64 = 50_000_000;
 /// Largest number of evaluations times particles of the long runs, which are shorter if need be.
-const LONG: f64 = 2e7;
+const LONG: f64 = 5e6;
 /// Length of the runs that tell whether a limit is sharp, as a multiple of that of the others.
 const LONGER: u64 = 10;
 /// Distance from the limit, as a factor, at which they are taken.
