@@ -26,8 +26,8 @@ fn bounded_accurate_and_slowly_growing_steps_are_told_apart() {
             assert!(bounded <= tenfold, "{line}");
             assert!((0.97..1.03).contains(&(seen / tenfold)), "{line}");
             assert!(accurate <= moving, "{line}");
-            // Past its limit Heun's method grows slowly, while the cloth goes on to another shape.
-            let most = if line.contains('~') { 1.2 } else { 1.1 };
+            // What is not sharp grows slowly, while the cloth goes on to another shape.
+            let most = if line.contains('~') { 2.0 } else { 1.1 };
             assert!((0.9..most).contains(&(moving / tenfold)), "{line}");
             rows += 1;
         }
