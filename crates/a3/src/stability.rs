@@ -5,10 +5,10 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use a3_core::stability::{
-    Growth, Limit, Mode, Observation, Truth, largest_step, modes_in_motion, observe_at_rest,
-    observe_from_start, rest, spectrum,
+    Edge, GROWTH, Growth, Limit, Mode, Motion, Observation, RestState, largest_step,
+    observe_at_rest, rest, spectrum, tenfold_time,
 };
-use a3_core::{Method, Scene};
+use a3_core::{Error, Method, Scene};
 use a3_plot::{Region, StabilityRegions};
 
 use crate::chart::{describe, methods, style, write_picture};
@@ -20,18 +20,14 @@ use crate::{interrupt, list, output, setup};
 /// The limits of a method.
 struct MethodLimits {
     method: &'static Method,
-    /// The limit predicted from the modes of the scene as it starts.
-    start: Option<Limit>,
-    /// The limit as the scene moves from its start.
-    motion: Comparison,
-    /// The limit at rest, if the scene comes to rest.
-    rest: Option<Comparison>,
-}
-
-/// A limit as it was predicted and as it was observed.
-struct Comparison {
-    predicted: Option<Limit>,
-    observed: Option<Observation>,
+    /// The limit by the modes at rest, if the scene comes to rest.
+    rest: Option<Limit>,
+    /// The step at which a disturbance at rest was seen to grow tenfold.
+    seen_at_rest: Option<Observation>,
+    /// The limit of runs from the start.
+    bounded: Option<Observation>,
+    /// The largest step of an accurate run (s).
+    accurate: Option<f64>,
 }
 
 /// Measures, prints and draws what the command line asks for.
@@ -44,49 +40,36 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
         None => PathBuf::from(format!("a3-stability-{}.svg", scene.name)),
     };
     output::check(&path, &["svg", "png"])?;
+    let nothing = || Failure::Interrupted("interrupted before anything was measured".into());
+    let bar = Bar::new(2.0 + 3.0 * methods.len() as f64);
+    bar.say("the true motion ".into());
     let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
-    let in_motion = modes_in_motion(&scene).map_err(Failure::run)?;
-    let truth = Truth::of(&scene).map_err(Failure::run)?;
+    let motion = Motion::of(&scene, interrupt::go_on).map_err(Failure::run)?;
+    let motion = motion.ok_or_else(nothing)?;
+    bar.advance(1.0);
+    bar.say("the state of rest and its modes ".into());
     let hanging = rest(&scene).map_err(Failure::run)?;
-    let bar = Bar::new(2.0 * methods.len() as f64);
+    bar.advance(1.0);
     let mut rows = vec![];
-    for method in methods {
-        bar.say(format!("{:<10} ", method.name));
-        let start = largest_step(method, &at_start).map_err(Failure::run)?;
-        let motion = compare(method, &in_motion, |limit| {
-            let guess = limit.map_or(1.0, |limit| limit.step);
-            observe_from_start(&scene, &truth, method, guess, interrupt::go_on)
-        })?;
-        bar.advance(1.0);
-        let rest = match &hanging {
-            Some(rest) => Some(compare(method, &rest.modes, |limit| {
-                observe_at_rest(rest, method, limit, interrupt::go_on)
-            })?),
-            None => None,
-        };
+    let count = methods.len();
+    for (k, method) in methods.into_iter().enumerate() {
+        let say = |what: &str| bar.say(format!("{} {what}, {} of {count} ", method.name, k + 1));
+        let row = measure(method, &motion, hanging.as_ref(), |what| {
+            say(what);
+            bar.advance(if what == STAGES[0] { 0.0 } else { 1.0 });
+        });
+        let row = row.map_err(Failure::run)?;
         bar.advance(1.0);
         if !interrupt::go_on() {
             break;
         }
-        rows.push(MethodLimits {
-            method,
-            start,
-            motion,
-            rest,
-        });
+        rows.push(row);
     }
     bar.clear();
     if rows.is_empty() {
-        return Err(Failure::Interrupted(
-            "interrupted before anything was measured".into(),
-        ));
+        return Err(nothing());
     }
-    output::say(&text(
-        &scene,
-        &rows,
-        &at_start,
-        hanging.as_ref().map(|rest| &rest.modes[..]),
-    ))?;
+    output::say(&text(&scene, &rows, &motion, &at_start, hanging.as_ref()))?;
     let title = format!("Where solvers fail: {}", describe(&options.what, &scene));
     // By default a step is one radian of the fastest motion.
     let fastest = at_start.first().map_or(1.0, Mode::frequency);
@@ -107,17 +90,40 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     }
 }
 
-/// The limit predicted from modes, and the one that `observe` finds with that prediction.
-fn compare(
+/// What is measured of a method, in this order.
+const STAGES: [&str; 3] = ["at rest", "in motion", "its errors"];
+
+/// The limits of a method; `say` is called with each of [`STAGES`] as it begins.
+fn measure(
     method: &'static Method,
-    modes: &[Mode],
-    observe: impl FnOnce(Option<&Limit>) -> Result<Option<Observation>, a3_core::Error>,
-) -> Result<Comparison, Failure> {
-    let predicted = largest_step(method, modes).map_err(Failure::run)?;
-    let observed = observe(predicted.as_ref()).map_err(Failure::run)?;
-    Ok(Comparison {
-        predicted,
-        observed,
+    motion: &Motion,
+    hanging: Option<&RestState>,
+    say: impl Fn(&str),
+) -> Result<MethodLimits, Error> {
+    say(STAGES[0]);
+    let by_modes = |rest: &RestState| largest_step(method, &rest.modes);
+    let at_rest = hanging.map(by_modes).transpose()?.flatten();
+    let seen_at_rest = match hanging {
+        Some(rest) => observe_at_rest(rest, method, at_rest.as_ref(), interrupt::go_on)?,
+        None => None,
+    };
+    say(STAGES[1]);
+    let mut bounded = motion.bounded(method, interrupt::go_on)?;
+    // What fails at rest at a shorter step may not blow up from the start, but it never rests.
+    if let (Some(seen), Some(limit)) = (&mut bounded, at_rest)
+        && seen.edge == Edge::Sharp
+        && seen.step > 1.1 * limit.step
+    {
+        seen.edge = Edge::Blurred;
+    }
+    say(STAGES[2]);
+    let longest = bounded.map_or(f64::INFINITY, |seen| seen.step);
+    Ok(MethodLimits {
+        method,
+        rest: at_rest,
+        seen_at_rest,
+        bounded,
+        accurate: motion.accurate(method, longest, interrupt::go_on)?,
     })
 }
 
@@ -133,61 +139,50 @@ fn step(seconds: f64) -> String {
     }
 }
 
-/// A predicted limit in words (ms), with a mark if shorter steps grow too.
-fn prediction(limit: Option<Limit>) -> String {
-    limit.map_or("-".into(), |limit| {
-        step(limit.step) + if limit.strict { "" } else { "~" }
-    })
-}
-
-/// An observed limit in words (ms).
-fn observation(seen: Option<Observation>) -> String {
-    seen.map_or("-".into(), |seen| step(seen.step))
-}
-
-/// The ratio of the observed to the predicted limit, in words.
-fn ratio(pair: &Comparison) -> String {
-    match (pair.predicted, pair.observed) {
-        (Some(limit), Some(seen)) if limit.step.is_finite() && seen.step.is_finite() => {
-            format!("{:.3}", seen.step / limit.step)
-        }
-        _ => "-".into(),
+/// The step up to which no mode grows, in words (ms).
+fn bounded(limit: Option<Limit>) -> String {
+    match limit {
+        None => "-".into(),
+        Some(limit) if limit.bounded == 0.0 => "none".into(),
+        Some(limit) => step(limit.bounded),
     }
 }
 
+/// An observed limit in words (ms), with a mark if it is not sharp.
+fn observation(seen: Option<Observation>) -> String {
+    seen.map_or("-".into(), |seen| match seen.edge {
+        Edge::Sharp => step(seen.step),
+        Edge::Blurred => step(seen.step) + "~",
+        Edge::Open => format!(">{}", step(seen.step)),
+    })
+}
+
 /// The table of all limits, with the fastest motion above it.
-fn text(scene: &Scene, rows: &[MethodLimits], start: &[Mode], rest: Option<&[Mode]>) -> String {
+fn text(
+    scene: &Scene,
+    rows: &[MethodLimits],
+    motion: &Motion,
+    start: &[Mode],
+    rest: Option<&RestState>,
+) -> String {
     let heading = [
         "solver",
-        " start: predicted",
-        " moving: predicted",
+        " at rest: bounded",
+        " tenfold",
         " observed",
-        " ratio",
-        " at rest: predicted",
-        " observed",
-        " ratio",
+        " moving: bounded",
+        " accurate",
     ];
     let mut cells = vec![heading.map(String::from).to_vec()];
     for row in rows {
-        let mut line = vec![
+        cells.push(vec![
             row.method.name.to_owned(),
-            prediction(row.start),
-            prediction(row.motion.predicted),
-            observation(row.motion.observed),
-            ratio(&row.motion),
-        ];
-        line.extend(
-            row.rest
-                .as_ref()
-                .map_or(["-", "-", "-"].map(String::from), |pair| {
-                    [
-                        prediction(pair.predicted),
-                        observation(pair.observed),
-                        ratio(pair),
-                    ]
-                }),
-        );
-        cells.push(line);
+            bounded(row.rest),
+            row.rest.map_or("-".into(), |limit| step(limit.step)),
+            observation(row.seen_at_rest),
+            observation(row.bounded),
+            row.accurate.map_or("-".into(), step),
+        ]);
     }
     let frequency = |modes: &[Mode]| {
         modes.first().map_or("-".to_owned(), |mode| {
@@ -201,21 +196,36 @@ fn text(scene: &Scene, rows: &[MethodLimits], start: &[Mode], rest: Option<&[Mod
         frequency(start)
     );
     if let Some(rest) = rest {
-        let _ = write!(text, ", {} at rest", frequency(rest));
+        let _ = write!(text, ", {} at rest", frequency(&rest.modes));
     }
     let _ = write!(
         text,
-        "\n\nlargest stable step (ms), that of the fixed step for adaptive solvers\n{}",
-        list::table(&cells)
+        "\n\nlargest step (ms), that of the fixed step for adaptive solvers\n{}\
+         bounded   nothing grows without end: at rest by all modes, moving as runs show\n\
+         tenfold   a disturbance at rest grows tenfold in 10 s, or in 1000 steps if that is longer\n\
+         accurate  errors stay below a hundredth of the motion in the first {:.2} s\n",
+        list::table(&cells),
+        motion.predictable,
     );
-    if rows.iter().any(|row| {
-        let rest = row.rest.as_ref().and_then(|pair| pair.predicted);
-        let limits = [row.start, row.motion.predicted, rest];
-        limits.into_iter().flatten().any(|limit| !limit.strict)
-    }) {
-        text += "~ shorter steps grow too, but less than tenfold in 10 s or 1000 steps\n";
+    let marked = |edge| {
+        rows.iter()
+            .any(|row| is_marked(row.seen_at_rest, edge) || is_marked(row.bounded, edge))
+    };
+    if marked(Edge::Blurred) {
+        let _ = writeln!(text, "~         {BLURRED}");
+    }
+    if marked(Edge::Open) {
+        text += ">         no longer step was tried\n";
     }
     text
+}
+
+/// What the mark of a limit that is not sharp means.
+const BLURRED: &str = "not sharp: shorter steps grow too, more slowly, or some longer steps hold";
+
+/// Whether a limit was observed to be of this nature.
+fn is_marked(seen: Option<Observation>, edge: Edge) -> bool {
+    seen.is_some_and(|seen| seen.edge == edge)
 }
 
 /// The chart of stability regions, with the eigenvalues of the modes times the step h (s).
@@ -226,29 +236,23 @@ fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> Stabil
             "Where the eigenvalues of the scene as it starts, times a step of {}\u{a0}ms, lie in each solver's stable region",
             step(h)
         ),
+        note: if rows.iter().any(|row| is_marked(row.bounded, Edge::Blurred)) {
+            format!("~\u{a0}{}", BLURRED)
+        } else {
+            String::new()
+        },
         regions: rows.iter().map(|row| region(row, modes, h)).collect(),
     }
 }
 
 /// The stability region of a method.
 fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
-    let limit = row
-        .motion
-        .predicted
-        .map_or(f64::INFINITY, |limit| limit.step);
     let method = row.method;
-    let subtitle = if limit.is_finite() {
-        format!(
-            "stable up to {}\u{a0}ms, {}",
-            prediction(row.motion.predicted),
-            match row.motion.observed {
-                Some(seen) => format!("observed {}\u{a0}ms", step(seen.step)),
-                None => "not observed".into(),
-            }
-        )
-    } else {
-        "stable at any step".to_owned()
-    };
+    let subtitle = format!(
+        "bounded {}\u{a0}ms, accurate {}\u{a0}ms",
+        observation(row.bounded),
+        row.accurate.map_or("-".into(), step)
+    );
     // The growth of a Runge-Kutta step depends on the eigenvalues only. That of a splitting method
     // also depends on how the damping is divided between drag and springs, which is taken from the
     // fastest mode.
@@ -269,6 +273,7 @@ fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
         title: method.title.to_owned(),
         subtitle,
         radius: Box::new(radius),
+        slow: GROWTH.powf(h / tenfold_time(h)),
         eigenvalues: modes
             .iter()
             .filter(|mode| mode.stiffness > 0.0)

@@ -201,12 +201,14 @@ fn region_chart(n: usize) -> StabilityRegions {
                 step * 1.06
             ),
             radius: Box::new(radii[radius]),
+            slow: 1.001,
             eigenvalues: eigenvalues.chain(far).collect(),
         }
     };
     StabilityRegions {
         title: "Where each method is stable".to_owned(),
         subtitle: "Eigenvalues of the default cloth hanging at rest, times the step".to_owned(),
+        note: "A note on the titles, which is longer than a line of a narrow sheet.".to_owned(),
         regions: (0..n).map(region).collect(),
     }
 }
@@ -276,15 +278,17 @@ fn no_text_of_a_stability_chart_covers_another() {
 }
 
 #[test]
-fn eigenvalues_outside_the_region_are_crosses() {
+fn eigenvalues_outside_the_region_are_crosses_or_rings() {
     let chart = |radius: Radius, eigenvalues| StabilityRegions {
         title: String::new(),
         subtitle: String::new(),
+        note: String::new(),
         regions: vec![Region {
             style: CurveStyle::default(),
             title: String::new(),
             subtitle: String::new(),
             radius: Box::new(radius),
+            slow: 1.01,
             eigenvalues,
         }],
     };
@@ -305,6 +309,13 @@ fn eigenvalues_outside_the_region_are_crosses() {
     assert_eq!(crosses(|x, y| taylor(1, x, y), z()), 3);
     assert_eq!(crosses(|x, y| 1.0 / (1.0 - x).hypot(y), z()), 1);
     assert_eq!(crosses(|_, _| f64::NAN, z()), 4);
+    let rings = |z| {
+        let figure = chart(|x, y| taylor(2, x, y), z).draw(800.0, 600.0).unwrap();
+        // One line each, and that of the legend.
+        figure.svg().matches("#c77700").count() - 1
+    };
+    // The growth by Heun's method is the root of 1 + y^4 / 4: at 0.5 it is 1.0078, at 0.6 it is 1.016.
+    assert_eq!(rings(vec![[0.0, 0.5], [0.0, 0.6], [-0.5, 0.5]]), 1);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The readings of a run in words.
 
 use a3_core::Simulation;
+use a3_core::stability::tenfold_time;
 use egui::{Color32, RichText};
 
 use super::style::{ALARM, SAFE, WARNING, faint, text};
@@ -43,24 +44,37 @@ pub fn steps(simulation: &Simulation) -> Option<String> {
         .map(|_| format!("{} ms, {rejections} rejected", digits(1e3 * step)))
 }
 
-/// The largest stable step and the share of it that the step is, in green while there is room,
-/// amber near it, and red past it.
+/// The largest step with which nothing grows and the share of it that the step is, in green while
+/// there is room, amber near it and where motion grows slowly, and red where it grows fast.
 pub fn limit(pane: &Pane) -> Option<(String, Color32)> {
     let limit = pane.limit.limit()?;
     if limit.step.is_infinite() {
         return Some(("none: every step is stable".into(), SAFE));
     }
-    let share = pane.simulation.step_size()? / limit.step;
-    let colour = match share {
-        past if past > 1.0 => ALARM,
-        near if near > 0.8 => WARNING,
+    let step = pane.simulation.step_size()?;
+    let colour = match step {
+        fast if fast > limit.step => ALARM,
+        near if near > 0.8 * limit.bounded => WARNING,
         _ => SAFE,
     };
-    let largest = digits(1e3 * limit.step);
-    Some((
-        format!("{largest} ms (step at {:.0} %)", 100.0 * share),
-        colour,
-    ))
+    let ms = |step: f64| digits(1e3 * step);
+    let time = tenfold_time(limit.step);
+    let tenfold = format!("tenfold in {time:.0} s at {} ms", ms(limit.step));
+    let bounded = |largest: f64| {
+        format!(
+            "{} ms (step at {:.0} %)",
+            ms(largest),
+            100.0 * step / largest
+        )
+    };
+    let words = if limit.bounded == 0.0 {
+        format!("always grows, {tenfold}")
+    } else if limit.is_sharp() {
+        bounded(limit.step)
+    } else {
+        format!("{}, {tenfold}", bounded(limit.bounded))
+    };
+    Some((words, colour))
 }
 
 /// The simulated time, with as many digits as tell one step from the next.
@@ -172,6 +186,20 @@ mod tests {
                 .0
                 .contains("none: every step is stable")
         );
+        for (step, colour) in [(0.01, WARNING), (0.1, ALARM)] {
+            let (words, found) = said("simple", "e", step);
+            assert!(
+                words.contains("always grows, tenfold in 68 s at 67.9 ms"),
+                "{words}"
+            );
+            assert_eq!(found, colour);
+        }
+        // With drag, the cloth grows from 0.37 ms on, and slowly at first.
+        for (step, colour) in [(0.000_2, SAFE), (0.000_4, WARNING), (0.000_6, ALARM)] {
+            let (words, found) = said("mit", "e", step);
+            assert!(words.contains(" %), tenfold in 10 s at 0.4"), "{words}");
+            assert_eq!(found, colour);
+        }
         let (words, _) = said("cloth", "a", 1e-4);
         assert!(words.contains("tolerance 1e-4"), "{words}");
         assert!(

@@ -1,5 +1,5 @@
-//! Linear stability of methods: modes of motion, their growth in one step, and the largest stable
-//! step.
+//! Stability of methods: modes of motion, their growth in one step, and the largest step with which
+//! a run stays bounded, at rest (`rest`) and in motion (`motion`).
 //!
 //! A mode is x'' = -w^2 x - 2 d x', where 2 d is the sum of drag and damping over mass. Its
 //! eigenvalues are l = -d +- i sqrt(w^2 - d^2). A Runge-Kutta method multiplies the mode by R(h l);
@@ -7,10 +7,11 @@
 //! written down here for either: the method takes a step on the mode, and the spectral radius of
 //! the matrix of that step is the growth.
 
-mod observed;
+mod limit;
+mod motion;
+mod rest;
+mod search;
 mod spectrum;
-
-use std::array;
 
 use nalgebra::Vector3;
 
@@ -21,27 +22,11 @@ use crate::integrators::{Integrator, Method};
 use crate::path::Place;
 use crate::system::{AxialCoupling, Coupling, Linearized, Mechanics, Splitting, place_pins};
 
-pub use observed::{
-    Observation, RestState, Truth, modes_in_motion, observe_at_rest, observe_from_start, rest,
-};
+pub use limit::{GROWTH, HORIZON, Limit, STEPS, largest_step, tenfold_time};
+pub use motion::Motion;
+pub use rest::{RestState, observe_at_rest, rest};
+pub use search::{Edge, Observation};
 pub use spectrum::{LargestMode, spectrum};
-
-/// Time (s) in which no mode of a stable run grows more than [`GROWTH`] times; it is longer if
-/// [`STEPS`] steps take longer.
-///
-/// For a method with a strict limit, this criterion gives very nearly that limit. For a method
-/// whose modes grow slowly at every step, it gives the step at which they grow [`GROWTH`] times in
-/// that time.
-pub const HORIZON: f64 = 10.0;
-/// Least number of steps in which no mode of a stable run grows more than [`GROWTH`] times.
-pub const STEPS: f64 = 1000.0;
-/// Largest growth of a mode of a stable run in [`HORIZON`] or in [`STEPS`] steps.
-pub const GROWTH: f64 = 10.0;
-
-/// Number of steps of h (s) in which no mode may grow more than [`GROWTH`] times.
-fn steps(h: f64) -> f64 {
-    (HORIZON / h).ceil().max(STEPS)
-}
 
 /// Mode of motion x'' = -stiffness x - (drag + damping) x'.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -181,18 +166,25 @@ impl Growth {
         Ok(Self { system, integrator })
     }
 
-    /// Spectral radius of the matrix of a step of h (s), for a Runge-Kutta method the larger |R(h
-    /// l)| of both eigenvalues l. Infinite where the step fails.
-    pub fn of_step(&mut self, h: f64) -> f64 {
+    /// Matrix of a step of h (s) on x times the frequency and on v: a, b, c, d row by row. `None`
+    /// where the step fails.
+    fn matrix(&mut self, h: f64) -> Option<[f64; 4]> {
         let mut y = [0.0; 18];
         // Particle 0 starts with x = 1, particle 1 with v = `unit`: v is scaled by the frequency,
         // so that x and v have similar magnitudes.
         let unit = self.system.0.frequency().max(1e-3);
         (y[0], y[10]) = (1.0, unit);
-        if self.integrator.step(&self.system, 0.0, h, &mut y).is_err() {
+        let stepped = self.integrator.step(&self.system, 0.0, h, &mut y);
+        let matrix = [y[0], y[1], y[9] / unit, y[10] / unit];
+        (stepped.is_ok() && matrix.iter().all(|m| m.is_finite())).then_some(matrix)
+    }
+
+    /// Spectral radius of the matrix of a step of h (s), for a Runge-Kutta method the larger |R(h
+    /// l)| of both eigenvalues l. Infinite where the step fails.
+    pub fn of_step(&mut self, h: f64) -> f64 {
+        let Some([a, b, c, d]) = self.matrix(h) else {
             return f64::INFINITY;
-        }
-        let [a, b, c, d] = [y[0], y[1], y[9] / unit, y[10] / unit];
+        };
         let (half_trace, determinant) = (0.5 * (a + d), a * d - b * c);
         let square = half_trace * half_trace - determinant;
         let radius = if square < 0.0 {
@@ -206,67 +198,23 @@ impl Growth {
             radius
         }
     }
-}
 
-/// Largest stable step of a method.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit {
-    /// Largest stable step (s); infinite where every step is stable.
-    pub step: f64,
-    /// Whether no mode grows at all with shorter steps. If not, modes grow less than [`GROWTH`]
-    /// times in the time that [`HORIZON`] describes.
-    pub strict: bool,
-    /// Index of the mode that sets the limit.
-    pub mode: usize,
-}
-
-/// Largest step with which no mode grows, by the criterion of [`HORIZON`]; all shorter steps are
-/// stable too. Modes without a restoring force are left out: they fall or buckle with any method.
-/// `None` if no mode is left.
-///
-/// # Errors
-/// The method does not serve damped springs, which damp a mode.
-pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Error> {
-    let mut limit: Option<Limit> = None;
-    for (k, mode) in modes.iter().enumerate().filter(|(_, m)| m.stiffness > 0.0) {
-        let mut growth = Growth::new(method, *mode)?;
-        let fails = |growth: &mut Growth, h: f64| growth.of_step(h).ln() * steps(h) > GROWTH.ln();
-        // Rate of the fastest motion, by stiffness or by damping.
-        let rate = mode.frequency().max(mode.drag + mode.damping);
-        let longest = limit.map_or(1e4 / rate, |limit| limit.step.min(1e4 / rate));
-        let mut h = 1e-3 / rate;
-        let mut below = 0.0;
-        while h < longest && !fails(&mut growth, h) {
-            below = h;
-            // The search is fine for the first mode. The others rarely lower the limit.
-            h *= if limit.is_none() { 1.05 } else { 1.25 };
+    /// Largest energy over the least that a mode has in steps of h (s) apart from growth and decay.
+    ///
+    /// Steps move x w and v round an ellipse, c x^2 + (d - a) x v - b v^2 = const., and this is the
+    /// square of the ratio of its axes. It is 1 for a Runge-Kutta method without damping; for
+    /// Verlet's method it is 1 / (1 - (h w)^2 / 4), and has no bound at the limit. 1 where the step
+    /// fails or its matrix has real eigenvalues.
+    pub fn swing(&mut self, h: f64) -> f64 {
+        let Some([a, b, c, d]) = self.matrix(h) else {
+            return 1.0;
+        };
+        let determinant = -b * c - 0.25 * (d - a).powi(2);
+        if determinant <= 0.0 {
+            return 1.0;
         }
-        if h >= longest && !fails(&mut growth, longest) {
-            let unlimited = Limit {
-                step: f64::INFINITY,
-                strict: true,
-                mode: k,
-            };
-            limit = limit.or(Some(unlimited));
-            continue;
-        }
-        let [mut low, mut high] = [below, h.min(longest)];
-        for _ in 0..50 {
-            let middle = 0.5 * (low + high);
-            if fails(&mut growth, middle) {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
-        let strict = array::from_fn::<_, 8, _>(|i| 0.1 * (i + 1) as f64 * low)
-            .iter()
-            .all(|&h| growth.of_step(h) < 1.0 + 1e-13);
-        limit = Some(Limit {
-            step: low,
-            strict,
-            mode: k,
-        });
+        let half = 0.5 * (c - b).abs();
+        let root = (half * half - determinant).max(0.0).sqrt();
+        (half + root) / (half - root)
     }
-    Ok(limit)
 }

@@ -11,6 +11,7 @@ mod foreign;
 mod implicit;
 mod limits;
 mod nystrom;
+mod observed;
 mod order;
 mod reference;
 mod stability;

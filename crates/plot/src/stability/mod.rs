@@ -10,7 +10,7 @@ use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
 use crate::label::{GREY, Label};
 use crate::layout::{self, Level, Sign};
-use region::{Extent, beyond, dot, region_style};
+use region::{Extent, Fate, beyond, region_style, sign};
 
 /// A chart of the stability regions of several methods.
 pub struct StabilityRegions {
@@ -18,6 +18,8 @@ pub struct StabilityRegions {
     pub title: String,
     /// A line below the title; left out where there is no room for it.
     pub subtitle: String,
+    /// A note on the titles of the panels, which ends the explanation below them; may be empty.
+    pub note: String,
     /// The regions, with a panel for each.
     pub regions: Vec<Region>,
 }
@@ -77,7 +79,9 @@ impl StabilityRegions {
         extents: &[(Extent, bool)],
     ) -> Option<Figure> {
         let size = level.size;
-        let mut left = layout::headings(&mut figure, [&self.title, &self.subtitle, FOOT], level);
+        let foot = format!("{FOOT} {}", self.note);
+        let foot = foot.trim_end();
+        let mut left = layout::headings(&mut figure, [&self.title, &self.subtitle, foot], level);
         layout::legend(&mut figure, &mut left, &self.entries(size, extents), size);
         let inner = Rect::new(left.x0 + 1.6 * size, left.y0, left.x1, left.y1 - 1.5 * size);
         let (below, beside) = (
@@ -168,11 +172,12 @@ impl StabilityRegions {
             figure.rect(room, &region_style(GREY, 0.1 * size));
         });
         let mark =
-            |inside| -> Sign { Box::new(move |figure, at| dot(figure, at, 0.85 * size, inside)) };
+            |fate| -> Sign { Box::new(move |figure, at| sign(figure, at, 0.85 * size, fate)) };
         let mut entries = vec![
             ("stable region".to_owned(), sample),
-            ("eigenvalue times step".to_owned(), mark(true)),
-            ("the same, unstable".to_owned(), mark(false)),
+            ("eigenvalue times step".to_owned(), mark(Fate::Bounded)),
+            ("the same, growing slowly".to_owned(), mark(Fate::Slow)),
+            ("the same, growing fast".to_owned(), mark(Fate::Lost)),
         ];
         let is_beyond = |(region, (extent, _)): (&Region, &(Extent, bool))| {
             region

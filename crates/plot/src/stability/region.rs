@@ -11,8 +11,32 @@ use crate::style::CurveStyle;
 
 /// The colour of eigenvalues in the region.
 const INSIDE: &str = "#222222";
-/// The colour of eigenvalues outside the region.
+/// The colour of eigenvalues outside the region that grow slowly.
+const SLOW: &str = "#c77700";
+/// The colour of other eigenvalues outside the region.
 const OUTSIDE: &str = "#d0021b";
+
+/// How a mode behaves from step to step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Fate {
+    /// It does not grow.
+    Bounded,
+    /// It grows slowly.
+    Slow,
+    /// It grows fast.
+    Lost,
+}
+
+impl Fate {
+    /// The colour of its sign.
+    fn colour(self) -> &'static str {
+        match self {
+            Self::Bounded => INSIDE,
+            Self::Slow => SLOW,
+            Self::Lost => OUTSIDE,
+        }
+    }
+}
 
 /// The stability region of a method, with the eigenvalues of a problem times a step: one panel.
 pub struct Region {
@@ -26,6 +50,8 @@ pub struct Region {
     /// radius. It must be symmetric in the imaginary part. Where it is at most 1, the method is
     /// stable.
     pub radius: Box<dyn Fn(f64, f64) -> f64>,
+    /// The largest growth of one step that counts as slow.
+    pub slow: f64,
     /// The real and the imaginary part of h λ for each eigenvalue λ of the problem.
     pub eigenvalues: Vec<[f64; 2]>,
 }
@@ -69,8 +95,17 @@ impl Extent {
 
 impl Region {
     /// Whether the method is stable at h λ.
-    fn is_stable(&self, [re, im]: Point) -> bool {
-        (self.radius)(re, im) <= 1.0 + 1e-9
+    fn is_stable(&self, z: Point) -> bool {
+        self.fate(z) == Fate::Bounded
+    }
+
+    /// What becomes of a mode at h λ.
+    fn fate(&self, [re, im]: Point) -> Fate {
+        match (self.radius)(re, im) {
+            bounded if bounded <= 1.0 + 1e-9 => Fate::Bounded,
+            slow if slow <= self.slow => Fate::Slow,
+            _ => Fate::Lost,
+        }
     }
 
     /// The extent around the boundary of the region, as far as that is bounded, and around the
@@ -150,11 +185,11 @@ impl Region {
                 .filter(|z| z.iter().all(|part| part.is_finite()))
             {
                 let [px, py] = at(*z);
-                let inside = self.is_stable(*z);
-                if !seen.insert(((px * 4.0) as i64, (py * 4.0) as i64, inside)) {
+                let fate = self.fate(*z);
+                if !seen.insert(((px * 4.0) as i64, (py * 4.0) as i64, fate)) {
                     continue;
                 }
-                let (edge, colour) = (0.5 * size, if inside { INSIDE } else { OUTSIDE });
+                let (edge, colour) = (0.5 * size, fate.colour());
                 let edge_point = [
                     px.clamp(area.x0 + edge, area.x1 - edge),
                     py.clamp(area.y0 + edge, area.y1 - edge),
@@ -162,7 +197,7 @@ impl Region {
                 if (px - edge_point[0]).hypot(py - edge_point[1]) > 1.5 * edge {
                     beyond(figure, edge_point, [px, py], 0.7 * edge, colour);
                 } else {
-                    dot(figure, [px, py], small, inside);
+                    sign(figure, [px, py], small, fate);
                 }
             }
         });
@@ -177,20 +212,22 @@ pub fn region_style(colour: &str, width: f64) -> String {
     )
 }
 
-/// Draws an eigenvalue: a dot in the region, a cross outside it.
-pub fn dot(figure: &mut Figure, [x, y]: Point, size: f64, inside: bool) {
-    if inside {
+/// Draws an eigenvalue: a dot in the region, outside it a ring if it grows slowly, else a cross.
+pub fn sign(figure: &mut Figure, [x, y]: Point, size: f64, fate: Fate) {
+    let circle = |r: f64| -> Vec<Point> {
         let corner = |k: u8| (f64::from(k) * TAU / 12.0).sin_cos();
-        let round: Vec<_> = (0..12)
-            .map(corner)
-            .map(|(sin, cos)| [x + 0.2 * size * cos, y + 0.2 * size * sin])
-            .collect();
-        figure.area(&[round], &format!("fill=\"{INSIDE}\""));
-    } else {
-        let r = 0.26 * size;
-        let style = stroke(OUTSIDE, 0.15 * size);
-        figure.line(&[[x - r, y - r], [x + r, y + r]], &style);
-        figure.line(&[[x - r, y + r], [x + r, y - r]], &style);
+        let at = |(sin, cos): (f64, f64)| [x + r * size * cos, y + r * size * sin];
+        (0..=12).map(corner).map(at).collect()
+    };
+    let style = stroke(fate.colour(), 0.15 * size);
+    match fate {
+        Fate::Bounded => figure.area(&[circle(0.2)], &format!("fill=\"{INSIDE}\"")),
+        Fate::Slow => figure.line(&circle(0.24), &style),
+        Fate::Lost => {
+            let r = 0.26 * size;
+            figure.line(&[[x - r, y - r], [x + r, y + r]], &style);
+            figure.line(&[[x - r, y + r], [x + r, y - r]], &style);
+        }
     }
 }
 

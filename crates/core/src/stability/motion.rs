@@ -1,0 +1,337 @@
+//! Scenes in motion: what an accurate run shows, the largest step with which a method's runs stay
+//! bounded, and the largest with which they are accurate.
+//!
+//! A run is *bounded* while its energy exceeds the true one by no more than a few times that of the
+//! motion. Near the limit of a symplectic method the energy of a mode swings to many times its own,
+//! however long the run, and never grows: this multiple is known (`Growth::swing`) and allowed.
+//! A run is *accurate* while its error is below a hundredth of the motion.
+
+use super::search::{MOST, bisect, step_and_look, steps};
+use super::{Edge, GROWTH, Growth, HORIZON, Mode, Observation, largest_step, spectrum};
+use std::cell::RefCell;
+
+use crate::control::Control;
+use crate::error::Error;
+use crate::integrators::{Method, find};
+use crate::network::Network;
+use crate::random::SplitMix;
+use crate::scene::{Model, Scene};
+use crate::simulation::Simulation;
+
+/// Times at which the modes of a scene in motion are computed, as fractions of [`HORIZON`].
+const MOMENTS: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
+/// Number of equal intervals of [`HORIZON`] at whose ends the true motion is kept, at most, and
+/// the largest number of coordinates that are kept.
+const KEPT: (usize, usize) = (10_000, 4_000_000);
+/// Tolerance of the accurate run.
+const TOLERANCE: f64 = 1e-7;
+/// Distance of a second accurate run at the start, over the scene's radius.
+const SEPARATION: f64 = 1e-7;
+/// Growth of that distance until which errors are compared: beyond it they are the motion's own.
+const AMPLIFICATION: f64 = 100.0;
+/// Excess of a bounded run's energy over the true one, as a multiple of the motion's own.
+const EXCESS: f64 = 4.0;
+/// Largest multiple of that for a mode whose energy swings.
+const SWING: f64 = 100.0;
+/// Relative precision of the largest steps that are seen.
+const PRECISION: f64 = 0.02;
+/// Largest error of an accurate run, over the size of the motion.
+const ACCURATE: f64 = 0.01;
+/// Number of times at which the error of a run is taken, about.
+const CHECKS: u64 = 100;
+/// Largest number of evaluations times particles of the accurate run; it ends before.
+const TRUE: u64 = 50_000_000;
+/// Largest number of evaluations times particles of the long runs, which are shorter if need be.
+const LONG: f64 = 5e6;
+/// Length of the runs that tell whether a limit is sharp, as a multiple of that of the others.
+const LONGER: u64 = 10;
+/// Distance from the limit, as a factor, at which they are taken.
+const NEAR: f64 = 1.1;
+
+/// True motion of a scene from its start, by an accurate run of [`HORIZON`].
+#[derive(Clone)]
+pub struct Motion {
+    scene: Scene,
+    /// Modes at several times of the motion, in one list, fastest first. Stretched and folded
+    /// springs have other modes than those at the start.
+    pub modes: Vec<Mode>,
+    /// Time until which errors mean something (s): [`HORIZON`], or when a small difference at the
+    /// start has grown a hundred times.
+    pub predictable: f64,
+    /// Root mean square distance of the particles from their start when it is largest (m), within
+    /// the predictable time.
+    size: f64,
+    /// Largest total energy, and the excess over it that ends a run (J); for a first-order scene,
+    /// the largest norm of its state, and the excess over that.
+    most: [f64; 2],
+    /// Interval (s) of the states that are kept.
+    interval: f64,
+    /// Positions (m) and velocities (m/s) at the ends of these intervals, within the predictable
+    /// time.
+    states: Vec<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Motion {
+    /// Motion of a scene. `None` soon after `go_on` returns false.
+    ///
+    /// # Errors
+    /// The scene cannot be run.
+    pub fn of(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<Self>, Error> {
+        let accurate = find("dop853")
+            .ok_or_else(|| Error::Invalid("no accurate method is in the table".into()))?;
+        let start = |scene| Simulation::new(scene, accurate, Control::Tolerance(TOLERANCE));
+        let mut run = start(scene.clone())?;
+        let n = 3 * run.particles();
+        let mut beside = start(disturbed(scene, SEPARATION * run.extent().1))?;
+        let count = KEPT.0.min(KEPT.1 / (2 * n)).max(50);
+        let interval = HORIZON / count as f64;
+        let mut moments = MOMENTS
+            .map(|part| (part * count as f64).round() as usize)
+            .into_iter();
+        let mut moment = moments.next();
+        let first = distance(&run.state()[..n], &beside.state()[..n]);
+        let mut motion = Self {
+            scene: scene.clone(),
+            modes: vec![],
+            predictable: HORIZON,
+            size: 0.0,
+            most: [f64::NEG_INFINITY, 0.0],
+            interval,
+            states: vec![],
+        };
+        let mut kinetic: f64 = 0.0;
+        for k in 0..=count {
+            if !go_on() {
+                return Ok(None);
+            }
+            let time = k as f64 * interval;
+            let dear = run.work().evaluations * run.particles() as u64 > TRUE;
+            if dear || run.advance_to(time).is_err() {
+                motion.predictable = motion.predictable.min(time - interval);
+                break;
+            }
+            if moment == Some(k) {
+                motion
+                    .modes
+                    .extend(spectrum(run.model().system(), time, run.state()));
+                moment = moments.next();
+            }
+            let level = level(&run);
+            motion.most[0] = motion.most[0].max(level);
+            kinetic = kinetic.max(run.energy().map_or(level, |energy| energy.kinetic));
+            if motion.predictable < HORIZON {
+                // Only the energy and the modes are still of interest.
+                continue;
+            }
+            motion
+                .states
+                .push((run.state()[..n].to_vec(), run.velocities()));
+            motion.size = motion
+                .size
+                .max(distance(&run.state()[..n], &scene.state[..n]));
+            let apart = beside.advance_to(time).map_or(f64::INFINITY, |()| {
+                distance(&run.state()[..n], &beside.state()[..n])
+            });
+            if apart > AMPLIFICATION * first {
+                motion.predictable = time;
+            }
+        }
+        // A scene that only rests has no motion of its own to compare growth with.
+        kinetic = kinetic
+            .max(1e-6 * motion.most[0].abs())
+            .max(f64::MIN_POSITIVE);
+        motion.most[1] = match scene.model {
+            Model::Network(_) => EXCESS * kinetic,
+            Model::FirstOrder(_) => (GROWTH - 1.0) * kinetic,
+        };
+        // The fastest come first, as they set most limits.
+        motion
+            .modes
+            .sort_by(|a, b| b.stiffness.total_cmp(&a.stiffness));
+        Ok(Some(motion))
+    }
+
+    /// Largest step with which a method's runs from the start stay bounded.
+    ///
+    /// Runs take [`HORIZON`] and [`STEPS`](super::STEPS) steps at least. The search begins at the
+    /// limit by the modes. The limit that is seen is sharp if that one is, if a run ten times as
+    /// long holds with a step a tenth shorter, and if one fails with a step a tenth longer. If the
+    /// former fails, the limit is that of runs of this length. `None` if the runs would take too
+    /// long, and soon after `go_on` returns false.
+    ///
+    /// # Errors
+    /// The method does not support the scene.
+    pub fn bounded(
+        &self,
+        method: &'static Method,
+        go_on: impl Fn() -> bool,
+    ) -> Result<Option<Observation>, Error> {
+        let particles = self.scene.model.particles();
+        let limit = largest_step(method, &self.modes)?;
+        let expected = limit.map_or(1.0, |limit| limit.step);
+        let mut moving = vec![];
+        for mode in self
+            .modes
+            .iter()
+            .filter(|m| m.stiffness > 0.0 && expected.is_finite())
+        {
+            moving.push(Growth::new(method, *mode)?);
+        }
+        let moving = RefCell::new(moving);
+        let holds = |h: f64, times: u64| {
+            let swing = |growth: &mut Growth| growth.swing(h);
+            let swings = moving
+                .borrow_mut()
+                .iter_mut()
+                .map(swing)
+                .fold(1.0, f64::max);
+            let most = self.most[0] + self.most[1] * swings.min(SWING);
+            let count = steps(h, expected);
+            let cost = count as f64 * particles as f64 * f64::from(method.evaluations);
+            let affordable = (LONG / cost).max(1.0) as u64;
+            let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
+            Ok(step_and_look(
+                count * times.min(affordable.max(1)),
+                |count| go_on() && run.take_steps(count).is_ok() && level(&run) < most,
+            ))
+        };
+        let mut seen = bisect(expected, particles, PRECISION, |h| holds(h, 1))?;
+        let sharp = limit.is_none_or(|limit| limit.is_sharp());
+        if let Some(Observation { step, edge, .. }) = &mut seen
+            && *edge == Edge::Sharp
+        {
+            if !sharp || holds(*step * NEAR, LONGER)? {
+                *edge = Edge::Blurred;
+            } else if !holds(*step / NEAR, LONGER)? {
+                // The energy grows slowly at shorter steps: the long runs tell which of them hold.
+                let long = |h| holds(h, LONGER);
+                seen = bisect(*step / NEAR, particles, PRECISION, long)?;
+                if let Some(seen) = &mut seen {
+                    seen.edge = Edge::Blurred;
+                }
+            }
+        }
+        Ok(seen.filter(|_| go_on()))
+    }
+
+    /// Largest step (s) up to `longest` with which the error of a run is below a hundredth of the
+    /// motion: the root mean square distance of the particles from where they should be, over the
+    /// largest from where they started, within the predictable time. `None` if nothing moves, if
+    /// the runs would take too long, and soon after `go_on` returns false.
+    ///
+    /// # Errors
+    /// The method does not support the scene.
+    pub fn accurate(
+        &self,
+        method: &'static Method,
+        longest: f64,
+        go_on: impl Fn() -> bool,
+    ) -> Result<Option<f64>, Error> {
+        // A step of a small scene, and one that solves equations, cost more than their particles.
+        let dear = if method.implicit { 30.0 } else { 1.0 };
+        let particles = self.scene.model.particles().max(20) as f64;
+        let shortest = self.predictable * particles * dear / MOST;
+        if self.size == 0.0 {
+            return Ok(None);
+        }
+        let accurate =
+            |h: f64| -> Result<bool, Error> { Ok(self.error(method, h, &go_on)? <= 1.0) };
+        let mut high = longest.min(0.25 * self.predictable);
+        let mut low = high;
+        loop {
+            if low < shortest || !go_on() {
+                return Ok(None);
+            }
+            let error = self.error(method, low, &go_on)?;
+            if error <= 1.0 {
+                break;
+            }
+            high = low;
+            // The error falls as a power of the step.
+            low *= (0.9 / error)
+                .powf(1.0 / f64::from(method.order))
+                .clamp(0.2, 0.95);
+        }
+        while high > 1.1 * low {
+            let middle = (low * high).sqrt();
+            if accurate(middle)? {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Ok(Some(low).filter(|_| go_on()))
+    }
+
+    /// Largest error of a run in whole steps of about h (s) within the predictable time, over that
+    /// of an accurate run; infinite if the run fails.
+    fn error(
+        &self,
+        method: &'static Method,
+        h: f64,
+        go_on: impl Fn() -> bool,
+    ) -> Result<f64, Error> {
+        let count = (self.predictable / h).ceil().max(1.0);
+        let h = self.predictable / count;
+        let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
+        let (mut left, mut error) = (count as u64, 0.0f64);
+        let stride = (left / CHECKS).max(1);
+        while left > 0 {
+            let steps = stride.min(left);
+            if !go_on() || run.take_steps(steps).is_err() {
+                return Ok(f64::INFINITY);
+            }
+            left -= steps;
+            let truth = self.at(run.time());
+            error = error.max(distance(&run.state()[..truth.len()], &truth));
+        }
+        Ok(error / (ACCURATE * self.size))
+    }
+
+    /// True positions (m) at a time (s), by a cubic polynomial between the states that are kept.
+    fn at(&self, time: f64) -> Vec<f64> {
+        let place = (time / self.interval).max(0.0);
+        let k = (place as usize).min(self.states.len() - 2);
+        let s = place - k as f64;
+        let [(xa, va), (xb, vb)] = [k, k + 1].map(|k| &self.states[k]);
+        let weights = [
+            (1.0 + 2.0 * s) * (1.0 - s).powi(2),
+            s * (1.0 - s).powi(2) * self.interval,
+            s * s * (3.0 - 2.0 * s),
+            s * s * (s - 1.0) * self.interval,
+        ];
+        (0..xa.len())
+            .map(|i| {
+                let values = [xa[i], va[i], xb[i], vb[i]];
+                weights.iter().zip(values).map(|(w, y)| w * y).sum()
+            })
+            .collect()
+    }
+}
+
+/// Scene whose free particles are displaced by up to this distance (m).
+fn disturbed(scene: &Scene, size: f64) -> Scene {
+    let mut scene = scene.clone();
+    let n = scene.model.particles();
+    let mut random = SplitMix(2);
+    for k in 0..3 * n {
+        let shift = size * random.between(-1.0, 1.0);
+        let pinned = |network: &Network| network.is_pinned(k % n);
+        if !scene.model.network().is_some_and(pinned) {
+            scene.state[k] += shift;
+        }
+    }
+    scene
+}
+
+/// Total energy of a run (J), or the norm of the state of a first-order scene.
+fn level(run: &Simulation) -> f64 {
+    let norm = || run.state().iter().map(|y| y * y).sum::<f64>().sqrt();
+    run.energy().map_or_else(norm, |energy| energy.total())
+}
+
+/// Root mean square distance of particles in two lists of positions (m).
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+    (3.0 * squares.sum::<f64>() / a.len() as f64).sqrt()
+}

@@ -1,0 +1,196 @@
+//! Scenes at rest: the state of rest, and the largest step with which a small
+//! disturbance around it does not grow.
+
+use super::search::{bisect, step_and_look, steps};
+use super::spectrum::shapes;
+use super::{Edge, GROWTH, Limit, Mode, Observation};
+use crate::control::Control;
+use crate::error::Error;
+use crate::integrators::{Method, find};
+use crate::network::Network;
+use crate::random::SplitMix;
+use crate::scene::{Model, Scene};
+use crate::simulation::Simulation;
+use crate::system::Linearized;
+
+/// Relative precision of the largest step that is seen.
+const PRECISION: f64 = 0.01;
+/// Size of the disturbance of a scene at rest: the root of the sum of m v^2 over the particles
+/// (kg^1/2 m/s).
+const NUDGE: f64 = 1e-6;
+/// Random part of that disturbance, relative to the limiting mode.
+const OTHERS: f64 = 0.1;
+
+/// Rounds that bring a scene to rest: the step (s), the largest number of steps, and whether all
+/// free particles are first displaced a little.
+const SETTLING: [(f64, u32, bool); 5] = [
+    (0.05, 400, false),
+    (0.2, 400, false),
+    (0.25, 400, true),
+    (1.0, 400, false),
+    (5.0, 400, false),
+];
+
+/// Scene at rest, with the modes around this state.
+#[derive(Clone)]
+pub struct RestState {
+    /// Scene that starts in the state of rest; its springs do not tear.
+    pub scene: Scene,
+    /// Modes around the state of rest, fastest first: all of them, if x has fewer than about 1200
+    /// numbers.
+    pub modes: Vec<Mode>,
+    /// Shape of each mode: the displacements times the roots of the masses, of length 1.
+    shapes: Vec<Vec<f64>>,
+}
+
+/// State in which the scene comes to rest without wind and swing and without tearing, computed by
+/// implicit Euler with growing steps.
+///
+/// `None` for a first-order scene, for one that implicit Euler does not support, for one whose pins
+/// or obstacles move, and for one that does not settle.
+///
+/// # Errors
+/// The scene cannot be run.
+pub fn rest(scene: &Scene) -> Result<Option<RestState>, Error> {
+    let Some((implicit, network)) = find("implicit").zip(scene.model.network()) else {
+        return Ok(None);
+    };
+    if implicit.check(network).is_err() || network.moves_by_itself() {
+        return Ok(None);
+    }
+    let mut scene = scene.clone();
+    if let Model::Network(network) = &mut scene.model {
+        network.set_tear(None)?;
+    }
+    let mut run = Simulation::new(scene.clone(), implicit, Control::Step(0.05))?;
+    let mut random = SplitMix(4);
+    for (step, steps, leaves) in SETTLING {
+        if leaves {
+            // A fold may be balanced on its edge. The push makes it fall to one side, and it needs
+            // all the steps to come to rest there.
+            let mut pushed = scene.clone();
+            pushed.state = run.state().to_vec();
+            let (n, size) = (run.particles(), 1e-4 * run.extent().1);
+            for (k, x) in pushed.state[..3 * n].iter_mut().enumerate() {
+                if !network.is_pinned(k % n) {
+                    *x += size * random.between(-1.0, 1.0);
+                }
+            }
+            run = Simulation::new(pushed, implicit, Control::Step(step))?;
+        }
+        run.set_control(Control::Step(step))?;
+        for _ in 0..steps {
+            let before = run.state().to_vec();
+            if run.take_steps(1).is_err() {
+                return Ok(None);
+            }
+            let half = before.len() / 2;
+            let moved = |part: &[f64], was: &[f64]| {
+                let squares = part.iter().zip(was).map(|(a, b)| (a - b).powi(2));
+                (squares.sum::<f64>() / half as f64).sqrt()
+            };
+            if !leaves && moved(&run.state()[..half], &before[..half]) < 1e-9 * step {
+                break;
+            }
+        }
+    }
+    let mut y = run.state().to_vec();
+    let half = y.len() / 2;
+    let speed = y[half..].iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    y[half..].fill(0.0);
+    if speed > 1e-4 {
+        return Ok(None);
+    }
+    let (modes, shapes) = shapes(network, 0.0, &y[..half]).into_iter().unzip();
+    scene.state = y;
+    Ok(Some(RestState {
+        scene,
+        modes,
+        shapes,
+    }))
+}
+
+/// Largest step with which a small disturbance of the scene at rest grows less than [`GROWTH`]
+/// times in [`HORIZON`].
+///
+/// The disturbance is a velocity in the mode that limits the method, with a small random part.
+/// Bisection begins at the predicted limit. `None` if no limit is given, if the runs would take too
+/// long, and soon after `go_on` returns false.
+///
+/// # Errors
+/// The method does not support the scene.
+pub fn observe_at_rest(
+    rest: &RestState,
+    method: &'static Method,
+    limit: Option<&Limit>,
+    go_on: impl Fn() -> bool,
+) -> Result<Option<Observation>, Error> {
+    let still = &rest.scene;
+    let mut nudged = still.clone();
+    let half = still.state.len() / 2;
+    let (Some(network), Some(limit)) = (still.model.network(), limit) else {
+        return Ok(None);
+    };
+    let guess = limit.step;
+    let mut random = SplitMix(5);
+    let others: Vec<_> = (0..half).map(|_| random.between(-1.0, 1.0)).collect();
+    let length = norm(&others);
+    for (k, (z, other)) in rest.shapes[limit.mode].iter().zip(&others).enumerate() {
+        let particle = k % network.particles();
+        if !network.is_pinned(particle) {
+            let z = z + OTHERS * other / length;
+            nudged.state[half + k] = NUDGE * z / network.masses()[particle].sqrt();
+        }
+    }
+    let size = EnergyNorm {
+        network,
+        rest: &still.state[..half],
+    };
+    let zero = vec![0.0; half];
+    let nudge = size.of(&zero, &nudged.state[half..]);
+    // The disturbance is the difference from a second run without it: a method's state of rest may
+    // differ a little from the scene's, and particles on an obstacle are pushed out at every step.
+    let holds = |h: f64| {
+        let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
+        let mut beside = Simulation::new(still.clone(), method, Control::Step(h))?;
+        Ok(step_and_look(steps(h, guess), |count| {
+            let held = go_on() && run.take_steps(count).is_ok() && beside.take_steps(count).is_ok();
+            let both = run.state().iter().zip(beside.state());
+            let apart: Vec<_> = both.map(|(a, b)| a - b).collect();
+            let (dx, dv) = apart.split_at(half);
+            held && size.of(dx, dv) < GROWTH * nudge
+        }))
+    };
+    let mut seen = bisect(guess, still.model.particles(), PRECISION, holds)?;
+    if let Some(seen) = seen
+        .as_mut()
+        .filter(|s| s.edge == Edge::Sharp && !limit.is_sharp())
+    {
+        seen.edge = Edge::Blurred;
+    }
+    Ok(seen.filter(|_| go_on()))
+}
+
+/// Measure of disturbances around a state of rest by the root of twice their energy (J^1/2).
+struct EnergyNorm<'a> {
+    network: &'a Network,
+    rest: &'a [f64],
+}
+
+impl EnergyNorm<'_> {
+    fn of(&self, dx: &[f64], dv: &[f64]) -> f64 {
+        let zero = vec![0.0; dx.len()];
+        let mut df = zero.clone();
+        let network = self.network;
+        network.force_differential(0.0, self.rest, &zero, dx, &zero, &mut df);
+        let parts = (dx.iter().zip(dv).zip(&df).enumerate()).map(|(k, ((dx, dv), df))| {
+            network.masses()[k % network.particles()] * dv * dv - dx * df
+        });
+        parts.sum::<f64>().abs().sqrt()
+    }
+}
+
+/// Euclidean length of a vector.
+fn norm(y: &[f64]) -> f64 {
+    y.iter().map(|y| y * y).sum::<f64>().sqrt()
+}

@@ -1,0 +1,133 @@
+//! Stability limits that runs of the scenes themselves show, at rest and in motion, against those by
+//! modes.
+
+use crate::common::{described, method, scene_with_grid};
+use a3_core::integrators;
+use a3_core::stability::{Edge, Motion, largest_step, observe_at_rest, rest};
+use approx::assert_relative_eq;
+
+/// Three particles on springs without rest length, whose motion is linear.
+const LINEAR: &str = "
+    gravity = [0, -9.81, 0]
+    [particles]
+    positions = [[0, 0, 0], [0.7, 0.2, 0], [1.2, -0.3, 0.4]]
+    masses = [1, 0.5, 0.25]
+    springs = [[0, 1, 30, 0, 0], [1, 2, 12, 0, 0]]
+    pin = [{ particles = [0] }]
+";
+
+/// In linear motion the limits by the modes are exact, whatever the errors are: symplectic methods
+/// are bounded far beyond the steps at which they are accurate.
+#[test]
+fn motion_is_bounded_where_it_is_not_accurate() {
+    let scene = described(LINEAR);
+    let motion = Motion::of(&scene, || true).unwrap().unwrap();
+    assert_eq!(motion.predictable, 10.0);
+    for name in ["rk4", "symplectic", "verlet", "pefrl", "dop853"] {
+        let m = method(name);
+        let limit = largest_step(m, &motion.modes).unwrap().unwrap().step;
+        let seen = motion.bounded(m, || true).unwrap().unwrap();
+        assert_eq!(seen.edge, Edge::Sharp, "{name}");
+        assert_relative_eq!(seen.step, limit, max_relative = 0.03);
+        let accurate = motion.accurate(m, seen.step, || true).unwrap().unwrap();
+        assert!(accurate < 0.7 * limit, "{name}: {accurate}");
+        if name == "symplectic" {
+            assert!(accurate < 0.05 * limit, "{name}: {accurate}");
+        }
+    }
+    let euler = motion.bounded(method("euler"), || true).unwrap().unwrap();
+    assert_eq!(euler.edge, Edge::Blurred);
+    let implicit = motion
+        .bounded(method("implicit"), || true)
+        .unwrap()
+        .unwrap();
+    assert_eq!((implicit.step, implicit.edge), (1.0, Edge::Open));
+}
+
+/// Undamped chain of soft springs that falls: by Verlet's method it gains energy slowly already at
+/// two thirds of the limit of its modes. What is seen is less, and marked.
+#[test]
+fn slow_heating_in_motion_is_seen_and_marked() {
+    let list = |count: u32, item: fn(f64) -> String| -> String {
+        (0..count).map(|i| item(f64::from(i)) + ", ").collect()
+    };
+    let positions = list(8, |i| format!("[{}, 0, {}]", 0.3 * i, 0.05 * i.sin()));
+    let springs = list(7, |i| format!("[{i}, {}, 10, 0.3, 0]", i + 1.0));
+    let scene = described(&format!(
+        "gravity = [0, -9.81, 0]
+        [particles]
+        positions = [{positions}]
+        mass = 0.2
+        springs = [{springs}]
+        pin = [{{ particles = [0] }}]"
+    ));
+    let motion = Motion::of(&scene, || true).unwrap().unwrap();
+    let verlet = method("verlet");
+    let limit = largest_step(verlet, &motion.modes).unwrap().unwrap();
+    assert!(limit.is_sharp());
+    let seen = motion.bounded(verlet, || true).unwrap().unwrap();
+    assert_eq!(seen.edge, Edge::Blurred);
+    assert!(
+        (0.3..0.75).contains(&(seen.step / limit.step)),
+        "{seen:?} {limit:?}"
+    );
+}
+
+/// Predicted limits agree with those observed on the nonlinear scene: the step at which a
+/// disturbance of the cloth at rest begins to grow, and the step at which the falling cloth gains
+/// energy.
+#[test]
+fn limits_are_seen_on_the_cloth() {
+    let cloth = scene_with_grid("cloth", 8, 8);
+    let rest = rest(&cloth).unwrap().unwrap();
+    let motion = Motion::of(&cloth, || true).unwrap().unwrap();
+    for m in integrators::METHODS {
+        let predicted = largest_step(m, &rest.modes).unwrap().unwrap();
+        let seen = observe_at_rest(&rest, m, Some(&predicted), || true)
+            .unwrap()
+            .unwrap();
+        if m.implicit {
+            assert!(predicted.step.is_infinite() && seen.edge == Edge::Open);
+            continue;
+        }
+        let ratio = seen.step / predicted.step;
+        assert!((0.98..1.01).contains(&ratio), "{} at rest: {ratio}", m.name);
+        let in_motion = largest_step(m, &motion.modes).unwrap().unwrap();
+        let seen = motion.bounded(m, || true).unwrap().unwrap();
+        // A fast mode may pass before it has grown. What is not sharp grows so slowly that the
+        // cloth changes its shape before it is seen.
+        let most = if seen.edge == Edge::Sharp { 1.2 } else { 5.0 };
+        let ratio = seen.step / in_motion.step;
+        assert!(
+            (0.95..most).contains(&ratio),
+            "{} falling: {ratio}, {seen:?}",
+            m.name
+        );
+    }
+}
+
+/// A scene whose pins move has no state of rest, and a scene is brought to rest without tearing.
+#[test]
+fn rest_is_without_tears_and_not_of_what_moves() {
+    let cloth = "
+        gravity = [0, -9.81, 0]
+        drag = 0.1
+        tear = TEAR
+        [[cloth]]
+        grid = [4, 4]
+        width = 1
+        mass = 0.1
+        stiffness = [40, 20, 5]
+        pin = [{ at = [\"top\"] MOVES }]
+    ";
+    let build = |tear: &str, moves: &str| {
+        let text = cloth.replace("TEAR", tear).replace("MOVES", moves);
+        described(&text)
+    };
+    let [whole, torn] = ["100", "1.2"].map(|tear| rest(&build(tear, "")).unwrap().unwrap());
+    assert_eq!(whole.scene.state, torn.scene.state);
+    assert_eq!(whole.modes, torn.modes);
+    assert!(torn.scene.model.network().unwrap().tear_limit().is_none());
+    let moves = ", shift = { by = [0, 0, 1], start = 0.1, end = 0.2 }";
+    assert!(rest(&build("100", moves)).unwrap().is_none());
+}
