@@ -17,6 +17,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 12,
     implicit: false,
     needs_mechanics: false,
+    needs_springs: false,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };

@@ -18,6 +18,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 6,
     implicit: false,
     needs_mechanics: false,
+    needs_springs: false,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };

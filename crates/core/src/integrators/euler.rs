@@ -15,6 +15,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 1,
     implicit: false,
     needs_mechanics: false,
+    needs_springs: false,
     create: |system| Box::new(RungeKutta::new(EULER, system)),
     trial: None,
 };

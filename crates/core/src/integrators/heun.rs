@@ -16,6 +16,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 2,
     implicit: false,
     needs_mechanics: false,
+    needs_springs: false,
     create: |system| Box::new(RungeKutta::new(HEUN, system)),
     trial: None,
 };

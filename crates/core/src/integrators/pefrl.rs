@@ -23,6 +23,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 16,
     implicit: false,
     needs_mechanics: true,
+    needs_springs: false,
     create: |system| PLAN.integrator(system),
     trial: None,
 };

@@ -17,6 +17,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 4,
     implicit: false,
     needs_mechanics: false,
+    needs_springs: false,
     create: |system| Box::new(RungeKutta::new(RK4, system)),
     trial: None,
 };

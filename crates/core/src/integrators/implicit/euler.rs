@@ -19,6 +19,7 @@ pub(in super::super) const METHOD: Method = Method {
     damped_evaluations: 1,
     implicit: true,
     needs_mechanics: false,
+    needs_springs: false,
     create: |system| {
         Box::new(ImplicitEuler {
             stage: StageSolver::new(system),

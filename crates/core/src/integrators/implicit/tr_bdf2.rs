@@ -23,6 +23,7 @@ pub(in super::super) const METHOD: Method = Method {
     damped_evaluations: 7,
     implicit: true,
     needs_mechanics: false,
+    needs_springs: false,
     create: |system| {
         let zeros = || vec![0.0; system.dim()];
         Box::new(TrBdf2 {
