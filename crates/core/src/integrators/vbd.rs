@@ -37,8 +37,22 @@ pub(super) const METHOD: Method = Method {
     implicit: true,
     needs_mechanics: true,
     needs_springs: true,
-    create: |system| {
-        let mut vbd = Vbd {
+    create: |system| Vbd::of(system, ITERATIONS),
+    trial: None,
+};
+
+struct Vbd {
+    iterations: u32,
+    prediction: Prediction,
+    /// Velocities v* (m/s).
+    predicted: Vec<f64>,
+    ends: Ends,
+}
+
+impl Vbd {
+    fn of(system: &dyn ParticleSystem, iterations: u32) -> Box<dyn Integrator> {
+        let mut vbd = Self {
+            iterations,
             prediction: Prediction::new(system.dim() / 6),
             predicted: vec![0.0; system.dim() / 2],
             ends: Ends::default(),
@@ -47,15 +61,7 @@ pub(super) const METHOD: Method = Method {
             vbd.ends.gather(system);
         }
         Box::new(vbd)
-    },
-    trial: None,
-};
-
-struct Vbd {
-    prediction: Prediction,
-    /// Velocities v* (m/s).
-    predicted: Vec<f64>,
-    ends: Ends,
+    }
 }
 
 /// The ends of all springs, particle by particle.
@@ -111,6 +117,7 @@ impl Integrator for Vbd {
         y: &mut [f64],
     ) -> Result<Work, Error> {
         let Self {
+            iterations,
             prediction,
             predicted,
             ends,
@@ -121,7 +128,7 @@ impl Integrator for Vbd {
         prediction.take(system, t, h, x, v);
         predicted.copy_from_slice(v);
         ends.gather(system);
-        for _ in 0..ITERATIONS {
+        for _ in 0..*iterations {
             for ((i, springs), w) in
                 (ends.by_particle().enumerate()).zip(&prediction.inverse_masses)
             {
@@ -130,7 +137,7 @@ impl Integrator for Vbd {
                 }
             }
         }
-        Ok(work(system, ITERATIONS, PRICES[0], PRICES[1]))
+        Ok(work(system, *iterations, PRICES[0], PRICES[1]))
     }
 }
 
