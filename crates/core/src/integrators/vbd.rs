@@ -193,3 +193,23 @@ fn descend(
         x[axis * n + i] += h * dv[axis];
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Grid;
+    use crate::testing::{cloth, residual};
+
+    #[test]
+    fn many_iterations_are_implicit_euler() {
+        let scene = cloth(Grid::new(6, 6).unwrap(), 1e-3);
+        let network = scene.model.network().unwrap();
+        let [one, ten, many] = [1, 10, 2000].map(|iterations| {
+            let mut end = scene.state.clone();
+            let mut vbd = Vbd::of(network, iterations);
+            vbd.step(network, 0.0, 0.02, &mut end).unwrap();
+            residual(network, 0.02, &scene.state, &end)
+        });
+        assert!(ten < one && many < 1e-11, "{one:e} {ten:e} {many:e}");
+    }
+}

@@ -6,6 +6,7 @@ mod common;
 
 mod accuracy;
 mod adaptive;
+mod compliant;
 mod foreign;
 mod implicit;
 mod limits;

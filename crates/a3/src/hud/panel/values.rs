@@ -29,8 +29,8 @@ pub fn switch(on: bool, own: bool) -> Dial {
 
 pub fn solver(session: &Session, at: usize) -> Option<Dial> {
     let run = &session.panes.get(at)?.simulation;
-    let serves =
-        |i: &usize| !integrators::METHODS[*i].needs_mechanics || network(session).is_some();
+    let system = run.model().system();
+    let serves = |i: &usize| integrators::METHODS[*i].check(system).is_ok();
     let index = |method| {
         let of = |m: &a3_core::Method| std::ptr::eq(m, method);
         integrators::METHODS.iter().position(of).unwrap_or(0) as f64
