@@ -59,14 +59,13 @@ pub(super) fn springs_of<'a>(
         .ok_or(Error::NeedsMechanics { method })
 }
 
-/// Work of so many iterations over all springs, each of which counts as an evaluation, and costs
-/// `price` evaluations of forces spring by spring; `rest` is the price of the rest of the step.
-pub(super) fn work(system: &dyn Compliant, iterations: u32, price: f64, rest: f64) -> Work {
+/// Work of so many iterations over all springs: each counts as an evaluation, and what it takes
+/// longer as linear algebra, at this price in evaluations of forces spring by spring.
+pub(super) fn work(system: &dyn Compliant, iterations: u32, price: f64) -> Work {
     let speed = system.linearized().map_or(1.0, Linearized::speed);
-    let iterations = f64::from(iterations);
     Work {
-        evaluations: iterations as u64,
-        algebra: speed * (rest + price * iterations) - iterations,
+        evaluations: iterations.into(),
+        algebra: f64::from(iterations) * (speed * price - 1.0),
         ..Work::default()
     }
 }

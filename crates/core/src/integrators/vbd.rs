@@ -20,9 +20,11 @@ use crate::error::Error;
 use crate::spring::SpringLaw;
 use crate::system::{Compliant, ParticleSystem};
 
-/// Price of an iteration, in evaluations of forces spring by spring, and that of the rest of a
-/// step: both measured.
-const PRICES: [f64; 2] = [3.0, 2.0];
+/// Price of an iteration, in evaluations of forces spring by spring: each spring is visited from
+/// both ends. It was measured on cloth of 15 x 15 to 64 x 64 particles and on a jelly (see the
+/// tests).
+const PRICE: f64 = 6.5;
+/// Number of iterations in a step.
 const ITERATIONS: u32 = 10;
 
 pub(super) const METHOD: Method = Method {
@@ -137,7 +139,7 @@ impl Integrator for Vbd {
                 }
             }
         }
-        Ok(work(system, *iterations, PRICES[0], PRICES[1]))
+        Ok(work(system, *iterations, PRICE))
     }
 }
 

@@ -23,9 +23,9 @@ use crate::error::Error;
 use crate::spring::SpringLaw;
 use crate::system::ParticleSystem;
 
-/// Price of an iteration, in evaluations of forces spring by spring, and that of the rest of a
-/// step: both measured.
-const PRICES: [f64; 2] = [2.0, 0.5];
+/// Price of an iteration, in evaluations of forces spring by spring: each spring waits for the one
+/// before. It was measured on cloth of 15 x 15 to 64 x 64 particles and on a jelly (see the tests).
+const PRICE: f64 = 5.0;
 
 pub(super) const METHOD: Method = Method {
     name: "xpbd",
@@ -105,7 +105,7 @@ impl Integrator for Xpbd {
                 spring += 1;
             });
         }
-        Ok(work(system, *iterations, PRICES[0], PRICES[1]))
+        Ok(work(system, *iterations, PRICE))
     }
 }
 

@@ -253,6 +253,11 @@ fn limits_are_seen_on_the_cloth() {
     let truth = Truth::of(&cloth).unwrap();
     for m in integrators::METHODS {
         let predicted = largest_step(m, &rest.modes).unwrap().unwrap();
+        if m.needs_springs {
+            // With every step the cloth hangs elsewhere, and going there is no growth.
+            assert!(predicted.step.is_infinite(), "{}", m.name);
+            continue;
+        }
         let seen = observe_at_rest(&rest, m, Some(&predicted), || true)
             .unwrap()
             .unwrap();
