@@ -1,19 +1,20 @@
 //! Extended position-based dynamics, XPBD (Macklin, Mueller, Chentanez, *XPBD: Position-Based
 //! Simulation of Compliant Constrained Dynamics*, 2016): implicit Euler, solved by a fixed number
 //! of iterations over the springs. Each iteration corrects the springs one after another
-//! (Gauss-Seidel), in their order. A spring of stiffness k, damping c, rest length r and length L,
-//! its ends approaching with the speed -L', receives the impulse dp along its direction u, where p
-//! is the sum of those before in the step:
+//! (Gauss-Seidel), in their order. A spring of stiffness k, damping c, rest length r, length L and
+//! rate of stretch L' receives the impulse dp along its direction, where p is the sum of those
+//! before in the step:
 //!
 //! dp = -(h (k (L - r) + c L') + p) / (1 + (h^2 k + h c) (wi + wj)),
 //!
-//! with the inverse masses w of its ends; v += w dp u and x += h w dp u at the end i, and the
-//! opposite at j. That is the paper's multiplier with the compliance 1/k, times h, which keeps the
-//! digits of v in short steps and needs no stiffness above 0. An iteration conserves momentum.
+//! with the inverse masses w of its ends. With its direction u, v += w dp u and x += h w dp u at
+//! the end i, and the opposite at j. That is the paper's multiplier with the compliance 1/k, over h,
+//! which keeps the digits of v in short steps and needs no stiffness above 0. An iteration
+//! conserves momentum.
 //!
-//! Order 1 with any number of iterations. With a single one in each of many short steps (Macklin et
-//! al., *Small Steps in Physics Simulation*, 2019), springs are softer and less damped than implicit
-//! Euler has them; only more iterations make them as stiff. Even without end these do not quite meet
+//! Order 1 with any number of iterations. In long steps a single one (Macklin et al., *Small Steps
+//! in Physics Simulation*, 2019, with many short steps) leaves springs softer than implicit Euler
+//! has them; only more iterations make them as stiff. Even without end these do not quite meet
 //! implicit Euler, because springs turn between the corrections that are summed up.
 
 use super::prediction::{Prediction, springs_of, work};
