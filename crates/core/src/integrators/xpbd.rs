@@ -8,8 +8,8 @@
 //! dp = -(h (k (L - r) + c L') + p) / (1 + (h^2 k + h c) (wi + wj)),
 //!
 //! with the inverse masses w of its ends. With its direction u, v += w dp u and x += h w dp u at
-//! the end i, and the opposite at j. That is the paper's multiplier with the compliance 1/k, over h,
-//! which keeps the digits of v in short steps and needs no stiffness above 0. An iteration
+//! the end i, and the opposite at j. That is the paper's multiplier with the compliance 1/k, over
+//! h, which keeps the digits of v in short steps and needs no stiffness above 0. An iteration
 //! conserves momentum.
 //!
 //! Order 1 with any number of iterations. In long steps a single one (Macklin et al., *Small Steps
