@@ -29,7 +29,7 @@ pub fn of(letter: char) -> CurveStyle {
         'b' => ("#009e73", IMPLICIT, Cross(0.125)),
         'n' => ("#117733", IMPLICIT, Polygon(6, 0.0)),
         'c' => ("#b3703c", UNSOLVED, Polygon(8, 0.0)),
-        'q' => ("#7a4419", UNSOLVED, Polygon(8, 0.0625)),
+        'j' => ("#7a4419", UNSOLVED, Polygon(8, 0.0625)),
         'y' => ("#8a8d91", UNSOLVED, Star(3, 0.4)),
         _ => return CurveStyle::default(),
     };

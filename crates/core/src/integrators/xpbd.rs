@@ -46,7 +46,7 @@ pub(super) const METHOD: Method = Method {
 
 pub(super) const TEN: Method = Method {
     name: "xpbd10",
-    letter: 'q',
+    letter: 'j',
     aliases: &[],
     title: "XPBD, 10 iterations",
     default_control: Control::Step(0.02),
