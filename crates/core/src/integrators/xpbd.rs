@@ -175,8 +175,8 @@ mod tests {
         network.set_gravity(Vector3::new(9.81, 0.0, 0.0));
         network.set_drag(0.05).unwrap();
         let mut y = vec![0.0; 36];
-        for i in 0..6 {
-            y[i] = 0.55 * i as f64;
+        for (i, x) in y[..6].iter_mut().enumerate() {
+            *x = 0.55 * i as f64;
         }
         let [few, many] = [10, 2000].map(|iterations| step(&network, 0.05, &y, iterations));
         assert!(few > 1e-3 && many < 1e-12, "{few:e} {many:e}");
