@@ -1,5 +1,6 @@
 //! Particles, pins, constraints, and only those forces that a scene asks for.
 
+mod compliant;
 mod constrained;
 mod mechanics;
 mod obstacles;

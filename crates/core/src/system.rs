@@ -1,9 +1,10 @@
 //! What an integrator sees: flat arrays of which only the length changes. Beside the one small
 //! trait that a system must implement there are views that it may offer, each for some methods:
-//! [`Splitting`], [`Linearized`] and [`Rows`].
+//! [`Splitting`], [`Linearized`], [`Compliant`] and [`Rows`].
 
 use crate::path::Place;
 use crate::rows::Rows;
+use crate::spring::SpringLaw;
 
 /// A first-order system y' = f(t, y).
 pub trait ParticleSystem {
@@ -60,6 +61,11 @@ pub trait Mechanics {
 
     /// View for implicit methods and for stability. Without it, they take differences of F.
     fn linearized(&self) -> Option<&dyn Linearized> {
+        None
+    }
+
+    /// View for methods that solve spring by spring. Without it, they refuse the system.
+    fn compliant(&self) -> Option<&dyn Compliant> {
         None
     }
 }
@@ -124,6 +130,22 @@ pub trait Linearized: Mechanics {
     /// constraints out: implicit methods refuse then.
     fn baumgarte_frequency(&self) -> Option<f64> {
         None
+    }
+}
+
+/// The springs of a system one by one, each a compliant distance constraint: its compliance (m/N)
+/// is one over its stiffness. Together with drag and the other forces they are all its forces.
+pub trait Compliant: Mechanics {
+    /// Visits the two ends and the law of each spring, always in the same order. A spring whose
+    /// ends are at the same place has no direction, and no force.
+    fn springs(&self, visit: &mut dyn FnMut([usize; 2], SpringLaw));
+
+    /// Writes the forces (N) that are neither of springs nor of drag to `f`.
+    fn other_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
+
+    /// Coefficient c of viscous drag (kg/s), the force -c v on each particle.
+    fn drag_coefficient(&self) -> f64 {
+        0.0
     }
 }
 

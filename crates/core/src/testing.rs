@@ -2,7 +2,7 @@
 //! depends on this one.
 
 use crate::random::SplitMix;
-use crate::{Grid, Model, Network, Path, Scene, Sheet, Vector3};
+use crate::{Grid, Mechanics, Model, Network, Path, Scene, Sheet, Vector3};
 
 /// Hanging cloth in motion, its particles slightly displaced, its upper corners pinned.
 /// `damping_time` is the damping of each spring over its stiffness (s).
@@ -34,4 +34,24 @@ pub(crate) fn cloth(grid: Grid, damping_time: f64) -> Scene {
         }
     }
     Scene::new("cloth", Model::Network(Box::new(network)), state)
+}
+
+/// Largest relative error of the momenta after a step of implicit Euler from y to `end` in h (s):
+/// of M (v1 - v) = h F(t + h, x1, v1).
+pub(crate) fn residual(network: &Network, h: f64, y: &[f64], end: &[f64]) -> f64 {
+    let n = network.particles();
+    let (x, v) = end.split_at(3 * n);
+    let mut f = vec![0.0; 3 * n];
+    network.forces(h, x, v, &mut f);
+    let (mut worst, mut most): (f64, f64) = (0.0, 0.0);
+    for (k, f) in f
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| !network.is_pinned(k % n))
+    {
+        let gained = network.masses()[k % n] * (v[k] - y[3 * n + k]);
+        worst = worst.max((gained - h * f).abs());
+        most = most.max(gained.abs());
+    }
+    worst / most
 }

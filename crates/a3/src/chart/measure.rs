@@ -325,7 +325,7 @@ pub fn words(scope: Scope) -> String {
 
 /// Expected work of a step, in evaluations.
 fn each(method: &Method) -> f64 {
-    if method.implicit {
+    if method.implicit && !method.needs_springs {
         IMPLICIT
     } else {
         f64::from(method.damped_evaluations.max(method.evaluations))

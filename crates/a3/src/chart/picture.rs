@@ -30,8 +30,13 @@ pub fn chart(
         })
         .collect();
     WorkPrecision {
-        title: format!("Speed against accuracy: {}", describe(what, &studies[0].scene)),
-        subtitle: format!("{until} s of motion; each point is a run with another step or tolerance"),
+        title: format!(
+            "Speed against accuracy: {}",
+            describe(what, &studies[0].scene)
+        ),
+        subtitle: format!(
+            "{until} s of motion; each point is a run with another step or tolerance"
+        ),
         x_label: x_label(metric, scope),
         y_label: if timed {
             "computing time per simulated second (s)"
@@ -40,9 +45,21 @@ pub fn chart(
         }
         .into(),
         problems,
-        foot: "Errors are true ones, against DOP853 at two tolerances and a method of order 4 extrapolated, whose \
-               disagreement is the shaded floor."
-            .into(),
+        foot: foot(methods),
+    }
+}
+
+/// What the errors are, and which methods solve another model.
+fn foot(methods: &[&'static Method]) -> String {
+    let errors = "Errors are true ones, against DOP853 at two tolerances and a method of order 4 \
+                  extrapolated, whose disagreement is the shaded floor.";
+    if methods.iter().any(|method| method.needs_springs) {
+        format!(
+            "{errors} Methods with a number of iterations stop before implicit Euler is solved: \
+             in long steps their springs are softer than the scene's."
+        )
+    } else {
+        errors.into()
     }
 }
 

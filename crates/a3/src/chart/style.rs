@@ -9,6 +9,8 @@ const EXPLICIT_2: &[f64] = &[4.0, 4.0];
 const SYMPLECTIC: &[f64] = &[7.0, 2.5];
 const ADAPTIVE: &[f64] = &[1.5, 1.8];
 const IMPLICIT: &[f64] = &[7.0, 2.0, 1.5, 2.0];
+/// Methods that solve spring by spring and stop before they have solved.
+const UNSOLVED: &[f64] = &[3.5, 3.5];
 
 /// The style of a method by its letter; grey for one without a style of its own.
 pub fn of(letter: char) -> CurveStyle {
@@ -33,6 +35,9 @@ pub fn of(letter: char) -> CurveStyle {
         'b' => ("#009e73", IMPLICIT, Cross(0.125)),
         'n' => ("#117733", IMPLICIT, Polygon(6, 0.0)),
         'o' => ("#5a7f1e", IMPLICIT, Star(3, 0.4)),
+        'c' => ("#b3703c", UNSOLVED, Polygon(8, 0.0)),
+        'j' => ("#7a4419", UNSOLVED, Polygon(8, 0.0625)),
+        'y' => ("#8a8d91", UNSOLVED, Star(3, 0.4)),
         _ => return CurveStyle::default(),
     };
     CurveStyle {

@@ -22,6 +22,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 17,
     implicit: false,
     needs_mechanics: true,
+    needs_springs: false,
     positions_only: true,
     create: |system| Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim())),
     trial: Some(|system| Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim()))),

@@ -16,6 +16,7 @@ pub(super) const METHOD: Method = Method {
     implicit: false,
     needs_mechanics: false,
     positions_only: false,
+    needs_springs: false,
     create: |system| Box::new(RungeKutta::new(MIDPOINT, system)),
     trial: None,
 };

@@ -15,6 +15,7 @@ mod implicit;
 mod midpoint;
 mod nystrom;
 mod pefrl;
+mod prediction;
 mod rk4;
 mod rkf45;
 mod runge_kutta;
@@ -23,8 +24,10 @@ mod srkn11;
 mod sweep;
 mod symplectic_euler;
 mod trial;
+mod vbd;
 mod verlet;
 mod verner65;
+mod xpbd;
 
 use crate::control::Control;
 use crate::error::{Error, positive};
@@ -78,6 +81,10 @@ pub struct Method {
     pub needs_mechanics: bool,
     /// Whether the method serves only forces that depend on positions and time, drag aside.
     pub positions_only: bool,
+    /// Whether the method solves spring by spring, by a fixed number of iterations in a step, and
+    /// supports no other couplings of particles. Its springs are then softer than they should be in
+    /// a long step, even where the motion is slow.
+    pub needs_springs: bool,
     /// Constructor of the method's integrator.
     create: fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>,
     /// Constructor of the steps of an adaptive method, which chooses them by itself to a tolerance;
@@ -89,15 +96,22 @@ impl Method {
     /// `Ok` if the method supports this system.
     ///
     /// # Errors
-    /// The method needs forces and masses, and the system has none; or it serves only forces that
-    /// do not depend on the velocity, and others act; or the method is implicit, and the system has
-    /// constraints.
+    /// The method needs forces and masses, and the system has none; it serves only forces that do
+    /// not depend on the velocity, and others act; it is implicit, and the system has constraints;
+    /// or it solves spring by spring, and the system does not list its springs.
     pub fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
         match system.mechanics() {
             None if self.needs_mechanics => Err(Error::NeedsMechanics { method: self.name }),
             Some(mechanics) if self.implicit && holds_constraints(mechanics) => {
                 Err(Error::Invalid(format!(
                     "{} does not support constraints: use an explicit solver",
+                    self.title
+                )))
+            }
+            Some(mechanics) if self.needs_springs && mechanics.compliant().is_none() => {
+                Err(Error::Invalid(format!(
+                    "{} solves spring by spring, but here are forces between particles that are \
+                     no linear springs: use the solver implicit",
                     self.title
                 )))
             }
@@ -193,6 +207,9 @@ pub static METHODS: &[Method] = &[
     dprkn86::METHOD,
     dprkn1210::METHOD,
     implicit::BDF,
+    xpbd::METHOD,
+    xpbd::TEN,
+    vbd::METHOD,
 ];
 
 /// Method with this letter, name or alias.

@@ -24,6 +24,7 @@ pub(super) const METHOD: Method = Method {
     implicit: false,
     needs_mechanics: true,
     positions_only: false,
+    needs_springs: false,
     create: |system| PLAN.integrator(system),
     trial: None,
 };

@@ -18,6 +18,7 @@ pub(super) const METHOD: Method = Method {
     implicit: false,
     needs_mechanics: false,
     positions_only: false,
+    needs_springs: false,
     create: |system| Box::new(RungeKutta::new(RK4, system)),
     trial: None,
 };

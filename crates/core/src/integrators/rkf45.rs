@@ -22,6 +22,7 @@ pub(super) const METHOD: Method = Method {
     implicit: false,
     needs_mechanics: false,
     positions_only: false,
+    needs_springs: false,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };

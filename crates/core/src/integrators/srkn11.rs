@@ -22,6 +22,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 12,
     implicit: false,
     needs_mechanics: true,
+    needs_springs: false,
     positions_only: true,
     create: |system| PLAN.integrator(system),
     trial: None,

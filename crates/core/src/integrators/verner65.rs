@@ -20,6 +20,7 @@ pub(super) const METHOD: Method = Method {
     damped_evaluations: 8,
     implicit: false,
     needs_mechanics: false,
+    needs_springs: false,
     positions_only: false,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),

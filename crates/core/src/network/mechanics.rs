@@ -12,7 +12,7 @@ use crate::elements::{Element, Finish, Flow, Sheet, flow_each};
 use crate::path::Place;
 use crate::rows::{Patch, Registers, Rows, Stage, SweepScratch, Terms};
 use crate::system::{
-    Coupling, Linearized, Matrix, Mechanics, Splitting, divide_by_masses, place_pins,
+    Compliant, Coupling, Linearized, Matrix, Mechanics, Splitting, divide_by_masses, place_pins,
 };
 
 impl Network {
@@ -204,6 +204,10 @@ impl Mechanics for Network {
 
     fn linearized(&self) -> Option<&dyn Linearized> {
         Some(self)
+    }
+
+    fn compliant(&self) -> Option<&dyn Compliant> {
+        self.is_compliant().then_some(self as &dyn Compliant)
     }
 }
 

@@ -20,7 +20,10 @@ use crate::elements::Flow;
 use crate::error::Error;
 use crate::integrators::{Integrator, Method};
 use crate::path::Place;
-use crate::system::{AxialCoupling, Coupling, Linearized, Mechanics, Splitting, place_pins};
+use crate::spring::SpringLaw;
+use crate::system::{
+    AxialCoupling, Compliant, Coupling, Linearized, Mechanics, Splitting, place_pins,
+};
 
 pub use limit::{GROWTH, HORIZON, Limit, STEPS, largest_step, tenfold_time};
 pub use motion::Motion;
@@ -97,6 +100,30 @@ impl Mechanics for Tied {
 
     fn linearized(&self) -> Option<&dyn Linearized> {
         Some(self)
+    }
+
+    fn compliant(&self) -> Option<&dyn Compliant> {
+        Some(self)
+    }
+}
+
+impl Compliant for Tied {
+    fn springs(&self, visit: &mut dyn FnMut([usize; 2], SpringLaw)) {
+        let law = SpringLaw {
+            stiffness: self.0.stiffness,
+            rest_length: 0.0,
+            damping: self.0.damping,
+        };
+        visit([0, 2], law);
+        visit([1, 2], law);
+    }
+
+    fn other_forces(&self, _t: f64, _x: &[f64], _v: &[f64], f: &mut [f64]) {
+        f.fill(0.0);
+    }
+
+    fn drag_coefficient(&self) -> f64 {
+        self.0.drag
     }
 }
 

@@ -7,6 +7,7 @@ mod common;
 mod accuracy;
 mod adaptive;
 mod bdf;
+mod compliant;
 mod foreign;
 mod implicit;
 mod limits;

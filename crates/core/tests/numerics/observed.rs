@@ -81,8 +81,13 @@ fn limits_are_seen_on_the_cloth() {
     let cloth = scene_with_grid("cloth", 8, 8);
     let rest = rest(&cloth).unwrap().unwrap();
     let motion = Motion::of(&cloth, || true).unwrap().unwrap();
-    for m in integrators::METHODS {
+    for m in integrators::METHODS.iter().filter(|m| !m.positions_only) {
         let predicted = largest_step(m, &rest.modes).unwrap().unwrap();
+        if m.needs_springs {
+            // With every step the cloth hangs elsewhere, and going there is no growth.
+            assert!(predicted.step.is_infinite(), "{}", m.name);
+            continue;
+        }
         let seen = observe_at_rest(&rest, m, Some(&predicted), || true)
             .unwrap()
             .unwrap();

@@ -282,7 +282,7 @@ fn a_system_without_views_is_served_too() {
     let line = Line::new(7, true);
     let y = line.state();
     let expected = integrate(&line, method("dop853"), &y, 1e-3, 200);
-    for m in integrators::METHODS {
+    for m in integrators::METHODS.iter().filter(|m| !m.needs_springs) {
         let error = |line: &Line, steps: u64| {
             let found = integrate(line, m, &y, 0.2 / steps as f64, steps);
             distance(&found, &expected) / size(&expected)

@@ -26,6 +26,7 @@ pub(in super::super) const METHOD: Method = Method {
     damped_evaluations: 3,
     implicit: true,
     needs_mechanics: false,
+    needs_springs: false,
     positions_only: false,
     create: tr_bdf2::METHOD.create,
     trial: Some(|system| Box::new(Bdf::new(system))),

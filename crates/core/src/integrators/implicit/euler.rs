@@ -20,6 +20,7 @@ pub(in super::super) const METHOD: Method = Method {
     implicit: true,
     needs_mechanics: false,
     positions_only: false,
+    needs_springs: false,
     create: |system| {
         Box::new(ImplicitEuler {
             stage: StageSolver::new(system),

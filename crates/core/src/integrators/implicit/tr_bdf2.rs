@@ -24,6 +24,7 @@ pub(in super::super) const METHOD: Method = Method {
     implicit: true,
     needs_mechanics: false,
     positions_only: false,
+    needs_springs: false,
     create: |system| {
         let zeros = || vec![0.0; system.dim()];
         Box::new(TrBdf2 {

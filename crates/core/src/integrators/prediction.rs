@@ -1,0 +1,71 @@
+//! Prediction of a step without springs, from which methods that solve spring by spring begin: with
+//! masses m, drag c and the other forces F, v* = (m v + h F(t, x, v)) / (m + h c), x* = x + h v*.
+//! Drag is that of implicit Euler, so that it is stable at any step; it adds h c to the masses with
+//! which springs are solved. Pinned particles are put in their places at t + h.
+
+use crate::error::Error;
+use crate::system::{Compliant, Linearized, Mechanics, ParticleSystem, place_pins};
+use crate::work::Work;
+
+/// Scratch of a prediction.
+pub(super) struct Prediction {
+    f: Vec<f64>,
+    /// One over m + h c of each particle (1/kg); 0 where it is pinned.
+    pub inverse_masses: Vec<f64>,
+}
+
+impl Prediction {
+    /// Prediction for a system of so many particles.
+    pub fn new(particles: usize) -> Self {
+        Self {
+            f: vec![0.0; 3 * particles],
+            inverse_masses: vec![0.0; particles],
+        }
+    }
+
+    /// Takes x and v from t to t + h (s) as if there were no springs.
+    pub fn take(&mut self, system: &dyn Compliant, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
+        let Self { f, inverse_masses } = self;
+        system.other_forces(t, x, v, f);
+        let masses = system.inverse_masses();
+        let drag = h * system.drag_coefficient();
+        for (inverse, w) in inverse_masses.iter_mut().zip(masses) {
+            *inverse = w / (1.0 + drag * w);
+        }
+        let n = masses.len();
+        for axis in 0..3 {
+            let column = axis * n..(axis + 1) * n;
+            let moved = x[column.clone()].iter_mut().zip(&mut v[column.clone()]);
+            for (((x, v), f), w) in moved.zip(&f[column]).zip(masses) {
+                *v = (*v + h * w * f) / (1.0 + drag * w);
+                *x += h * *v;
+            }
+        }
+        place_pins(system, t + h, x, v);
+    }
+}
+
+/// The springs of a system one by one.
+///
+/// # Errors
+/// It has none.
+pub(super) fn springs_of<'a>(
+    system: &'a dyn ParticleSystem,
+    method: &'static str,
+) -> Result<&'a dyn Compliant, Error> {
+    let mechanics = system.mechanics();
+    mechanics
+        .and_then(Mechanics::compliant)
+        .ok_or(Error::NeedsMechanics { method })
+}
+
+/// Work of so many iterations over all springs: each counts as an evaluation, and what it takes
+/// longer as linear algebra, at this price in evaluations of forces spring by spring.
+pub(super) fn work(system: &dyn Compliant, iterations: u32, price: f64) -> Work {
+    let speed = system.linearized().map_or(1.0, Linearized::speed);
+    Work {
+        evaluations: iterations.into(),
+        algebra: f64::from(iterations) * (speed * price - 1.0),
+        ..Work::default()
+    }
+}
