@@ -237,7 +237,7 @@ fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> Stabil
             step(h)
         ),
         note: if rows.iter().any(|row| is_marked(row.bounded, Edge::Blurred)) {
-            format!("~\u{a0}{}", BLURRED)
+            format!("~\u{a0}{BLURRED}")
         } else {
             String::new()
         },

@@ -138,6 +138,7 @@ fn precision_chart(methods: usize, panels: usize) -> WorkPrecision {
         "circle",
     ];
     let problem = |(k, title): (usize, &&str)| Problem {
+        still: None,
         title: (*title).to_owned(),
         curves: curves(methods, 1.0 + 0.7 * k as f64),
         floor: [Some(8e-10), Some(3e-8), None][k % 3],

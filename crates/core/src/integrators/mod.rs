@@ -55,8 +55,15 @@ pub trait Integrator: Send {
     ) -> Result<Work, Error>;
 }
 
+/// Constructor of what takes the steps of a method on a system.
+type Create<T> = fn(system: &dyn ParticleSystem) -> Box<T>;
+
 /// Row of the table of methods.
 #[derive(Debug)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a column of the table, and says of its own what a method needs"
+)]
 pub struct Method {
     /// Name, as typed on the command line.
     pub name: &'static str,
@@ -86,10 +93,10 @@ pub struct Method {
     /// a long step, even where the motion is slow.
     pub needs_springs: bool,
     /// Constructor of the method's integrator.
-    create: fn(system: &dyn ParticleSystem) -> Box<dyn Integrator>,
+    create: Create<dyn Integrator>,
     /// Constructor of the steps of an adaptive method, which chooses them by itself to a tolerance;
     /// `None` for other methods.
-    trial: Option<fn(system: &dyn ParticleSystem) -> Box<dyn Trial>>,
+    trial: Option<Create<dyn Trial>>,
 }
 
 impl Method {
