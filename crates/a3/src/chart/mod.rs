@@ -184,14 +184,21 @@ pub fn look_ahead(
         return Ok(None);
     };
     let Horizon {
-        until, lyapunov, ..
+        until,
+        lyapunov,
+        buckles,
+        ..
     } = found;
     let of = if stiffness == 1.0 {
         scene.name.clone()
     } else {
         format!("{} at {stiffness} times its stiffness", scene.name)
     };
-    let why = if lyapunov.is_finite() {
+    let why = if buckles {
+        format!(
+            "compressed springs buckle out of the plane of the motion, and errors grow e-fold every {lyapunov:.2} s"
+        )
+    } else if lyapunov.is_finite() {
         format!("errors grow by themselves e-fold every {lyapunov:.2} s (Lyapunov time)")
     } else {
         "errors hardly grow by themselves".to_owned()

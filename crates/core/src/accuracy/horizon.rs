@@ -1,5 +1,7 @@
 //! Time for which errors are meaningful: chaotic motion makes the smallest errors large.
 
+use nalgebra::{Matrix3, Vector3};
+
 use super::GoOn;
 use crate::control::Control;
 use crate::error::Error;
@@ -29,6 +31,10 @@ pub struct Horizon {
     /// Lyapunov time, in which that distance grows by the factor e (s); infinite if it grows by no
     /// more than 30 times in all.
     pub lyapunov: f64,
+    /// Whether the particles start and move in a plane, and the distance grows mostly out of it: then
+    /// it is not chaos that makes small errors grow, but springs that buckle out of the plane under
+    /// compression.
+    pub buckles: bool,
     /// Largest root mean square distance of the particles from where they start, until then (m).
     pub motion: f64,
 }
@@ -114,6 +120,34 @@ pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
     Ok(Some(Horizon {
         until,
         lyapunov,
+        buckles: lyapunov.is_finite() && leaves_plane(&scene.state, &run, &beside),
         motion,
     }))
+}
+
+/// Whether particles start in a plane, with velocities in it, and two runs part mostly out of it.
+fn leaves_plane(start: &[f64], run: &Simulation, beside: &Simulation) -> bool {
+    let n = run.particles();
+    let at = |y: &[f64], i: usize| Vector3::new(y[i], y[n + i], y[2 * n + i]);
+    let outer = |vectors: &mut dyn Iterator<Item = Vector3<f64>>| {
+        vectors.fold(Matrix3::zeros(), |sum, v| sum + v * v.transpose())
+    };
+    let (x, v) = start.split_at(3 * n);
+    let middle = (0..n).map(|i| at(x, i)).sum::<Vector3<f64>>() / n as f64;
+    let mut spread = outer(&mut (0..n).map(|i| at(x, i) - middle));
+    if v.len() == x.len() {
+        spread += outer(&mut (0..n).map(|i| at(v, i)));
+    }
+    let eigen = spread.symmetric_eigen();
+    let normal = eigen.eigenvectors.column(eigen.eigenvalues.imin());
+    if eigen.eigenvalues.min() > 1e-20 * eigen.eigenvalues.max() {
+        return false;
+    }
+    let parts = (0..n).map(|i| at(beside.state(), i) - at(run.state(), i));
+    let (mut out, mut all) = (0.0, 0.0);
+    for part in parts {
+        out += part.dot(&normal).powi(2);
+        all += part.norm_squared();
+    }
+    out > 0.5 * all
 }

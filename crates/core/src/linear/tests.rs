@@ -67,12 +67,8 @@ fn residual(network: &Network, tangent: &Tangent, b: &[f64], x: &[f64]) -> f64 {
 
 #[test]
 fn iterations_and_factors_agree_and_report_the_true_residual() {
-    // A factor by blocks of a chain and of a small cloth, and a sparse one of a larger cloth.
-    for ((network, x), by_blocks) in [
-        (chain(30, 1000.0), true),
-        (cloth(5, 300.0), true),
-        (cloth(20, 300.0), false),
-    ] {
+    // A factor by blocks of a chain, and a sparse one of a cloth.
+    for ((network, x), by_blocks) in [(chain(30, 1000.0), true), (cloth(7, 300.0), false)] {
         let b = right_hand_side(&network);
         let mut solver = Solver::new(&network);
         let _ = solver.gather(&network, &x, 1.0 / 60.0, true);
