@@ -15,7 +15,7 @@ use crate::interrupt;
 use crate::progress::Bar;
 
 /// Most work of a run, in evaluations. A run that fails may take more.
-const MOST_EVALUATIONS: f64 = 30_000.0;
+const MOST_EVALUATIONS: f64 = 20_000.0;
 /// Work of the runs of the reference at which it is no longer refined: in evaluations, and in those
 /// times the length of the state, whichever is more work.
 const MOST_OF_REFERENCE: (f64, f64) = (80_000.0, 1.5e8);
@@ -27,9 +27,9 @@ const IMPLICIT: f64 = 25.0;
 /// run.
 const FINE: f64 = 1e-10;
 /// Most times that a run is timed. The shortest time counts.
-const RUNS: u32 = 5;
+const RUNS: u32 = 3;
 /// Total computing time after which a run is timed no more, if it was timed twice.
-const TOGETHER: Duration = Duration::from_millis(600);
+const TOGETHER: Duration = Duration::from_millis(200);
 /// Computing time of a single run after which it is timed no more.
 const ALONE: Duration = Duration::from_millis(250);
 

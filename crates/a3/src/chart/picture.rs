@@ -9,6 +9,9 @@ use super::measure::Study;
 use super::{describe, style, table, unit};
 use crate::cli::What;
 
+/// Error of a run over that of a run in which nothing moves, above which it is not drawn.
+const BEYOND: f64 = 10.0;
+
 /// The diagram, with a panel for each study.
 pub fn chart(
     studies: &[&Study],
@@ -94,6 +97,7 @@ fn problem(
         let mut records: Vec<_> = study
             .records(data)
             .filter(|r| r.solver == method.name)
+            .filter(|r| r.lost_at.is_some() || r.error(metric) <= BEYOND * r.still(metric))
             .collect();
         records.sort_by(|a, b| b.setting.total_cmp(&a.setting));
         // A lost run is drawn at the work that all of it would have taken. Its computing time is
