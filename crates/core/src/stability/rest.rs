@@ -111,7 +111,7 @@ pub fn rest(scene: &Scene) -> Result<Option<RestState>, Error> {
 }
 
 /// Largest step with which a small disturbance of the scene at rest grows less than [`GROWTH`]
-/// times in [`HORIZON`].
+/// times in [`HORIZON`](super::HORIZON).
 ///
 /// The disturbance is a velocity in the mode that limits the method, with a small random part.
 /// Bisection begins at the predicted limit. `None` if no limit is given, if the runs would take too
