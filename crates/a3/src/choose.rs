@@ -225,9 +225,9 @@ fn report(
     )
 }
 
-/// A step or a tolerance as it would be typed: a step of a run of `until` (s) exactly, as a fraction
-/// if a few digits do not tell it; a tolerance to four digits, rounded down, so that the run is no
-/// coarser.
+/// A step or a tolerance as it would be typed: a step of a run of `until` (s) exactly, as a
+/// fraction if a few digits do not tell it; a tolerance to four digits, rounded down, so that the
+/// run is no coarser.
 fn typed(control: Control, until: f64) -> String {
     let value = control.value();
     if let Control::Step(step) = control {

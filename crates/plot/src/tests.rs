@@ -315,7 +315,8 @@ fn eigenvalues_outside_the_region_are_crosses_or_rings() {
         // One line each, and that of the legend.
         figure.svg().matches("#c77700").count() - 1
     };
-    // The growth by Heun's method is the root of 1 + y^4 / 4: at 0.5 it is 1.0078, at 0.6 it is 1.016.
+    // The growth by Heun's method is the root of 1 + y^4 / 4: at 0.5 it is 1.0078, at 0.6 it is
+    // 1.016.
     assert_eq!(rings(vec![[0.0, 0.5], [0.0, 0.6], [-0.5, 0.5]]), 1);
 }
 

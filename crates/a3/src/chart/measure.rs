@@ -51,8 +51,8 @@ pub struct Study<'a> {
 
 impl<'a> Study<'a> {
     /// A study of the scene. `name`, `wind` and `swing` describe it in the records; errors are of a
-    /// metric in a scope, on a scene whose particles move so far (m); `timed` says whether computing
-    /// times are measured.
+    /// metric in a scope, on a scene whose particles move so far (m); `timed` says whether
+    /// computing times are measured.
     pub fn new(
         scene: Scene,
         (name, wind, swing): (&str, bool, bool),
@@ -292,8 +292,8 @@ impl<'a> Study<'a> {
     }
 }
 
-/// Precision of a reference for all errors that a chart may show, of a scene whose particles move so
-/// far (m).
+/// Precision of a reference for all errors that a chart may show, of a scene whose particles move
+/// so far (m).
 pub fn precision(scene: &Scene, motion: f64) -> Precision {
     let (evaluations, numbers) = MOST_OF_REFERENCE;
     Precision {

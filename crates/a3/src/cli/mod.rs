@@ -284,7 +284,8 @@ pub struct Stability {
 pub struct Choose {
     #[command(flatten)]
     pub what: What,
-    /// Largest error that is allowed, such as 1e-3: of the positions in m, if --of says nothing else
+    /// Largest error that is allowed, such as 1e-3: of the positions in m, if --of says nothing
+    /// else
     #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true, required_unless_present = "budget", conflicts_with = "budget")]
     pub error: Option<f64>,
     /// What counts as the error

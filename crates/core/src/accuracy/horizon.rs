@@ -31,9 +31,9 @@ pub struct Horizon {
     /// Lyapunov time, in which that distance grows by the factor e (s); infinite if it grows by no
     /// more than 30 times in all.
     pub lyapunov: f64,
-    /// Whether the particles start and move in a plane, and the distance grows mostly out of it: then
-    /// it is not chaos that makes small errors grow, but springs that buckle out of the plane under
-    /// compression.
+    /// Whether the particles start and move in a plane, and the distance grows mostly out of it:
+    /// then it is not chaos that makes small errors grow, but springs that buckle out of the plane
+    /// under compression.
     pub buckles: bool,
     /// Largest root mean square distance of the particles from where they start, until then (m).
     pub motion: f64,

@@ -26,8 +26,8 @@ const LOOSER: f64 = 10.0;
 const SHARE: f64 = 0.25;
 /// Order of the other methods.
 const ORDER: i32 = 4;
-/// Disagreement with the other method over that of the tolerances, below which it is the former that
-/// is in doubt: the looser tolerance makes nearly all of the latter.
+/// Disagreement with the other method over that of the tolerances, below which it is the former
+/// that is in doubt: the looser tolerance makes nearly all of the latter.
 const SURE: f64 = 0.3;
 /// Most times that the step is halved.
 const REFINEMENTS: usize = 12;
@@ -43,8 +43,9 @@ pub struct Precision {
     pub metric: Metric,
     /// Uncertainty that is enough, in the unit of the metric.
     pub uncertainty: f64,
-    /// Most work of the runs at tolerances, each by what those before it predict, and of all runs at
-    /// steps together, in evaluations. Infinite where the uncertainty has to be reached at any cost.
+    /// Most work of the runs at tolerances, each by what those before it predict, and of all runs
+    /// at steps together, in evaluations. Infinite where the uncertainty has to be reached at any
+    /// cost.
     pub most: f64,
 }
 

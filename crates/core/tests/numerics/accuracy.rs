@@ -64,8 +64,8 @@ fn on_the_circle_the_error_is_the_known_one() {
     }
 }
 
-/// Frames at which no step ends are interpolated, so finely that the error of a method of order 4 is
-/// the same as where a step ends at each frame.
+/// Frames at which no step ends are interpolated, so finely that the error of a method of order 4
+/// is the same as where a step ends at each frame.
 #[test]
 fn frames_between_steps_show_no_error_of_their_own() {
     for name in ["chain", "mit", "simple"] {

@@ -1,5 +1,5 @@
-//! Stability limits that runs of the scenes themselves show, at rest and in motion, against those by
-//! modes.
+//! Stability limits that runs of the scenes themselves show, at rest and in motion, against those
+//! by modes.
 
 use crate::common::{described, method, scene_with_grid};
 use a3_core::integrators;

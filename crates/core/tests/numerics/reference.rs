@@ -126,7 +126,8 @@ fn every_method_meets_the_references_in_the_limit() {
         let serving = |m: &&Method| !(damped && m.positions_only);
         for method in a3_core::integrators::METHODS.iter().filter(serving) {
             if method.is_adaptive() {
-                // Formulas of order 5 at most take too long to be as close as pairs of order 5 or 8.
+                // Formulas of order 5 at most take too long to be as close as pairs of order 5 or
+                // 8.
                 let (tolerance, most) = if method.implicit {
                     (1e-8, 1e-5)
                 } else {
