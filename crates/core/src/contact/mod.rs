@@ -11,10 +11,12 @@
 //! both relative to the obstacle. A particle that would slip by less than that stays where it is on
 //! the obstacle: what rests does not creep.
 
+mod closest;
 mod obstacle;
 mod resolve;
 mod shape;
 
+pub use closest::{Closest, PairKind, closest, weighted};
 pub use obstacle::Obstacle;
 pub use resolve::{Contact, Statistics, Step, resolve};
 pub use shape::Shape;

@@ -1,0 +1,175 @@
+//! Closest points of a vertex and a triangle, of two edges, and of a vertex and a floor (Ericson,
+//! *Real-Time Collision Detection*, 2005, 5.1).
+
+use nalgebra::Vector3;
+
+/// Squared sine of the angle between two edges below which their closest points are also looked
+/// for at their ends: the system for points within both is too ill-conditioned then.
+const PARALLEL: f64 = 1e-6;
+
+/// Share of the product of the squared sides of a triangle below which its squared double area
+/// counts as none: its points are then those of its edges.
+const FLAT: f64 = 1e-12;
+
+/// Kind of a pair of primitives. Its four points are the vertices of the first primitive, then
+/// those of the second.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PairKind {
+    /// Vertex (point 0) and triangle (points 1, 2, 3).
+    VertexTriangle,
+    /// Edge (points 0, 1) and edge (points 2, 3). An edge whose ends are equal is a point.
+    EdgeEdge,
+    /// Vertex (point 0) and the horizontal plane through point 1; points 2 and 3 are not used.
+    VertexFloor,
+}
+
+impl PairKind {
+    /// Number of points of the first primitive.
+    #[must_use]
+    pub fn first(self) -> usize {
+        if self == Self::EdgeEdge { 2 } else { 1 }
+    }
+}
+
+/// Closest points of a pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closest {
+    /// Weights of the four points, which sum to 0: the closest point of the first primitive is the
+    /// sum over its points, that of the second the sum over its points with the sign reversed.
+    pub weights: [f64; 4],
+    /// Vector from the closest point of the second primitive to that of the first (m), which is the
+    /// sum of the weighted points.
+    pub offset: Vector3<f64>,
+}
+
+impl Closest {
+    fn new(weights: [f64; 4], points: &[Vector3<f64>; 4]) -> Self {
+        Self {
+            weights,
+            offset: weighted(&weights, points),
+        }
+    }
+
+    /// The one of two that is closer.
+    fn nearer(self, other: Self) -> Self {
+        if other.offset.norm_squared() < self.offset.norm_squared() {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+/// Sum of weighted vectors.
+#[must_use]
+pub fn weighted(weights: &[f64; 4], vectors: &[Vector3<f64>; 4]) -> Vector3<f64> {
+    vectors[0] * weights[0]
+        + vectors[1] * weights[1]
+        + vectors[2] * weights[2]
+        + vectors[3] * weights[3]
+}
+
+/// Closest points of the pair of that kind with those points (m).
+#[must_use]
+pub fn closest(kind: PairKind, points: &[Vector3<f64>; 4]) -> Closest {
+    match kind {
+        PairKind::VertexTriangle => vertex_triangle(points),
+        PairKind::EdgeEdge => edge_edge(points),
+        PairKind::VertexFloor => Closest {
+            weights: [1.0, -1.0, 0.0, 0.0],
+            offset: Vector3::new(0.0, points[0].y - points[1].y, 0.0),
+        },
+    }
+}
+
+fn vertex_triangle(points: &[Vector3<f64>; 4]) -> Closest {
+    let [p, a, b, c] = *points;
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let on = |u: f64, v: f64, w: f64| Closest::new([1.0, -u, -v, -w], points);
+    if ab.cross(&ac).norm_squared() <= FLAT * ab.norm_squared() * ac.norm_squared() {
+        let [s, t, u] = [[a, b], [b, c], [c, a]].map(|side| share(p, side));
+        return on(1.0 - s, s, 0.0)
+            .nearer(on(0.0, 1.0 - t, t))
+            .nearer(on(u, 0.0, 1.0 - u));
+    }
+    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return on(1.0, 0.0, 0.0);
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return on(0.0, 1.0, 0.0);
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let v = d1 / (d1 - d3);
+        return on(1.0 - v, v, 0.0);
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return on(0.0, 0.0, 1.0);
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let w = d2 / (d2 - d6);
+        return on(1.0 - w, 0.0, w);
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+        let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return on(0.0, 1.0 - w, w);
+    }
+    let scale = 1.0 / (va + vb + vc);
+    let (v, w) = (vb * scale, vc * scale);
+    on(1.0 - v - w, v, w)
+}
+
+fn edge_edge(points: &[Vector3<f64>; 4]) -> Closest {
+    let [p, q, r, s] = *points;
+    let (d1, d2, between) = (q - p, s - r, p - r);
+    let (a, e, b) = (d1.norm_squared(), d2.norm_squared(), d1.dot(&d2));
+    let (c, f) = (d1.dot(&between), d2.dot(&between));
+    let on = |s: f64, t: f64| Closest::new([1.0 - s, s, t - 1.0, -t], points);
+    let cross = a * e - b * b;
+    let within = (cross > 0.0).then(|| {
+        let s = ((b * f - c * e) / cross).clamp(0.0, 1.0);
+        let t = (b * s + f) / e;
+        if t < 0.0 {
+            on((-c / a).clamp(0.0, 1.0), 0.0)
+        } else if t > 1.0 {
+            on(((b - c) / a).clamp(0.0, 1.0), 1.0)
+        } else {
+            on(s, t)
+        }
+    });
+    match within {
+        Some(within) if cross > PARALLEL * a * e => within,
+        _ => {
+            let ends = [
+                on(0.0, share(p, [r, s])),
+                on(1.0, share(q, [r, s])),
+                on(share(r, [p, q]), 0.0),
+                on(share(s, [p, q]), 1.0),
+            ];
+            let nearest = ends.into_iter().reduce(Closest::nearer);
+            [nearest, within]
+                .into_iter()
+                .flatten()
+                .reduce(Closest::nearer)
+                .unwrap_or_else(|| on(0.0, 0.0))
+        }
+    }
+}
+
+/// Share of the way along an edge at which it is nearest to p; 0 for an edge that is a point.
+fn share(p: Vector3<f64>, [a, b]: [Vector3<f64>; 2]) -> f64 {
+    let along = b - a;
+    let squared = along.norm_squared();
+    if squared > 0.0 {
+        ((p - a).dot(&along) / squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    }
+}
