@@ -9,6 +9,8 @@ pub struct Energy {
     pub kinetic: f64,
     /// Elastic energy, k (L - r)2 / 2 of a spring, and that of bent arcs (J).
     pub elastic: f64,
+    /// Energy of surfaces that are nearer than their thickness (J).
+    pub contact: f64,
     /// Gravitational energy, -m g . x (J).
     pub gravitational: f64,
 }
@@ -17,7 +19,7 @@ impl Energy {
     /// Sum of all kinds (J).
     #[must_use]
     pub fn total(&self) -> f64 {
-        self.kinetic + self.elastic + self.gravitational
+        self.kinetic + self.elastic + self.contact + self.gravitational
     }
 }
 
@@ -25,6 +27,7 @@ impl AddAssign for Energy {
     fn add_assign(&mut self, other: Self) {
         self.kinetic += other.kinetic;
         self.elastic += other.elastic;
+        self.contact += other.contact;
         self.gravitational += other.gravitational;
     }
 }

@@ -83,7 +83,7 @@ pub use error::{BlowUp, Cause, Error};
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
-pub use network::Network;
+pub use network::{Network, Touch};
 pub use path::{Path, Place};
 pub use rows::{Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
 pub use scene::{FirstOrder, Model, Scene, Swing};

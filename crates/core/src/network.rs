@@ -2,6 +2,7 @@
 
 mod compliant;
 mod constrained;
+mod layer;
 mod mechanics;
 mod obstacles;
 mod springs;
@@ -19,6 +20,8 @@ use crate::elements::{Airflow, Drag, Element, Gravity, Sheet, Wind};
 use crate::energy::Energy;
 use crate::error::{Error, at_least, positive};
 use crate::path::Path;
+
+pub use layer::Touch;
 
 /// A particle led along a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +52,8 @@ pub struct Network {
     /// Pairs of particles between which springs have broken, in order.
     torn: Vec<[usize; 2]>,
     obstacles: Vec<Obstacle>,
+    /// What can touch, if surfaces do.
+    touch: Option<Touch>,
 }
 
 impl Network {
@@ -80,6 +85,7 @@ impl Network {
             torn: vec![],
             masses,
             obstacles: vec![],
+            touch: None,
         })
     }
 
@@ -274,6 +280,7 @@ impl Network {
             Ok(corners.map(|i| i as u32))
         });
         self.triangles = checked.collect::<Result<_, Error>>()?;
+        self.renew_contact();
         Ok(())
     }
 

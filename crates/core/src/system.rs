@@ -103,7 +103,7 @@ pub trait Linearized: Mechanics {
     /// Visits the pairs of particles that act on each other, always in the same order: dF/dx and
     /// dF/dv by their symmetric parts. With `clamped`, every stiffness is positive semi-definite:
     /// the matrix of an implicit step is then positive definite.
-    fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
+    fn couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
 
     /// Writes to `out` the product with p of the diagonal of the matrix and of as many couplings as
     /// the system multiplies faster than one by one, which are the first [`Coupling::Axial`] ones;
@@ -111,6 +111,12 @@ pub trait Linearized: Mechanics {
     /// by one.
     fn multiply(&self, _matrix: &Matrix, _p: &[f64], _out: &mut [f64]) -> usize {
         0
+    }
+
+    /// Whether the same particles are coupled at all x. If not, no factorisation is tried, because
+    /// the pattern of each would have to be analysed.
+    fn couples_always_the_same(&self) -> bool {
+        true
     }
 
     /// Time that the forces would take coupling by coupling over the time that they take: the
@@ -183,7 +189,8 @@ pub struct AxialCoupling {
 pub struct BlockCoupling {
     /// Particle at one end.
     pub i: usize,
-    /// Particle at the other end.
+    /// Particle at the other end; i again where the other end is a place that does not depend on the
+    /// state, as on an obstacle.
     pub j: usize,
     /// K (N/m).
     pub stiffness: [f64; 6],

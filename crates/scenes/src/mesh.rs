@@ -47,6 +47,20 @@ impl Mesh {
         }
     }
 
+    /// Least height of a triangle over a point or beside it, for each point (m).
+    pub(crate) fn heights(&self) -> Vec<f64> {
+        let mut heights = vec![f64::INFINITY; self.positions.len()];
+        for t in &self.triangles {
+            let [a, b, c] = t.map(|i| Vector3::from(self.positions[i as usize]));
+            let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
+            let height = (b - a).cross(&(c - a)).norm() / longest;
+            for i in t {
+                heights[*i as usize] = heights[*i as usize].min(height);
+            }
+        }
+        heights
+    }
+
     /// A third of the area of the triangles around each point (m2).
     pub(crate) fn areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.positions.len()];

@@ -126,6 +126,7 @@ impl Description {
                             center: here.into(),
                             radius,
                             friction,
+                            thickness: described.thickness,
                             sine,
                             shift,
                         };
@@ -145,15 +146,21 @@ impl Description {
                             to: (here + ends[1]).into(),
                             radius,
                             friction,
+                            thickness: described.thickness,
                             sine,
                             shift,
                         };
                     }
                 }
-                Shape::Floor if friction == 0.0 => self.floor = Some(Floor::Height(here.y)),
+                Shape::Floor if friction == 0.0 && obstacle.thickness == 0.0 => self.floor = Some(Floor::Height(here.y)),
                 Shape::Floor => {
                     let height = here.y;
-                    self.floor = Some(Floor::Table(FloorSpec { height, friction }));
+                    let thickness = Some(obstacle.thickness).filter(|d| *d > 0.0);
+                    self.floor = Some(Floor::Table(FloorSpec {
+                        height,
+                        friction,
+                        thickness,
+                    }));
                 }
             }
         }

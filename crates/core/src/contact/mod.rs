@@ -11,12 +11,24 @@
 //! both relative to the obstacle. A particle that would slip by less than that stays where it is on
 //! the obstacle: what rests does not creep.
 
+mod advance;
+mod candidates;
 mod closest;
+mod cut;
+mod guard;
+mod layer;
 mod obstacle;
+mod repulsion;
 mod resolve;
 mod shape;
+mod surface;
 
+pub use advance::time_of_impact;
 pub use closest::{Closest, PairKind, closest, weighted};
+pub use cut::Squeezed;
+pub use guard::Guarded;
+pub use layer::ContactLayer;
 pub use obstacle::Obstacle;
 pub use resolve::{Contact, Statistics, Step, resolve};
 pub use shape::Shape;
+pub use surface::{Skin, Surface};

@@ -13,6 +13,8 @@ pub struct Obstacle {
     pub path: Path,
     /// Coefficient mu of Coulomb friction; 0 is a smooth surface.
     pub friction: f64,
+    /// Thickness of its surface where surfaces touch (m).
+    pub thickness: f64,
 }
 
 impl Obstacle {
@@ -23,6 +25,7 @@ impl Obstacle {
             shape,
             path,
             friction: 0.0,
+            thickness: 0.0,
         }
     }
 
@@ -30,6 +33,7 @@ impl Obstacle {
     /// The shape has no size, or the friction is negative; or a number is not finite.
     pub(crate) fn check(&self) -> Result<(), Error> {
         self.shape.check()?;
-        at_least(0.0, "the friction of an obstacle", self.friction)
+        at_least(0.0, "the friction of an obstacle", self.friction)?;
+        at_least(0.0, "the thickness of an obstacle", self.thickness)
     }
 }

@@ -92,7 +92,7 @@ impl Force for BucklingSprings {
         }
     }
 
-    fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+    fn couplings(&self, _t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         for strip in &self.0 {
             visit(springs::coupling(strip, x, clamped));
         }

@@ -9,6 +9,7 @@ use super::gravity::Gravity;
 use super::sheet::Sheet;
 use super::springs::Springs;
 use super::wind::Wind;
+use crate::contact::ContactLayer;
 use crate::spring::Spring;
 
 macro_rules! elements {
@@ -72,6 +73,8 @@ elements! {
     Airflow,
     /// A critically damped spring from a moving point to a particle.
     Attraction,
+    /// Repulsion of surfaces that are near.
+    ContactLayer,
 }
 
 impl Element {
@@ -83,6 +86,22 @@ impl Element {
         };
         let of_sheet = self.sheet().into_iter().flat_map(Sheet::springs);
         of_sheet.chain(single.iter().copied())
+    }
+
+    /// The contact of surfaces, if it is that.
+    pub(crate) fn contact_layer(&self) -> Option<&ContactLayer> {
+        match self {
+            Self::ContactLayer(layer) => Some(layer),
+            _ => None,
+        }
+    }
+
+    /// The contact of surfaces, to be changed, if it is that.
+    pub(crate) fn contact_layer_mut(&mut self) -> Option<&mut ContactLayer> {
+        match self {
+            Self::ContactLayer(layer) => Some(layer),
+            _ => None,
+        }
     }
 
     /// The sheet, if it is one.

@@ -59,7 +59,7 @@ pub(crate) trait Force {
 
     /// Visits the pairs of particles that the element couples, always in the same order. With
     /// `clamped`, each stiffness is positive semi-definite.
-    fn couplings(&self, _x: &[f64], _clamped: bool, _visit: &mut dyn FnMut(Coupling)) {}
+    fn couplings(&self, _t: f64, _x: &[f64], _clamped: bool, _visit: &mut dyn FnMut(Coupling)) {}
 
     /// Potential energy; none for forces without a potential.
     fn energy(&self, _at: &At) -> Energy {

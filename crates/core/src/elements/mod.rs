@@ -4,6 +4,7 @@ mod air;
 mod airflow;
 mod attraction;
 mod buckling;
+mod contact_layer;
 mod drag;
 mod element;
 mod finish;

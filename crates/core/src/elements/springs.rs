@@ -57,7 +57,7 @@ impl Force for Springs {
         }
     }
 
-    fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+    fn couplings(&self, _t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         for spring in &self.0 {
             visit(coupling(spring, x, clamped));
         }

@@ -103,7 +103,9 @@ impl ConjugateGradients {
         tangent.blocks(|i, j, block| {
             for (column, part) in self.inverses.iter_mut().zip(block) {
                 column[i] += part;
-                column[j] += part;
+                if j != i {
+                    column[j] += part;
+                }
             }
         });
         for (i, m) in tangent.masses().iter().enumerate() {

@@ -31,7 +31,7 @@ const MOST: u64 = 10_000;
 /// Solver of linear systems with the tangent of one system.
 pub(crate) struct Solver {
     pub tangent: Tangent,
-    /// Whether to factorise at any price: for tests.
+    /// Whether to factorise at any price, or at none.
     direct_always: Option<bool>,
     iterative: ConjugateGradients,
     /// The factorisation, once it is worth an analysis of the pattern; `None` also if it would be
@@ -64,7 +64,9 @@ impl Solver {
             stiffness: 0.0,
             factorised: false,
         };
-        if solver.least_operations() == 0.0 {
+        if !system.couples_always_the_same() {
+            solver.direct_always = Some(false);
+        } else if solver.least_operations() == 0.0 {
             solver.analyse();
         }
         solver
@@ -90,11 +92,20 @@ impl Solver {
     /// Takes up what the forces of the system cost now.
     pub fn renew(&mut self, system: &dyn Linearized) {
         self.speed = system.speed();
+        if !system.couples_always_the_same() {
+            self.direct_always = Some(false);
+        }
     }
 
-    /// Gathers A = M + a (C + D) + a2 K at x.
-    pub fn gather(&mut self, system: &dyn Linearized, x: &[f64], a: f64, clamped: bool) -> Work {
-        self.tangent.gather(system, x, a, clamped);
+    /// Gathers A = M + a (C + D) + a2 K at time t (s) at x, for steps of length a (s).
+    pub fn gather(
+        &mut self,
+        system: &dyn Linearized,
+        (t, a): (f64, f64),
+        x: &[f64],
+        clamped: bool,
+    ) -> Work {
+        self.tangent.gather(system, (t, a), x, clamped);
         self.stiffness = self.tangent.stiffness(&mut self.scratch);
         self.factorised = false;
         if self.direct.as_ref().is_some_and(|d| !d.fits(&self.tangent)) {

@@ -22,7 +22,7 @@ pub(crate) struct Tangent {
 }
 
 impl Tangent {
-    /// With room for all couplings of the system.
+    /// With room for all couplings of the system, if it has always the same.
     pub fn new(system: &dyn Linearized) -> Self {
         let n = system.inverse_masses().len();
         let mut tangent = Self {
@@ -35,16 +35,18 @@ impl Tangent {
             x: vec![0.0; 3 * n],
             a: 0.0,
         };
-        tangent.collect(system, &vec![0.0; 3 * n]);
+        if system.couples_always_the_same() {
+            tangent.collect(system, 0.0, &vec![0.0; 3 * n]);
+        }
         tangent.weights.resize(tangent.axial.len(), [0.0; 2]);
         tangent
     }
 
-    fn collect(&mut self, system: &dyn Linearized, x: &[f64]) {
+    fn collect(&mut self, system: &dyn Linearized, t: f64, x: &[f64]) {
         let (axial, blocks) = (&mut self.axial, &mut self.blocks);
         axial.clear();
         blocks.clear();
-        system.couplings(x, self.clamped, &mut |coupling| match coupling {
+        system.couplings(t, x, self.clamped, &mut |coupling| match coupling {
             Coupling::Axial(coupling) => axial.push(coupling),
             Coupling::Block(coupling) => blocks.push(coupling),
         });
@@ -66,11 +68,17 @@ impl Tangent {
         axial.chain(self.blocks.iter().map(|c| (c.i as u32, c.j as u32)))
     }
 
-    /// Gathers the couplings at x for steps of length a (s). With `clamped`, A is positive
+    /// Gathers the couplings at time t (s) at x for steps of length a (s). With `clamped`, A is positive
     /// definite.
-    pub fn gather(&mut self, system: &dyn Linearized, x: &[f64], a: f64, clamped: bool) {
+    pub fn gather(
+        &mut self,
+        system: &dyn Linearized,
+        (t, a): (f64, f64),
+        x: &[f64],
+        clamped: bool,
+    ) {
         self.clamped = clamped;
-        self.collect(system, x);
+        self.collect(system, t, x);
         self.weights.clear();
         self.weights.extend(self.axial.iter().map(|c| {
             let (across, along) = (a * a * c.across, a * a * (c.along - c.across));
@@ -204,12 +212,25 @@ fn add_axial(c: &AxialCoupling, iso: f64, along: f64, p: &[f64], out: &mut [f64]
     add(c.i, c.j, |axis| iso * d[axis] + share * u[axis], out);
 }
 
-/// Adds a block times d at one end of a coupling, and subtracts it at the other.
+/// Adds a block times d at one end of a coupling, and subtracts it at the other; at its only end, if
+/// the other is a place.
 fn add_block(c: &BlockCoupling, [xx, yy, zz, xy, xz, yz]: [f64; 6], p: &[f64], out: &mut [f64]) {
-    let d = difference(p, c.i, c.j);
+    let n = p.len() / 3;
+    let anchored = c.i == c.j;
+    let d = if anchored {
+        [0, n, 2 * n].map(|column| p[column + c.i])
+    } else {
+        difference(p, c.i, c.j)
+    };
     let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     let product = rows.map(|row| row[0] * d[0] + row[1] * d[1] + row[2] * d[2]);
-    add(c.i, c.j, |axis| product[axis], out);
+    if anchored {
+        for (axis, product) in product.into_iter().enumerate() {
+            out[axis * n + c.i] += product;
+        }
+    } else {
+        add(c.i, c.j, |axis| product[axis], out);
+    }
 }
 
 #[inline]

@@ -71,7 +71,7 @@ fn iterations_and_factors_agree_and_report_the_true_residual() {
     for ((network, x), by_blocks) in [(chain(30, 1000.0), true), (cloth(7, 300.0), false)] {
         let b = right_hand_side(&network);
         let mut solver = Solver::new(&network);
-        let _ = solver.gather(&network, &x, 1.0 / 60.0, true);
+        let _ = solver.gather(&network, (0.0, 1.0 / 60.0), &x, true);
         let (mut by_iterations, mut by_factors) = (vec![0.0; b.len()], vec![0.0; b.len()]);
         for tolerance in [1e-3, 1e-6, 1e-12] {
             solver.direct_always = Some(false);
@@ -100,7 +100,7 @@ fn what_is_pinned_stays_however_many_iterations_there_are() {
     let (network, x) = cloth(6, 1e4);
     let b = right_hand_side(&network);
     let mut tangent = Tangent::new(&network);
-    tangent.gather(&network, &x, 0.1, true);
+    tangent.gather(&network, (0.0, 0.1), &x, true);
     let n = network.particles();
     let mut iterative = ConjugateGradients::new(n);
     for most in 0..20 {
@@ -122,7 +122,7 @@ fn compressed_cloth_needs_the_clamp() {
     for clamped in [false, true] {
         let mut solver = Solver::new(&network);
         let mut dv = vec![0.0; b.len()];
-        let _ = solver.gather(&network, &squeezed, 1.0 / 60.0, clamped);
+        let _ = solver.gather(&network, (0.0, 1.0 / 60.0), &squeezed, clamped);
         for direct in [false, true] {
             solver.direct_always = Some(direct);
             let (_, solved) = solver.solve(&network, &b, &mut dv, 1e-8);
@@ -171,11 +171,11 @@ fn solves_measured() {
         let force = time(|| crate::Mechanics::forces(&network, 0.0, black_box(&x), &zero, &mut f));
         for a_w in [1.0, 3.0, 10.0, 30.0, 100.0, 300.0] {
             let mut solver = Solver::new(&network);
-            let _ = solver.gather(&network, &x, 1.0, true);
+            let _ = solver.gather(&network, (0.0, 1.0), &x, true);
             let a = a_w / solver.stiffness().sqrt();
-            let _ = solver.gather(&network, &x, a, true);
+            let _ = solver.gather(&network, (0.0, a), &x, true);
             let gather = time(|| {
-                let _ = solver.gather(&network, black_box(&x), a, true);
+                let _ = solver.gather(&network, (0.0, a), black_box(&x), true);
             });
             let mut dv = vec![0.0; b.len()];
             let tolerance = FORCING;

@@ -248,9 +248,9 @@ impl Linearized for Network {
         }
     }
 
-    fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+    fn couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         for element in &self.elements {
-            element.force().couplings(x, clamped, visit);
+            element.force().couplings(t, x, clamped, visit);
         }
     }
 
@@ -272,6 +272,10 @@ impl Linearized for Network {
             self.finish_single(p, out, &finish);
         }
         count
+    }
+
+    fn couples_always_the_same(&self) -> bool {
+        self.contact_layer().is_none()
     }
 
     fn speed(&self) -> f64 {

@@ -2,6 +2,7 @@
 
 use super::Network;
 use crate::contact::{Obstacle, Shape};
+use crate::elements::Element;
 use crate::error::Error;
 use crate::path::Path;
 
@@ -13,6 +14,7 @@ impl Network {
     pub fn add_obstacle(&mut self, obstacle: Obstacle) -> Result<(), Error> {
         obstacle.check()?;
         self.obstacles.push(obstacle);
+        self.renew_contact();
         Ok(())
     }
 
@@ -28,7 +30,9 @@ impl Network {
     /// There is no such obstacle.
     pub fn remove_obstacle(&mut self, k: usize) -> Result<Obstacle, Error> {
         self.check_obstacle(k)?;
-        Ok(self.obstacles.remove(k))
+        let removed = self.obstacles.remove(k);
+        self.renew_contact();
+        Ok(removed)
     }
 
     /// Leads obstacle k along `path` from now on.
@@ -38,6 +42,10 @@ impl Network {
     pub fn lead_obstacle(&mut self, k: usize, path: Path) -> Result<(), Error> {
         self.check_obstacle(k)?;
         self.obstacles[k].path = path;
+        let obstacle = self.obstacles[k].clone();
+        if let Some(layer) = self.elements.iter_mut().find_map(Element::contact_layer_mut) {
+            layer.set_obstacle(k, obstacle);
+        }
         Ok(())
     }
 
@@ -53,6 +61,7 @@ impl Network {
         };
         other.check()?;
         self.obstacles[k] = other;
+        self.renew_contact();
         Ok(())
     }
 

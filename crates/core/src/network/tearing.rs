@@ -74,6 +74,7 @@ impl Network {
         self.torn.clone_from(&whole.torn);
         self.copy_springs(whole)?;
         self.triangles.clone_from(&whole.triangles);
+        self.renew_contact();
         let more = torn.iter().filter(|[i, j]| !whole.is_torn(*i, *j));
         self.break_springs(&more.copied().collect::<Vec<_>>())
     }
@@ -99,6 +100,7 @@ impl Network {
         self.torn.dedup();
         self.remove_torn();
         self.leave_out_holes();
+        self.renew_contact();
         self.torn.len() - already
     }
 

@@ -158,7 +158,7 @@ impl Linearized for Tied {
         self.forces(t, dx, dv, df);
     }
 
-    fn couplings(&self, _x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+    fn couplings(&self, _t: f64, _x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         for i in 0..2 {
             visit(Coupling::Axial(AxialCoupling {
                 i,

@@ -73,7 +73,7 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
                     *sum = -network.drag_coefficient() * d;
                 }
             }
-            network.couplings(x, false, &mut |coupling| {
+            network.couplings(0.0, x, false, &mut |coupling| {
                 let Coupling::Axial(c) = coupling else {
                     panic!("springs act along their length")
                 };

@@ -146,7 +146,7 @@ impl Linearized for Line {
         self.add_up(dx, false, df);
     }
 
-    fn couplings(&self, _x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+    fn couplings(&self, _t: f64, _x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         for i in 1..self.particles() {
             visit(Coupling::Block(BlockCoupling {
                 i: i - 1,
@@ -350,8 +350,8 @@ fn constraints_in_the_forces_are_refused_by_implicit_methods() {
         ) {
             self.0.force_differential(t, x, v, dx, dv, df);
         }
-        fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
-            self.0.couplings(x, clamped, visit);
+        fn couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+            self.0.couplings(t, x, clamped, visit);
         }
         fn baumgarte_frequency(&self) -> Option<f64> {
             Some(10.0)

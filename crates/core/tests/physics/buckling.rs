@@ -155,7 +155,7 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
         network.force_differential(0.0, &x, &zero, dx, dv, &mut df);
         let mut sum = vec![0.0; 6];
         let mut count = 0;
-        network.couplings(&x, false, &mut |coupling| {
+        network.couplings(0.0, &x, false, &mut |coupling| {
             let Coupling::Axial(c) = coupling else {
                 panic!("springs act along their length")
             };

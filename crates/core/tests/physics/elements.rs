@@ -89,7 +89,7 @@ fn the_product_with_the_matrix_is_that_of_its_couplings() {
             let mut expected: Vec<f64> =
                 (0..3 * n).map(|k| network.masses()[k % n] * p[k]).collect();
             let mut visited = 0;
-            network.couplings(x, clamped, &mut |coupling| {
+            network.couplings(0.0, x, clamped, &mut |coupling| {
                 let Coupling::Axial(c) = coupling else {
                     panic!("springs act along their length")
                 };

@@ -1,5 +1,6 @@
 //! Assembly of the bodies of a scene: their particles, numbered through, and what joins them.
 
+use a3_core::contact::Skin;
 use a3_core::elements::{Buckling, Sheet};
 use a3_core::{Constraint, MAX_PARTICLES, Path, Spring, Vector3};
 
@@ -44,6 +45,10 @@ pub(super) struct Assembly {
     pub springs: Vec<Spring>,
     pub strips: Vec<Buckling>,
     pub rods: Vec<Constraint>,
+    /// Skin of each particle, where surfaces touch.
+    pub skins: Vec<Skin>,
+    /// Edges and, with equal ends, points that are in no triangle.
+    pub edges: Vec<[u32; 2]>,
     pub pins: Vec<(usize, Path)>,
 }
 

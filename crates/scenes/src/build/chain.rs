@@ -4,9 +4,14 @@ use a3_core::{Constraint, Spring, SpringKind, SpringLaw, Vector3};
 
 use super::assembly::{Assembly, Body, Counts};
 use super::laws::{springs, strip};
+use super::skins::SkinSpec;
 use crate::check::{at, at_least, positive, vector, vector_or_zero};
 use crate::description::{Chain, Particles, Pin, Spot};
 use crate::fault::Fault;
+
+/// Distance that single particles are taken to have from one another (m), where no thickness is
+/// given.
+const POINT: f64 = 0.04;
 
 impl Body for Chain {
     fn counts(&self) -> Result<Counts, Fault> {
@@ -44,7 +49,23 @@ impl Body for Chain {
             assembly.positions.push(from + (to - from) * share);
             assembly.velocities.push(velocity);
         }
-        assembly.masses.extend(vec![self.mass; n]);
+        let skin = SkinSpec {
+            thickness: self.thickness,
+            friction: self.friction,
+            stiffness: self.stiffness,
+            time: if self.stiffness > 0.0 {
+                self.damping / self.stiffness
+            } else {
+                0.0
+            },
+        };
+        let masses = vec![self.mass; n];
+        let length = (to - from).norm() / (n - 1) as f64;
+        let spacing = if length > 0.0 { length } else { POINT };
+        assembly.skins.extend(skin.uniform(&masses, spacing)?);
+        let edges = (first..first + n - 1).map(|i| [i as u32, i as u32 + 1]);
+        assembly.edges.extend(edges);
+        assembly.masses.extend(masses);
         let links = (0..n - 1).map(|i| [i, i + 1]);
         if self.rigid {
             at("rest_length", positive("the length of a rod", rest_length))?;
@@ -128,8 +149,19 @@ impl Body for Particles {
             assembly.velocities.push(velocity);
         }
         let first = assembly.masses.len();
+        let springs = springs(&self.springs, n)?;
+        let stiffest = springs.iter().map(|s| s.law.stiffness).fold(0.0, f64::max);
+        let skin = SkinSpec {
+            thickness: self.thickness,
+            friction: self.friction,
+            stiffness: stiffest,
+            time: springs.iter().map(|s| s.law.damping).fold(0.0, f64::max) / stiffest.max(1.0),
+        };
+        let spacing = self.thickness.map_or(POINT, |thickness| 4.0 * thickness);
+        assembly.skins.extend(skin.uniform(&masses, spacing)?);
+        assembly.edges.extend((first..first + n).map(|i| [i as u32; 2]));
         assembly.masses.extend(masses);
-        assembly.add_springs(first, springs(&self.springs, n)?);
+        assembly.add_springs(first, springs);
         Ok(())
     }
 

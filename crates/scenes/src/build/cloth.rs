@@ -5,6 +5,7 @@ use a3_core::{Grid, SpringKind, Vector3};
 
 use super::assembly::{Assembly, Body, Counts};
 use super::laws::{damping_time, strip};
+use super::skins::SkinSpec;
 use crate::check::{at, at_least, one_of, positive, vector_or_zero};
 use crate::description::{Cloth, Pin, Spot};
 use crate::fault::Fault;
@@ -104,7 +105,15 @@ impl Body for Cloth {
                 assembly.velocities.push(velocity + sway * share);
             }
         }
-        assembly.masses.extend(vec![mass; grid.particles()]);
+        let skin = SkinSpec {
+            thickness: self.thickness,
+            friction: self.friction,
+            stiffness: structural,
+            time,
+        };
+        let masses = vec![mass; grid.particles()];
+        assembly.skins.extend(skin.uniform(&masses, spacing)?);
+        assembly.masses.extend(masses);
         assembly.add_surface(first, grid.triangles().map(|t| t.map(|i| i as u32)));
         assembly.add_strips(first, strips);
         assembly.sheets.push(sheet.starting_at(first));

@@ -6,6 +6,7 @@ use nalgebra::Rotation3;
 use super::assembly::{Assembly, Body, Counts};
 use super::lattice::Lattice;
 use super::laws::damping_time;
+use super::skins::SkinSpec;
 use crate::check::{at, at_least, one_of, positive, vector, vector_or_zero};
 use crate::description::{Jelly, Pin, Spot};
 use crate::fault::Fault;
@@ -72,7 +73,16 @@ impl Body for Jelly {
             assembly.positions.push(center + rotation * from_center);
             assembly.velocities.push(velocity);
         }
-        assembly.masses.extend(vec![mass; particles]);
+        let skin = SkinSpec {
+            thickness: self.thickness,
+            friction: self.friction,
+            stiffness: structural,
+            time,
+        };
+        let masses = vec![mass; particles];
+        let nearest = spacing.into_iter().fold(f64::INFINITY, f64::min);
+        assembly.skins.extend(skin.uniform(&masses, nearest)?);
+        assembly.masses.extend(masses);
         assembly.add_surface(first, lattice.triangles());
         assembly.add_springs(first, lattice.springs(spacing, law));
         Ok(())

@@ -5,6 +5,7 @@ use nalgebra::Rotation3;
 
 use super::assembly::{Assembly, Body, Counts};
 use super::laws::damping_time;
+use super::skins::SkinSpec;
 use crate::check::{at, positive, vector_or_zero};
 use crate::description::{MeshCloth, Pin, Spot};
 use crate::fault::Fault;
@@ -66,6 +67,13 @@ impl Body for LoadedMesh<'_> {
                 .push(origin + rotation * Vector3::from(*p));
             assembly.velocities.push(velocity);
         }
+        let skin = SkinSpec {
+            thickness: cloth.thickness,
+            friction: cloth.friction,
+            stiffness: structural,
+            time,
+        };
+        assembly.skins.extend(skin.fitted(&masses, &scaled.heights())?);
         assembly.masses.extend(masses);
         assembly.add_surface(first, mesh.triangles.iter().copied());
         assembly.add_springs(first, springs);

@@ -13,6 +13,7 @@ mod mesh_cloth;
 mod network;
 mod obstacles;
 mod pins;
+mod skins;
 mod state;
 
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! The network of a description: bodies, pins, constraints, forces and obstacles.
 
-use a3_core::{Network, Vector3};
+use a3_core::{Network, Touch, Vector3};
 
 use super::assembly::{Assembly, Body};
 use super::mesh_cloth::LoadedMesh;
@@ -66,6 +66,14 @@ pub(super) fn build(
     }
     forces::set(description, &mut network)?;
     obstacles::add(description, &mut network)?;
+    if description.self_collision || obstacles::is_one_thick(description) {
+        let touch = Touch {
+            skins: assembly.skins,
+            edges: assembly.edges,
+            bodies: description.self_collision,
+        };
+        at("self_collision", network.set_touch(Some(touch)))?;
+    }
     Ok(NetworkParts {
         network,
         state,

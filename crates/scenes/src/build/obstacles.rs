@@ -11,6 +11,19 @@ use crate::fault::Fault;
 /// Largest number of obstacles of one kind.
 const MAX_OBSTACLES: usize = 1000;
 
+/// Whether an obstacle has a thickness, so that surfaces touch it.
+pub(super) fn is_one_thick(description: &Description) -> bool {
+    let spheres = description.sphere.iter().map(|spec| spec.thickness);
+    let boxes = description.boxes.iter().map(|spec| spec.thickness);
+    let capsules = description.capsule.iter().map(|spec| spec.thickness);
+    let floor = match description.floor {
+        Some(Floor::Table(FloorSpec { thickness, .. })) => thickness,
+        _ => None,
+    };
+    let mut all = spheres.chain(boxes).chain(capsules).chain([floor]);
+    all.any(|thickness| thickness.is_some())
+}
+
 /// Adds the obstacles of the description, of which the floor acts last.
 pub(super) fn add(description: &Description, network: &mut Network) -> Result<(), Fault> {
     each("sphere", &description.sphere, |spec| {
@@ -53,6 +66,7 @@ fn sphere(spec: &SphereSpec) -> Result<Obstacle, Fault> {
         shape: Shape::Sphere { radius },
         path: path(center, spec.sine.as_ref(), spec.shift.as_ref())?,
         friction: friction(spec.friction)?,
+        thickness: thickness(spec.thickness)?,
     })
 }
 
@@ -68,6 +82,7 @@ fn cuboid(spec: &BoxSpec) -> Result<Obstacle, Fault> {
         shape: at("size", Shape::turned_box(0.5 * size, turn))?,
         path,
         friction: friction(spec.friction)?,
+        thickness: thickness(spec.thickness)?,
     })
 }
 
@@ -81,22 +96,34 @@ fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
         },
         path,
         friction: friction(spec.friction)?,
+        thickness: thickness(spec.thickness)?,
     })
 }
 
 fn floor(spec: &Floor) -> Result<Obstacle, Fault> {
-    let (height, mu) = match *spec {
-        Floor::Height(height) => (number("floor", height)?, 0.0),
-        Floor::Table(FloorSpec { height, friction }) => (number("floor.height", height)?, friction),
+    let (height, mu, thick) = match *spec {
+        Floor::Height(height) => (number("floor", height)?, 0.0, None),
+        Floor::Table(FloorSpec {
+            height,
+            friction,
+            thickness,
+        }) => (number("floor.height", height)?, friction, thickness),
     };
     Ok(Obstacle {
         shape: Shape::Floor,
         path: Path::Still(Vector3::new(0.0, height, 0.0)),
         friction: friction(mu).map_err(|fault| fault.within("floor"))?,
+        thickness: thickness(thick).map_err(|fault| fault.within("floor"))?,
     })
 }
 
 fn friction(mu: f64) -> Result<f64, Fault> {
     at("friction", at_least(0.0, "it", mu))?;
     Ok(mu)
+}
+
+fn thickness(given: Option<f64>) -> Result<f64, Fault> {
+    let thickness = given.unwrap_or(0.0);
+    at("thickness", at_least(0.0, "it", thickness))?;
+    Ok(thickness)
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::forces::{BucklingSpec, SpringSpec};
 use super::motion::{Pin, Triple};
+use super::obstacles::is_smooth;
 
 /// First-order system of one particle whose velocity is its position turned by a right angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -55,6 +56,12 @@ pub struct Cloth {
     pub velocity: Option<Triple>,
     /// Velocity of the last row relative to the first (m/s), with the rows between in proportion.
     pub sway: Option<Triple>,
+    /// Distance up to which its surface repels others where surfaces touch (m).
+    #[serde(default)]
+    pub thickness: Option<f64>,
+    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_smooth")]
+    pub friction: f64,
     /// Pins of this body.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
@@ -85,6 +92,12 @@ pub struct Jelly {
     pub rotation: Option<Triple>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
+    /// Distance up to which its surface repels others where surfaces touch (m).
+    #[serde(default)]
+    pub thickness: Option<f64>,
+    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_smooth")]
+    pub friction: f64,
     /// Pins of this body.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
@@ -114,6 +127,12 @@ pub struct MeshCloth {
     pub damping_ratio: Option<f64>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
+    /// Distance up to which its surface repels others where surfaces touch (m).
+    #[serde(default)]
+    pub thickness: Option<f64>,
+    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_smooth")]
+    pub friction: f64,
     /// Pins of this body. Its `top` and `bottom` are the particles as high as the highest and the
     /// lowest one, to a hundredth of the body's height.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -147,6 +166,12 @@ pub struct Chain {
     pub buckling: Option<BucklingSpec>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
+    /// Distance up to which its surface repels others where surfaces touch (m).
+    #[serde(default)]
+    pub thickness: Option<f64>,
+    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_smooth")]
+    pub friction: f64,
     /// Pins of this body.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
@@ -170,6 +195,12 @@ pub struct Particles {
     /// numbered from 0 among these.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,
+    /// Distance up to which its surface repels others where surfaces touch (m).
+    #[serde(default)]
+    pub thickness: Option<f64>,
+    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_smooth")]
+    pub friction: f64,
     /// Pins of this body.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,

@@ -26,6 +26,9 @@ pub struct FloorSpec {
     /// Coefficient of Coulomb friction on it; 0 if not given.
     #[serde(default)]
     pub friction: f64,
+    /// Thickness (m), with which it repels bodies before they touch it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<f64>,
 }
 
 /// Written out, because an untagged enum does not say what is wrong with its table.

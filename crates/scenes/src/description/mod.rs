@@ -45,6 +45,10 @@ pub struct Description {
     /// Viscous drag on each particle over the mean mass of a particle (1/s). An alternative is
     /// `drag`.
     pub drag_per_mass: Option<f64>,
+    /// Whether surfaces of bodies touch one another, themselves and obstacles, instead of passing
+    /// through.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub self_collision: bool,
     /// Level floor: its height (m), or a table with `height` and `friction`.
     pub floor: Option<Floor>,
     /// Largest stretch, in rest lengths, to which a hand pulls the springs of the particle it

@@ -16,6 +16,9 @@ pub struct SphereSpec {
     /// Coefficient of Coulomb friction; 0 if not given.
     #[serde(default, skip_serializing_if = "is_smooth")]
     pub friction: f64,
+    /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
+    #[serde(default)]
+    pub thickness: Option<f64>,
     /// Oscillation of the sphere.
     #[serde(default)]
     pub sine: Option<Sine>,
@@ -38,6 +41,9 @@ pub struct BoxSpec {
     /// Coefficient of Coulomb friction; 0 if not given.
     #[serde(default, skip_serializing_if = "is_smooth")]
     pub friction: f64,
+    /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
+    #[serde(default)]
+    pub thickness: Option<f64>,
     /// Oscillation of the box.
     #[serde(default)]
     pub sine: Option<Sine>,
@@ -59,6 +65,9 @@ pub struct CapsuleSpec {
     /// Coefficient of Coulomb friction; 0 if not given.
     #[serde(default, skip_serializing_if = "is_smooth")]
     pub friction: f64,
+    /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
+    #[serde(default)]
+    pub thickness: Option<f64>,
     /// Oscillation of the capsule.
     #[serde(default)]
     pub sine: Option<Sine>,
@@ -68,6 +77,6 @@ pub struct CapsuleSpec {
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
-fn is_smooth(friction: &f64) -> bool {
+pub(super) fn is_smooth(friction: &f64) -> bool {
     *friction == 0.0
 }

@@ -47,7 +47,7 @@ impl Force for Sheet {
         }
     }
 
-    fn couplings(&self, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+    fn couplings(&self, _t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         self.springs()
             .for_each(|spring| visit(springs::coupling(&spring, x, clamped)));
     }

@@ -178,7 +178,7 @@ impl Mechanical {
         *work += self.evaluate(mechanics, t, a, bx, [x, v]);
         let mut clamped = newton == Newton::Once;
         loop {
-            *work += self.solver.gather(mechanics, x, a, clamped);
+            *work += self.solver.gather(mechanics, (t, a), x, clamped);
             self.reduce(mechanics, a, bv, v);
             let tolerance = match newton {
                 Newton::Full => FORCING,

@@ -1,0 +1,139 @@
+//! Cuts: what impulses leave in a step is held by planes (Wang et al., *Planar divide and
+//! truncate*).
+//!
+//! Each pair that still comes too near gets the plane across its closest points at the beginning of
+//! the step. Vertices that are led have their whole way; every other vertex goes no farther than to
+//! its side of the plane, by a share of its displacement. A pair with a plane stays apart however
+//! much its vertices are cut for other pairs, so that every round gives a plane to a pair that had
+//! none, and at worst all pairs have one.
+
+use std::collections::BTreeSet;
+
+use nalgebra::Vector3;
+
+use super::candidates::{Candidate, Candidates};
+use super::closest::{PairKind, closest, weighted};
+use super::guard::Motion;
+use super::surface::Surface;
+
+/// Pair that leaves no room: two of its vertices, one of either primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Squeezed {
+    /// Vertices: particles, and after them points of obstacles.
+    pub vertices: [usize; 2],
+}
+
+/// What was cut.
+pub(super) struct Cut {
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Sum of the magnitudes of momentum that is lost (N s).
+    pub lost: f64,
+}
+
+/// Scratch of cuts.
+#[derive(Debug, Default)]
+pub(super) struct Cuts {
+    before: Vec<Vector3<f64>>,
+    shares: Vec<f64>,
+}
+
+impl Cuts {
+    /// Shortens displacements so that no pair comes too near.
+    pub fn cut(
+        &mut self,
+        surface: &Surface,
+        candidates: &mut Candidates,
+        motion: &mut Motion,
+    ) -> Result<Cut, Squeezed> {
+        self.before.clone_from(&motion.moves);
+        self.shares.clear();
+        self.shares.resize(motion.moves.len(), 1.0);
+        let mut held = BTreeSet::new();
+        loop {
+            motion.cover(surface, candidates);
+            let nearest = 2.0 * surface.kept();
+            let mut new = false;
+            for pair in candidates.near(|_| nearest) {
+                let key = (pair.kind, pair.points);
+                if !held.contains(&key) && motion.impact(surface, pair).is_some() {
+                    held.insert(key);
+                    new = true;
+                    self.hold(surface, pair, motion)?;
+                }
+            }
+            if !new {
+                break;
+            }
+            let all = motion.moves.iter_mut().zip(&self.before).zip(&self.shares);
+            for ((moved, before), share) in all {
+                *moved = before * *share;
+            }
+        }
+        let mut cut = Cut {
+            vertices: 0,
+            lost: 0.0,
+        };
+        for (i, share) in self.shares.iter().enumerate() {
+            if *share < 1.0 {
+                cut.vertices += 1;
+                cut.lost += motion.v[i].norm() * (1.0 - share) / motion.inverse_masses[i];
+                motion.v[i] *= *share;
+            }
+        }
+        Ok(cut)
+    }
+
+    /// Cuts the displacements of a pair at the plane between its primitives.
+    fn hold(&mut self, surface: &Surface, pair: &Candidate, motion: &Motion) -> Result<(), Squeezed> {
+        let x = pair.of(&motion.x0);
+        let moves = pair.of(&self.before);
+        let inverse_masses = pair.of(&motion.inverse_masses);
+        let first = pair.kind.first();
+        // The points that count: a floor has one.
+        let last = if pair.kind == PairKind::VertexFloor { 2 } else { 4 };
+        let near = closest(pair.kind, &x);
+        let distance = near.offset.norm();
+        let normal = near.offset / distance;
+        let kept = motion.kept(surface, pair, &x);
+        // How far either side comes towards the other, and its led vertices alone.
+        let approach = |k: usize| {
+            let towards = if k < first { -moves[k] } else { moves[k] };
+            towards.dot(&normal).max(0.0)
+        };
+        let most = |range: std::ops::Range<usize>, led: bool| {
+            let counted = range.filter(|k| !led || inverse_masses[*k] == 0.0);
+            counted.map(approach).fold(0.0, f64::max)
+        };
+        let [first_led, second_led] = [most(0..first, true), most(first..last, true)];
+        let [first_all, second_all] = [most(0..first, false), most(first..last, false)];
+        let room = distance - kept;
+        let free = room - first_led - second_led;
+        if free < 0.0 {
+            let vertices = [pair.points[0], pair.points[first]].map(|i| i as usize);
+            return Err(Squeezed { vertices });
+        }
+        let wishes = [first_all - first_led, second_all - second_led];
+        let sum = wishes[0] + wishes[1];
+        let share = if sum > 0.0 { wishes[1] / sum } else { 0.5 };
+        let mut second_points = near.weights;
+        second_points[..first].fill(0.0);
+        let foot = -weighted(&second_points, &x).dot(&normal);
+        let second_end = foot + second_led + free * share;
+        let first_end = second_end + kept;
+        for k in 0..last {
+            if inverse_masses[k] == 0.0 {
+                continue;
+            }
+            let (at, by) = (x[k].dot(&normal), moves[k].dot(&normal));
+            let end = if k < first { first_end } else { second_end };
+            let passes = if k < first { at + by < end } else { at + by > end };
+            if passes && by != 0.0 {
+                let share = ((end - at) / by).clamp(0.0, 1.0) * (1.0 - 1e-12);
+                let i = pair.points[k] as usize;
+                self.shares[i] = self.shares[i].min(share);
+            }
+        }
+        Ok(())
+    }
+}

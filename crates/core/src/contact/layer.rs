@@ -1,0 +1,178 @@
+//! Contact of surfaces in a network: their primitives, and the list of those that may touch.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use nalgebra::Vector3;
+
+use super::candidates::{Candidate, Candidates};
+use super::cut::Cuts;
+use super::guard::Motion;
+use super::obstacle::Obstacle;
+use super::repulsion::{Pair, Stiffness};
+use super::surface::Surface;
+
+/// Contact of the surfaces of a network with themselves, one another and obstacles.
+#[derive(Debug)]
+pub struct ContactLayer {
+    surface: Surface,
+    obstacles: Vec<Obstacle>,
+    /// Scratch that is no part of the value: the list of pairs, and positions and velocities of all
+    /// vertices.
+    scratch: Mutex<Scratch>,
+}
+
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    pub candidates: Candidates,
+    pub motion: Motion,
+    pub cuts: Cuts,
+    x: Vec<Vector3<f64>>,
+    v: Vec<Vector3<f64>>,
+}
+
+impl Clone for ContactLayer {
+    fn clone(&self) -> Self {
+        Self::new(self.surface.clone(), self.obstacles.clone())
+    }
+}
+
+impl ContactLayer {
+    /// Contact of a surface that was made with these obstacles.
+    #[must_use]
+    pub fn new(surface: Surface, obstacles: Vec<Obstacle>) -> Self {
+        Self {
+            surface,
+            obstacles,
+            scratch: Mutex::default(),
+        }
+    }
+
+    /// What can touch.
+    #[must_use]
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// Obstacles.
+    pub(super) fn obstacles(&self) -> &[Obstacle] {
+        &self.obstacles
+    }
+
+    /// Leads an obstacle along another path.
+    pub(crate) fn set_obstacle(&mut self, k: usize, obstacle: Obstacle) {
+        self.obstacles[k] = obstacle;
+    }
+
+    pub(super) fn scratch(&self) -> MutexGuard<'_, Scratch> {
+        self.scratch.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Visits the pairs that are within their thickness at time t (s) in the state (x, v), or
+    /// at rest without v, in canonical order.
+    fn visit(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: Option<&[f64]>,
+        mut visit: impl FnMut(&Candidate, &Pair),
+    ) {
+        let mut scratch = self.scratch();
+        let Scratch {
+            candidates,
+            x: places,
+            v: speeds,
+            ..
+        } = &mut *scratch;
+        self.surface.place(&self.obstacles, t, x, places);
+        speeds.clear();
+        match v {
+            Some(v) => self.surface.speeds(&self.obstacles, t, v, speeds),
+            None => speeds.resize(places.len(), Vector3::zeros()),
+        }
+        candidates.cover(&self.surface, places, places);
+        let law = |pair: &Candidate| self.surface.law(pair.kind, &pair.points);
+        for candidate in candidates.near(|pair| law(pair).skin.thickness) {
+            let pair = Pair {
+                kind: candidate.kind,
+                law: law(candidate),
+                x: candidate.of(places),
+                v: candidate.of(speeds),
+            };
+            visit(candidate, &pair);
+        }
+    }
+
+    /// Adds the forces (N) at time t (s) in the state (x, v) to f.
+    pub(crate) fn add_repulsion(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.visit(t, x, Some(v), |candidate, pair| {
+            if let Some(forces) = pair.forces() {
+                add(&candidate.points, &forces, f);
+            }
+        });
+    }
+
+    /// Adds the change of the forces (N) by dx (m) and dv (m/s) to df.
+    pub(crate) fn add_repulsion_differential(
+        &self,
+        t: f64,
+        [x, v]: [&[f64]; 2],
+        [dx, dv]: [&[f64]; 2],
+        df: &mut [f64],
+    ) {
+        self.visit(t, x, Some(v), |candidate, pair| {
+            let of = |a: &[f64]| candidate.points.map(|i| row(a, i));
+            let forces = pair.differential(&of(dx), &of(dv));
+            add(&candidate.points, &forces, df);
+        });
+    }
+
+    /// Energy at time t (s) at x (J).
+    pub(crate) fn repulsion_energy(&self, t: f64, x: &[f64]) -> f64 {
+        let mut energy = 0.0;
+        self.visit(t, x, None, |_, pair| energy += pair.energy());
+        energy
+    }
+
+    /// Visits the stiffness of each pair, with its points, at time t (s) at x, at
+    /// rest.
+    pub(crate) fn stiffnesses(
+        &self,
+        t: f64,
+        x: &[f64],
+        mut visit: impl FnMut([u32; 4], Stiffness),
+    ) {
+        self.visit(t, x, None, |candidate, pair| {
+            if let Some(stiffness) = pair.stiffness() {
+                visit(candidate.points, stiffness);
+            }
+        });
+    }
+
+    /// Whether the forces depend on velocities.
+    pub(crate) fn is_damped(&self) -> bool {
+        self.surface.is_damped()
+    }
+}
+
+/// Row i of an n x 3 matrix, or zero for a vertex of an obstacle.
+fn row(a: &[f64], i: u32) -> Vector3<f64> {
+    let (n, i) = (a.len() / 3, i as usize);
+    if i < n {
+        Vector3::new(a[i], a[n + i], a[2 * n + i])
+    } else {
+        Vector3::zeros()
+    }
+}
+
+/// Adds vectors to the rows of an n x 3 matrix, but for those of obstacles.
+fn add(points: &[u32; 4], vectors: &[Vector3<f64>; 4], f: &mut [f64]) {
+    let n = f.len() / 3;
+    for (i, vector) in points.iter().zip(vectors) {
+        let i = *i as usize;
+        if i < n {
+            f[i] += vector.x;
+            f[n + i] += vector.y;
+            f[2 * n + i] += vector.z;
+        }
+    }
+}

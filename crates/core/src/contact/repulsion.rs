@@ -1,0 +1,212 @@
+//! Repulsion of two primitives that are nearer than their thickness d, by a potential U of their
+//! gap g: with the share s = (d - g) / d,
+//!
+//! ```text
+//! F = -U'(g) = k d s3,  from g = 0 on with the slope that it has there,
+//! ```
+//!
+//! times 1 - r / sqrt(1 + r2) for damping, where r is the rate g' of the gap times the damping: in
+//! all between no force and twice the force, and smooth. F, F' and F'' are zero where the force
+//! begins, so that methods of order four keep their order.
+//!
+//! Closest points of parallel edges jump, so the potential of two edges is multiplied by a function
+//! of their angle that is 1 but for nearly parallel ones, and 0 for parallel ones (Li et al.,
+//! *Incremental Potential Contact*, 2020, 5.4). What is between those is between vertices and
+//! triangles too.
+
+use nalgebra::Vector3;
+
+use super::closest::{PairKind, closest, weighted};
+use super::surface::Law;
+
+/// Squared sine of the angle between two edges as long as four thicknesses from which they repel
+/// each other fully.
+const CROSSED: f64 = 0.05;
+
+/// Step of the difference quotient of a force, as a share of the thickness.
+const DIFFERENCE: f64 = 1e-5;
+
+/// Pair with the positions and velocities of its points.
+#[derive(Clone, Copy)]
+pub(super) struct Pair {
+    pub kind: PairKind,
+    pub law: Law,
+    /// Positions (m).
+    pub x: [Vector3<f64>; 4],
+    /// Velocities (m/s).
+    pub v: [Vector3<f64>; 4],
+}
+
+/// State of a pair within its thickness.
+struct Within {
+    weights: [f64; 4],
+    /// Unit vector from the second primitive to the first.
+    normal: Vector3<f64>,
+    /// Share s of the thickness that the gap lacks.
+    share: f64,
+}
+
+/// Stiffness of a pair, to first order: along the normal, between its points by their weights.
+pub(crate) struct Stiffness {
+    pub weights: [f64; 4],
+    pub normal: Vector3<f64>,
+    /// dF/dg (N/m), without the sign.
+    pub stiffness: f64,
+    /// dF/dg' (N s/m), without the sign.
+    pub damping: f64,
+}
+
+impl Pair {
+    fn within(&self) -> Option<Within> {
+        let thickness = self.law.skin.thickness;
+        let closest = closest(self.kind, &self.x);
+        let distance = if self.kind == PairKind::VertexFloor {
+            closest.offset.y
+        } else {
+            closest.offset.norm()
+        };
+        let share = (thickness - (distance - self.law.radius)) / thickness;
+        (share > 0.0 && distance != 0.0).then(|| Within {
+            weights: closest.weights,
+            normal: closest.offset / distance,
+            share,
+        })
+    }
+
+    /// Force F and its derivative -dF/dg (N/m) at a share of the thickness.
+    fn law_at(&self, share: f64) -> (f64, f64) {
+        let (k, d) = (self.law.skin.stiffness, self.law.skin.thickness);
+        if share < 1.0 {
+            (k * d * share * share * share, 3.0 * k * share * share)
+        } else {
+            (k * d * (3.0 * share - 2.0), 3.0 * k)
+        }
+    }
+
+    /// Potential U at a share of the thickness (J).
+    fn potential(&self, share: f64) -> f64 {
+        let (k, d) = (self.law.skin.stiffness, self.law.skin.thickness);
+        let past = share - 1.0;
+        k * d * d
+            * if past < 0.0 {
+                0.25 * share.powi(4)
+            } else {
+                0.25 + past + 1.5 * past * past
+            }
+    }
+
+    /// Damping at a rate of the gap (m/s): its factor of the force, and the derivative of that.
+    fn damping(&self, rate: f64) -> (f64, f64) {
+        let c = self.law.skin.damping;
+        let r = c * rate;
+        let root = (1.0 + r * r).sqrt();
+        (1.0 - r / root, -c / (root * root * root))
+    }
+
+    /// Factor of the potential of two edges, and its derivatives by the vectors along them.
+    fn crossing(&self) -> (f64, [Vector3<f64>; 2]) {
+        let [a, b] = [self.x[1] - self.x[0], self.x[3] - self.x[2]];
+        if self.kind != PairKind::EdgeEdge || a == Vector3::zeros() || b == Vector3::zeros() {
+            return (1.0, [Vector3::zeros(); 2]);
+        }
+        let full = CROSSED * (4.0 * self.law.skin.thickness).powi(4);
+        let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.dot(&b));
+        let q = (aa * bb - ab * ab) / full;
+        if q >= 1.0 {
+            return (1.0, [Vector3::zeros(); 2]);
+        }
+        // 1 - (1 - q)3, whose first two derivatives are zero where it is 1.
+        let left = 1.0 - q;
+        let slope = 6.0 * left * left / full;
+        let along = [a * bb - b * ab, b * aa - a * ab];
+        (1.0 - left * left * left, along.map(|d| d * slope))
+    }
+
+    /// Forces on the four points (N), if there are any.
+    pub fn forces(&self) -> Option<[Vector3<f64>; 4]> {
+        let Within {
+            weights,
+            normal,
+            share,
+        } = self.within()?;
+        let (factor, along) = self.crossing();
+        let (force, _) = self.law_at(share);
+        let (damping, _) = self.damping(normal.dot(&weighted(&weights, &self.v)));
+        let mut forces = weights.map(|w| normal * (w * force * factor * damping));
+        if factor < 1.0 {
+            let potential = self.potential(share);
+            for (k, along) in [0, 2].into_iter().zip(along) {
+                forces[k] += along * potential;
+                forces[k + 1] -= along * potential;
+            }
+        }
+        Some(forces)
+    }
+
+    /// Magnitude of the force between the primitives (N), if there is any, with the weights of
+    /// their closest points and the normal from the second to the first.
+    pub fn force(&self) -> Option<(f64, [f64; 4], Vector3<f64>)> {
+        let Within {
+            weights,
+            normal,
+            share,
+        } = self.within()?;
+        let (damping, _) = self.damping(normal.dot(&weighted(&weights, &self.v)));
+        let force = self.law_at(share).0 * damping * self.crossing().0;
+        Some((force, weights, normal))
+    }
+
+    /// Change of the forces (N) where the points move by dx (m) and their velocities change by dv
+    /// (m/s): a difference quotient.
+    pub fn differential(
+        &self,
+        dx: &[Vector3<f64>; 4],
+        dv: &[Vector3<f64>; 4],
+    ) -> [Vector3<f64>; 4] {
+        let most = |d: &[Vector3<f64>; 4]| d.iter().map(Vector3::norm).fold(0.0, f64::max);
+        let skin = self.law.skin;
+        let size = (most(dx) / skin.thickness).max(most(dv) * skin.damping);
+        if size == 0.0 {
+            return [Vector3::zeros(); 4];
+        }
+        let step = DIFFERENCE / size;
+        let at = |step: f64| {
+            let moved = |a: &[Vector3<f64>; 4], d: &[Vector3<f64>; 4]| {
+                std::array::from_fn(|k| a[k] + d[k] * step)
+            };
+            let pair = Self {
+                x: moved(&self.x, dx),
+                v: moved(&self.v, dv),
+                ..*self
+            };
+            pair.forces().unwrap_or_default()
+        };
+        let (after, before) = (at(step), at(-step));
+        std::array::from_fn(|k| (after[k] - before[k]) / (2.0 * step))
+    }
+
+    /// Energy (J).
+    pub fn energy(&self) -> f64 {
+        self.within()
+            .map_or(0.0, |within| self.potential(within.share) * self.crossing().0)
+    }
+
+    /// Stiffness and damping, if there are any: the part of the differential that is positive
+    /// semi-definite.
+    pub fn stiffness(&self) -> Option<Stiffness> {
+        let Within {
+            weights,
+            normal,
+            share,
+        } = self.within()?;
+        let factor = self.crossing().0;
+        let (force, slope) = self.law_at(share);
+        let (damping, rate) = self.damping(normal.dot(&weighted(&weights, &self.v)));
+        Some(Stiffness {
+            weights,
+            normal,
+            stiffness: slope * damping * factor,
+            damping: -force * rate * factor,
+        })
+    }
+}

@@ -1,0 +1,283 @@
+//! What of a network can touch: vertices, edges and triangles of its bodies and of its obstacles.
+
+use std::collections::BTreeSet;
+
+use nalgebra::Vector3;
+
+use super::closest::PairKind;
+use super::obstacle::Obstacle;
+use super::shape::Shape;
+use crate::error::{Error, at_least};
+
+/// Least gap that is kept between two surfaces, as a share of their thickness.
+const KEPT: f64 = 1e-3;
+
+/// What a surface is like to touch. Where two surfaces meet, the thickness and the damping are the
+/// means of theirs, the stiffness is the smaller one, and the friction the larger one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Skin {
+    /// Distance up to which two such surfaces repel each other (m).
+    pub thickness: f64,
+    /// Stiffness k of their repulsion (N/m).
+    pub stiffness: f64,
+    /// Damping of their repulsion: one over the speed at which it counts fully (s/m).
+    pub damping: f64,
+    /// Coefficient mu of Coulomb friction.
+    pub friction: f64,
+}
+
+impl Skin {
+    /// # Errors
+    /// A number is negative or not finite.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        at_least(0.0, "a thickness", self.thickness)?;
+        at_least(0.0, "the stiffness of contact", self.stiffness)?;
+        at_least(0.0, "the damping of contact", self.damping)?;
+        at_least(0.0, "a friction", self.friction)
+    }
+}
+
+/// What holds between the two primitives of a pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Law {
+    /// Their skin.
+    pub skin: Skin,
+    /// Sum of the radii of obstacles, which counts as solid (m).
+    pub radius: f64,
+}
+
+impl Law {
+    /// Least distance of the pair that is kept (m), if it is so far apart already.
+    pub fn kept(&self, distance: f64) -> f64 {
+        let room = distance - self.radius;
+        self.radius + (KEPT * self.skin.thickness).min(0.9 * room)
+    }
+}
+
+/// Primitives of one tree of boxes. Each vertex and each edge belongs to one item, so that no pair
+/// is found twice (Curtis et al., *Fast collision detection for deformable models using
+/// representative-triangles*, 2008).
+#[derive(Clone, Debug, Default)]
+pub(super) struct Items {
+    /// Corners of the items. The last two of an edge are equal, and all three of a point.
+    pub corners: Vec<[u32; 3]>,
+    vertices: Vec<u32>,
+    vertex_ends: Vec<u32>,
+    edges: Vec<[u32; 2]>,
+    edge_ends: Vec<u32>,
+}
+
+impl Items {
+    /// Items of these triangles, and of those edges and points that are in none of them.
+    fn new(
+        triangles: impl IntoIterator<Item = [u32; 3]>,
+        edges: impl IntoIterator<Item = [u32; 2]>,
+    ) -> Self {
+        let mut items = Self::default();
+        let (mut seen_vertices, mut seen_edges) = (BTreeSet::new(), BTreeSet::new());
+        let lone = edges.into_iter().map(|[a, b]| [a.min(b), a.max(b), a.max(b)]);
+        for corners in triangles.into_iter().chain(lone) {
+            let [a, b, c] = corners;
+            items.corners.push(corners);
+            let new = corners.into_iter().filter(|i| seen_vertices.insert(*i));
+            items.vertices.extend(new);
+            items.vertex_ends.push(items.vertices.len() as u32);
+            let sides: &[[u32; 2]] = if b == c { &[[a, b]] } else { &[[a, b], [b, c], [c, a]] };
+            let sides = sides.iter().map(|[i, j]| [*i.min(j), *i.max(j)]);
+            items.edges.extend(sides.filter(|side| seen_edges.insert(*side)));
+            items.edge_ends.push(items.edges.len() as u32);
+        }
+        items
+    }
+
+    /// Whether item k is a triangle.
+    pub fn is_triangle(&self, k: usize) -> bool {
+        let [_, b, c] = self.corners[k];
+        b != c
+    }
+
+    /// Vertices that belong to item k.
+    pub fn vertices(&self, k: usize) -> &[u32] {
+        &self.vertices[range(&self.vertex_ends, k)]
+    }
+
+    /// Edges that belong to item k, the lower end first.
+    pub fn edges(&self, k: usize) -> &[[u32; 2]] {
+        &self.edges[range(&self.edge_ends, k)]
+    }
+
+    /// All vertices.
+    pub fn all_vertices(&self) -> &[u32] {
+        &self.vertices
+    }
+}
+
+fn range(ends: &[u32], k: usize) -> std::ops::Range<usize> {
+    let start = if k == 0 { 0 } else { ends[k - 1] };
+    start as usize..ends[k] as usize
+}
+
+/// Vertices, edges and triangles of bodies and obstacles. Vertices are the particles and, after
+/// them, the points of obstacles.
+#[derive(Clone, Debug, Default)]
+pub struct Surface {
+    particles: usize,
+    skins: Vec<Skin>,
+    radii: Vec<f64>,
+    /// Obstacle of each point of obstacles, and the point as seen from its place (m).
+    anchors: Vec<(usize, Vector3<f64>)>,
+    pub(super) bodies: Items,
+    pub(super) obstacles: Items,
+    /// Vertices that stand for floors.
+    pub(super) floors: Vec<u32>,
+    /// Whether bodies can touch bodies.
+    pub(super) touches_itself: bool,
+    still: bool,
+    thickest: f64,
+}
+
+impl Surface {
+    /// Surface of particles with these skins, of which some are corners of triangles or ends of
+    /// edges, and of obstacles. An edge with equal ends is a point.
+    #[must_use]
+    pub fn new(
+        skins: &[Skin],
+        triangles: &[[u32; 3]],
+        edges: &[[u32; 2]],
+        obstacles: &[Obstacle],
+        touches_itself: bool,
+    ) -> Self {
+        let mut surface = Self {
+            particles: skins.len(),
+            skins: skins.to_vec(),
+            radii: vec![0.0; skins.len()],
+            bodies: Items::new(triangles.iter().copied(), edges.iter().copied()),
+            touches_itself,
+            still: true,
+            ..Self::default()
+        };
+        let (mut faces, mut sides) = (vec![], vec![]);
+        for (k, obstacle) in obstacles.iter().enumerate() {
+            let first = surface.skins.len() as u32;
+            let simplices = obstacle.shape.simplices();
+            for point in simplices.points {
+                surface.anchors.push((k, point));
+                surface.skins.push(Skin {
+                    thickness: obstacle.thickness,
+                    stiffness: f64::INFINITY,
+                    damping: 0.0,
+                    friction: obstacle.friction,
+                });
+                surface.radii.push(simplices.radius);
+            }
+            surface.still &= obstacle.is_still();
+            match obstacle.shape {
+                Shape::Floor => surface.floors.push(first),
+                Shape::Sphere { .. } => sides.push([first; 2]),
+                _ => {}
+            }
+            faces.extend(simplices.triangles.iter().map(|t| t.map(|i| first + i)));
+            sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
+        }
+        surface.obstacles = Items::new(faces, sides);
+        let touching = surface.bodies.vertices.iter().chain(&surface.obstacles.vertices);
+        surface.thickest = touching
+            .chain(&surface.floors)
+            .map(|i| surface.skins[*i as usize].thickness)
+            .fold(0.0, f64::max);
+        surface
+    }
+
+    /// Number of particles, which are the first vertices.
+    #[must_use]
+    pub fn particles(&self) -> usize {
+        self.particles
+    }
+
+    /// Number of vertices: of particles and of points of obstacles.
+    #[must_use]
+    pub fn vertices(&self) -> usize {
+        self.skins.len()
+    }
+
+    /// Obstacle to which a vertex belongs, if it is no particle.
+    #[must_use]
+    pub fn obstacle_of(&self, vertex: usize) -> Option<usize> {
+        let point = vertex.checked_sub(self.particles)?;
+        Some(self.anchors[point].0)
+    }
+
+    /// Triangles of bodies and of obstacles.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
+        let all = self.bodies.corners.iter().chain(&self.obstacles.corners);
+        all.filter(|[_, b, c]| b != c).copied()
+    }
+
+    /// Edges of bodies and of obstacles, the lower end first.
+    pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> {
+        let edges = self.bodies.edges.iter().chain(&self.obstacles.edges);
+        edges.copied().filter(|[a, b]| a != b)
+    }
+
+    /// Whether damping acts anywhere.
+    pub(super) fn is_damped(&self) -> bool {
+        self.skins.iter().any(|skin| skin.damping > 0.0)
+    }
+
+    /// Largest thickness (m).
+    pub(super) fn thickest(&self) -> f64 {
+        self.thickest
+    }
+
+    /// Whether friction acts anywhere.
+    pub(super) fn is_rough(&self) -> bool {
+        self.skins.iter().any(|skin| skin.friction > 0.0)
+    }
+
+    /// Largest gap that is kept between two surfaces (m).
+    pub(super) fn kept(&self) -> f64 {
+        KEPT * self.thickest
+    }
+
+    /// Radius of a vertex (m): 0 but for those of round obstacles.
+    pub(super) fn radius(&self, vertex: u32) -> f64 {
+        self.radii[vertex as usize]
+    }
+
+    /// What holds between the primitives of a pair.
+    pub(super) fn law(&self, kind: PairKind, points: &[u32; 4]) -> Law {
+        let ends = [points[0], points[kind.first()]].map(|i| i as usize);
+        let [a, b] = ends.map(|i| self.skins[i]);
+        Law {
+            skin: Skin {
+                thickness: 0.5 * (a.thickness + b.thickness),
+                stiffness: a.stiffness.min(b.stiffness),
+                damping: a.damping.max(b.damping),
+                friction: a.friction.max(b.friction),
+            },
+            radius: self.radii[ends[0]] + self.radii[ends[1]],
+        }
+    }
+
+    /// Writes positions (m) of all vertices at time t (s), with particles at x, n x 3.
+    pub(super) fn place(&self, obstacles: &[Obstacle], t: f64, x: &[f64], out: &mut Vec<Vector3<f64>>) {
+        particles_of(x, out);
+        let points = self.anchors.iter();
+        out.extend(points.map(|(k, point)| obstacles[*k].point_at(*point, t).position));
+    }
+
+    /// Writes velocities (m/s) of all vertices at time t (s), with those of particles in v, n x 3.
+    pub(super) fn speeds(&self, obstacles: &[Obstacle], t: f64, v: &[f64], out: &mut Vec<Vector3<f64>>) {
+        particles_of(v, out);
+        let points = self.anchors.iter();
+        out.extend(points.map(|(k, point)| obstacles[*k].point_at(*point, t).velocity));
+    }
+}
+
+/// Writes the rows of an n x 3 matrix to `out`, in place of what it holds.
+fn particles_of(x: &[f64], out: &mut Vec<Vector3<f64>>) {
+    let n = x.len() / 3;
+    let (xs, ys, zs) = (&x[..n], &x[n..2 * n], &x[2 * n..]);
+    out.clear();
+    out.extend((0..n).map(|i| Vector3::new(xs[i], ys[i], zs[i])));
+}

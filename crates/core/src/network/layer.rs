@@ -1,0 +1,72 @@
+//! Contact of a network's surfaces.
+
+use super::Network;
+use crate::contact::{ContactLayer, Skin, Surface};
+use crate::elements::Element;
+use crate::error::Error;
+
+/// What of a network can touch, beside its triangles and obstacles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Touch {
+    /// Skin of each particle.
+    pub skins: Vec<Skin>,
+    /// Edges that are in no triangle, such as those of a rope. An edge with equal ends is a point.
+    pub edges: Vec<[u32; 2]>,
+    /// Whether bodies touch one another and themselves, or obstacles alone.
+    pub bodies: bool,
+}
+
+impl Network {
+    /// Lets surfaces touch, or, as in a new network, pass through one another: then only obstacles
+    /// are solid, and only to particles.
+    ///
+    /// # Errors
+    /// There is not one skin for each particle, or a number of one is negative or not finite; or an
+    /// edge has an end that does not exist.
+    pub fn set_touch(&mut self, touch: Option<Touch>) -> Result<(), Error> {
+        if let Some(touch) = &touch {
+            if touch.skins.len() != self.particles() {
+                return Err(Error::Dimension {
+                    expected: self.particles(),
+                    found: touch.skins.len(),
+                });
+            }
+            touch.skins.iter().try_for_each(Skin::check)?;
+            for i in touch.edges.iter().flatten() {
+                self.check_particle(*i as usize)?;
+            }
+        }
+        self.touch = touch;
+        self.renew_contact();
+        Ok(())
+    }
+
+    /// What can touch, if surfaces do.
+    #[must_use]
+    pub fn touch(&self) -> Option<&Touch> {
+        self.touch.as_ref()
+    }
+
+    /// The contact of surfaces, if they touch.
+    #[must_use]
+    pub fn contact_layer(&self) -> Option<&ContactLayer> {
+        self.elements.iter().find_map(Element::contact_layer)
+    }
+
+    /// Makes the contact of surfaces anew, of the triangles and obstacles that are there now.
+    pub(super) fn renew_contact(&mut self) {
+        let layer = self.touch.as_ref().map(|touch| {
+            let is_whole = |[a, b]: &[u32; 2]| !self.is_torn(*a as usize, *b as usize);
+            let edges: Vec<_> = touch.edges.iter().copied().filter(is_whole).collect();
+            let surface = Surface::new(
+                &touch.skins,
+                &self.triangles,
+                &edges,
+                &self.obstacles,
+                touch.bodies,
+            );
+            ContactLayer::new(surface, self.obstacles.clone()).into()
+        });
+        self.replace(|element| matches!(element, Element::ContactLayer(_)), layer);
+    }
+}
