@@ -119,8 +119,8 @@ impl Description {
             let here = obstacle.path.at(t).position;
             let (sine, shift) = motion(&obstacle.path, t);
             let friction = obstacle.friction;
-            match obstacle.shape {
-                Shape::Sphere { radius } => {
+            match &obstacle.shape {
+                &Shape::Sphere { radius } => {
                     if let Some(described) = spheres.next() {
                         *described = SphereSpec {
                             center: here.into(),
@@ -138,7 +138,7 @@ impl Description {
                         (described.sine, described.shift) = (sine, shift);
                     }
                 }
-                Shape::Capsule { ends, radius } => {
+                &Shape::Capsule { ends, radius } => {
                     if let Some(described) = capsules.next() {
                         *described = CapsuleSpec {
                             from: (here + ends[0]).into(),
@@ -150,6 +150,7 @@ impl Description {
                         };
                     }
                 }
+                Shape::Mesh(_) => {}
                 Shape::Floor if friction == 0.0 => self.floor = Some(Floor::Height(here.y)),
                 Shape::Floor => {
                     let height = here.y;
@@ -226,6 +227,6 @@ fn motion(path: &Path, t: f64) -> (Option<Sine>, Option<Shift>) {
             };
             (None, Some(shift))
         }
-        Path::Still(_) | Path::Line { .. } => (None, None),
+        Path::Still(_) | Path::Line { .. } | Path::Turn { .. } => (None, None),
     }
 }

@@ -11,12 +11,15 @@
 //! both relative to the obstacle. A particle that would slip by less than that stays where it is on
 //! the obstacle: what rests does not creep.
 
+mod closed_mesh;
 mod closest;
+mod nearest;
 mod obstacle;
 mod resolve;
 mod shape;
 
+pub use closed_mesh::ClosedMesh;
 pub use closest::{Closest, PairKind, closest, weighted};
 pub use obstacle::Obstacle;
 pub use resolve::{Contact, Statistics, Step, resolve};
-pub use shape::Shape;
+pub use shape::{Shape, Simplices};
