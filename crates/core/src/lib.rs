@@ -84,7 +84,7 @@ pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
 pub use network::{Network, Touch};
-pub use path::{Path, Place};
+pub use path::{Orientation, Path, Place, Pose, Turn, rotation};
 pub use rows::{Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
 pub use scene::{FirstOrder, Model, Scene, Swing};
 pub use simulation::{Checkpoint, Grabbed, Progress, Simulation};

@@ -1,6 +1,6 @@
 //! Prescribed motion of pins and obstacles as a function of time.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// Position, velocity and acceleration of a point of a path at one time.
@@ -23,6 +23,118 @@ impl Place {
             velocity: Vector3::zeros(),
             acceleration: Vector3::zeros(),
         }
+    }
+}
+
+/// Uniform turn about an axis between two times; at rest before and after. It turns anticlockwise
+/// to someone who looks against the axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Turn {
+    /// Direction of the axis: a unit vector.
+    #[serde(with = "crate::serial")]
+    pub axis: Vector3<f64>,
+    /// Angular velocity (rad/s).
+    pub rate: f64,
+    /// Time at which the turn starts (s).
+    pub start: f64,
+    /// Time at which the turn ends (s), later than `start`; nothing if it never does.
+    pub end: Option<f64>,
+}
+
+impl Turn {
+    /// Angle since the start (rad) and angular velocity (rad/s) at time t (s).
+    #[must_use]
+    pub fn at(&self, t: f64) -> (f64, f64) {
+        let angle = |t: f64| self.rate * (t - self.start);
+        match self.end {
+            _ if t < self.start => (0.0, 0.0),
+            Some(end) if t >= end => (angle(end), 0.0),
+            _ => (angle(t), self.rate),
+        }
+    }
+
+    /// Orientation at time t (s) of a body that turns, seen from that before the start.
+    #[must_use]
+    pub fn orientation(&self, t: f64) -> Orientation {
+        let (angle, rate) = self.at(t);
+        Orientation {
+            rotation: rotation(self.axis * angle),
+            spin: self.axis * rate,
+        }
+    }
+}
+
+/// Matrix of a rotation about a vector by its length (rad): Rodrigues' formula.
+#[must_use]
+pub fn rotation(about: Vector3<f64>) -> Matrix3<f64> {
+    let angle = about.norm();
+    let (sin, cos) = libm::sincos(angle);
+    let axis = if angle > 0.0 {
+        about / angle
+    } else {
+        Vector3::zeros()
+    };
+    let turned =
+        |e: Vector3<f64>| e * cos + axis.cross(&e) * sin + axis * (axis.dot(&e) * (1.0 - cos));
+    Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(turned))
+}
+
+/// Orientation of a body that turns uniformly, at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orientation {
+    /// Rotation matrix, from the body's own directions to those of the world.
+    pub rotation: Matrix3<f64>,
+    /// Angular velocity (rad/s), along the axis.
+    pub spin: Vector3<f64>,
+}
+
+/// Place and orientation of a body at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Place of the body's origin.
+    pub place: Place,
+    /// Orientation; nothing for a body that never turns.
+    pub orientation: Option<Orientation>,
+}
+
+impl Pose {
+    /// Place of the body's point `point` (m), seen from its origin before it turned.
+    #[must_use]
+    pub fn of(&self, point: Vector3<f64>) -> Place {
+        let Place {
+            position,
+            velocity,
+            acceleration,
+        } = self.place;
+        match self.orientation {
+            None => Place {
+                position: position + point,
+                ..self.place
+            },
+            Some(Orientation { rotation, spin }) => {
+                let arm = rotation * point;
+                let along = spin.cross(&arm);
+                Place {
+                    position: position + arm,
+                    velocity: velocity + along,
+                    acceleration: acceleration + spin.cross(&along),
+                }
+            }
+        }
+    }
+
+    /// Vector of the body's own directions, from that of the world.
+    #[must_use]
+    pub fn inwards(&self, vector: Vector3<f64>) -> Vector3<f64> {
+        self.orientation
+            .map_or(vector, |turned| turned.rotation.tr_mul(&vector))
+    }
+
+    /// Vector of the world, from that of the body's own directions.
+    #[must_use]
+    pub fn outwards(&self, vector: Vector3<f64>) -> Vector3<f64> {
+        self.orientation
+            .map_or(vector, |turned| turned.rotation * vector)
     }
 }
 
@@ -59,6 +171,25 @@ pub enum Path {
         /// Time at which the motion ends (s), later than `start`.
         end: f64,
     },
+    /// Turn about an axis that moves uniformly, without turning itself, from `from` at time `start`
+    /// to `to` at time `end`, and is at rest before and after.
+    Turn {
+        /// The turn.
+        turn: Turn,
+        /// Position seen from the axis before the turn (m).
+        #[serde(with = "crate::serial")]
+        arm: Vector3<f64>,
+        /// First position of a point of the axis (m).
+        #[serde(with = "crate::serial")]
+        from: Vector3<f64>,
+        /// Last position of that point (m).
+        #[serde(with = "crate::serial")]
+        to: Vector3<f64>,
+        /// Time at which the axis starts to move (s).
+        start: f64,
+        /// Time at which it ends to move (s), not earlier than `start`.
+        end: f64,
+    },
 }
 
 impl Path {
@@ -85,20 +216,38 @@ impl Path {
                 to,
                 start,
                 end,
+            } => line([from, to], [start, end], t),
+            Self::Turn {
+                turn,
+                arm,
+                from,
+                to,
+                start,
+                end,
             } => {
-                if t < start {
-                    Place::still(from)
-                } else if t >= end {
-                    Place::still(to)
-                } else {
-                    let velocity = (to - from) / (end - start);
-                    Place {
-                        position: from + velocity * (t - start),
-                        velocity,
-                        acceleration: Vector3::zeros(),
-                    }
-                }
+                let axis = Pose {
+                    place: line([from, to], [start, end], t),
+                    orientation: Some(turn.orientation(t)),
+                };
+                axis.of(arm)
             }
+        }
+    }
+}
+
+/// Place at time t (s) on a straight line between two positions (m), which are left and reached at
+/// two times (s).
+fn line([from, to]: [Vector3<f64>; 2], [start, end]: [f64; 2], t: f64) -> Place {
+    if t < start {
+        Place::still(from)
+    } else if t >= end {
+        Place::still(to)
+    } else {
+        let velocity = (to - from) / (end - start);
+        Place {
+            position: from + velocity * (t - start),
+            velocity,
+            acceleration: Vector3::zeros(),
         }
     }
 }

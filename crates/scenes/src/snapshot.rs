@@ -119,8 +119,8 @@ impl Description {
             let here = obstacle.path.at(t).position;
             let (sine, shift) = motion(&obstacle.path, t);
             let friction = obstacle.friction;
-            match obstacle.shape {
-                Shape::Sphere { radius } => {
+            match &obstacle.shape {
+                &Shape::Sphere { radius } => {
                     if let Some(described) = spheres.next() {
                         *described = SphereSpec {
                             center: here.into(),
@@ -139,7 +139,7 @@ impl Description {
                         (described.sine, described.shift) = (sine, shift);
                     }
                 }
-                Shape::Capsule { ends, radius } => {
+                &Shape::Capsule { ends, radius } => {
                     if let Some(described) = capsules.next() {
                         *described = CapsuleSpec {
                             from: (here + ends[0]).into(),
@@ -152,7 +152,10 @@ impl Description {
                         };
                     }
                 }
-                Shape::Floor if friction == 0.0 && obstacle.thickness == 0.0 => self.floor = Some(Floor::Height(here.y)),
+                Shape::Mesh(_) => {}
+                Shape::Floor if friction == 0.0 && obstacle.thickness == 0.0 => {
+                    self.floor = Some(Floor::Height(here.y));
+                }
                 Shape::Floor => {
                     let height = here.y;
                     let thickness = Some(obstacle.thickness).filter(|d| *d > 0.0);
@@ -233,6 +236,6 @@ fn motion(path: &Path, t: f64) -> (Option<Sine>, Option<Shift>) {
             };
             (None, Some(shift))
         }
-        Path::Still(_) | Path::Line { .. } => (None, None),
+        Path::Still(_) | Path::Line { .. } | Path::Turn { .. } => (None, None),
     }
 }

@@ -50,6 +50,8 @@ pub fn parse(text: &str) -> Result<Description, String> {
             mass: None,
             masses: listed.mass,
             springs: listed.springs,
+            thickness: None,
+            friction: 0.0,
             pin: if pin.particles.is_empty() {
                 vec![]
             } else {

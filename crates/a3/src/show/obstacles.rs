@@ -24,13 +24,13 @@ pub fn draw(
     let inside = |radius: f64| DRAWN_RADIUS * radius as f32;
     for obstacle in network.obstacles() {
         let place = obstacle.path.at(time).position;
-        match obstacle.shape {
-            Shape::Sphere { radius } => balls.push(Ball {
+        match &obstacle.shape {
+            &Shape::Sphere { radius } => balls.push(Ball {
                 center: to_f32(place),
                 radius: inside(radius),
                 color: STEEL,
             }),
-            Shape::Box { half_extents, axes } => {
+            &Shape::Box { half_extents, axes } => {
                 let least = half_extents.min();
                 let (gap, round) = (0.02 * least, 0.06 * least);
                 solids.push(Solid {
@@ -40,7 +40,7 @@ pub fn draw(
                     color: STEEL,
                 });
             }
-            Shape::Capsule {
+            &Shape::Capsule {
                 ends: [a, b],
                 radius,
             } => {
@@ -57,6 +57,7 @@ pub fn draw(
                     color: STEEL,
                 });
             }
+            Shape::Mesh(_) => {}
             Shape::Floor => floor = Some(place.y as f32),
         }
     }

@@ -13,10 +13,12 @@
 
 mod advance;
 mod candidates;
+mod closed_mesh;
 mod closest;
 mod cut;
 mod guard;
 mod layer;
+mod nearest;
 mod obstacle;
 mod repulsion;
 mod resolve;
@@ -24,11 +26,12 @@ mod shape;
 mod surface;
 
 pub use advance::time_of_impact;
+pub use closed_mesh::ClosedMesh;
 pub use closest::{Closest, PairKind, closest, weighted};
 pub use cut::Squeezed;
 pub use guard::Guarded;
 pub use layer::ContactLayer;
 pub use obstacle::Obstacle;
 pub use resolve::{Contact, Statistics, Step, resolve};
-pub use shape::Shape;
+pub use shape::{Shape, Simplices};
 pub use surface::{Skin, Surface};

@@ -2,15 +2,17 @@
 
 use super::shape::Shape;
 use crate::error::{Error, at_least};
-use crate::path::Path;
+use crate::path::{Path, Pose, Turn};
 
 /// Body that particles stay out of, still or moving.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
-    /// What it looks like, seen from its place on the path.
+    /// What it looks like, seen from its place on the path before it turned.
     pub shape: Shape,
     /// Where it is: the centre of a sphere or a box; of a floor, any point of its surface.
     pub path: Path,
+    /// How it turns about its place, if it does. Floors do not.
+    pub turn: Option<Turn>,
     /// Coefficient mu of Coulomb friction; 0 is a smooth surface.
     pub friction: f64,
     /// Thickness of its surface where surfaces touch (m).
@@ -24,8 +26,18 @@ impl Obstacle {
         Self {
             shape,
             path,
+            turn: None,
             friction: 0.0,
             thickness: 0.0,
+        }
+    }
+
+    /// Place and orientation at time t (s), which give the place of any of its points.
+    #[must_use]
+    pub fn at(&self, t: f64) -> Pose {
+        Pose {
+            place: self.path.at(t),
+            orientation: self.turn.map(|turn| turn.orientation(t)),
         }
     }
 

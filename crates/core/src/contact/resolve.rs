@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::nearest::{Nearest, of_box, of_capsule, of_floor, of_sphere};
 use super::obstacle::Obstacle;
-use super::shape::{Nearest, Shape, of_box, of_capsule, of_floor, of_sphere};
-use crate::path::Place;
+use super::shape::Shape;
+use crate::path::Pose;
 
 /// Gap before a step, as a share of the depth after it, up to which a particle counts as touching
 /// from the beginning of the step: rounding errors are no gap.
@@ -104,8 +105,8 @@ pub fn resolve(
             x0: step.y0.get(..3 * inverse_masses.len()),
             inverse_masses,
             friction: obstacle.friction,
-            before: obstacle.path.at(step.t),
-            after: obstacle.path.at(step.t + step.h),
+            before: obstacle.at(step.t),
+            after: obstacle.at(step.t + step.h),
             // A smooth floor moves nothing sideways.
             axes: if obstacle.shape == Shape::Floor {
                 1..2
@@ -114,16 +115,17 @@ pub fn resolve(
             },
         };
         let statistics = &mut statistics;
-        match obstacle.shape {
-            Shape::Sphere { radius } => {
+        match &obstacle.shape {
+            &Shape::Sphere { radius } => {
                 met.resolve(y1, statistics, |d| of_sphere(d, radius, Vector3::y));
             }
-            Shape::Box { half_extents, axes } => {
+            &Shape::Box { half_extents, axes } => {
                 met.resolve(y1, statistics, |d| of_box(d, half_extents, axes));
             }
-            Shape::Capsule { ends, radius } => {
+            &Shape::Capsule { ends, radius } => {
                 met.resolve(y1, statistics, |d| of_capsule(d, ends, radius));
             }
+            Shape::Mesh(mesh) => met.resolve(y1, statistics, |d| mesh.nearest(d)),
             Shape::Floor => met.resolve(y1, statistics, of_floor),
         }
     }
@@ -136,17 +138,17 @@ struct Met<'a> {
     x0: Option<&'a [f64]>,
     inverse_masses: &'a [f64],
     friction: f64,
-    /// Place of the obstacle at the beginning of the step.
-    before: Place,
-    /// Place of the obstacle at the end of the step.
-    after: Place,
+    /// Place and orientation of the obstacle at the beginning of the step.
+    before: Pose,
+    /// Place and orientation of the obstacle at the end of the step.
+    after: Pose,
     /// Axes along which contact without friction pushes.
     axes: Range<usize>,
 }
 
 impl Met<'_> {
     /// Resolves the contacts with a surface: a function of a particle's position, seen from the
-    /// obstacle's place, that answers from there if the particle is inside.
+    /// obstacle's place before it turned, that answers from there if the particle is inside.
     fn resolve(
         &self,
         y1: &mut [f64],
@@ -155,7 +157,13 @@ impl Met<'_> {
     ) {
         let n = self.inverse_masses.len();
         let (x, v) = y1.split_at_mut(3 * n);
-        let c = self.after.position;
+        let surface = |d: Vector3<f64>| {
+            surface(self.after.inwards(d)).map(|nearest| Nearest {
+                point: self.after.outwards(nearest.point),
+                normal: self.after.outwards(nearest.normal),
+            })
+        };
+        let c = self.after.place.position;
         for i in 0..n {
             let d = Vector3::new(x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
             let Some(nearest) = surface(d) else {
@@ -165,7 +173,8 @@ impl Met<'_> {
                 continue;
             }
             let at = vector(x, n, i);
-            let velocity = vector(v, n, i) - self.after.velocity;
+            let own = self.velocity(nearest.point);
+            let velocity = vector(v, n, i) - own;
             let outwards = velocity.dot(&nearest.normal);
             let inwards = outwards.min(0.0);
             for axis in self.axes.clone() {
@@ -174,7 +183,7 @@ impl Met<'_> {
             }
             if let Some(x0) = self.x0 {
                 // Where it would be if the obstacle had carried it along.
-                let carried = vector(x0, n, i) + (c - self.before.position);
+                let carried = self.carried(vector(x0, n, i));
                 let depth = nearest.normal.dot(&(nearest.point - d));
                 let approach = nearest.normal.dot(&(carried - at));
                 if self.friction > 0.0 {
@@ -203,11 +212,28 @@ impl Met<'_> {
                 let slip = across(velocity, nearest.normal);
                 let outwards = nearest.normal * outwards.max(0.0);
                 let along = slip * self.kept(slip, -inwards);
-                set(v, n, i, self.after.velocity + outwards + along);
+                set(v, n, i, own + outwards + along);
             }
             statistics.contacts += 1;
-            let change = vector(v, n, i) - self.after.velocity - velocity;
+            let change = vector(v, n, i) - own - velocity;
             statistics.impulse += change.norm() / self.inverse_masses[i];
+        }
+    }
+
+    /// Velocity of the obstacle at the end of the step, at a point seen from its place.
+    fn velocity(&self, point: Vector3<f64>) -> Vector3<f64> {
+        let along = self.after.place.velocity;
+        let orientation = self.after.orientation;
+        orientation.map_or(along, |turned| along + turned.spin.cross(&point))
+    }
+
+    /// Position at the end of the step of what is at x at its beginning and moves with the obstacle.
+    fn carried(&self, x: Vector3<f64>) -> Vector3<f64> {
+        let (before, after) = (&self.before.place.position, &self.after.place.position);
+        if self.after.orientation.is_some() {
+            after + self.after.outwards(self.before.inwards(x - before))
+        } else {
+            x + (after - before)
         }
     }
 

@@ -1,11 +1,15 @@
-//! Shapes of obstacles, and the nearest points of their surfaces.
+//! Shapes of obstacles.
+
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
+use super::closed_mesh::ClosedMesh;
 use crate::error::{Error, finite, positive};
+use crate::path::rotation;
 
 /// Shape of an obstacle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// All that is within a radius of the place.
     Sphere {
@@ -26,8 +30,24 @@ pub enum Shape {
         /// Radius (m).
         radius: f64,
     },
+    /// All that a closed surface of triangles encloses.
+    Mesh(Arc<ClosedMesh>),
     /// All that is lower than the place.
     Floor,
+}
+
+/// All within a radius of points, edges and triangles, seen from the place before the obstacle
+/// turned.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Simplices {
+    /// Points (m).
+    pub points: Vec<Vector3<f64>>,
+    /// Ends of the edges, as numbers of points.
+    pub edges: Vec<[u32; 2]>,
+    /// Corners of the triangles, as numbers of points, anticlockwise as seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Radius (m).
+    pub radius: f64,
 }
 
 impl Shape {
@@ -37,16 +57,8 @@ impl Shape {
     /// A half extent is not above 0, or a number is not finite.
     pub fn turned_box(half_extents: Vector3<f64>, turn: Vector3<f64>) -> Result<Self, Error> {
         finite("the turn of a box", turn)?;
-        // Rodrigues' formula.
-        let angle = turn.norm();
-        let (sin, cos) = libm::sincos(angle);
-        let about = if angle > 0.0 {
-            turn / angle
-        } else {
-            Vector3::zeros()
-        };
-        let axes = [Vector3::x(), Vector3::y(), Vector3::z()]
-            .map(|e| e * cos + about.cross(&e) * sin + about * (about.dot(&e) * (1.0 - cos)));
+        let rotation = rotation(turn);
+        let axes = [0, 1, 2].map(|k| rotation.column(k).into_owned());
         let shape = Self::Box { half_extents, axes };
         shape.check()?;
         Ok(shape)
@@ -59,13 +71,73 @@ impl Shape {
             Self::Sphere { .. } => "sphere",
             Self::Box { .. } => "box",
             Self::Capsule { .. } => "capsule",
+            Self::Mesh(_) => "obstacle",
             Self::Floor => "floor",
+        }
+    }
+
+    /// Surface as points, edges and triangles with a radius; none of them for a floor, which has
+    /// no end.
+    #[must_use]
+    pub fn simplices(&self) -> Simplices {
+        match self {
+            Self::Sphere { radius } => Simplices {
+                points: vec![Vector3::zeros()],
+                radius: *radius,
+                ..Simplices::default()
+            },
+            Self::Box { half_extents, axes } => {
+                // Bit k of a corner's number tells its side along axis k.
+                let corner = |number: u32| {
+                    let along = |k: usize| axes[k] * half_extents[k];
+                    (0..3).fold(Vector3::zeros(), |sum, k| {
+                        let positive = number >> k & 1 == 1;
+                        sum + if positive { along(k) } else { -along(k) }
+                    })
+                };
+                let pairs = (0..8).flat_map(|a| [1, 2, 4].map(|bit| [a, a | bit]));
+                // Corners of the faces, anticlockwise as seen from outside if the axes are a
+                // right-handed system.
+                let faces: [[u32; 4]; 6] = [
+                    [0, 4, 6, 2],
+                    [1, 3, 7, 5],
+                    [0, 1, 5, 4],
+                    [2, 6, 7, 3],
+                    [0, 2, 3, 1],
+                    [4, 5, 7, 6],
+                ];
+                let [x, y, z] = axes;
+                let mirrored = x.cross(y).dot(z) < 0.0;
+                let triangles = faces
+                    .iter()
+                    .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+                    .map(|[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] });
+                Simplices {
+                    points: (0..8).map(corner).collect(),
+                    edges: pairs.filter(|[a, b]| a != b).collect(),
+                    triangles: triangles.collect(),
+                    radius: 0.0,
+                }
+            }
+            Self::Capsule { ends, radius } => Simplices {
+                points: ends.to_vec(),
+                edges: vec![[0, 1]],
+                triangles: vec![],
+                radius: *radius,
+            },
+            Self::Mesh(mesh) => Simplices {
+                points: mesh.points().to_vec(),
+                edges: mesh.edges().to_vec(),
+                triangles: mesh.triangles().to_vec(),
+                radius: 0.0,
+            },
+            Self::Floor => Simplices::default(),
         }
     }
 
     /// # Errors
     /// A radius or a half extent is not above 0, or a number is not finite.
-    pub(super) fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         match self {
             Self::Sphere { radius } => positive("a sphere's radius", *radius),
             Self::Box { half_extents, axes } => {
@@ -79,101 +151,8 @@ impl Shape {
                 ends.try_for_each(|end| finite("the end of a capsule", *end))?;
                 positive("a capsule's radius", *radius)
             }
-            Self::Floor => Ok(()),
+            // A closed mesh was checked when it was made.
+            Self::Mesh(_) | Self::Floor => Ok(()),
         }
     }
-}
-
-/// Nearest point of a surface (m), and the unit normal there.
-pub(super) struct Nearest {
-    pub point: Vector3<f64>,
-    pub normal: Vector3<f64>,
-}
-
-/// Nearest point of a sphere around the origin to a point d inside it; to the centre, that in the
-/// direction of `aside`.
-pub(super) fn of_sphere(
-    d: Vector3<f64>,
-    radius: f64,
-    aside: impl Fn() -> Vector3<f64>,
-) -> Option<Nearest> {
-    let squared = d.x * d.x + d.y * d.y + d.z * d.z;
-    if squared < radius * radius {
-        let distance = squared.sqrt();
-        let normal = if distance > 0.0 {
-            d / distance
-        } else {
-            aside()
-        };
-        Some(Nearest {
-            point: radius * normal,
-            normal,
-        })
-    } else {
-        None
-    }
-}
-
-/// Nearest point of a box around the origin to a point d inside it: on the nearest face.
-pub(super) fn of_box(
-    d: Vector3<f64>,
-    half_extents: Vector3<f64>,
-    axes: [Vector3<f64>; 3],
-) -> Option<Nearest> {
-    let local = axes.map(|axis| axis.dot(&d));
-    let depth = |k: usize| half_extents[k] - local[k].abs();
-    if !(0..3).all(|k| depth(k) > 0.0) {
-        return None;
-    }
-    let k = (1..3).fold(
-        0,
-        |k, other| if depth(other) < depth(k) { other } else { k },
-    );
-    let normal = if local[k] < 0.0 { -axes[k] } else { axes[k] };
-    Some(Nearest {
-        point: d + normal * depth(k),
-        normal,
-    })
-}
-
-/// Nearest point of a capsule to a point d inside it.
-pub(super) fn of_capsule(
-    d: Vector3<f64>,
-    [a, b]: [Vector3<f64>; 2],
-    radius: f64,
-) -> Option<Nearest> {
-    let axis = b - a;
-    let squared = axis.norm_squared();
-    let share = if squared > 0.0 {
-        ((d - a).dot(&axis) / squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    let middle = a + share * axis;
-    let Nearest { point, normal } = of_sphere(d - middle, radius, || upwards(axis))?;
-    Some(Nearest {
-        point: middle + point,
-        normal,
-    })
-}
-
-/// Nearest point of a floor at height 0 to a point d below it.
-pub(super) fn of_floor(d: Vector3<f64>) -> Option<Nearest> {
-    (d.y < 0.0).then(|| Nearest {
-        point: Vector3::new(d.x, 0.0, d.z),
-        normal: Vector3::y(),
-    })
-}
-
-/// Unit vector across an axis that leads upwards most steeply; along x from an upright axis.
-fn upwards(axis: Vector3<f64>) -> Vector3<f64> {
-    let squared = axis.norm_squared();
-    if squared == 0.0 {
-        return Vector3::y();
-    }
-    [Vector3::y(), Vector3::x()]
-        .into_iter()
-        .map(|e| e - axis * (axis.dot(&e) / squared))
-        .find(|across| across.norm_squared() > 1e-6)
-        .map_or(Vector3::y(), |across| across.normalize())
 }

@@ -8,6 +8,7 @@ use super::closest::PairKind;
 use super::obstacle::Obstacle;
 use super::shape::Shape;
 use crate::error::{Error, at_least};
+use crate::path::Place;
 
 /// Least gap that is kept between two surfaces, as a share of their thickness.
 const KEPT: f64 = 1e-3;
@@ -78,6 +79,9 @@ impl Items {
         let lone = edges.into_iter().map(|[a, b]| [a.min(b), a.max(b), a.max(b)]);
         for corners in triangles.into_iter().chain(lone) {
             let [a, b, c] = corners;
+            if b == c && seen_edges.contains(&[a, b]) {
+                continue;
+            }
             items.corners.push(corners);
             let new = corners.into_iter().filter(|i| seen_vertices.insert(*i));
             items.vertices.extend(new);
@@ -124,15 +128,14 @@ pub struct Surface {
     particles: usize,
     skins: Vec<Skin>,
     radii: Vec<f64>,
-    /// Obstacle of each point of obstacles, and the point as seen from its place (m).
-    anchors: Vec<(usize, Vector3<f64>)>,
+    /// Points of each obstacle, as seen from its place before it turned (m).
+    anchors: Vec<Vec<Vector3<f64>>>,
     pub(super) bodies: Items,
     pub(super) obstacles: Items,
     /// Vertices that stand for floors.
     pub(super) floors: Vec<u32>,
     /// Whether bodies can touch bodies.
     pub(super) touches_itself: bool,
-    still: bool,
     thickest: f64,
 }
 
@@ -153,15 +156,13 @@ impl Surface {
             radii: vec![0.0; skins.len()],
             bodies: Items::new(triangles.iter().copied(), edges.iter().copied()),
             touches_itself,
-            still: true,
             ..Self::default()
         };
         let (mut faces, mut sides) = (vec![], vec![]);
-        for (k, obstacle) in obstacles.iter().enumerate() {
+        for obstacle in obstacles {
             let first = surface.skins.len() as u32;
             let simplices = obstacle.shape.simplices();
-            for point in simplices.points {
-                surface.anchors.push((k, point));
+            for _ in &simplices.points {
                 surface.skins.push(Skin {
                     thickness: obstacle.thickness,
                     stiffness: f64::INFINITY,
@@ -170,7 +171,6 @@ impl Surface {
                 });
                 surface.radii.push(simplices.radius);
             }
-            surface.still &= obstacle.is_still();
             match obstacle.shape {
                 Shape::Floor => surface.floors.push(first),
                 Shape::Sphere { .. } => sides.push([first; 2]),
@@ -178,6 +178,7 @@ impl Surface {
             }
             faces.extend(simplices.triangles.iter().map(|t| t.map(|i| first + i)));
             sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
+            surface.anchors.push(simplices.points);
         }
         surface.obstacles = Items::new(faces, sides);
         let touching = surface.bodies.vertices.iter().chain(&surface.obstacles.vertices);
@@ -203,8 +204,12 @@ impl Surface {
     /// Obstacle to which a vertex belongs, if it is no particle.
     #[must_use]
     pub fn obstacle_of(&self, vertex: usize) -> Option<usize> {
-        let point = vertex.checked_sub(self.particles)?;
-        Some(self.anchors[point].0)
+        let mut point = vertex.checked_sub(self.particles)?;
+        self.anchors.iter().position(|points| {
+            let here = point < points.len();
+            point = point.saturating_sub(points.len());
+            here
+        })
     }
 
     /// Triangles of bodies and of obstacles.
@@ -262,15 +267,21 @@ impl Surface {
     /// Writes positions (m) of all vertices at time t (s), with particles at x, n x 3.
     pub(super) fn place(&self, obstacles: &[Obstacle], t: f64, x: &[f64], out: &mut Vec<Vector3<f64>>) {
         particles_of(x, out);
-        let points = self.anchors.iter();
-        out.extend(points.map(|(k, point)| obstacles[*k].point_at(*point, t).position));
+        self.each_anchor(obstacles, t, |place| out.push(place.position));
     }
 
     /// Writes velocities (m/s) of all vertices at time t (s), with those of particles in v, n x 3.
     pub(super) fn speeds(&self, obstacles: &[Obstacle], t: f64, v: &[f64], out: &mut Vec<Vector3<f64>>) {
         particles_of(v, out);
-        let points = self.anchors.iter();
-        out.extend(points.map(|(k, point)| obstacles[*k].point_at(*point, t).velocity));
+        self.each_anchor(obstacles, t, |place| out.push(place.velocity));
+    }
+
+    /// Visits the place of each point of obstacles at time t (s).
+    fn each_anchor(&self, obstacles: &[Obstacle], t: f64, mut visit: impl FnMut(Place)) {
+        for (points, obstacle) in self.anchors.iter().zip(obstacles) {
+            let pose = obstacle.at(t);
+            points.iter().for_each(|point| visit(pose.of(*point)));
+        }
     }
 }
 

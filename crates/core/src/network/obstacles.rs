@@ -55,12 +55,8 @@ impl Network {
     /// There is no such obstacle, or the shape has no size.
     pub fn reshape_obstacle(&mut self, k: usize, shape: Shape) -> Result<(), Error> {
         self.check_obstacle(k)?;
-        let other = Obstacle {
-            shape,
-            ..self.obstacles[k]
-        };
-        other.check()?;
-        self.obstacles[k] = other;
+        shape.check()?;
+        self.obstacles[k].shape = shape;
         self.renew_contact();
         Ok(())
     }
@@ -83,7 +79,7 @@ impl Network {
     pub fn moves_by_itself(&self) -> bool {
         let pins = self.pins.iter().map(|pin| pin.path);
         let obstacles = self.obstacles.iter().map(|obstacle| obstacle.path);
-        pins.chain(obstacles)
-            .any(|path| !matches!(path, Path::Still(_)))
+        let moved = |path: Path| !matches!(path, Path::Still(_));
+        pins.chain(obstacles).any(moved) || self.obstacles.iter().any(|o| o.turn.is_some())
     }
 }

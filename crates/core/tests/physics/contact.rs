@@ -1,6 +1,6 @@
 //! Contact with obstacles: nearest points of surfaces, and velocities after contact.
 
-use a3_core::contact::{Obstacle, Shape, Step, resolve};
+use a3_core::contact::{ClosedMesh, Obstacle, Shape, Step, resolve};
 use a3_core::{Mechanics, Network, Path, Vector3};
 use approx::assert_relative_eq;
 use nalgebra::Rotation3;
@@ -213,7 +213,7 @@ fn obstacles_without_a_size_are_refused() {
             },
         ] {
             let mut network = Network::new(vec![1.0]).unwrap();
-            let obstacle = Obstacle::smooth(shape, path);
+            let obstacle = Obstacle::smooth(shape.clone(), path);
             assert!(network.add_obstacle(obstacle).is_err());
             network
                 .add_obstacle(Obstacle::smooth(Shape::Floor, path))
@@ -244,10 +244,40 @@ fn a_network_names_the_obstacles_it_pays_for() {
     let mut network = with_box(Path::Still(CENTER));
     assert_eq!(network.forces_in_use(), ["box"]);
     let capsule = Obstacle::smooth(CAPSULE, Path::Still(CENTER));
-    network.add_obstacle(capsule).unwrap();
+    network.add_obstacle(capsule.clone()).unwrap();
     assert_eq!(network.forces_in_use(), ["box", "capsule"]);
     assert_eq!(network.obstacles()[1], capsule);
     network.remove_obstacle(0).unwrap();
     assert_eq!(network.forces_in_use(), ["capsule"]);
     assert!(network.remove_obstacle(1).is_err());
+}
+
+/// The triangles of a box enclose its volume, seen from outside, whichever way its axes turn; its
+/// edges are as long as it is.
+#[test]
+fn a_box_has_the_triangles_and_edges_of_its_surface() {
+    let Shape::Box { axes, .. } = Shape::turned_box(HALVES, TURN).unwrap() else {
+        panic!("not a box");
+    };
+    let [x, y, z] = axes;
+    for axes in [[x, y, z], [x, y, -z]] {
+        let half_extents = HALVES;
+        let found = Shape::Box { half_extents, axes }.simplices();
+        let corner = |i: u32| found.points[i as usize];
+        let volumes = found.triangles.iter().map(|t| {
+            let [a, b, c] = t.map(corner);
+            a.cross(&b).dot(&c) / 6.0
+        });
+        assert!(volumes.clone().all(|volume| volume > 0.0));
+        assert!((volumes.sum::<f64>() - 8.0 * HALVES.product()).abs() < 1e-14);
+        let lengths = found
+            .edges
+            .iter()
+            .map(|e| (corner(e[1]) - corner(e[0])).norm());
+        assert!((lengths.sum::<f64>() - 8.0 * HALVES.sum()).abs() < 1e-14);
+        assert_eq!((found.triangles.len(), found.radius), (12, 0.0));
+        let closed = ClosedMesh::new(found.points, found.triangles).unwrap();
+        let own = |edge: &[u32; 2]| closed.edges().contains(edge);
+        assert!(found.edges.iter().all(own));
+    }
 }

@@ -1,6 +1,8 @@
 //! Coulomb friction: sticking, the acceleration of sliding, and obstacles that carry particles
 //! along.
 
+use std::slice;
+
 use crate::common::{described, method, simulation};
 use a3_core::contact::{Obstacle, Shape, Step, resolve};
 use a3_core::integrators::METHODS;
@@ -180,9 +182,8 @@ fn conveyors() -> [Obstacle; 2] {
     };
     let shape = Shape::turned_box(Vector3::new(20.0, 1.0, 1.0), Vector3::zeros()).unwrap();
     [(shape, -1.0), (Shape::Floor, 0.0)].map(|(shape, height)| Obstacle {
-        shape,
-        path: path(height),
         friction: 0.5,
+        ..Obstacle::smooth(shape, path(height))
     })
 }
 
@@ -194,7 +195,7 @@ fn a_conveyor_carries_a_particle_along() {
         for name in ["symplectic-euler", "rk4", "pefrl", "dopri5"] {
             let method = method(name);
             let setting = if method.is_adaptive() { 1e-6 } else { 0.001 };
-            let scene = particle(conveyor, Vector3::zeros(), Vector3::zeros());
+            let scene = particle(conveyor.clone(), Vector3::zeros(), Vector3::zeros());
             let mut run = Simulation::new(scene, method, method.control(setting)).unwrap();
             run.advance_to(0.2).unwrap();
             run.take_steps(1).unwrap();
@@ -233,7 +234,11 @@ fn after_an_impact_a_particle_stops_where_it_should() {
         Vector3::new(1.0, -3.0, 0.0),
     );
     for h in [0.07, 0.013, 0.001] {
-        let run = Simulation::new(particle(floor, x, v), method("rk4"), Control::Step(h));
+        let run = Simulation::new(
+            particle(floor.clone(), x, v),
+            method("rk4"),
+            Control::Step(h),
+        );
         let mut run = run.unwrap();
         run.advance_to(0.5).unwrap();
         assert_eq!(run.velocities(), [0.0; 3]);
@@ -284,7 +289,7 @@ fn contact_takes_energy_and_gives_none() {
         for friction in [0.0, 0.2, 1.0, 100.0] {
             let obstacle = Obstacle {
                 friction,
-                ..Obstacle::smooth(shape, place)
+                ..Obstacle::smooth(shape.clone(), place)
             };
             for k in 0..500 {
                 let y0: Vec<f64> = (0..6).map(|a| number(6 * k + a)).collect();
@@ -295,7 +300,7 @@ fn contact_takes_energy_and_gives_none() {
                 }
                 let free = y1.clone();
                 let step = Step { t: 0.3, h, y0: &y0 };
-                let found = resolve(&[obstacle], &[2.0], &step, &mut y1);
+                let found = resolve(slice::from_ref(&obstacle), &[2.0], &step, &mut y1);
                 if found.contacts == 0 {
                     assert_eq!(y1, free);
                     continue;
@@ -311,7 +316,7 @@ fn contact_takes_energy_and_gives_none() {
                 resolve(
                     &[Obstacle {
                         friction: 0.0,
-                        ..obstacle
+                        ..obstacle.clone()
                     }],
                     &[2.0],
                     &step,
@@ -368,7 +373,7 @@ fn between_steps_nothing_sinks_visibly() {
     let floor = Obstacle::smooth(Shape::Floor, Path::Still(Vector3::zeros()));
     for name in ["dopri5", "dop853", "fehlberg"] {
         for tolerance in [1e-2, 1e-4, 1e-8] {
-            let scene = particle(floor, Vector3::new(0.0, 1.0, 0.0), Vector3::zeros());
+            let scene = particle(floor.clone(), Vector3::new(0.0, 1.0, 0.0), Vector3::zeros());
             let control = Control::Tolerance(tolerance);
             let mut run = Simulation::new(scene, method(name), control).unwrap();
             for frame in 1..=300 {

@@ -85,7 +85,7 @@ fn there_is_nothing_to_grab_out_of_range_or_without_masses() {
 
 /// Centre and radius (m) of the first obstacle, a sphere.
 fn sphere(run: &Simulation) -> (Vector3<f64>, f64) {
-    let sphere = run.model().network().unwrap().obstacles()[0];
+    let sphere = run.model().network().unwrap().obstacles()[0].clone();
     let Shape::Sphere { radius } = sphere.shape else {
         panic!("{sphere:?}");
     };

@@ -114,7 +114,7 @@ fn a_lost_run_shows_its_last_good_state_until_it_is_reset() {
 
 /// Centre and radius (m) of the first obstacle, a sphere.
 fn sphere(run: &Simulation) -> (Vector3<f64>, f64) {
-    let sphere = run.model().network().unwrap().obstacles()[0];
+    let sphere = run.model().network().unwrap().obstacles()[0].clone();
     let Shape::Sphere { radius } = sphere.shape else {
         panic!("{sphere:?}");
     };

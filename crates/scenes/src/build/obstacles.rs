@@ -65,6 +65,7 @@ fn sphere(spec: &SphereSpec) -> Result<Obstacle, Fault> {
     Ok(Obstacle {
         shape: Shape::Sphere { radius },
         path: path(center, spec.sine.as_ref(), spec.shift.as_ref())?,
+        turn: None,
         friction: friction(spec.friction)?,
         thickness: thickness(spec.thickness)?,
     })
@@ -81,6 +82,7 @@ fn cuboid(spec: &BoxSpec) -> Result<Obstacle, Fault> {
     Ok(Obstacle {
         shape: at("size", Shape::turned_box(0.5 * size, turn))?,
         path,
+        turn: None,
         friction: friction(spec.friction)?,
         thickness: thickness(spec.thickness)?,
     })
@@ -95,6 +97,7 @@ fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
             radius: spec.radius,
         },
         path,
+        turn: None,
         friction: friction(spec.friction)?,
         thickness: thickness(spec.thickness)?,
     })
@@ -112,6 +115,7 @@ fn floor(spec: &Floor) -> Result<Obstacle, Fault> {
     Ok(Obstacle {
         shape: Shape::Floor,
         path: Path::Still(Vector3::new(0.0, height, 0.0)),
+        turn: None,
         friction: friction(mu).map_err(|fault| fault.within("floor"))?,
         thickness: thickness(thick).map_err(|fault| fault.within("floor"))?,
     })

@@ -128,12 +128,13 @@ pub static KNOBS: &[Knob] = &[
         },
         |session, _, on| {
             let own = own(session).and_then(floor).filter(|_| on != 0.0);
+            let own = own.map(|(_, floor)| floor.clone());
             session.adjust(|network| {
                 if let Some((k, _)) = floor(network) {
                     let _ = network.remove_obstacle(k);
                 }
-                if let Some((_, floor)) = own {
-                    let _ = network.add_obstacle(floor);
+                if let Some(floor) = &own {
+                    let _ = network.add_obstacle(floor.clone());
                 }
             });
         },

@@ -154,8 +154,8 @@ pub fn radii(network: &Network) -> impl Iterator<Item = (usize, f64)> {
 }
 
 /// Floor of a network, and its number among the obstacles: the last of them.
-pub fn floor(network: &Network) -> Option<(usize, Obstacle)> {
-    let obstacles = network.obstacles().iter().copied().enumerate();
+pub fn floor(network: &Network) -> Option<(usize, &Obstacle)> {
+    let obstacles = network.obstacles().iter().enumerate();
     obstacles
         .rev()
         .find(|(_, obstacle)| obstacle.shape == Shape::Floor)

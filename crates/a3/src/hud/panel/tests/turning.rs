@@ -91,7 +91,9 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     let shapes = |session: &Session| {
         let network = network(session);
         let obstacles = network.obstacles().iter();
-        obstacles.map(|o| (o.shape, o.path)).collect::<Vec<_>>()
+        obstacles
+            .map(|o| (o.shape.clone(), o.path))
+            .collect::<Vec<_>>()
     };
     let own = shapes(&session);
     assert_eq!(own[0].0, Shape::Sphere { radius: 0.75 });

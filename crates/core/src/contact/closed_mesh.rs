@@ -1,0 +1,223 @@
+//! Closed surfaces of triangles: the nearest of their points, and what is inside (Baerentzen and
+//! Aanaes, *Signed distance computation using the angle weighted pseudonormal*, 2005).
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhLeafCost, BvhNode};
+use parry3d_f64::query::PointQuery;
+
+use super::closest::{Closest, PairKind, closest};
+use super::nearest::Nearest;
+use crate::error::{Error, finite};
+
+/// Closed surface of triangles around a solid.
+#[derive(Clone, Debug)]
+pub struct ClosedMesh {
+    points: Vec<Vector3<f64>>,
+    triangles: Vec<[u32; 3]>,
+    edges: Vec<[u32; 2]>,
+    /// Outward normals of each triangle: its own, those of its corners, and those of the sides
+    /// opposite to them; those of corners and sides have any length.
+    normals: Vec<Normals>,
+    tree: Bvh,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Normals {
+    own: Vector3<f64>,
+    corners: [Vector3<f64>; 3],
+    sides: [Vector3<f64>; 3],
+}
+
+impl PartialEq for ClosedMesh {
+    /// Whether points and triangles are the same, on which all else depends.
+    fn eq(&self, other: &Self) -> bool {
+        (&self.points, &self.triangles) == (&other.points, &other.triangles)
+    }
+}
+
+impl BvhLeafCost for Closest {
+    fn cost(&self) -> f64 {
+        self.offset.norm_squared()
+    }
+}
+
+impl ClosedMesh {
+    /// Largest number of triangles.
+    pub const MAX_TRIANGLES: usize = 200_000;
+
+    /// Surface with these points (m) and triangles, whose corners are numbers of points. The
+    /// triangles are all turned around if they wind clockwise as seen from outside.
+    ///
+    /// # Errors
+    /// There are no triangles or more than [`MAX_TRIANGLES`](Self::MAX_TRIANGLES); a corner does
+    /// not exist; a number is not finite; an edge has other than two triangles, or its two do not
+    /// wind alike; or nothing is enclosed.
+    pub fn new(points: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Result<Self, Error> {
+        let invalid = |why: String| Err(Error::Invalid(why));
+        let (count, most) = (triangles.len(), Self::MAX_TRIANGLES);
+        if count == 0 || count > most {
+            return invalid(format!(
+                "a closed mesh has 1 to {most} triangles, not {count}"
+            ));
+        }
+        let mut all = points.iter();
+        all.try_for_each(|point| finite("a point of a closed mesh", *point))?;
+        if let Some(i) = triangles
+            .iter()
+            .flatten()
+            .find(|i| **i as usize >= points.len())
+        {
+            return invalid(format!("a triangle of a closed mesh has no corner {i}"));
+        }
+        let at = |i: u32| points[i as usize];
+        let volume = |[a, b, c]: &[u32; 3]| at(*a).cross(&at(*b)).dot(&at(*c)) / 6.0;
+        let volume: f64 = triangles.iter().map(volume).sum();
+        let triangles: Vec<_> = if volume < 0.0 {
+            triangles.iter().map(|&[a, b, c]| [a, c, b]).collect()
+        } else {
+            triangles
+        };
+        let edges = edges(&points, &triangles)?;
+        if volume == 0.0 {
+            return invalid("a closed mesh must enclose a volume".into());
+        }
+        Ok(Self {
+            normals: normals(&points, &triangles),
+            tree: tree(&points, &triangles),
+            points,
+            triangles,
+            edges,
+        })
+    }
+
+    /// Points (m).
+    #[must_use]
+    pub fn points(&self) -> &[Vector3<f64>] {
+        &self.points
+    }
+
+    /// Corners of the triangles, anticlockwise as seen from outside.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Ends of the edges, the lower number first, in order.
+    #[must_use]
+    pub fn edges(&self) -> &[[u32; 2]] {
+        &self.edges
+    }
+
+    /// Nearest point of the surface to a point d inside.
+    pub(super) fn nearest(&self, d: Vector3<f64>) -> Option<Nearest> {
+        let from = Vector::new(d.x, d.y, d.z);
+        if !self.tree.root_aabb().contains_local_point(from) {
+            return None;
+        }
+        let of_box = |node: &BvhNode, _: f64| {
+            let distance = node.aabb().distance_to_local_point(from, true);
+            distance * distance
+        };
+        let of_triangle = |k: u32, _: f64| {
+            let [a, b, c] = self.triangles[k as usize].map(|i| self.points[i as usize]);
+            Some(closest(PairKind::VertexTriangle, &[d, a, b, c]))
+        };
+        let (k, nearest) = self.tree.find_best(f64::MAX, of_box, of_triangle)?;
+        let normal = self.normals[k as usize].at(&nearest.weights);
+        (normal.dot(&nearest.offset) < 0.0).then(|| Nearest {
+            point: d - nearest.offset,
+            normal: normal.normalize(),
+        })
+    }
+}
+
+impl Normals {
+    /// Normal at the point with these weights, of which the last three are those of the corners.
+    fn at(&self, weights: &[f64; 4]) -> Vector3<f64> {
+        let zero = |k: usize| weights[k + 1] == 0.0;
+        let corner = (0..3).find(|k| zero((k + 1) % 3) && zero((k + 2) % 3));
+        let side = (0..3).find(|k| zero(*k));
+        match (corner, side) {
+            (Some(k), _) => self.corners[k],
+            (None, Some(k)) => self.sides[k],
+            (None, None) => self.own,
+        }
+    }
+}
+
+/// Edges of a closed surface in order, the lower number of their ends first.
+fn edges(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Result<Vec<[u32; 2]>, Error> {
+    // The number of triangles that pass an edge upwards, and that of those that pass it downwards.
+    let mut passed: BTreeMap<[u32; 2], [usize; 2]> = BTreeMap::new();
+    for &[a, b, c] in triangles {
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            let edge = [from.min(to), from.max(to)];
+            passed.entry(edge).or_default()[usize::from(from > to)] += 1;
+        }
+    }
+    let Some((&[a, b], [up, down])) = passed.iter().find(|(_, ways)| **ways != [1, 1]) else {
+        return Ok(passed.into_keys().collect());
+    };
+    let place = |i: u32| {
+        let [x, y, z]: [f64; 3] = points[i as usize].into();
+        format!("point {i} at ({x}, {y}, {z})")
+    };
+    let why = match up + down {
+        2 => "whose normals point to different sides".into(),
+        1 => "not 1".into(),
+        count => format!("not {count}"),
+    };
+    Err(Error::Invalid(format!(
+        "a closed mesh has two triangles at each edge, but at that from {} to {} {why}",
+        place(a),
+        place(b),
+    )))
+}
+
+/// Normals of all triangles.
+fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Vec<Normals> {
+    let mut corners = vec![Vector3::zeros(); points.len()];
+    let mut sides: BTreeMap<[u32; 2], Vector3<f64>> = BTreeMap::new();
+    let side = |a: u32, b: u32| [a.min(b), a.max(b)];
+    let own: Vec<_> = triangles
+        .iter()
+        .map(|t| {
+            let at = t.map(|i| points[i as usize]);
+            let normal = (at[1] - at[0]).cross(&(at[2] - at[0]));
+            let normal = normal.try_normalize(0.0).unwrap_or_default();
+            for k in 0..3 {
+                let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+                let (along, back) = (at[next] - at[k], at[last] - at[k]);
+                let angle = libm::atan2(along.cross(&back).norm(), along.dot(&back));
+                corners[t[k] as usize] += normal * angle;
+                *sides.entry(side(t[next], t[last])).or_default() += normal;
+            }
+            normal
+        })
+        .collect();
+    let all = triangles.iter().zip(own);
+    all.map(|(t, own)| Normals {
+        own,
+        corners: t.map(|i| corners[i as usize]),
+        sides: [0, 1, 2].map(|k| sides[&side(t[(k + 1) % 3], t[(k + 2) % 3])]),
+    })
+    .collect()
+}
+
+/// Tree of boxes around the triangles.
+fn tree(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Bvh {
+    let boxes = triangles.iter().map(|t| {
+        let [a, b, c] = t.map(|i| points[i as usize]);
+        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+        Aabb::new(
+            Vector::new(low.x, low.y, low.z),
+            Vector::new(high.x, high.y, high.z),
+        )
+    });
+    let boxes: Vec<_> = boxes.collect();
+    Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+}
