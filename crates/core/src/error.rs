@@ -89,6 +89,29 @@ pub enum Cause {
     },
     /// Force that depends on the velocity, which the method does not serve.
     ReadsVelocity,
+    /// Surfaces that are led, by pins or as obstacles, and leave no room for what is between them.
+    Squeezed {
+        /// Vertices on either side.
+        vertices: [Vertex; 2],
+    },
+}
+
+/// Vertex of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vertex {
+    /// Index of a particle.
+    Particle(usize),
+    /// Index of the obstacle that it belongs to.
+    Obstacle(usize),
+}
+
+impl fmt::Display for Vertex {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Particle(i) => write!(f, "particle {i}"),
+            Self::Obstacle(k) => write!(f, "obstacle {k}"),
+        }
+    }
 }
 
 /// What a method says that serves no velocities in forces.
@@ -122,6 +145,10 @@ impl fmt::Display for BlowUp {
                 "the equations of the step were not solved (relative residual {residual:.1e})"
             ),
             Cause::ReadsVelocity => write!(f, "{SERVES_POSITIONS}"),
+            Cause::Squeezed { vertices: [a, b] } => write!(
+                f,
+                "surfaces are squeezed between what is led at {a} and at {b}"
+            ),
         }
     }
 }

@@ -79,7 +79,7 @@ pub use constraints::Constraint;
 pub use control::Control;
 pub use elements::{Element, Sheet};
 pub use energy::Energy;
-pub use error::{BlowUp, Cause, Error};
+pub use error::{BlowUp, Cause, Error, Vertex};
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;

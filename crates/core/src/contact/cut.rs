@@ -15,20 +15,13 @@ use super::candidates::{Candidate, Candidates};
 use super::closest::{PairKind, closest, weighted};
 use super::guard::Motion;
 use super::surface::Surface;
+use crate::error::Vertex;
 
 /// Pair that leaves no room: two of its vertices, one of either primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Squeezed {
-    /// Vertices: particles, and after them points of obstacles.
-    pub vertices: [usize; 2],
-}
-
-/// What was cut.
-pub(super) struct Cut {
-    /// Number of vertices.
-    pub vertices: usize,
-    /// Sum of the magnitudes of momentum that is lost (N s).
-    pub lost: f64,
+    /// Vertices.
+    pub vertices: [Vertex; 2],
 }
 
 /// Scratch of cuts.
@@ -39,13 +32,14 @@ pub(super) struct Cuts {
 }
 
 impl Cuts {
-    /// Shortens displacements so that no pair comes too near.
+    /// Shortens displacements so that no pair comes too near. Returns the number of vertices that
+    /// are cut, and the sum of the magnitudes of the momentum that they lose (N s).
     pub fn cut(
         &mut self,
         surface: &Surface,
         candidates: &mut Candidates,
         motion: &mut Motion,
-    ) -> Result<Cut, Squeezed> {
+    ) -> Result<(usize, f64), Squeezed> {
         self.before.clone_from(&motion.moves);
         self.shares.clear();
         self.shares.resize(motion.moves.len(), 1.0);
@@ -70,18 +64,15 @@ impl Cuts {
                 *moved = before * *share;
             }
         }
-        let mut cut = Cut {
-            vertices: 0,
-            lost: 0.0,
-        };
+        let (mut vertices, mut lost) = (0, 0.0);
         for (i, share) in self.shares.iter().enumerate() {
             if *share < 1.0 {
-                cut.vertices += 1;
-                cut.lost += motion.v[i].norm() * (1.0 - share) / motion.inverse_masses[i];
+                vertices += 1;
+                lost += motion.v[i].norm() * (1.0 - share) / motion.inverse_masses[i];
                 motion.v[i] *= *share;
             }
         }
-        Ok(cut)
+        Ok((vertices, lost))
     }
 
     /// Cuts the displacements of a pair at the plane between its primitives.
@@ -110,7 +101,7 @@ impl Cuts {
         let room = distance - kept;
         let free = room - first_led - second_led;
         if free < 0.0 {
-            let vertices = [pair.points[0], pair.points[first]].map(|i| i as usize);
+            let vertices = [pair.points[0], pair.points[first]].map(|i| surface.vertex(i));
             return Err(Squeezed { vertices });
         }
         let wishes = [first_all - first_led, second_all - second_led];

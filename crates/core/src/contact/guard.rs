@@ -6,12 +6,15 @@
 //! Fedkiw, Anderson, *Robust treatment of collisions, contact and friction for cloth animation*,
 //! 2002). What is left after them is [cut](super::cut).
 
+use std::ops::AddAssign;
+
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use super::advance::time_of_impact;
 use super::candidates::{Candidate, Candidates};
 use super::closest::{closest, weighted};
-use super::cut::{Cuts, Squeezed};
+use super::cut::Squeezed;
 use super::layer::{ContactLayer, Scratch};
 use super::repulsion::Pair;
 use super::surface::Surface;
@@ -23,7 +26,7 @@ const PASSES: usize = 12;
 const FRICTION_PASSES: usize = 4;
 
 /// What the guard did in a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Guarded {
     /// Number of impulses.
     pub impulses: usize,
@@ -35,6 +38,28 @@ pub struct Guarded {
     pub lost: f64,
     /// Share of the step at which the first impulse was needed; 1 if none was.
     pub first: f64,
+}
+
+impl Default for Guarded {
+    fn default() -> Self {
+        Self {
+            impulses: 0,
+            impulse: 0.0,
+            cuts: 0,
+            lost: 0.0,
+            first: 1.0,
+        }
+    }
+}
+
+impl AddAssign for Guarded {
+    fn add_assign(&mut self, other: Self) {
+        self.impulses += other.impulses;
+        self.impulse += other.impulse;
+        self.cuts += other.cuts;
+        self.lost += other.lost;
+        self.first = self.first.min(other.first);
+    }
 }
 
 /// Motion of all vertices in a step.
@@ -162,10 +187,7 @@ impl ContactLayer {
         motion.inverse_masses.clear();
         motion.inverse_masses.extend_from_slice(inverse_masses);
         motion.inverse_masses.resize(motion.x0.len(), 0.0);
-        let mut guarded = Guarded {
-            first: 1.0,
-            ..Guarded::default()
-        };
+        let mut guarded = Guarded::default();
         motion.cover(surface, candidates);
         let mut changed = rub(surface, h, candidates, motion, &mut guarded);
         let mut moved = vec![];
@@ -186,9 +208,7 @@ impl ContactLayer {
             motion.cover(surface, candidates);
         }
         if !clear {
-            let cut = cuts.cut(surface, candidates, motion)?;
-            guarded.cuts = cut.vertices;
-            guarded.lost = cut.lost;
+            (guarded.cuts, guarded.lost) = cuts.cut(surface, candidates, motion)?;
         }
         if changed {
             write_back(motion, y0, y1);

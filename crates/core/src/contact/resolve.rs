@@ -5,6 +5,9 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::nearest::{Nearest, of_box, of_capsule, of_floor, of_sphere};
+use super::cut::Squeezed;
+use super::guard::Guarded;
+use super::layer::ContactLayer;
 use super::obstacle::Obstacle;
 use super::shape::Shape;
 use crate::path::Pose;
@@ -36,6 +39,8 @@ pub struct Statistics {
     pub depth: f64,
     /// Share of the step after which that particle touched the obstacle, if both moved uniformly.
     pub touched: f64,
+    /// What the guard of surfaces did, if surfaces touch.
+    pub guarded: Guarded,
 }
 
 /// Contact phase of a run, with its scratch.
@@ -87,6 +92,33 @@ impl Contact {
         let y0 = &self.y0;
         self.last = resolve(obstacles, inverse_masses, &Step { t, h, y0 }, y1);
         self.last
+    }
+
+    /// Remembers the state that a step begins with, whatever there is.
+    pub fn begin_guard(&mut self, y0: &[f64]) {
+        self.y0.clear();
+        self.y0.extend_from_slice(y0);
+    }
+
+    /// Guards the surfaces of a step of h (s) from time t (s) to y1.
+    ///
+    /// # Errors
+    /// What is led leaves no room.
+    pub fn guard(
+        &mut self,
+        layer: &ContactLayer,
+        inverse_masses: &[f64],
+        (t, h): (f64, f64),
+        y1: &mut [f64],
+    ) -> Result<Statistics, Squeezed> {
+        let guarded = layer.guard(inverse_masses, (t, h), &self.y0, y1)?;
+        self.last = Statistics {
+            contacts: guarded.impulses,
+            impulse: guarded.impulse,
+            guarded,
+            ..Statistics::default()
+        };
+        Ok(self.last)
     }
 }
 

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::closest::PairKind;
 use super::obstacle::Obstacle;
 use super::shape::Shape;
-use crate::error::{Error, at_least};
+use crate::error::{Error, Vertex, at_least};
 use crate::path::Place;
 
 /// Least gap that is kept between two surfaces, as a share of their thickness.
@@ -161,7 +161,11 @@ impl Surface {
         let (mut faces, mut sides) = (vec![], vec![]);
         for obstacle in obstacles {
             let first = surface.skins.len() as u32;
-            let simplices = obstacle.shape.simplices();
+            let mut simplices = obstacle.shape.simplices();
+            if obstacle.shape == Shape::Floor {
+                simplices.points.push(Vector3::zeros());
+                surface.floors.push(first);
+            }
             for _ in &simplices.points {
                 surface.skins.push(Skin {
                     thickness: obstacle.thickness,
@@ -171,10 +175,8 @@ impl Surface {
                 });
                 surface.radii.push(simplices.radius);
             }
-            match obstacle.shape {
-                Shape::Floor => surface.floors.push(first),
-                Shape::Sphere { .. } => sides.push([first; 2]),
-                _ => {}
+            if let Shape::Sphere { .. } = obstacle.shape {
+                sides.push([first; 2]);
             }
             faces.extend(simplices.triangles.iter().map(|t| t.map(|i| first + i)));
             sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
@@ -201,15 +203,18 @@ impl Surface {
         self.skins.len()
     }
 
-    /// Obstacle to which a vertex belongs, if it is no particle.
+    /// Particle or obstacle to which a vertex belongs.
     #[must_use]
-    pub fn obstacle_of(&self, vertex: usize) -> Option<usize> {
-        let mut point = vertex.checked_sub(self.particles)?;
-        self.anchors.iter().position(|points| {
-            let here = point < points.len();
-            point = point.saturating_sub(points.len());
-            here
-        })
+    pub fn vertex(&self, vertex: u32) -> Vertex {
+        let Some(mut point) = (vertex as usize).checked_sub(self.particles) else {
+            return Vertex::Particle(vertex as usize);
+        };
+        let mut k = 0;
+        while k + 1 < self.anchors.len() && point >= self.anchors[k].len() {
+            point -= self.anchors[k].len();
+            k += 1;
+        }
+        Vertex::Obstacle(k)
     }
 
     /// Triangles of bodies and of obstacles.

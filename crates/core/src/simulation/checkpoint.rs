@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Simulation;
 use super::stepper::{Progress, Stepper};
-use crate::contact::Shape;
+use crate::contact::{Guarded, Shape};
 use crate::control::Control;
 use crate::elements::Wind;
 use crate::error::Error;
@@ -45,6 +45,9 @@ pub struct Checkpoint {
     pub steps: u64,
     /// Cost of these steps.
     pub work: Work,
+    /// What the guard of surfaces did in these steps.
+    #[serde(default)]
+    pub guarded: Guarded,
     /// The state y: of a network [x | v], in m and m/s.
     pub y: Vec<f64>,
     /// Pinned particles and their paths.
@@ -79,6 +82,7 @@ impl Checkpoint {
             taken: 0,
             steps: 0,
             work: Work::default(),
+            guarded: Guarded::default(),
             y: vec![],
             pins: vec![],
             unpinned: false,
@@ -196,6 +200,7 @@ impl Simulation {
             taken: self.taken,
             steps: self.steps,
             work: self.work,
+            guarded: self.guarded,
             y: old.y,
             pins: old.pins,
             unpinned: self.unpinned,
@@ -230,6 +235,7 @@ impl Simulation {
         (self.method, self.control) = (checkpoint.method, checkpoint.control);
         (self.since, self.taken) = (checkpoint.since, checkpoint.taken);
         (self.steps, self.work) = (checkpoint.steps, checkpoint.work);
+        self.guarded = checkpoint.guarded;
         self.y.copy_from_slice(&checkpoint.y);
         self.unpinned = checkpoint.unpinned;
         (self.grabbed, self.grabbed_obstacle) = (checkpoint.grabbed, checkpoint.grabbed_obstacle);

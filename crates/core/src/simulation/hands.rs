@@ -24,9 +24,11 @@ const PULL_REACH: f64 = 0.05;
 const ROD: (f64, f64) = (0.95, 1.05);
 
 impl Grabbed {
-    /// Whether a spring attracts the particle, which constraints hold too: a pin would tear them.
+    /// Whether a spring attracts the particle: a pin would tear constraints that hold it too, and
+    /// would go through surfaces that can touch.
     fn is_attracted(&self, network: &Network) -> bool {
-        !self.was_pinned && network.is_held(self.particle)
+        let touches = network.contact_layer().is_some();
+        !self.was_pinned && (touches || network.is_held(self.particle))
     }
 
     /// Attracts the particle to its path, if it is not led as a pin.

@@ -13,7 +13,7 @@ pub use stepper::Progress;
 
 use nalgebra::Vector3;
 
-use crate::contact::Contact;
+use crate::contact::{Contact, Guarded};
 use crate::control::Control;
 use crate::error::{BlowUp, Error};
 use crate::integrators::{Method, Work};
@@ -35,6 +35,8 @@ pub struct Simulation {
     steps: u64,
     work: Work,
     contact: Contact,
+    /// What the guard of surfaces did since the beginning.
+    guarded: Guarded,
     swinging: bool,
     /// Phase of the swing (rad): while it swings, sin(rate t + phase); while it stands, sin(phase).
     swing_phase: f64,
@@ -86,6 +88,7 @@ impl Simulation {
             steps: 0,
             work: Work::default(),
             contact,
+            guarded: Guarded::default(),
             swinging: false,
             swing_phase: 0.0,
             grabbed: None,
@@ -108,6 +111,7 @@ impl Simulation {
         self.y.copy_from_slice(&self.scene.state);
         (self.since, self.taken, self.steps) = (0.0, 0, 0);
         (self.work, self.blow_up) = (Work::default(), None);
+        self.guarded = Guarded::default();
         (self.grabbed, self.grabbed_obstacle) = (None, None);
         // The first step is chosen anew too: a run that was reset is the same run.
         if let Ok(stepper) = Stepper::new(self.method, self.model.system(), self.control) {

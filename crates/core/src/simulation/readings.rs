@@ -3,7 +3,7 @@
 use nalgebra::{DMatrixView, Vector3};
 
 use super::{Simulation, Stepper};
-use crate::contact::Statistics;
+use crate::contact::{Guarded, Statistics};
 use crate::control::Control;
 use crate::energy::Energy;
 use crate::error::BlowUp;
@@ -67,6 +67,12 @@ impl Simulation {
     #[must_use]
     pub fn contact(&self) -> Statistics {
         self.contact.last()
+    }
+
+    /// What the guard of surfaces did since the beginning.
+    #[must_use]
+    pub fn guarded(&self) -> Guarded {
+        self.guarded
     }
 
     /// The state y: of a network [x | v], in m and m/s.

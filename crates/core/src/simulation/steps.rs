@@ -3,9 +3,9 @@
 
 use super::blow_up::blow_up_by;
 use super::{Simulation, Stepper};
-use crate::contact::{Contact, Obstacle, Statistics};
+use crate::contact::{Contact, Obstacle, Squeezed, Statistics};
 use crate::control::Control;
-use crate::error::Error;
+use crate::error::{Cause, Error};
 use crate::network::Network;
 use crate::scene::Model;
 use crate::system::{Mechanics, hold_pins};
@@ -17,6 +17,9 @@ const SUNK: f64 = 1e-3;
 
 /// Length (s) below which a step is not shortened for that.
 const SHORT: f64 = 1e-6;
+
+/// Length (s) below which a step of an adaptive method is not shortened for impulses of surfaces.
+const IMPACT: f64 = 1e-4;
 
 impl Simulation {
     /// Share of a step by which its end may miss a time that is asked for: 1/60 s written as
@@ -86,12 +89,14 @@ impl Simulation {
         let Stepper::Fixed(integrator) = &mut self.stepper else {
             return Ok(());
         };
-        self.contact.begin(obstacles(&self.model), &self.y, false);
+        look_back(&self.model, &mut self.contact, &self.y, false);
         let cause = match integrator.step(system, t, h, &mut self.y) {
             Ok(work) => {
                 self.work += work;
-                settle(&self.model, &mut self.contact, (t, h), &mut self.y);
-                self.lost(&self.y)
+                self.lost(&self.y).or_else(|| {
+                    let met = settle(&self.model, &mut self.contact, (t, h), &mut self.y);
+                    met.map(|met| self.guarded += met.guarded).err()
+                })
             }
             Err(error) => Some(blow_up_by(error)?),
         };
@@ -124,13 +129,25 @@ impl Simulation {
         *until = None;
         let limit = SUNK * self.radius;
         let (cause, reached) = loop {
-            self.contact.begin(obstacles(&self.model), end, true);
+            look_back(&self.model, &mut self.contact, end, true);
             let taken = match adaptive.advance(system, begin, end) {
                 Ok(taken) => taken,
                 Err(error) => break (Some(blow_up_by(error)?), begin),
             };
             self.work += taken.work;
-            let met = settle(&self.model, &mut self.contact, (begin, taken.h), end);
+            let met = match settle(&self.model, &mut self.contact, (begin, taken.h), end) {
+                Ok(met) => met,
+                Err(cause) => break (Some(cause), begin),
+            };
+            if met.guarded.impulses > 0 && taken.h > IMPACT {
+                // Contact is the force's: its error decides, after a step that is short enough.
+                end.copy_from_slice(self.contact.y0());
+                adaptive.restart();
+                adaptive.try_first(taken.h * (0.5 * met.guarded.first).max(0.1));
+                self.work.rejections += 1;
+                continue;
+            }
+            self.guarded += met.guarded;
             if met.depth > limit && taken.h > SHORT {
                 // The step is taken again, to just after the particle touched the obstacle.
                 end.copy_from_slice(self.contact.y0());
@@ -200,12 +217,33 @@ fn obstacles(model: &Model) -> &[Obstacle] {
     model.network().map_or(&[], Network::obstacles)
 }
 
-/// What follows a step of h (s) from t (s) to y1: particles leave obstacles, and pins are in their
-/// places.
-fn settle(model: &Model, contact: &mut Contact, (t, h): (f64, f64), y1: &mut [f64]) -> Statistics {
-    let met = model.network().map_or_else(Statistics::default, |network| {
-        contact.resolve(network.obstacles(), network.inverse_masses(), (t, h), y1)
-    });
-    hold_pins(model.system(), t + h, y1);
-    met
+/// Remembers the state that a step begins with, as far as contact needs it.
+fn look_back(model: &Model, contact: &mut Contact, y0: &[f64], always: bool) {
+    match model.network().and_then(Network::contact_layer) {
+        Some(_) => contact.begin_guard(y0),
+        None => contact.begin(obstacles(model), y0, always),
+    }
+}
+
+/// What follows a step of h (s) from t (s) to y1: pins are in their places, particles leave
+/// obstacles, and surfaces do not pass through one another.
+fn settle(
+    model: &Model,
+    contact: &mut Contact,
+    (t, h): (f64, f64),
+    y1: &mut [f64],
+) -> Result<Statistics, Cause> {
+    let Some(network) = model.network() else {
+        hold_pins(model.system(), t + h, y1);
+        return Ok(Statistics::default());
+    };
+    let inverse_masses = network.inverse_masses();
+    if let Some(layer) = network.contact_layer() {
+        hold_pins(network, t + h, y1);
+        let guarded = contact.guard(layer, inverse_masses, (t, h), y1);
+        return guarded.map_err(|Squeezed { vertices }| Cause::Squeezed { vertices });
+    }
+    let met = contact.resolve(network.obstacles(), inverse_masses, (t, h), y1);
+    hold_pins(network, t + h, y1);
+    Ok(met)
 }
