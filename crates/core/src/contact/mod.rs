@@ -11,12 +11,16 @@
 //! both relative to the obstacle. A particle that would slip by less than that stays where it is on
 //! the obstacle: what rests does not creep.
 
+mod advance;
 mod closest;
+mod exact;
 mod obstacle;
 mod resolve;
 mod shape;
 
+pub use advance::time_of_impact;
 pub use closest::{Closest, PairKind, closest, weighted};
+pub use exact::{Crossing, crossings};
 pub use obstacle::Obstacle;
 pub use resolve::{Contact, Statistics, Step, resolve};
 pub use shape::Shape;
