@@ -55,7 +55,7 @@ pub fn time_of_impact(
     moves: &[Vector3<f64>; 4],
     gap: f64,
 ) -> Option<f64> {
-    let magnitude: f64 = from.iter().chain(moves).map(|x| x.lp_norm(1)).sum();
+    let magnitude: f64 = from.iter().chain(moves).map(|x| x.abs().sum()).sum();
     if !magnitude.is_finite() {
         return Some(0.0);
     }
@@ -66,17 +66,6 @@ pub fn time_of_impact(
     }
     // As point 0 sees it: exact where coordinates are large and distances small.
     let (from, moves) = (from.map(|x| x - from[0]), moves.map(|u| u - moves[0]));
-    let clear = gap + 2.0 * tolerance;
-    for axis in 0..3 {
-        let begin = pairwise(kind, from.map(|x| x[axis]));
-        let rates = pairwise(kind, moves.map(|x| x[axis]));
-        let end: [f64; 4] = std::array::from_fn(|k| begin[k] + rates[k]);
-        let least = |v: [f64; 4]| v[0].min(v[1]).min(v[2]).min(v[3]);
-        let most = |v: [f64; 4]| v[0].max(v[1]).max(v[2]).max(v[3]);
-        if least(begin).min(least(end)) > clear || most(begin).max(most(end)) < -clear {
-            return None;
-        }
-    }
     let mut plane = Plane::between(kind, &from, &moves);
     let mut least = gap;
     if plane.apart <= gap + 2.0 * tolerance {
@@ -158,11 +147,4 @@ impl Plane {
         }
         share
     }
-}
-
-fn pairwise(kind: PairKind, [a, b, c, d]: [f64; 4]) -> [f64; 4] {
-    match kind {
-            PairKind::EdgeEdge => [a - c, a - d, b - c, b - d],
-            _ => [a - b, a - c, a - d, a - d],
-        }
 }

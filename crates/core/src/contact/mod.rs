@@ -13,9 +13,11 @@
 
 mod advance;
 mod candidates;
+mod check;
 mod closed_mesh;
 mod closest;
 mod cut;
+mod exact;
 mod guard;
 mod layer;
 mod nearest;
@@ -26,9 +28,11 @@ mod shape;
 mod surface;
 
 pub use advance::time_of_impact;
+pub use check::Crossed;
 pub use closed_mesh::ClosedMesh;
 pub use closest::{Closest, PairKind, closest, weighted};
 pub use cut::Squeezed;
+pub use exact::{Crossing, crossings};
 pub use guard::Guarded;
 pub use layer::ContactLayer;
 pub use obstacle::Obstacle;

@@ -73,6 +73,10 @@ impl Simulation {
                 "the state of a scene must be n x 3 numbers, not {dim}"
             )));
         }
+        if let Some(network) = model.network().filter(|n| n.contact_layer().is_some()) {
+            let apart = network.check_apart(0.0, &scene.state[..dim / 2]);
+            apart.map_err(|e| Error::Invalid(format!("surfaces cannot begin crossed: {e}")))?;
+        }
         let y = scene.state.clone();
         let (middle, radius) = bounds(&y[..3 * model.particles()]);
         let contact = Contact::new(dim);
