@@ -83,8 +83,12 @@ pub fn meshes(network: &Network) -> impl Iterator<Item = (&ClosedMesh, &Obstacle
 pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
     for (mesh, obstacle) in meshes(network) {
         let pose = obstacle.at(time);
-        points.extend(mesh.points().iter().map(|point| {
-            let [x, y, z] = to_f32(pose.of(*point).position);
+        let corners = mesh.points();
+        let low = corners.iter().fold(corners[0], |low, point| low.inf(point));
+        let high = corners.iter().fold(low, |high, point| high.sup(point));
+        let inwards = (1.0 - f64::from(DRAWN_RADIUS)) * 0.5 * (high - low).min();
+        points.extend(corners.iter().zip(mesh.normals()).map(|(point, normal)| {
+            let [x, y, z] = to_f32(pose.of(point - normal * inwards).position);
             [x, y, z, STEEL_LOOK as f32]
         }));
     }
@@ -93,16 +97,12 @@ pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
 /// Three great circles through the poles of each sphere that turns, where they are at `time` (s).
 pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
     const CORNERS: usize = 48;
-    let turning =
-        network
-            .obstacles()
-            .iter()
-            .filter_map(|obstacle| match (&obstacle.shape, obstacle.turn) {
-                (Shape::Sphere { radius }, Some(turn)) => {
-                    Some((*radius, turn.axis, obstacle.at(time)))
-                }
-                _ => None,
-            });
+    let turning = network.obstacles().iter().filter_map(move |obstacle| {
+        match (&obstacle.shape, obstacle.turn) {
+            (Shape::Sphere { radius }, Some(turn)) => Some((*radius, turn.axis, obstacle.at(time))),
+            _ => None,
+        }
+    });
     turning.flat_map(|(radius, axis, pose)| {
         let radius = f64::from(DRAWN_RADIUS) * radius * 1.002;
         let side = perpendicular(axis);
