@@ -243,8 +243,14 @@ impl Met<'_> {
             if self.friction > 0.0 {
                 let slip = across(velocity, nearest.normal);
                 let outwards = nearest.normal * outwards.max(0.0);
-                let along = slip * self.kept(slip, -inwards);
-                set(v, n, i, own + outwards + along);
+                let kept = self.kept(slip, -inwards);
+                // What sticks moves as the point at which it was left.
+                let own = if kept > 0.0 {
+                    own
+                } else {
+                    self.velocity(vector(x, n, i) - c)
+                };
+                set(v, n, i, own + outwards + slip * kept);
             }
             statistics.contacts += 1;
             let change = vector(v, n, i) - own - velocity;

@@ -11,3 +11,4 @@ mod mit;
 mod scenes;
 mod simulation;
 mod tuning;
+mod turning;

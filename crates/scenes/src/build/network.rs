@@ -65,7 +65,7 @@ pub(super) fn build(
         at("", network.pin(i, path))?;
     }
     forces::set(description, &mut network)?;
-    obstacles::add(description, &mut network)?;
+    obstacles::add(description, &mut network, mesh)?;
     if description.self_collision || obstacles::is_one_thick(description) {
         let touch = Touch {
             skins: assembly.skins,
