@@ -11,9 +11,9 @@
 //!
 //! and the primitives, being convex, by at least the least of these. So nothing nears the gap until
 //! the first of them does: the pair is advanced to that time, where it gets a new plane. The bound
-//! of the paper, |n . (u_i - u_j)| <= |u_i| + |u_j|, advances less; a pair that slides or parts
-//! needs one plane here. Whatever the closest points are, a plane that lies between the primitives
-//! proves that they are apart, so errors of the closest points do no harm.
+//! of the paper puts the sum of both lengths for the product with n, and advances less; a pair that
+//! slides or parts needs one plane here. Whatever the closest points are, a plane that lies between
+//! the primitives proves that they are apart, so errors of the closest points do no harm.
 
 use super::closest::{Closest, PairKind, closest, weighted};
 use nalgebra::Vector3;
