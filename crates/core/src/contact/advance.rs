@@ -11,9 +11,9 @@
 //!
 //! and the primitives, being convex, by at least the least of these. So nothing nears the gap until
 //! the first of them does: the pair is advanced to that time, where it gets a new plane. The bound
-//! of the paper, |n . (u_i - u_j)| <= |u_i| + |u_j|, advances less; a pair that slides or parts
-//! needs one plane here. Whatever the closest points are, a plane that lies between the primitives
-//! proves that they are apart, so errors of the closest points do no harm.
+//! of the paper puts the sum of both lengths for the product with n, and advances less; a pair that
+//! slides or parts needs one plane here. Whatever the closest points are, a plane that lies between
+//! the primitives proves that they are apart, so errors of the closest points do no harm.
 
 use super::closest::{Closest, PairKind, closest, weighted};
 use nalgebra::Vector3;
@@ -29,7 +29,7 @@ const ROUNDING: f64 = 1e-13;
 const NEAR: f64 = 0.1;
 
 /// Number of planes after which the time reached so far is given.
-const PLANES: usize = 64;
+const PLANES: usize = 200;
 
 /// Share of a step at which a pair comes as near as `gap`, or `None` if it never does.
 ///
@@ -37,7 +37,7 @@ const PLANES: usize = 64;
 /// the radii of the primitives. `None` is a certificate: the pair is farther apart than the gap at
 /// every time of the step. `Some(t)` is conservative: the pair is so until t, and then apart by the
 /// gap and at most a tenth of it, or a tenth of what it had above the gap at first; by more only if
-/// 64 planes do not decide. Both allow for 1e-10 m and about 1e-12 of the largest coordinate, more
+/// 200 planes do not decide. Both allow for 1e-10 m and about 1e-12 of the largest coordinate, more
 /// than the rounding here and in the sums `from + moves`.
 ///
 /// A pair that begins nearer than the gap is hit at once, `Some(0.0)`, if its closest points
@@ -97,8 +97,8 @@ fn sinks_to(gap: f64, height: f64, rise: f64, tolerance: f64) -> Option<f64> {
     if above <= 2.0 * tolerance {
         return (rise < -tolerance.min(NEAR * height.max(0.0))).then_some(0.0);
     }
-    let near = tolerance + NEAR * gap.min(above);
-    (above + rise < 0.5 * near).then(|| ((above - near) / -rise).max(0.0))
+    let near = NEAR * (tolerance + NEAR * gap.min(above));
+    (above + rise < near).then(|| (above - near) / -rise)
 }
 
 /// Plane between two primitives, across their closest points.

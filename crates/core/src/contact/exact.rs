@@ -22,11 +22,11 @@ pub struct Crossing {
 /// `positions` are the points (m) as n x 3 numbers in column-major order, as at the beginning of a
 /// state; corners from n on stand for the points of `others` (m). All coordinates are finite.
 ///
-/// The answer is exact, and the same for every order of the edges and triangles but for their
-/// indices. Edges and triangles are closed sets: to touch in one point, such as a corner, is to
-/// cross, and so is to overlap in one plane, as cloth does that is folded onto itself without any
-/// distance. Primitives in one plane that do not touch, as those of flat cloth, do not cross. Edges
-/// whose ends are equal are points, and flat triangles are made of their sides.
+/// The answer is exact as long as no product of three distances underflows. Edges and triangles are
+/// closed sets: to touch in one point, such as a corner, is to cross, and so is to overlap in one
+/// plane, as cloth does that is folded onto itself without any distance. Primitives in one plane
+/// that do not touch, as those of flat cloth, do not cross. Edges whose ends are equal are points,
+/// and flat triangles are made of their sides.
 ///
 /// An edge and a triangle with a corner in common are not compared: they always meet there.
 ///
@@ -81,6 +81,17 @@ fn tree<const N: usize>(primitives: impl Iterator<Item = [Vector3<f64>; N]>) -> 
 
 /// Whether a closed edge and a closed triangle have a point in common.
 fn edge_meets_triangle([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
+    let sides = [[a, b], [b, c], [c, a]];
+    // Most pairs of a smooth surface lie beside one another. This is cheaper to see than how they
+    // lie in space, above all if they lie in one plane.
+    let axis = (b - a).cross(&(c - a)).iamax();
+    let whole = turn(axis, a, b, c);
+    if sides
+        .iter()
+        .any(|[a, b]| whole * turn(axis, *a, *b, p) < 0.0 && whole * turn(axis, *a, *b, q) < 0.0)
+    {
+        return false;
+    }
     let (above, below) = (side(a, b, c, p), side(a, b, c, q));
     if above * below > 0.0 {
         return false;
@@ -90,7 +101,6 @@ fn edge_meets_triangle([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) 
         let turns = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
         return turns.iter().all(|turn| *turn >= 0.0) || turns.iter().all(|turn| *turn <= 0.0);
     }
-    let sides = [[a, b], [b, c], [c, a]];
     sides.iter().any(|side| edges_meet([p, q], *side))
         || (0..3).any(|axis| {
             let turns = sides.map(|[a, b]| turn(axis, a, b, p));
@@ -122,13 +132,20 @@ fn edges_meet([p, q]: [Vector3<f64>; 2], [a, b]: [Vector3<f64>; 2]) -> bool {
 
 /// Sign of the volume of a tetrahedron: exactly -1, 0 or 1.
 fn side(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>, d: Vector3<f64>) -> f64 {
-    let at = |x: Vector3<f64>| Coord3D { x: x.x, y: x.y, z: x.z };
+    let at = |x: Vector3<f64>| Coord3D {
+        x: x.x,
+        y: x.y,
+        z: x.z,
+    };
     sign(orient3d(at(a), at(b), at(c), at(d)))
 }
 
 /// Sign of the area of a triangle seen along an axis: exactly -1, 0 or 1.
 fn turn(axis: usize, a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> f64 {
-    let at = |x: Vector3<f64>| Coord { x: x[(axis + 1) % 3], y: x[(axis + 2) % 3] };
+    let at = |x: Vector3<f64>| Coord {
+        x: x[(axis + 1) % 3],
+        y: x[(axis + 2) % 3],
+    };
     sign(orient2d(at(a), at(b), at(c)))
 }
 
