@@ -15,8 +15,10 @@ mod closest;
 mod obstacle;
 mod resolve;
 mod shape;
+mod strain;
 
 pub use closest::{Closest, PairKind, closest, weighted};
 pub use obstacle::Obstacle;
 pub use resolve::{Contact, Statistics, Step, resolve};
 pub use shape::Shape;
+pub use strain::{StrainLimit, StrainLimiter, Strained};

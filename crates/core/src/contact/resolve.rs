@@ -63,6 +63,12 @@ impl Contact {
         }
     }
 
+    /// Remembers the state that a step begins with, whatever there is.
+    pub fn remember(&mut self, y0: &[f64]) {
+        self.y0.clear();
+        self.y0.extend_from_slice(y0);
+    }
+
     /// State that the step began with, as far as [`begin`](Self::begin) remembered it.
     #[must_use]
     pub fn y0(&self) -> &[f64] {

@@ -13,7 +13,7 @@ pub use stepper::Progress;
 
 use nalgebra::Vector3;
 
-use crate::contact::Contact;
+use crate::contact::{Contact, StrainLimiter};
 use crate::control::Control;
 use crate::error::{BlowUp, Error};
 use crate::integrators::{Method, Work};
@@ -35,6 +35,7 @@ pub struct Simulation {
     steps: u64,
     work: Work,
     contact: Contact,
+    limiter: StrainLimiter,
     swinging: bool,
     /// Phase of the swing (rad): while it swings, sin(rate t + phase); while it stands, sin(phase).
     swing_phase: f64,
@@ -86,6 +87,7 @@ impl Simulation {
             steps: 0,
             work: Work::default(),
             contact,
+            limiter: StrainLimiter::new(dim),
             swinging: false,
             swing_phase: 0.0,
             grabbed: None,

@@ -3,7 +3,7 @@
 
 use super::blow_up::blow_up_by;
 use super::{Simulation, Stepper};
-use crate::contact::{Contact, Obstacle, Statistics};
+use crate::contact::{Contact, Obstacle, Statistics, StrainLimiter, Strained};
 use crate::control::Control;
 use crate::error::Error;
 use crate::network::Network;
@@ -14,6 +14,16 @@ use crate::system::{Mechanics, hold_pins};
 /// a particle into an obstacle: a state between the ends of the step is shown as it is, and must
 /// not sink visibly.
 const SUNK: f64 = 1e-3;
+
+/// Largest growth of the excess length of a spring in a step of an adaptive method, over the longest
+/// length that a limit of strain allows it: for the same reason.
+const STRETCHED: f64 = 1e-2;
+
+/// Least share of a step that is taken again because a spring became too long.
+const SHORTENED: f64 = 0.1;
+
+/// Price of a sweep over the springs that a limit of strain applies to, in evaluations.
+const SWEEP: f64 = 1.0;
 
 /// Length (s) below which a step is not shortened for that.
 const SHORT: f64 = 1e-6;
@@ -81,6 +91,7 @@ impl Simulation {
     /// Takes one step of h (s) with what follows it: contact, the search for a blow-up, and
     /// tearing.
     fn step_by(&mut self, h: f64) -> Result<(), Error> {
+        self.list_strained();
         let t = self.time();
         let system = self.model.system();
         let Stepper::Fixed(integrator) = &mut self.stepper else {
@@ -90,7 +101,9 @@ impl Simulation {
         let cause = match integrator.step(system, t, h, &mut self.y) {
             Ok(work) => {
                 self.work += work;
-                settle(&self.model, &mut self.contact, (t, h), &mut self.y);
+                let phases = (&mut self.limiter, &mut self.contact);
+                let met = settle(&self.model, phases, (t, h), &mut self.y);
+                self.work.algebra += SWEEP * met.strained.sweeps as f64;
                 self.lost(&self.y)
             }
             Err(error) => Some(blow_up_by(error)?),
@@ -102,6 +115,7 @@ impl Simulation {
 
     /// Makes an adaptive method's step reach past the time shown. Returns its end (s).
     fn look_ahead(&mut self) -> Result<f64, Error> {
+        self.list_strained();
         let now = self.time();
         let system = self.model.system();
         let Stepper::Adaptive {
@@ -125,17 +139,29 @@ impl Simulation {
         let limit = SUNK * self.radius;
         let (cause, reached) = loop {
             self.contact.begin(obstacles(&self.model), end, true);
+            let limit_of_strain = self.model.network().and_then(Network::strained);
+            let excess = limit_of_strain.map_or(0.0, |limit| {
+                self.contact.remember(end);
+                limit.excess(&end[..end.len() / 2])
+            });
             let taken = match adaptive.advance(system, begin, end) {
                 Ok(taken) => taken,
                 Err(error) => break (Some(blow_up_by(error)?), begin),
             };
             self.work += taken.work;
-            let met = settle(&self.model, &mut self.contact, (begin, taken.h), end);
-            if met.depth > limit && taken.h > SHORT {
-                // The step is taken again, to just after the particle touched the obstacle.
+            let phases = (&mut self.limiter, &mut self.contact);
+            let Settled { met, strained } = settle(&self.model, phases, (begin, taken.h), end);
+            self.work.algebra += SWEEP * strained.sweeps as f64;
+            let grown = strained.excess - excess;
+            let touched = met.touched + (1.0 - met.touched) * 0.5 * limit / met.depth;
+            let strained = (0.5 * STRETCHED / grown).max(SHORTENED);
+            let again = (met.depth > limit).then_some(touched);
+            let again = again.or((grown > STRETCHED).then_some(strained));
+            if let Some(share) = again.filter(|_| taken.h > SHORT) {
+                // The step is taken again, to just after the particle touched the obstacle, or
+                // the spring became too long.
                 end.copy_from_slice(self.contact.y0());
                 adaptive.restart();
-                let share = met.touched + (1.0 - met.touched) * 0.5 * limit / met.depth;
                 adaptive.try_first(taken.h * share);
                 self.work.rejections += 1;
                 continue;
@@ -143,6 +169,9 @@ impl Simulation {
             if met.depth > 0.0 {
                 // Under a constant force the depth grows with the square of the step.
                 adaptive.try_at_most(taken.h * 0.9 * (limit / met.depth).sqrt());
+            }
+            if grown > 0.0 {
+                adaptive.try_at_most(taken.h * 0.9 * (STRETCHED / grown).sqrt());
             }
             let reached = begin + taken.h;
             *until = Some(reached);
@@ -176,6 +205,13 @@ impl Simulation {
         }
     }
 
+    /// Lists the springs that are limited anew, if springs or pins have changed.
+    fn list_strained(&mut self) {
+        if let Model::Network(network) = &mut self.model {
+            network.list_strained();
+        }
+    }
+
     /// Breaks what is stretched too far in the state shown.
     fn tear(&mut self) {
         if let Model::Network(network) = &mut self.model
@@ -200,12 +236,29 @@ fn obstacles(model: &Model) -> &[Obstacle] {
     model.network().map_or(&[], Network::obstacles)
 }
 
-/// What follows a step of h (s) from t (s) to y1: particles leave obstacles, and pins are in their
-/// places.
-fn settle(model: &Model, contact: &mut Contact, (t, h): (f64, f64), y1: &mut [f64]) -> Statistics {
-    let met = model.network().map_or_else(Statistics::default, |network| {
-        contact.resolve(network.obstacles(), network.inverse_masses(), (t, h), y1)
-    });
+/// What the phases after a step did.
+#[derive(Default)]
+struct Settled {
+    strained: Strained,
+    met: Statistics,
+}
+
+/// What follows a step of h (s) from t (s) to y1: springs that are too long are shortened, particles
+/// leave obstacles, and pins are in their places.
+fn settle(
+    model: &Model,
+    (limiter, contact): (&mut StrainLimiter, &mut Contact),
+    (t, h): (f64, f64),
+    y1: &mut [f64],
+) -> Settled {
+    let mut settled = Settled::default();
+    if let Some(network) = model.network() {
+        let inverse_masses = network.inverse_masses();
+        if let Some(limit) = network.strained() {
+            settled.strained = limiter.resolve(limit, inverse_masses, h, y1);
+        }
+        settled.met = contact.resolve(network.obstacles(), inverse_masses, (t, h), y1);
+    }
     hold_pins(model.system(), t + h, y1);
-    met
+    settled
 }

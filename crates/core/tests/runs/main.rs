@@ -10,4 +10,5 @@ mod jelly;
 mod mit;
 mod scenes;
 mod simulation;
+mod strain;
 mod tuning;
