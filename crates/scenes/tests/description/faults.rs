@@ -125,7 +125,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "[10, 5, 2]",
         "[10, 5, 2]\nstrain_limit = 1",
-        "cloth.strain_limit: the limit of strain must be a finite number above 1",
+        "line 8: cloth.strain_limit: the limit of strain must be a finite number above 1",
     ),
     (
         "gravity = [0, -9.81, 0]",
