@@ -15,15 +15,15 @@ use crate::system::{Mechanics, hold_pins};
 /// not sink visibly.
 const SUNK: f64 = 1e-3;
 
-/// Largest growth of the excess length of a spring in a step of an adaptive method, over the longest
-/// length that a limit of strain allows it: for the same reason.
+/// Largest growth of the excess length of a spring in a step of an adaptive method, over the
+/// longest length that a limit of strain allows it: for the same reason.
 const STRETCHED: f64 = 1e-2;
 
 /// Least share of a step that is taken again because a spring became too long.
 const SHORTENED: f64 = 0.1;
 
 /// Price of a sweep over the springs that a limit of strain applies to, in evaluations.
-const SWEEP: f64 = 1.0;
+const SWEEP: f64 = 2.0;
 
 /// Length (s) below which a step is not shortened for that.
 const SHORT: f64 = 1e-6;
@@ -243,8 +243,8 @@ struct Settled {
     met: Statistics,
 }
 
-/// What follows a step of h (s) from t (s) to y1: springs that are too long are shortened, particles
-/// leave obstacles, and pins are in their places.
+/// What follows a step of h (s) from t (s) to y1: springs that are too long are shortened,
+/// particles leave obstacles, and pins are in their places.
 fn settle(
     model: &Model,
     (limiter, contact): (&mut StrainLimiter, &mut Contact),

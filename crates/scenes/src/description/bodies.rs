@@ -118,8 +118,8 @@ pub struct MeshCloth {
     /// Damping over the critical damping of a particle of mean mass on a structural spring. An
     /// alternative is `damping`.
     pub damping_ratio: Option<f64>,
-    /// Largest length over rest length of structural springs, above 1, such as 1.1: after each step,
-    /// longer ones are shortened. If it is not given, there is no limit.
+    /// Largest length over rest length of structural springs, above 1, such as 1.1: after each
+    /// step, longer ones are shortened. If it is not given, there is no limit.
     pub strain_limit: Option<f64>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
