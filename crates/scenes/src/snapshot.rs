@@ -103,6 +103,7 @@ impl Description {
             wind.ahead += t;
         }
         self.write_obstacles(network, t);
+        self.write_strain_limits(network);
         for pins in self.body_pins() {
             pins.clear();
         }
@@ -182,6 +183,22 @@ impl Description {
                     }));
                 }
             }
+        }
+    }
+
+    /// Describes the limits of strain as they are: those of the bodies that had one, or else, if
+    /// limits were set since, those of the cloths.
+    fn write_strain_limits(&mut self, network: &Network) {
+        let cloths = self.cloth.iter_mut().map(|body| &mut body.strain_limit);
+        let jellies = self.jelly.iter_mut().map(|body| &mut body.strain_limit);
+        let meshes = self.mesh.iter_mut().map(|body| &mut body.strain_limit);
+        let mut bodies: Vec<_> = cloths.chain(jellies).chain(meshes).collect();
+        if bodies.iter().any(|limit| limit.is_some()) {
+            bodies.retain(|limit| limit.is_some());
+        }
+        let mut limits = network.strain_limits().iter().map(|(_, limit)| *limit);
+        for body in bodies {
+            *body = limits.next();
         }
     }
 

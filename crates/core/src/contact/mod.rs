@@ -25,6 +25,7 @@ mod obstacle;
 mod repulsion;
 mod resolve;
 mod shape;
+mod strain;
 mod surface;
 
 pub use advance::time_of_impact;
@@ -38,4 +39,5 @@ pub use layer::ContactLayer;
 pub use obstacle::Obstacle;
 pub use resolve::{Contact, Statistics, Step, resolve};
 pub use shape::{Shape, Simplices};
+pub use strain::{StrainLimit, StrainLimiter, Strained};
 pub use surface::{Skin, Surface};

@@ -13,7 +13,7 @@ pub use stepper::Progress;
 
 use nalgebra::Vector3;
 
-use crate::contact::{Contact, Guarded};
+use crate::contact::{Contact, Guarded, StrainLimiter};
 use crate::control::Control;
 use crate::error::{BlowUp, Error};
 use crate::integrators::{Method, Work};
@@ -35,6 +35,7 @@ pub struct Simulation {
     steps: u64,
     work: Work,
     contact: Contact,
+    limiter: StrainLimiter,
     /// What the guard of surfaces did since the beginning.
     guarded: Guarded,
     swinging: bool,
@@ -92,6 +93,7 @@ impl Simulation {
             steps: 0,
             work: Work::default(),
             contact,
+            limiter: StrainLimiter::new(dim),
             guarded: Guarded::default(),
             swinging: false,
             swing_phase: 0.0,

@@ -123,6 +123,11 @@ const WRONG: &[(&str, &str, &str)] = &[
     ),
     ("gravity = [0, -9.81, 0]", "tear = 0.5", "line 1: tear: "),
     (
+        "[10, 5, 2]",
+        "[10, 5, 2]\nstrain_limit = 1",
+        "line 8: cloth.strain_limit: the limit of strain must be a finite number above 1",
+    ),
+    (
         "gravity = [0, -9.81, 0]",
         "torn = [[0, 1], [0, 700]]",
         "line 1: torn: there is no spring between particles 0 and 700",
