@@ -9,8 +9,16 @@ use a3_render::{Ball, Line, STEEL_LOOK, Solid};
 use super::colours::{INK, STEEL};
 use super::vectors::{perpendicular, to_f32};
 
-/// Drawn radius of a sphere or a capsule, as a share of its radius.
-pub const DRAWN_RADIUS: f32 = 0.965;
+/// Drawn radius of a sphere or a capsule, as a share of its radius: a little smaller where only
+/// particles stay out of obstacles, so that the flat triangles between them stay outside too, and
+/// full where surfaces touch.
+pub fn drawn_radius(network: &Network) -> f32 {
+    if network.contact_layer().is_some() {
+        1.0
+    } else {
+        0.965
+    }
+}
 
 /// Draws the obstacles where they are at `time` (s), and returns the height of the floor (m) if
 /// there is one.
@@ -20,10 +28,9 @@ pub fn draw(
     balls: &mut Vec<Ball>,
     solids: &mut Vec<Solid>,
 ) -> Option<f32> {
-    // Obstacles are drawn a little smaller than they are, so that the flat triangles between the
-    // particles on them stay outside.
     let mut floor = None;
-    let inside = |radius: f64| DRAWN_RADIUS * radius as f32;
+    let share = drawn_radius(network);
+    let inside = |radius: f64| share * radius as f32;
     for obstacle in network.obstacles() {
         let pose = obstacle.at(time);
         let place = pose.place.position;
@@ -35,7 +42,8 @@ pub fn draw(
             }),
             &Shape::Box { half_extents, axes } => {
                 let least = half_extents.min();
-                let (gap, round) = (0.02 * least, 0.06 * least);
+                let gap = if share < 1.0 { 0.02 * least } else { 0.0 };
+                let round = 0.06 * least;
                 solids.push(Solid {
                     center: to_f32(place),
                     radius: round as f32,
@@ -81,12 +89,13 @@ pub fn meshes(network: &Network) -> impl Iterator<Item = (&ClosedMesh, &Obstacle
 
 /// Adds the points of meshes where they are at `time` (s), with the look of steel.
 pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
+    let share = f64::from(drawn_radius(network));
     for (mesh, obstacle) in meshes(network) {
         let pose = obstacle.at(time);
         let corners = mesh.points();
         let low = corners.iter().fold(corners[0], |low, point| low.inf(point));
         let high = corners.iter().fold(low, |high, point| high.sup(point));
-        let inwards = (1.0 - f64::from(DRAWN_RADIUS)) * 0.5 * (high - low).min();
+        let inwards = (1.0 - share) * 0.5 * (high - low).min();
         points.extend(corners.iter().zip(mesh.normals()).map(|(point, normal)| {
             let [x, y, z] = to_f32(pose.of(point - normal * inwards).position);
             [x, y, z, STEEL_LOOK as f32]
@@ -97,14 +106,15 @@ pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
 /// Three great circles through the poles of each sphere that turns, where they are at `time` (s).
 pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
     const CORNERS: usize = 48;
+    let share = f64::from(drawn_radius(network));
     let turning = network.obstacles().iter().filter_map(move |obstacle| {
         match (&obstacle.shape, obstacle.turn) {
             (Shape::Sphere { radius }, Some(turn)) => Some((*radius, turn.axis, obstacle.at(time))),
             _ => None,
         }
     });
-    turning.flat_map(|(radius, axis, pose)| {
-        let radius = f64::from(DRAWN_RADIUS) * radius * 1.002;
+    turning.flat_map(move |(radius, axis, pose)| {
+        let radius = share * radius * 1.002;
         let side = perpendicular(axis);
         (0..3).flat_map(move |circle| {
             let (sin, cos) = (TAU / 6.0 * f64::from(circle)).sin_cos();
