@@ -103,13 +103,14 @@ pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
     }
 }
 
-/// Three great circles through the poles of each sphere that turns, where they are at `time` (s).
+/// Three great circles through the poles of each sphere that turns, where they are at `time` (s);
+/// none where surfaces touch, because they would show through what lies on the sphere.
 pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
     const CORNERS: usize = 48;
     let share = f64::from(drawn_radius(network));
     let turning = network.obstacles().iter().filter_map(move |obstacle| {
         match (&obstacle.shape, obstacle.turn) {
-            (Shape::Sphere { radius }, Some(turn)) => Some((*radius, turn.axis, obstacle.at(time))),
+            (Shape::Sphere { radius }, Some(turn)) if share < 1.0 => Some((*radius, turn.axis, obstacle.at(time))),
             _ => None,
         }
     });

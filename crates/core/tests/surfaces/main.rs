@@ -1,5 +1,7 @@
 //! Contact of surfaces.
 
+mod slope;
+
 use a3_core::{Control, Simulation, integrators};
 use a3_scenes::Description;
 
@@ -16,6 +18,14 @@ damping_ratio = 0.1
 at = [0, 1.05, 0]
 sway = [0, 0, 0.2]
 ";
+
+/// Run of a scene as it is written in TOML.
+fn run(toml: &str, method: &str, control: Control) -> Simulation {
+    let setup = Description::parse(toml)
+        .and_then(|description| description.build(None, &mut |_| Err("no files".into())));
+    let method = integrators::find(method).unwrap();
+    Simulation::new(setup.unwrap().scene, method, control).unwrap()
+}
 
 #[test]
 fn pile() {

@@ -12,6 +12,9 @@ const SHARE: f64 = 0.25;
 /// Acceleration (m/s2) that contact withstands at least before surfaces meet.
 const WITHSTOOD: f64 = 100.0;
 
+/// Damping of contact over that of a spring of the same stiffness.
+const DAMPING: f64 = 4.0;
+
 /// What a body says of its skin, and what it is made of.
 pub(super) struct SkinSpec {
     pub thickness: Option<f64>,
@@ -28,8 +31,9 @@ impl SkinSpec {
         Skin {
             thickness,
             stiffness: self.stiffness.max(mass * WITHSTOOD / thickness),
-            // Damping counts fully where the gap would close within the springs' own time.
-            damping: self.time / thickness,
+            // Damping counts fully where the gap would close within four times the springs' own
+            // time: bounces die away as fast as the springs' oscillations.
+            damping: DAMPING * self.time / thickness,
             friction: self.friction,
         }
     }
