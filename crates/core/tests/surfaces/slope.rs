@@ -61,13 +61,11 @@ fn slides(friction: f64, tangent: f64, method: &str, step: f64, times: [f64; 2])
 
 #[test]
 fn a_sheet_sticks_or_slides_by_its_friction() {
-    for (method, step) in [("v", 0.002), ("r", 0.004), ("i", 0.01), ("s", 0.002)] {
+    for (method, step) in [("v", 0.0005), ("r", 0.004), ("i", 0.004)] {
         let tangent = 30_f64.to_radians().tan();
         let [moved, _] = slides(0.6, tangent, method, step, [20.0, 30.0]);
-        println!("{method} stuck {moved:.2e}");
         assert!(moved < 1e-12, "{method} moved {moved:.1e} m");
         let [_, rate] = slides(0.3, tangent, method, step, [6.0, 8.0]);
-        println!("{method} slides at {rate}");
         assert!((rate / 2.356_287 - 1.0).abs() < 1e-3, "{method} slides at {rate} m/s2");
     }
 }
