@@ -25,6 +25,9 @@ const PASSES: usize = 12;
 /// Passes of friction between surfaces that the contact force keeps apart.
 const FRICTION_PASSES: usize = 4;
 
+/// Share of the most that friction takes of a velocity below which a slip counts as none.
+const STUCK: f64 = 1e-9;
+
 /// What the guard did in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Guarded {
@@ -69,6 +72,8 @@ pub(super) struct Motion {
     pub x0: Vec<Vector3<f64>>,
     /// Displacements (m).
     pub moves: Vec<Vector3<f64>>,
+    /// Velocities at its beginning (m/s), where friction acts.
+    pub v0: Vec<Vector3<f64>>,
     /// Velocities at its end (m/s).
     pub v: Vec<Vector3<f64>>,
     /// Inverse masses (1/kg): 0 for vertices that are led.
@@ -124,6 +129,12 @@ impl Contact {
     /// The relative vector of the closest points.
     fn relative(&self, all: &[Vector3<f64>]) -> Vector3<f64> {
         weighted(&self.weights, &self.points.map(|i| all[i as usize]))
+    }
+
+    /// The part across the normal of the relative vector of the closest points.
+    fn slip(&self, all: &[Vector3<f64>]) -> Vector3<f64> {
+        let relative = self.relative(all);
+        relative - self.normal * relative.dot(&self.normal)
     }
 
     /// Changes the relative vector of the closest points by `change`.
@@ -184,6 +195,9 @@ impl ContactLayer {
             *end -= start;
         }
         surface.speeds(self.obstacles(), t + h, &y1[half..], &mut motion.v);
+        if surface.is_rough() {
+            surface.speeds(self.obstacles(), t, &y0[half..], &mut motion.v0);
+        }
         motion.inverse_masses.clear();
         motion.inverse_masses.extend_from_slice(inverse_masses);
         motion.inverse_masses.resize(motion.x0.len(), 0.0);
@@ -269,33 +283,53 @@ fn rub(
             }
         }
     }
+    hold_pressed(&pressed, h, motion, guarded);
+    motion.cover(surface, candidates);
+    !pressed.is_empty()
+}
+
+/// Friction of contacts with the most impulse (N s) that each has: of velocities, and of
+/// displacements, which vanish where the velocities do, and follow them elsewhere.
+fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded: &mut Guarded) {
+    let Motion {
+        moves,
+        v0,
+        v,
+        inverse_masses,
+        ..
+    } = motion;
+    // Displacement per change of velocity in the step: half of it for most methods, all of it for
+    // implicit Euler.
+    let delay = |contact: &Contact| {
+        let begun = contact.slip(v0);
+        let (change, way) = (contact.slip(v) - begun, contact.slip(moves) - begun * h);
+        let squared = change.norm_squared();
+        if squared > 0.0 {
+            (way.dot(&change) / squared).clamp(0.0, h)
+        } else {
+            0.5 * h
+        }
+    };
+    let delays: Vec<f64> = pressed.iter().map(|(contact, _)| delay(contact)).collect();
+    let mut used = vec![0.0; pressed.len()];
     for _ in 0..FRICTION_PASSES {
-        for (contact, left) in &mut pressed {
-            let Motion {
-                moves,
-                v,
-                inverse_masses,
-                ..
-            } = motion;
-            let across = |a: Vector3<f64>| a - contact.normal * a.dot(&contact.normal);
-            let slip = across(contact.relative(v));
-            let most = *left * contact.inverse_mass;
-            let held = hold(slip, most);
-            contact.apply(-held, inverse_masses, v);
-            let impulse = held.norm() / contact.inverse_mass;
-            *left = (*left - impulse).max(0.0);
-            guarded.impulse += impulse;
-            let displaced = across(contact.relative(moves));
-            let back = if held == slip {
-                hold(displaced, most * h)
+        for (((contact, most), used), delay) in pressed.iter().zip(&mut used).zip(&delays) {
+            let slip = contact.slip(v);
+            let left = (most - *used).max(0.0) * contact.inverse_mass;
+            let taken = hold(slip, left);
+            contact.apply(-taken, inverse_masses, v);
+            *used += taken.norm() / contact.inverse_mass;
+            let limit = most * contact.inverse_mass;
+            let displaced = contact.slip(moves);
+            let back = if (slip - taken).norm() <= STUCK * limit {
+                hold(displaced, limit * h)
             } else {
-                held * (0.5 * h)
+                taken * *delay
             };
             contact.apply(-back, inverse_masses, moves);
         }
     }
-    motion.cover(surface, candidates);
-    !pressed.is_empty()
+    guarded.impulse += used.iter().sum::<f64>();
 }
 
 /// The pairs that come too near, with the share of the step at which they do: all, or those of
