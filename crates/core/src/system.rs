@@ -119,6 +119,13 @@ pub trait Linearized: Mechanics {
         true
     }
 
+    /// Length (m) of a motion over which forces may begin and end again, as those of contact do:
+    /// Newton's method moves particles no further at once. Infinite where forces reach as far as
+    /// particles move, the default.
+    fn reach(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// Time that the forces would take coupling by coupling over the time that they take: the
     /// prices of linear algebra are relative to the former.
     fn speed(&self) -> f64 {

@@ -278,6 +278,11 @@ impl Linearized for Network {
         self.contact_layer().is_none()
     }
 
+    fn reach(&self) -> f64 {
+        let layer = self.contact_layer();
+        layer.map_or(f64::INFINITY, |layer| 0.5 * layer.surface().thickest())
+    }
+
     fn speed(&self) -> f64 {
         let (mut couplings, mut price) = (0.0, 0.0);
         for element in &self.elements {
