@@ -274,13 +274,8 @@ impl Linearized for Network {
         count
     }
 
-    fn couples_always_the_same(&self) -> bool {
-        self.contact_layer().is_none()
-    }
-
     fn reach(&self) -> f64 {
-        let layer = self.contact_layer();
-        layer.map_or(f64::INFINITY, |layer| 0.5 * layer.surface().thickest())
+        self.reach_of_contact()
     }
 
     fn speed(&self) -> f64 {

@@ -40,7 +40,10 @@ fn each_pair(damping: f64, mut check: impl FnMut(Kind, &Network, &[f64], &mut Ra
                 check(kind, &network, &x, &mut random);
             }
         }
-        assert!(pressed > TRIES / 3, "{kind:?}: {pressed} of {TRIES} pairs touch");
+        assert!(
+            pressed > TRIES / 3,
+            "{kind:?}: {pressed} of {TRIES} pairs touch"
+        );
     }
 }
 
@@ -73,7 +76,10 @@ fn it_sums_to_no_force_and_no_torque() {
         }
         let most = f.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
         assert!(sum.norm() < 1e-14 * most.max(LARGE), "{kind:?}: {sum}");
-        assert!(torque.norm() < 1e-13 * most.max(LARGE), "{kind:?}: {torque}");
+        assert!(
+            torque.norm() < 1e-13 * most.max(LARGE),
+            "{kind:?}: {torque}"
+        );
     });
 }
 
@@ -109,11 +115,21 @@ fn add(coupling: &Coupling, dx: &[f64], dv: &[f64], df: &mut [f64]) {
         Coupling::Axial(a) => {
             let [x, y, z] = a.direction;
             let square = [x * x, y * y, z * z, x * y, x * z, y * z];
-            (a.i, a.j, [a.along, a.damping].map(|size| square.map(|s| s * size)))
+            (
+                a.i,
+                a.j,
+                [a.along, a.damping].map(|size| square.map(|s| s * size)),
+            )
         }
         Coupling::Block(b) => (b.i, b.j, [b.stiffness, b.damping]),
     };
-    let of = |a: &[f64]| if i == j { row(a, i) } else { row(a, i) - row(a, j) };
+    let of = |a: &[f64]| {
+        if i == j {
+            row(a, i)
+        } else {
+            row(a, i) - row(a, j)
+        }
+    };
     let times = |[xx, yy, zz, xy, xz, yz]: [f64; 6], d: Vector3<f64>| {
         Vector3::new(
             xx * d.x + xy * d.y + xz * d.z,

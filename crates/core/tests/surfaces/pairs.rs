@@ -84,35 +84,48 @@ impl Kind {
     /// thickness.
     pub fn positions(self, random: &mut Random) -> Vec<f64> {
         let gap = Vector3::y() * (THICKNESS * (0.05 + 0.9 * random.unit()));
-        let flat = |random: &mut Random| random.vector().component_mul(&Vector3::new(1.0, 0.1, 1.0));
+        let flat =
+            |random: &mut Random| random.vector().component_mul(&Vector3::new(1.0, 0.1, 1.0));
         let points = match self {
             Self::VertexTriangle => {
                 let corners = [0.0, 2.1, 4.2].map(|turn| {
                     Vector3::new(f64::cos(turn), 0.0, f64::sin(turn)) + 0.3 * flat(random)
                 });
                 let [s, t] = [random.unit(), random.unit()];
-                let (s, t) = if s + t > 1.0 { (1.0 - s, 1.0 - t) } else { (s, t) };
+                let (s, t) = if s + t > 1.0 {
+                    (1.0 - s, 1.0 - t)
+                } else {
+                    (s, t)
+                };
                 let [a, b, c] = corners;
                 let at = a + (b - a) * s + (c - a) * t;
                 vec![at + gap, a, b, c]
             }
             Self::EdgeEdge => {
                 let at = 0.3 * flat(random);
-                let (a, b) = (Vector3::x() + 0.3 * flat(random), Vector3::z() + 0.3 * flat(random));
+                let (a, b) = (
+                    Vector3::x() + 0.3 * flat(random),
+                    Vector3::z() + 0.3 * flat(random),
+                );
                 vec![at - a, at + a, at + gap - b, at + gap + b]
             }
             Self::NearlyParallel => {
                 let along = Vector3::x() + 0.3 * flat(random);
-                let other = along + 0.2 * random.vector().component_mul(&Vector3::new(1.0, 0.0, 1.0));
+                let other =
+                    along + 0.2 * random.vector().component_mul(&Vector3::new(1.0, 0.0, 1.0));
                 let at = 0.3 * flat(random);
                 vec![-along, along, at + gap - other, at + gap + other]
             }
-            Self::VertexFloor => vec![random.vector().component_mul(&Vector3::new(1.0, 0.0, 1.0)) + gap],
+            Self::VertexFloor => {
+                vec![random.vector().component_mul(&Vector3::new(1.0, 0.0, 1.0)) + gap]
+            }
             Self::TriangleSphere => {
                 let below = Vector3::y() * 0.3 + gap;
                 let corners = [0.0, 2.1, 4.2];
                 let corner = |turn| {
-                    Vector3::new(f64::cos(turn), 0.0, f64::sin(turn)) + 0.2 * random.vector() + below
+                    Vector3::new(f64::cos(turn), 0.0, f64::sin(turn))
+                        + 0.2 * random.vector()
+                        + below
                 };
                 corners.map(corner).to_vec()
             }
@@ -122,7 +135,9 @@ impl Kind {
                 vec![above - along, above + along]
             }
         };
-        (0..3).flat_map(|axis| points.iter().map(move |p| p[axis]).collect::<Vec<_>>()).collect()
+        (0..3)
+            .flat_map(|axis| points.iter().map(move |p| p[axis]).collect::<Vec<_>>())
+            .collect()
     }
 }
 
@@ -132,7 +147,10 @@ pub struct Random(pub u64);
 impl Random {
     /// A number from 0 to 1.
     pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 

@@ -47,7 +47,10 @@ fn the_limit_of_a_step_is_that_of_contact_at_rest() {
     for (name, product) in [("verlet", 2.0), ("rk4", 8.0_f64.sqrt())] {
         let limit = largest_step(method(name), &modes).unwrap().unwrap().step;
         let exact = product / frequency;
-        assert!((limit / exact - 1.0).abs() < 1e-3, "{name}: {limit}, not {exact}");
+        assert!(
+            (limit / exact - 1.0).abs() < 1e-3,
+            "{name}: {limit}, not {exact}"
+        );
     }
 }
 

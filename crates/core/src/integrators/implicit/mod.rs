@@ -139,7 +139,8 @@ struct Mechanical {
 
 impl Mechanical {
     fn new(mechanics: &dyn Linearized) -> Self {
-        let zeros = || vec![0.0; 3 * mechanics.inverse_masses().len()];
+        let n = mechanics.inverse_masses().len();
+        let zeros = || vec![0.0; 3 * n];
         Self {
             solver: Solver::new(mechanics),
             f: zeros(),
@@ -148,7 +149,11 @@ impl Mechanical {
             dv: zeros(),
             dx: zeros(),
             before: zeros(),
-            secants: Secants::default(),
+            secants: Secants::new(if mechanics.reach().is_finite() {
+                3 * n
+            } else {
+                0
+            }),
             evaluated: false,
         }
     }
@@ -200,7 +205,11 @@ impl Mechanical {
             if !change.is_finite() {
                 break;
             }
-            settled = if change <= SETTLED * size { settled + 1 } else { 0 };
+            settled = if change <= SETTLED * size {
+                settled + 1
+            } else {
+                0
+            };
             if searches && (settled == STAYS || iteration + 1 == most && settled > 0) {
                 return Ok(work);
             }

@@ -14,7 +14,6 @@ const KEPT: usize = 8;
 const STEEP: f64 = 1e-6;
 
 /// The last secants, oldest first.
-#[derive(Default)]
 pub(super) struct Secants {
     kept: Vec<Secant>,
     count: usize,
@@ -32,6 +31,19 @@ struct Secant {
 }
 
 impl Secants {
+    /// None yet, with room for those of systems of so many equations.
+    pub fn new(equations: usize) -> Self {
+        let room = || Secant {
+            step: Vec::with_capacity(equations),
+            change: Vec::with_capacity(equations),
+            ..Secant::default()
+        };
+        Self {
+            kept: (0..KEPT).map(|_| room()).collect(),
+            count: 0,
+        }
+    }
+
     /// Forgets all.
     pub fn clear(&mut self) {
         self.count = 0;
@@ -43,14 +55,13 @@ impl Secants {
             self.kept.rotate_left(1);
             self.count -= 1;
         }
-        if self.kept.len() == self.count {
-            self.kept.push(Secant::default());
-        }
         let secant = &mut self.kept[self.count];
         secant.step.clear();
         secant.step.extend(step.iter().map(|s| share * s));
         secant.change.clear();
-        secant.change.extend(from.iter().zip(to).map(|(from, to)| from - to));
+        secant
+            .change
+            .extend(from.iter().zip(to).map(|(from, to)| from - to));
         secant.product = dot(&secant.step, &secant.change);
         let sizes = dot(&secant.step, &secant.step) * dot(&secant.change, &secant.change);
         if secant.product > STEEP * sizes.sqrt() {
