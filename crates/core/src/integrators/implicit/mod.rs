@@ -36,10 +36,11 @@ const MOST: u32 = 30;
 const CLOSE: f64 = 1e-11;
 /// Most iterations where contact acts, whose tangent is not exact.
 const MOST_IN_CONTACT: u32 = 150;
-/// Change relative to the state that counts as none where contact acts, after so many iterations
-/// in a row. Where a vertex is caught between forces that jump, no force is the solution, but the
-/// state is found.
+/// Change relative to the state that counts as none where contact acts, if several in a row are so
+/// small: where a vertex is caught between forces that jump, as those of two surfaces do where they
+/// meet, no force solves the equations, but the state is found.
 const SETTLED: f64 = 1e-6;
+/// Number of such changes in a row at which the iteration ends.
 const STAYS: u32 = 6;
 /// Share of the power of the residual along a change that may be left, with the other sign, after
 /// it: a change that overshoots by more is shortened.
