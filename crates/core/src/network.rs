@@ -338,9 +338,16 @@ impl Network {
         names
     }
 
-    /// The energy in the state (x, v). Drag, damping and wind have none.
+    /// The energy in the state (x, v) at time 0, and at all times if no obstacle moves. Drag,
+    /// damping and wind have none.
     #[must_use]
     pub fn energy(&self, x: &[f64], v: &[f64]) -> Energy {
+        self.energy_at(0.0, x, v)
+    }
+
+    /// The energy in the state (x, v) at time t (s), where obstacles are then.
+    #[must_use]
+    pub fn energy_at(&self, t: f64, x: &[f64], v: &[f64]) -> Energy {
         let of_axis = |v: &[f64]| -> f64 {
             let of_one = |(v, m): (&f64, &f64)| 0.5 * m * v * v;
             v.iter().zip(&self.masses).map(of_one).sum()
@@ -350,7 +357,7 @@ impl Network {
             ..Energy::default()
         };
         for element in &self.elements {
-            energy += element.force().energy(&self.at(0.0, x, v));
+            energy += element.force().energy(&self.at(t, x, v));
         }
         energy
     }

@@ -113,10 +113,18 @@ pub trait Linearized: Mechanics {
         0
     }
 
-    /// Whether the same particles are coupled at all x. If not, no factorisation is tried, because
+    /// Whether the same particles are coupled at all x, as they are where no force begins and ends
+    /// within its [`reach`](Self::reach). If not, no factorisation is tried, because
     /// the pattern of each would have to be analysed.
     fn couples_always_the_same(&self) -> bool {
-        true
+        self.reach().is_infinite()
+    }
+
+    /// Length (m) of a motion over which forces may begin and end again, as those of contact do:
+    /// Newton's method moves particles no further at once. Infinite where forces reach as far as
+    /// particles move, the default.
+    fn reach(&self) -> f64 {
+        f64::INFINITY
     }
 
     /// Time that the forces would take coupling by coupling over the time that they take: the

@@ -39,6 +39,17 @@ impl Default for CurveStyle {
     }
 }
 
+/// How much of a marker is filled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Filling {
+    /// All of it.
+    Full,
+    /// Half of it, for a run that something else than the method held.
+    Half,
+    /// Nothing, for a run that was lost.
+    None,
+}
+
 impl CurveStyle {
     /// A line in this style, as attributes of SVG.
     pub(crate) fn stroke(self, width: f64) -> String {
@@ -55,15 +66,33 @@ impl CurveStyle {
         stroke(self.colour, width) + &dash
     }
 
-    /// Draws a marker, which is open for a run that was lost and filled otherwise.
-    pub(crate) fn draw_marker(self, figure: &mut Figure, centre: Point, radius: f64, open: bool) {
+    /// Draws a marker.
+    pub(crate) fn draw_marker(
+        self,
+        figure: &mut Figure,
+        centre: Point,
+        radius: f64,
+        filling: Filling,
+    ) {
         let (colour, line) = (self.colour, 0.22 * radius);
-        let style = if open {
-            format!("fill=\"#ffffff\" {}", stroke(colour, 1.3 * line))
-        } else {
-            format!("fill=\"{colour}\" {}", stroke("#ffffff", line))
-        };
-        figure.area(&[self.outline(centre, radius)], &style);
+        let outline = self.outline(centre, radius);
+        let open = format!("fill=\"#ffffff\" {}", stroke(colour, 1.3 * line));
+        match filling {
+            Filling::Full => {
+                let style = format!("fill=\"{colour}\" {}", stroke("#ffffff", line));
+                figure.area(&[outline], &style);
+            }
+            Filling::None => figure.area(&[outline], &open),
+            Filling::Half => {
+                // The left half: what of the outline is to the right lies on the middle.
+                let left: Vec<_> = outline
+                    .iter()
+                    .map(|[x, y]| [x.min(centre[0]), *y])
+                    .collect();
+                figure.area(&[outline], &open);
+                figure.area(&[left], &format!("fill=\"{colour}\""));
+            }
+        }
     }
 
     fn outline(self, [x, y]: Point, r: f64) -> Vec<Point> {

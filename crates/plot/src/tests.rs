@@ -103,6 +103,7 @@ fn curves(n: usize, slower: f64) -> Vec<Curve> {
         error,
         work,
         lost,
+        held: error == 1e-3,
         label: Some(format!("{:.3} ms", 2000.0 / work)),
     };
     let curve = |&(letter, name, works): &(char, &str, [f64; 6])| {
@@ -150,6 +151,7 @@ fn precision_chart(methods: usize, panels: usize) -> WorkPrecision {
         y_label: "force evaluations".to_owned(),
         problems: scenes[..panels].iter().enumerate().map(problem).collect(),
         foot: "Reference: DOP853 at two tolerances and PEFRL with its step halved; the floor is their largest disagreement.".to_owned(),
+        held: "held by something else".to_owned(),
     }
 }
 

@@ -59,6 +59,15 @@ pub struct Record {
     pub still_strain: f64,
     /// Simulated time at which the run blew up (s).
     pub lost_at: Option<f64>,
+    /// Impulses by which the guard of surfaces held the run.
+    #[serde(default)]
+    pub guard_impulses: usize,
+    /// Ways of vertices that the guard cut.
+    #[serde(default)]
+    pub guard_cuts: usize,
+    /// Momentum that cuts took (N s).
+    #[serde(default)]
+    pub guard_lost: f64,
     /// Computing time of the whole run (s), if it was measured.
     pub seconds: Option<f64>,
     /// Work of the whole run in evaluations, including linear algebra.
@@ -83,6 +92,11 @@ impl Record {
     /// Whether both runs are of the same scene, method and setting.
     fn same_run(&self, other: &Self) -> bool {
         self.same_scene(other) && self.solver == other.solver && self.setting == other.setting
+    }
+
+    /// Whether the guard of surfaces held the run.
+    pub fn is_held(&self) -> bool {
+        self.guard_impulses + self.guard_cuts > 0
     }
 
     /// The error of the run.

@@ -88,6 +88,9 @@ impl<'a> Study<'a> {
             still_position: 0.0,
             still_strain: 0.0,
             lost_at: None,
+            guard_impulses: 0,
+            guard_cuts: 0,
+            guard_lost: 0.0,
             seconds: None,
             work: 0.0,
             evaluations: 0,
@@ -247,7 +250,13 @@ impl<'a> Study<'a> {
         let control = method.control(like.setting);
         let outcome = accuracy::measure(&self.scene, method, control, reference, &interrupt::go_on)
             .map_err(Failure::run)?;
-        let Some(Outcome { errors, work, lost }) = outcome else {
+        let Some(Outcome {
+            errors,
+            work,
+            guarded,
+            lost,
+        }) = outcome
+        else {
             return Ok(None);
         };
         let seconds = if self.timed && lost.is_none() {
@@ -280,6 +289,9 @@ impl<'a> Study<'a> {
             still_position: still.position,
             still_strain: still.strain,
             lost_at: lost.map(|lost| lost.time),
+            guard_impulses: guarded.impulses,
+            guard_cuts: guarded.cuts,
+            guard_lost: guarded.lost,
             seconds,
             work: work.total(),
             evaluations: work.evaluations,

@@ -49,6 +49,7 @@ pub fn chart(
         .into(),
         problems,
         foot: foot(methods),
+        held: "held by impulses".into(),
     }
 }
 
@@ -117,6 +118,7 @@ fn problem(
                 error: r.error(metric),
                 work: work / r.until,
                 lost: r.lost_at.is_some(),
+                held: r.is_held(),
                 label: Some(table::words(method.control(r.setting))),
             }
         };

@@ -142,7 +142,17 @@ fn winners(
         .records(data)
         .map(|r| r.still(metric))
         .fold(f64::INFINITY, f64::min);
-    let mut text = String::from("* cheapest:\n");
+    let held = study.records(data).filter(|r| r.is_held()).count();
+    let mut text = String::new();
+    if held > 0 {
+        let all = study.records(data).count();
+        let _ = writeln!(
+            text,
+            "of {all} runs, the guard of surfaces held {held}, whose order is 1 there (half-filled \
+             markers)"
+        );
+    }
+    text.push_str("* cheapest:\n");
     for digits in ERRORS {
         let error = 10f64.powi(-digits);
         let line = if error < 10.0 * floor {

@@ -53,7 +53,7 @@ impl Snapshot {
             free.map(|(v, w)| v / w).sum()
         });
         Self {
-            energy: network.energy(positions, velocities).total(),
+            energy: network.energy_at(t, positions, velocities).total(),
             momentum,
             strains: structural(network)
                 .map(|s| distance(positions, s.i, s.j) / s.law.rest_length)

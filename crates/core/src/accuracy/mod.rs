@@ -9,6 +9,7 @@ mod ladder;
 mod reference;
 mod run;
 
+use crate::contact::Guarded;
 use crate::control::Control;
 use crate::error::{BlowUp, Error};
 use crate::integrators::{Method, Work};
@@ -75,6 +76,8 @@ pub struct Outcome {
     pub errors: Errors,
     /// Work of the whole run.
     pub work: Work,
+    /// What the guard of surfaces did: a run that it held is not the method's own.
+    pub guarded: Guarded,
     /// Blow-up of the run, if it was lost.
     pub lost: Option<BlowUp>,
 }
@@ -101,6 +104,7 @@ pub fn measure(
     Ok(end.map(|lost| Outcome {
         errors,
         work: simulation.work(),
+        guarded: simulation.guarded(),
         lost,
     }))
 }

@@ -231,7 +231,8 @@ impl Way<'_> {
         let travel = moves.map(|d| (d - mean).norm());
         let radius = self.surface.radius(points[0]) + self.surface.radius(points[kind.first()]);
         let distance = match kind {
-            PairKind::VertexFloor => (from[0].y - from[1].y).abs(),
+            // Below a floor the force is still there.
+            PairKind::VertexFloor => from[0].y - from[1].y,
             _ => closest(kind, &from).offset.norm(),
         };
         let mut pair = Candidate {

@@ -235,7 +235,7 @@ impl Surface {
     }
 
     /// Largest thickness (m).
-    pub(super) fn thickest(&self) -> f64 {
+    pub(crate) fn thickest(&self) -> f64 {
         self.thickest
     }
 

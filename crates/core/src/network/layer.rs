@@ -80,6 +80,13 @@ impl Network {
         }
     }
 
+    /// Half the largest thickness (m) of surfaces that touch; infinite if none do.
+    pub(super) fn reach_of_contact(&self) -> f64 {
+        let thickest = self.contact_layer().map(|layer| layer.surface().thickest());
+        let reach = thickest.filter(|thickness| *thickness > 0.0);
+        reach.map_or(f64::INFINITY, |thickness| 0.5 * thickness)
+    }
+
     /// Makes the contact of surfaces anew, of the triangles and obstacles that are there now.
     pub(super) fn renew_contact(&mut self) {
         let layer = self.touch.as_ref().map(|touch| {

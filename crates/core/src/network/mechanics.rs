@@ -274,8 +274,8 @@ impl Linearized for Network {
         count
     }
 
-    fn couples_always_the_same(&self) -> bool {
-        self.contact_layer().is_none()
+    fn reach(&self) -> f64 {
+        self.reach_of_contact()
     }
 
     fn speed(&self) -> f64 {

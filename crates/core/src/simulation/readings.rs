@@ -117,7 +117,8 @@ impl Simulation {
     #[must_use]
     pub fn energy(&self) -> Option<Energy> {
         let (x, v) = self.y.split_at(self.y.len() / 2);
-        self.model.network().map(|network| network.energy(x, v))
+        let network = self.model.network();
+        network.map(|network| network.energy_at(self.time(), x, v))
     }
 
     /// Height of the lowest particle (m).

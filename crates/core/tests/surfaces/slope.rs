@@ -1,8 +1,15 @@
 //! Friction of surfaces on a slope.
 
-use a3_core::Control;
+use a3_core::{Control, Simulation, integrators};
+use a3_scenes::Description;
 
-use crate::run;
+/// Run of a scene as it is written in TOML.
+fn run(toml: &str, method: &str, control: Control) -> Simulation {
+    let setup = Description::parse(toml)
+        .and_then(|description| description.build(None, &mut |_| Err("no files".into())));
+    let method = integrators::find(method).unwrap();
+    Simulation::new(setup.unwrap().scene, method, control).unwrap()
+}
 
 /// Sheet that lies on a ramp of that length (m), with a coefficient of friction and the tangent of
 /// the ramp.

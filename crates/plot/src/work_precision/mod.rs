@@ -13,6 +13,7 @@ use crate::figure::Figure;
 use crate::geometry::Rect;
 use crate::label::Label;
 use crate::layout::{self, Level, Sign};
+use crate::style::{CurveStyle, Filling};
 use panel::{Drawing, SHADE, front_style};
 
 /// A work-precision diagram. Accurate runs are on the left of it, and fast ones below.
@@ -30,6 +31,8 @@ pub struct WorkPrecision {
     pub problems: Vec<Problem>,
     /// An explanation below the panels.
     pub foot: String,
+    /// What held the runs with half-filled markers, for the legend.
+    pub held: String,
 }
 
 impl WorkPrecision {
@@ -181,9 +184,16 @@ impl WorkPrecision {
                     &[[x - 1.7 * size, y], [x + 1.7 * size, y]],
                     &style.stroke(0.13 * size),
                 );
-                style.draw_marker(figure, [x, y], 0.4 * size, false);
+                style.draw_marker(figure, [x, y], 0.4 * size, Filling::Full);
             });
             entries.push((curve.name.clone(), sign));
+        }
+        if self.runs().any(|run| run.held && !run.is_lost()) {
+            let style = CurveStyle::default();
+            let half: Sign = Box::new(move |figure, at| {
+                style.draw_marker(figure, at, 0.4 * size, Filling::Half);
+            });
+            entries.push((self.held.clone(), half));
         }
         let front: Sign = Box::new(move |figure, [x, y]| {
             let line = [[x - 1.3 * size, y], [x + 1.3 * size, y]];

@@ -7,6 +7,7 @@ use crate::axis::{self, Axis};
 use crate::figure::{Figure, stroke};
 use crate::geometry::{Point, Rect};
 use crate::label::{Anchor, GREY, Label};
+use crate::style::Filling;
 
 /// The style of errors that the reference cannot tell from 0, as attributes of SVG.
 pub const SHADE: &str = "fill=\"#e6eaf0\"";
@@ -111,7 +112,12 @@ impl<'a> Drawing<'a> {
             let runs = curve.runs.iter();
             for run in runs.filter(|run| run.is_drawn() && !run.is_lost()) {
                 let point = self.at(run);
-                style.draw_marker(figure, point, radius, false);
+                let filling = if run.held {
+                    Filling::Half
+                } else {
+                    Filling::Full
+                };
+                style.draw_marker(figure, point, radius, filling);
                 self.taken.push(Rect::around(point, 1.2 * radius));
             }
         }
@@ -135,7 +141,7 @@ impl<'a> Drawing<'a> {
                 let free = |point: &&Point| !taken.iter().any(|other| other.overlaps(room(point)));
                 let point = *aside.iter().find(free).unwrap_or(&aside[0]);
                 taken.push(room(&point));
-                style.draw_marker(figure, point, radius, true);
+                style.draw_marker(figure, point, radius, Filling::None);
             }
         }
     }

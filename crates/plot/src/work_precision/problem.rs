@@ -11,6 +11,8 @@ pub struct Measurement {
     pub work: f64,
     /// Whether the run blew up or failed. It is drawn beside the chart then, at its work.
     pub lost: bool,
+    /// Whether something else than the method held the run. Its marker is half filled then.
+    pub held: bool,
     /// The step or the tolerance of the run, in words.
     pub label: Option<String>,
 }
@@ -118,6 +120,7 @@ mod tests {
             error,
             work,
             lost,
+            held: false,
             label: None,
         };
         let curve = |runs| Curve {

@@ -13,25 +13,40 @@ mod dense;
 mod euler;
 mod kept;
 mod midpoint;
+mod secants;
 mod tr_bdf2;
 
 use crate::error::Error;
 use crate::linear::Solver;
 use crate::system::{Linearized, Mechanics, ParticleSystem, place_pins};
 use dense::Dense;
+use secants::Secants;
 
 pub(super) use bdf::METHOD as BDF;
 pub(super) use euler::METHOD as EULER;
 pub(super) use midpoint::METHOD as MIDPOINT;
 pub(super) use tr_bdf2::METHOD as TR_BDF2;
 
-use super::Work;
+use super::{Work, add_scaled};
 
 /// Largest number of iterations of Newton's method.
 const MOST: u32 = 30;
 /// Change relative to the state at which the iteration ends: the next change would be lost in
 /// rounding.
 const CLOSE: f64 = 1e-11;
+/// Most iterations where contact acts, whose tangent is not exact.
+const MOST_IN_CONTACT: u32 = 150;
+/// Change relative to the state that counts as none where contact acts, if several in a row are so
+/// small: where a vertex is caught between forces that jump, as those of two surfaces do where they
+/// meet, no force solves the equations, but the state is found.
+const SETTLED: f64 = 1e-6;
+/// Number of such changes in a row at which the iteration ends.
+const STAYS: u32 = 6;
+/// Share of the power of the residual along a change that may be left, with the other sign, after
+/// it: a change that overshoots by more is shortened.
+const OVERSHOT: f64 = 0.5;
+/// Most times that a change is shortened.
+const SHORTENED: u32 = 12;
 /// Relative residual to which the linear systems of Newton's method are solved.
 const FORCING: f64 = 1e-5;
 
@@ -113,17 +128,34 @@ struct Mechanical {
     /// Gap bx + a v - x (m).
     gap: Vec<f64>,
     dv: Vec<f64>,
+    /// Change of x by an iteration (m).
+    dx: Vec<f64>,
+    /// Right-hand side at the beginning of an iteration.
+    before: Vec<f64>,
+    /// Corrections of the tangent, where it is not exact.
+    secants: Secants,
+    /// Whether the forces were evaluated where the next iteration begins.
+    evaluated: bool,
 }
 
 impl Mechanical {
     fn new(mechanics: &dyn Linearized) -> Self {
-        let zeros = || vec![0.0; 3 * mechanics.inverse_masses().len()];
+        let n = mechanics.inverse_masses().len();
+        let zeros = || vec![0.0; 3 * n];
         Self {
             solver: Solver::new(mechanics),
             f: zeros(),
             rhs: zeros(),
             gap: zeros(),
             dv: zeros(),
+            dx: zeros(),
+            before: zeros(),
+            secants: Secants::new(if mechanics.reach().is_finite() {
+                3 * n
+            } else {
+                0
+            }),
+            evaluated: false,
         }
     }
 
@@ -141,8 +173,25 @@ impl Mechanical {
         place_pins(mechanics, t, x, v);
         let mut work = Work::default();
         let (mut first, mut last) = (f64::NAN, f64::INFINITY);
-        for iteration in 0..MOST {
-            let change = self.iterate(mechanics, t, a, [bx, bv], [x, v], newton, &mut work)?;
+        let searches = newton == Newton::Full && mechanics.reach().is_finite();
+        let most = if searches { MOST_IN_CONTACT } else { MOST };
+        self.evaluated = false;
+        self.secants.clear();
+        if searches {
+            // The guess of x counts, where nothing has passed through anything: no gap is left.
+            for ((v, x), bx) in v.iter_mut().zip(&*x).zip(bx) {
+                *v = (x - bx) / a;
+            }
+            place_pins(mechanics, t, x, v);
+        }
+        let mut settled = 0;
+        for iteration in 0..most {
+            let mut change = self.iterate(mechanics, t, a, [bx, bv], [x, v], newton, &mut work)?;
+            if searches {
+                let share = self.search(mechanics, t, a, [bx, bv], [x, v], &mut work);
+                self.secants.add(&self.dv, share, &self.before, &self.rhs);
+                change *= share;
+            }
             if newton == Newton::Once {
                 return Ok(work);
             }
@@ -156,6 +205,14 @@ impl Mechanical {
             last = change;
             if !change.is_finite() {
                 break;
+            }
+            settled = if change <= SETTLED * size {
+                settled + 1
+            } else {
+                0
+            };
+            if searches && (settled == STAYS || iteration + 1 == most && settled > 0) {
+                return Ok(work);
             }
         }
         Err(Error::NoConvergence {
@@ -175,7 +232,9 @@ impl Mechanical {
         newton: Newton,
         work: &mut Work,
     ) -> Result<f64, Error> {
-        *work += self.evaluate(mechanics, t, a, bx, [x, v]);
+        if !std::mem::take(&mut self.evaluated) {
+            *work += self.evaluate(mechanics, t, a, bx, [x, v]);
+        }
         let mut clamped = newton == Newton::Once;
         loop {
             *work += self.solver.gather(mechanics, (t, a), x, clamped);
@@ -186,9 +245,12 @@ impl Mechanical {
                 // method's order.
                 Newton::Once => 1e-4 * self.solver.stiffness().clamp(1e-2, 1.0).powi(4),
             };
+            self.before.copy_from_slice(&self.rhs);
+            self.secants.reduce(&mut self.rhs);
             let (cost, solved) = self
                 .solver
                 .solve(mechanics, &self.rhs, &mut self.dv, tolerance);
+            self.secants.complete(&mut self.dv);
             *work += cost;
             match solved {
                 Some(_) => break,
@@ -204,6 +266,53 @@ impl Mechanical {
             *v += dv;
         }
         Ok(norm(&self.dv))
+    }
+
+    /// Takes back a share of the change that an iteration made, if it overshot: until the power of
+    /// the residual along the change, r . dv, is small enough against that at its beginning
+    /// (Matthies, Strang, *The solution of nonlinear finite element equations*, 1979). Evaluates
+    /// the forces where it ends. Returns the share of the change that is left.
+    fn search(
+        &mut self,
+        mechanics: &dyn Linearized,
+        t: f64,
+        a: f64,
+        [bx, bv]: [&[f64]; 2],
+        [x, v]: [&mut [f64]; 2],
+        work: &mut Work,
+    ) -> f64 {
+        self.dx.copy_from_slice(&self.gap);
+        add_scaled(&mut self.dx, a, &self.dv);
+        let begin = dot(&self.before, &self.dv);
+        let longest = mechanics.reach() / spread(&self.dx);
+        let mut share = longest.min(1.0);
+        if share < 1.0 {
+            add_scaled(x, share - 1.0, &self.dx);
+            add_scaled(v, share - 1.0, &self.dv);
+        }
+        // Shares of the change with the powers there: positive, and negative.
+        let (mut low, mut high) = ((0.0, begin), (share, 0.0));
+        for _ in 0..SHORTENED {
+            *work += self.evaluate(mechanics, t, a, bx, [x, v]);
+            self.evaluated = true;
+            self.reduce(mechanics, a, bv, v);
+            let power = dot(&self.rhs, &self.dv);
+            if power.abs() <= OVERSHOT * begin || share == high.0 && power > 0.0 {
+                break;
+            }
+            if power > 0.0 {
+                low = (share, power);
+            } else {
+                high = (share, power.max(f64::MIN));
+            }
+            let part = (low.1 / (low.1 - high.1)).clamp(0.1, 0.9);
+            let next = low.0 + (high.0 - low.0) * part;
+            add_scaled(x, next - share, &self.dx);
+            add_scaled(v, next - share, &self.dv);
+            share = next;
+            self.evaluated = false;
+        }
+        share
     }
 
     /// Evaluates the forces at (x, v), and the gap. Returns the cost.
@@ -248,6 +357,22 @@ impl Mechanical {
     }
 }
 
+/// Most by which a row of an n x 3 matrix differs from their mean.
+fn spread(a: &[f64]) -> f64 {
+    let n = a.len() / 3;
+    let columns = [0, 1, 2].map(|axis| &a[axis * n..(axis + 1) * n]);
+    let means = columns.map(|column| column.iter().sum::<f64>() / n as f64);
+    let square = |i: usize| -> f64 {
+        let parts = columns.iter().zip(means);
+        parts.map(|(column, mean)| (column[i] - mean).powi(2)).sum()
+    };
+    (0..n).map(square).fold(0.0, f64::max).sqrt()
+}
+
 fn norm(a: &[f64]) -> f64 {
-    a.iter().map(|a| a * a).sum::<f64>().sqrt()
+    dot(a, a).sqrt()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
