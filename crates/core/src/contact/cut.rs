@@ -11,9 +11,10 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
-use super::candidates::{Candidate, Candidates};
+use super::candidates::Candidates;
 use super::closest::{PairKind, closest, weighted};
 use super::guard::Motion;
+use super::listing::Candidate;
 use super::surface::Surface;
 use crate::error::Vertex;
 
@@ -46,9 +47,8 @@ impl Cuts {
         let mut held = BTreeSet::new();
         loop {
             motion.cover(surface, candidates);
-            let nearest = 2.0 * surface.kept();
             let mut new = false;
-            for pair in candidates.near(|_| nearest) {
+            for pair in candidates.near(surface.nearest()) {
                 let key = (pair.kind, pair.points);
                 if !held.contains(&key) && motion.impact(surface, pair).is_some() {
                     held.insert(key);

@@ -12,10 +12,11 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::advance::time_of_impact;
-use super::candidates::{Candidate, Candidates};
-use super::closest::{closest, weighted};
+use super::candidates::{Candidates, Stretch};
+use super::closest::{PairKind, closest, weighted};
 use super::cut::Squeezed;
 use super::layer::{ContactLayer, Scratch};
+use super::listing::Candidate;
 use super::repulsion::Pair;
 use super::surface::Surface;
 
@@ -65,6 +66,8 @@ impl AddAssign for Guarded {
 /// Motion of all vertices in a step.
 #[derive(Debug, Default)]
 pub(super) struct Motion {
+    /// Times of its beginning and its end (s).
+    pub times: [f64; 2],
     /// Positions at its beginning (m).
     pub x0: Vec<Vector3<f64>>,
     /// Displacements (m).
@@ -82,13 +85,22 @@ impl Motion {
         self.ends.clear();
         let ends = self.x0.iter().zip(&self.moves).map(|(x, move_)| x + move_);
         self.ends.extend(ends);
-        candidates.cover(surface, &self.x0, &self.ends);
+        let stretch = Stretch {
+            times: self.times,
+            ends: [&self.x0, &self.ends],
+            speeds: None,
+        };
+        candidates.cover(surface, &stretch);
     }
 
     /// Share of the step at which a pair comes too near, if it does.
     pub fn impact(&self, surface: &Surface, candidate: &Candidate) -> Option<f64> {
         let x = candidate.of(&self.x0);
         let moves = candidate.of(&self.moves);
+        let law = surface.law(candidate.kind, &candidate.points);
+        if are_apart(candidate.kind, &x, &moves, 2.0 * law.most_kept()) {
+            return None;
+        }
         let kept = self.kept(surface, candidate, &x);
         time_of_impact(candidate.kind, &x, &moves, kept)
     }
@@ -98,6 +110,32 @@ impl Motion {
         let law = surface.law(candidate.kind, &candidate.points);
         law.kept(closest(candidate.kind, x).offset.norm())
     }
+}
+
+/// Whether the boxes of two primitives, as point 0 sees them move, are farther apart than a gap.
+fn are_apart(
+    kind: PairKind,
+    from: &[Vector3<f64>; 4],
+    moves: &[Vector3<f64>; 4],
+    gap: f64,
+) -> bool {
+    let (x, u) = (from.map(|x| x - from[0]), moves.map(|u| u - moves[0]));
+    (0..3).any(|axis| {
+        let low = |k: usize| x[k][axis].min(x[k][axis] + u[k][axis]);
+        let high = |k: usize| x[k][axis].max(x[k][axis] + u[k][axis]);
+        let [first, second] = match kind {
+            PairKind::VertexTriangle => [
+                [0.0; 2],
+                [low(1).min(low(2)).min(low(3)), high(1).max(high(2)).max(high(3))],
+            ],
+            PairKind::EdgeEdge => [
+                [low(1).min(0.0), high(1).max(0.0)],
+                [low(2).min(low(3)), high(2).max(high(3))],
+            ],
+            PairKind::VertexFloor => return false,
+        };
+        second[0] - first[1] > gap || first[0] - second[1] > gap
+    })
 }
 
 /// Direction of a pair's contact: the weights of its closest points, the normal from the second
@@ -172,12 +210,23 @@ impl ContactLayer {
         y0: &[f64],
         y1: &mut [f64],
     ) -> Result<Guarded, Squeezed> {
+        self.with_scratch(|scratch| self.guard_with(scratch, inverse_masses, (t, h), y0, y1))
+    }
+
+    fn guard_with(
+        &self,
+        scratch: &mut Scratch,
+        inverse_masses: &[f64],
+        (t, h): (f64, f64),
+        y0: &[f64],
+        y1: &mut [f64],
+    ) -> Result<Guarded, Squeezed> {
         let surface = self.surface();
         let half = y1.len() / 2;
-        let mut scratch = self.scratch();
         let Scratch {
             candidates, motion, cuts, ..
-        } = &mut *scratch;
+        } = scratch;
+        motion.times = [t, t + h];
         surface.place(self.obstacles(), t, &y0[..half], &mut motion.x0);
         surface.place(self.obstacles(), t + h, &y1[..half], &mut motion.moves);
         for (end, start) in motion.moves.iter_mut().zip(&motion.x0) {
@@ -249,11 +298,10 @@ fn rub(
     if !surface.is_rough() {
         return false;
     }
-    let mut pressed = vec![];
-    for candidate in candidates.near(|pair| surface.law(pair.kind, &pair.points).skin.thickness) {
+    let find = |candidate: &Candidate| {
         let law = surface.law(candidate.kind, &candidate.points);
         if law.skin.friction == 0.0 {
-            continue;
+            return None;
         }
         let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
         let pair = Pair {
@@ -262,12 +310,14 @@ fn rub(
             x: std::array::from_fn(|k| x0[k] + moves[k]),
             v: candidate.of(&motion.v),
         };
-        if let Some((force, weights, normal)) = pair.force() {
-            let contact = Contact::new(candidate.points, weights, normal, motion);
-            if contact.inverse_mass > 0.0 {
-                pressed.push((contact, law.skin.friction * force * h));
-            }
-        }
+        let (force, weights, normal) = pair.force()?;
+        let contact = Contact::new(candidate.points, weights, normal, motion);
+        (contact.inverse_mass > 0.0).then_some((contact, law.skin.friction * force * h))
+    };
+    let mut pressed = vec![];
+    candidates.each(0.0, find, |found| pressed.push(found));
+    if pressed.is_empty() {
+        return false;
     }
     for _ in 0..FRICTION_PASSES {
         for (contact, left) in &mut pressed {
@@ -295,7 +345,7 @@ fn rub(
         }
     }
     motion.cover(surface, candidates);
-    !pressed.is_empty()
+    true
 }
 
 /// The pairs that come too near, with the share of the step at which they do: all, or those of
@@ -306,13 +356,16 @@ fn find(
     motion: &Motion,
     moved: Option<&[bool]>,
 ) -> Vec<(Candidate, f64)> {
-    let nearest = 2.0 * surface.kept();
-    let has_moved = |pair: &&Candidate| {
+    let has_moved = |pair: &Candidate| {
         moved.is_none_or(|moved| pair.points.iter().any(|i| moved[*i as usize]))
     };
-    let pairs = candidates.near(|_| nearest).filter(has_moved);
-    let hit = |pair: &Candidate| Some((*pair, motion.impact(surface, pair)?));
-    pairs.filter_map(hit).collect()
+    let hit = |pair: &Candidate| {
+        let time = has_moved(pair).then(|| motion.impact(surface, pair))?;
+        Some((*pair, time?))
+    };
+    let mut hits = vec![];
+    candidates.each(surface.nearest(), hit, |hit| hits.push(hit));
+    hits
 }
 
 /// Impulse of a pair that touches at that share of the step.

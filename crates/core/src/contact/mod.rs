@@ -18,6 +18,7 @@ mod closest;
 mod cut;
 mod guard;
 mod layer;
+mod listing;
 mod nearest;
 mod obstacle;
 mod repulsion;

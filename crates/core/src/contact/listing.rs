@@ -1,0 +1,315 @@
+//! Making of a list of pairs that may touch: trees of boxes find items that come near each other,
+//! and planes between their primitives bound how near.
+
+use nalgebra::Vector3;
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode, BvhWorkspace};
+use rayon::prelude::*;
+
+use super::closest::{PairKind, closest};
+use super::surface::{Items, Surface};
+
+/// Share of the largest thickness by which gaps are listed smaller than they are computed, for
+/// rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Number of overlapping boxes, or of pairs, that a thread takes at a time.
+pub(super) const CHUNK: usize = 1024;
+
+/// Pair that may touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Candidate {
+    pub points: [u32; 4],
+    pub kind: PairKind,
+}
+
+impl Candidate {
+    /// The positions, or other vectors, of its points.
+    pub fn of<T: Copy>(&self, all: &[T]) -> [T; 4] {
+        self.points.map(|i| all[i as usize])
+    }
+
+    /// Most by which its primitives come nearer if each vertex moves so far.
+    pub fn approach(&self, travel: &[f64]) -> f64 {
+        let [a, b, c, d] = self.of(travel);
+        match self.kind {
+            PairKind::VertexTriangle => a + b.max(c).max(d),
+            PairKind::EdgeEdge => a.max(b) + c.max(d),
+            PairKind::VertexFloor => a + b,
+        }
+    }
+}
+
+/// Pair of a list, with a bound on its gap while all vertices are on the course of the list.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Listed {
+    /// Number that grows in canonical order.
+    key: u64,
+    pub candidate: Candidate,
+    /// Gap at the beginning (m): distance less radii and thickness.
+    gap: f64,
+    /// Speed at which the gap shrinks at most (m/s); negative if it grows.
+    closing: f64,
+}
+
+impl Listed {
+    /// Bound on the gap between two times after the beginning (s), in m.
+    pub fn gap(&self, [first, last]: [f64; 2]) -> f64 {
+        self.gap - (self.closing * first).max(self.closing * last)
+    }
+}
+
+/// Straight courses of all vertices, from which they may stray by half of the reach.
+pub(super) struct Course<'a> {
+    /// Positions at the beginning (m).
+    pub base: &'a [Vector3<f64>],
+    /// Velocities (m/s).
+    pub speeds: &'a [Vector3<f64>],
+    /// Mean velocity (m/s).
+    pub mean: Vector3<f64>,
+    /// Time for which the courses go on (s).
+    pub horizon: f64,
+    /// Gap below which pairs are listed (m).
+    pub reach: f64,
+}
+
+/// Box along the axes.
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+}
+
+impl Bounds {
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.inf(&other.low),
+            high: self.high.sup(&other.high),
+        }
+    }
+
+    /// Squared distance of two boxes.
+    fn apart(&self, other: &Self) -> f64 {
+        let along = |k: usize| {
+            let gap = (other.low[k] - self.high[k]).max(self.low[k] - other.high[k]);
+            gap.max(0.0)
+        };
+        let [x, y, z] = [along(0), along(1), along(2)];
+        x * x + y * y + z * z
+    }
+}
+
+/// Trees and scratch of the making of lists.
+#[derive(Debug, Default)]
+pub(super) struct Listing {
+    bodies: Tree,
+    obstacles: Tree,
+    overlaps: Vec<[u32; 2]>,
+}
+
+impl Listing {
+    /// Lists the pairs that come within reach of each other on their courses, in canonical order.
+    pub fn list(
+        &mut self,
+        surface: &Surface,
+        course: &Course,
+        parallel: bool,
+        pairs: &mut Vec<Listed>,
+    ) {
+        let (bodies, obstacles) = (&surface.bodies, &surface.obstacles);
+        pairs.clear();
+        self.bodies.take(bodies, surface, course);
+        self.obstacles.take(obstacles, surface, course);
+        let way = Way { surface, course };
+        let overlaps = &mut self.overlaps;
+        if surface.touches_itself {
+            overlaps.clear();
+            let tree = &self.bodies.tree;
+            let mut add = |s, t| overlaps.push([s, t]);
+            tree.traverse_bvtt_single_tree::<false>(&mut self.bodies.workspace, &mut add);
+            way.list([(bodies, &self.bodies); 2], overlaps, parallel, pairs);
+        }
+        if !obstacles.corners.is_empty() && !bodies.corners.is_empty() {
+            overlaps.clear();
+            let both = self.bodies.tree.leaf_pairs(&self.obstacles.tree, BvhNode::intersects);
+            overlaps.extend(both.map(|(s, t)| [s, t]));
+            let both = [(bodies, &self.bodies), (obstacles, &self.obstacles)];
+            way.list(both, overlaps, parallel, pairs);
+        }
+        for &floor in &surface.floors {
+            for &i in &bodies.vertices {
+                let points = [i, floor, floor, floor];
+                pairs.extend(way.pair(PairKind::VertexFloor, [i, floor], points));
+            }
+        }
+        if parallel {
+            pairs.par_sort_unstable_by_key(|pair| pair.key);
+        } else {
+            pairs.sort_unstable_by_key(|pair| pair.key);
+        }
+    }
+}
+
+/// Items with their tree.
+type Side<'a> = (&'a Items, &'a Tree);
+
+/// What a list is made for.
+struct Way<'a> {
+    surface: &'a Surface,
+    course: &'a Course<'a>,
+}
+
+impl Way<'_> {
+    /// Adds the pairs of items whose boxes overlap.
+    fn list(
+        &self,
+        sides: [Side; 2],
+        overlaps: &[[u32; 2]],
+        parallel: bool,
+        pairs: &mut Vec<Listed>,
+    ) {
+        if parallel {
+            pairs.par_extend(overlaps.par_chunks(CHUNK).flat_map_iter(|overlaps| {
+                let mut found = vec![];
+                for items in overlaps {
+                    self.find(sides, items.map(|k| k as usize), &mut found);
+                }
+                found
+            }));
+        } else {
+            for items in overlaps {
+                self.find(sides, items.map(|k| k as usize), pairs);
+            }
+        }
+    }
+
+    /// Adds the pairs of primitives of two items that come within reach.
+    fn find(&self, sides: [Side; 2], [s, t]: [usize; 2], pairs: &mut Vec<Listed>) {
+        let reach = self.course.reach + self.surface.thickest();
+        let squared = reach * reach;
+        let [(first, first_tree), (second, second_tree)] = sides;
+        for ([(a, at), (b, bt)], [k, l]) in [(sides, [s, t]), ([sides[1], sides[0]], [t, s])] {
+            if !b.is_triangle(l) {
+                continue;
+            }
+            let corners = b.corners[l];
+            for i in a.vertices_of(k) {
+                let v = a.vertices[i];
+                if !corners.contains(&v) && at.vertices[i].apart(&bt.items[l]) < squared {
+                    let [p, q, r] = corners;
+                    let ranks = [v, b.ranks[l]];
+                    pairs.extend(self.pair(PairKind::VertexTriangle, ranks, [v, p, q, r]));
+                }
+            }
+        }
+        for i in first.edges_of(s) {
+            let (e, around) = (first.edges[i], &first_tree.edges[i]);
+            if around.apart(&second_tree.items[t]) >= squared {
+                continue;
+            }
+            for j in second.edges_of(t) {
+                let f = second.edges[j];
+                // A point and an edge of a triangle: its corners and the point are a pair already.
+                let point = e[0] == e[1] && second.is_triangle(t)
+                    || f[0] == f[1] && first.is_triangle(s);
+                if point
+                    || e.iter().any(|i| f.contains(i))
+                    || around.apart(&second_tree.edges[j]) >= squared
+                {
+                    continue;
+                }
+                let [mut e, mut f] = [(first.edge_ranks[i], e), (second.edge_ranks[j], f)];
+                if f.0 < e.0 {
+                    std::mem::swap(&mut e, &mut f);
+                }
+                let ((m, [a, b]), (n, [c, d])) = (e, f);
+                pairs.extend(self.pair(PairKind::EdgeEdge, [m, n], [a, b, c, d]));
+            }
+        }
+    }
+
+    /// The pair of these primitives, by their ranks and points, if it comes within reach.
+    fn pair(&self, kind: PairKind, ranks: [u32; 2], points: [u32; 4]) -> Option<Listed> {
+        let course = self.course;
+        let origin = course.base[points[0] as usize];
+        let x = points.map(|i| course.base[i as usize] - origin);
+        let normal = match kind {
+            PairKind::VertexFloor => Vector3::y(),
+            _ => closest(kind, &x).offset.try_normalize(0.0)?,
+        };
+        // The plane between them bounds their distance, now and later.
+        let apart = |v: [Vector3<f64>; 4]| {
+            let [a, b, c, d] = v.map(|v| v.dot(&normal));
+            match kind {
+                PairKind::VertexTriangle => a - b.max(c).max(d),
+                PairKind::EdgeEdge => a.min(b) - c.max(d),
+                PairKind::VertexFloor => a - b,
+            }
+        };
+        let thickness = self.surface.thickness(kind, &points);
+        let rounding = ROUNDING * self.surface.thickest();
+        let gap = apart(x) - self.surface.radii(kind, &points) - thickness - rounding;
+        let closing = -apart(points.map(|i| course.speeds[i as usize]));
+        let listed = gap - closing.max(0.0) * course.horizon < course.reach;
+        listed.then(|| Listed {
+            key: (kind as u64) << 62 | u64::from(ranks[0]) << 31 | u64::from(ranks[1]),
+            candidate: Candidate { points, kind },
+            gap,
+            closing,
+        })
+    }
+}
+
+/// Tree of the boxes of items, with the boxes of their vertices and edges.
+#[derive(Default)]
+struct Tree {
+    tree: Bvh,
+    workspace: BvhWorkspace,
+    items: Vec<Bounds>,
+    vertices: Vec<Bounds>,
+    edges: Vec<Bounds>,
+}
+
+impl std::fmt::Debug for Tree {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "a tree of {} boxes", self.items.len())
+    }
+}
+
+impl Tree {
+    /// Takes the boxes of the items on their courses.
+    fn take(&mut self, items: &Items, surface: &Surface, course: &Course) {
+        let around = |i: u32| {
+            let begin = course.base[i as usize];
+            let end = begin + (course.speeds[i as usize] - course.mean) * course.horizon;
+            let radius = surface.radius(i);
+            Bounds {
+                low: begin.inf(&end).add_scalar(-radius),
+                high: begin.sup(&end).add_scalar(radius),
+            }
+        };
+        let first = self.items.len() != items.corners.len();
+        self.vertices.clear();
+        self.vertices.extend(items.vertices.iter().map(|i| around(*i)));
+        self.edges.clear();
+        let edges = items.edges.iter().map(|[i, j]| around(*i).with(around(*j)));
+        self.edges.extend(edges);
+        self.items.clear();
+        let corners = items.corners.iter();
+        let boxes = corners.map(|[i, j, k]| around(*i).with(around(*j)).with(around(*k)));
+        self.items.extend(boxes);
+        let half = 0.5 * (course.reach + surface.thickest());
+        let corner = |v: Vector3<f64>, by: f64| Vector::new(v.x + by, v.y + by, v.z + by);
+        let leaf = |b: &Bounds| Aabb::new(corner(b.low, -half), corner(b.high, half));
+        if first {
+            let leaves: Vec<_> = self.items.iter().map(leaf).collect();
+            self.tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
+        } else {
+            for (k, bounds) in self.items.iter().enumerate() {
+                self.tree.insert_or_update_partially(leaf(bounds), k as u32, 0.0);
+            }
+            self.tree.refit(&mut self.workspace);
+        }
+    }
+}
