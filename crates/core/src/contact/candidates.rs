@@ -20,8 +20,11 @@ const MARGIN: f64 = 0.5;
 /// as a share of the largest thickness.
 const LENGTH: f64 = 8.0;
 
+/// Time for which a list is made, as a share of that for which the one before it held.
+const HOLDING: f64 = 1.5;
+
 /// Longest time for which a list is made (s).
-const LONGEST: f64 = 1e3;
+const LONGEST: f64 = 1.0;
 
 /// Motion of all vertices in straight lines between two times, which may be the same one.
 pub(super) struct Stretch<'a> {
@@ -47,6 +50,11 @@ pub(super) struct Candidates {
     speeds: Vec<Vector3<f64>>,
     /// Time for which the courses go on (s).
     horizon: f64,
+    /// Time for which the list before this one held (s).
+    held: f64,
+    /// Length of the last stretch that was not a point in time (s): the courses begin so long
+    /// before such a point, because what follows is likely the stretch around it.
+    back: f64,
     /// How far a vertex may stray (m).
     margin: f64,
     /// Times since the beginning that are covered (s).
@@ -67,6 +75,8 @@ impl Default for Candidates {
             base: vec![],
             speeds: vec![],
             horizon: 0.0,
+            held: LONGEST,
+            back: 0.0,
             margin: 0.0,
             since: [0.0; 2],
             travel: vec![],
@@ -79,14 +89,21 @@ impl Default for Candidates {
 impl Candidates {
     /// Makes sure that the list has every pair that comes nearer than its thickness in a stretch.
     pub fn cover(&mut self, surface: &Surface, stretch: &Stretch) {
-        let is_ahead = stretch.times[0] >= self.begin
-            && stretch.times[1] <= self.begin + self.horizon
+        let [first, last] = stretch.times;
+        if last > first {
+            self.back = last - first;
+        }
+        let is_ahead = first >= self.begin
+            && last <= self.begin + self.horizon
             && self.base.len() == stretch.ends[0].len();
         if is_ahead {
             self.measure(stretch);
             if self.farthest <= self.margin {
                 return;
             }
+        }
+        if last - self.begin > self.back {
+            self.held = last - self.begin;
         }
         self.make(surface, stretch);
     }
@@ -130,9 +147,6 @@ impl Candidates {
     fn make(&mut self, surface: &Surface, stretch: &Stretch) {
         let [from, to] = stretch.ends;
         let duration = stretch.times[1] - stretch.times[0];
-        self.begin = stretch.times[0];
-        self.base.clear();
-        self.base.extend_from_slice(from);
         self.speeds.clear();
         if duration > 0.0 {
             let speeds = from.iter().zip(to).map(|(a, b)| (b - a) / duration);
@@ -142,12 +156,17 @@ impl Candidates {
         } else {
             self.speeds.resize(from.len(), Vector3::zeros());
         }
+        let before = if duration > 0.0 { 0.0 } else { self.back };
+        self.begin = stretch.times[0] - before;
+        self.base.clear();
+        let starts = from.iter().zip(&self.speeds).map(|(x, v)| x - v * before);
+        self.base.extend(starts);
         let mean = self.speeds.iter().sum::<Vector3<f64>>() / from.len().max(1) as f64;
         let speeds = self.speeds.iter().map(|v| (v - mean).norm_squared());
         let fastest = speeds.fold(0.0, f64::max).sqrt();
         let thickest = surface.thickest();
-        let horizon = (self.shares[1] * thickest / fastest).min(LONGEST);
-        self.horizon = horizon.max(duration);
+        let horizon = (self.shares[1] * thickest / fastest).min(HOLDING * self.held);
+        self.horizon = horizon.min(LONGEST).max(stretch.times[1] - self.begin);
         self.measure(stretch);
         self.margin = (self.shares[0] * thickest).max(2.0 * self.farthest);
         self.parallel = threads(surface.particles()) > 1;

@@ -74,25 +74,28 @@ pub(super) struct Course<'a> {
     pub reach: f64,
 }
 
-/// Box along the axes.
+/// Boxes along the axes at the beginning of the courses and at their end.
 #[derive(Clone, Copy)]
 struct Bounds {
-    low: Vector3<f64>,
-    high: Vector3<f64>,
+    low: [Vector3<f64>; 2],
+    high: [Vector3<f64>; 2],
 }
 
 impl Bounds {
-    fn with(self, other: Self) -> Self {
+    fn with(&self, other: &Self) -> Self {
         Self {
-            low: self.low.inf(&other.low),
-            high: self.high.sup(&other.high),
+            low: [0, 1].map(|t| self.low[t].inf(&other.low[t])),
+            high: [0, 1].map(|t| self.high[t].sup(&other.high[t])),
         }
     }
 
-    /// Squared distance of two boxes.
+    /// Bound on the squared distance of what is within: along an axis, a gap between points on
+    /// straight courses is least at an end.
     fn apart(&self, other: &Self) -> f64 {
         let along = |k: usize| {
-            let gap = (other.low[k] - self.high[k]).max(self.low[k] - other.high[k]);
+            let after = |t: usize| other.low[t][k] - self.high[t][k];
+            let before = |t: usize| self.low[t][k] - other.high[t][k];
+            let gap = after(0).min(after(1)).max(before(0).min(before(1)));
             gap.max(0.0)
         };
         let [x, y, z] = [along(0), along(1), along(2)];
@@ -189,6 +192,9 @@ impl Way<'_> {
         let reach = self.course.reach + self.surface.thickest();
         let squared = reach * reach;
         let [(first, first_tree), (second, second_tree)] = sides;
+        if first_tree.items[s].apart(&second_tree.items[t]) >= squared {
+            return;
+        }
         for ([(a, at), (b, bt)], [k, l]) in [(sides, [s, t]), ([sides[1], sides[0]], [t, s])] {
             if !b.is_triangle(l) {
                 continue;
@@ -285,23 +291,26 @@ impl Tree {
             let end = begin + (course.speeds[i as usize] - course.mean) * course.horizon;
             let radius = surface.radius(i);
             Bounds {
-                low: begin.inf(&end).add_scalar(-radius),
-                high: begin.sup(&end).add_scalar(radius),
+                low: [begin, end].map(|x| x.add_scalar(-radius)),
+                high: [begin, end].map(|x| x.add_scalar(radius)),
             }
         };
         let first = self.items.len() != items.corners.len();
         self.vertices.clear();
         self.vertices.extend(items.vertices.iter().map(|i| around(*i)));
         self.edges.clear();
-        let edges = items.edges.iter().map(|[i, j]| around(*i).with(around(*j)));
+        let edges = items.edges.iter().map(|[i, j]| around(*i).with(&around(*j)));
         self.edges.extend(edges);
         self.items.clear();
         let corners = items.corners.iter();
-        let boxes = corners.map(|[i, j, k]| around(*i).with(around(*j)).with(around(*k)));
+        let boxes = corners.map(|[i, j, k]| around(*i).with(&around(*j)).with(&around(*k)));
         self.items.extend(boxes);
         let half = 0.5 * (course.reach + surface.thickest());
         let corner = |v: Vector3<f64>, by: f64| Vector::new(v.x + by, v.y + by, v.z + by);
-        let leaf = |b: &Bounds| Aabb::new(corner(b.low, -half), corner(b.high, half));
+        let leaf = |b: &Bounds| {
+            let [low, high] = [b.low[0].inf(&b.low[1]), b.high[0].sup(&b.high[1])];
+            Aabb::new(corner(low, -half), corner(high, half))
+        };
         if first {
             let leaves: Vec<_> = self.items.iter().map(leaf).collect();
             self.tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
