@@ -28,8 +28,33 @@ struct Summary {
     largest_stretch: Option<f64>,
     /// Number of springs that broke.
     torn: usize,
+    /// What the guard of surfaces did; none where surfaces do not touch.
+    contact: Option<Contact>,
     /// Real time (s).
     wall_time: f64,
+}
+
+/// What the guard of surfaces did.
+#[derive(Serialize)]
+struct Contact {
+    /// Number of impulses.
+    impulses: usize,
+    /// Number of vertices whose way was cut.
+    cuts: usize,
+    /// Momentum that cuts took (N s).
+    momentum_lost: f64,
+}
+
+impl Contact {
+    fn of(simulation: &Simulation) -> Option<Self> {
+        simulation.model().network()?.contact_layer()?;
+        let guarded = simulation.guarded();
+        Some(Self {
+            impulses: guarded.impulses,
+            cuts: guarded.cuts,
+            momentum_lost: guarded.lost,
+        })
+    }
 }
 
 /// Total energy (J).
@@ -88,6 +113,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     }
     interrupt::listen();
     let bar = Bar::new(options.run.end()?);
+    let mut crossed = check(&simulation, options.check);
     for (k, time) in frames.times().enumerate() {
         let mut before = simulation.time();
         let reached = progress::march(&mut simulation, time, |simulation| {
@@ -96,7 +122,10 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
             }
             bar.advance(simulation.time() - before);
             before = simulation.time();
-            interrupt::go_on()
+            if crossed.is_ok() {
+                crossed = check(simulation, options.check);
+            }
+            crossed.is_ok() && interrupt::go_on()
         });
         if reached != Ok(true) {
             bar.clear();
@@ -104,6 +133,10 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         let kept = || kept(&options.output, k, frames.count);
         match reached {
             Ok(true) => {}
+            Ok(false) if crossed.is_err() => {
+                let why = crossed.err().unwrap_or_default();
+                return Err(Failure::run(format!("{why}; {}", kept())));
+            }
             Ok(false) => return Err(Failure::Interrupted(format!("interrupted: {}", kept()))),
             Err(error) if k > 0 => return Err(Failure::run(format!("{error}; {}", kept()))),
             Err(error) => return Err(Failure::run(error)),
@@ -133,6 +166,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         energy: extremes.energy,
         largest_stretch: extremes.stretch,
         torn: simulation.tears(),
+        contact: Contact::of(&simulation),
         wall_time: begun.elapsed().as_secs_f64(),
     };
     let text = serde_json::to_string_pretty(&summary).map_err(Failure::run)? + "\n";
@@ -141,6 +175,16 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     } else {
         output::write(path, text.as_bytes())
     }
+}
+
+/// `Ok` if no surfaces pass through one another, or none shall be looked for; else what does.
+fn check(simulation: &Simulation, wanted: bool) -> Result<(), String> {
+    let Some(network) = simulation.model().network().filter(|_| wanted) else {
+        return Ok(());
+    };
+    let state = simulation.state();
+    let apart = network.check_apart(simulation.time(), &state[..state.len() / 2]);
+    apart.map_err(|why| format!("at t = {:.4} s {why}", simulation.time()))
 }
 
 /// What an interrupted run has written: a file is complete or absent, and so is each file of a

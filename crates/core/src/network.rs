@@ -6,6 +6,7 @@ mod layer;
 mod mechanics;
 mod obstacles;
 mod springs;
+mod strain;
 mod tearing;
 
 use std::ops::Range;
@@ -14,7 +15,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::constraints::Constraints;
-use crate::contact::Obstacle;
+use crate::contact::{Obstacle, StrainLimit};
 use crate::elements::force::check_particle;
 use crate::elements::{Airflow, Drag, Element, Gravity, Sheet, Wind};
 use crate::energy::Energy;
@@ -51,6 +52,10 @@ pub struct Network {
     tear: Option<f64>,
     /// Pairs of particles between which springs have broken, in order.
     torn: Vec<[usize; 2]>,
+    /// Particles among which springs are limited, and the limits of length over rest length.
+    strain_limits: Vec<(Range<usize>, f64)>,
+    /// The springs that are limited, unless springs or pins have changed since they were listed.
+    strained: Option<StrainLimit>,
     obstacles: Vec<Obstacle>,
     /// What can touch, if surfaces do.
     touch: Option<Touch>,
@@ -83,6 +88,8 @@ impl Network {
             triangles: Arc::default(),
             tear: None,
             torn: vec![],
+            strain_limits: vec![],
+            strained: None,
             masses,
             obstacles: vec![],
             touch: None,
@@ -132,6 +139,7 @@ impl Network {
     }
 
     fn insert(&mut self, element: Element) {
+        self.strained = None;
         let rank = element.rank();
         let place = self.elements.partition_point(|e| e.rank() <= rank);
         self.elements.insert(place, element);
@@ -166,7 +174,10 @@ impl Network {
         self.check_particle(i)?;
         match self.pins.binary_search_by_key(&i, |pin| pin.particle) {
             Ok(k) => self.pins[k].path = path,
-            Err(k) => self.pins.insert(k, Pin { particle: i, path }),
+            Err(k) => {
+                self.pins.insert(k, Pin { particle: i, path });
+                self.strained = None;
+            }
         }
         self.inverse_masses[i] = 0.0;
         Ok(())
@@ -176,6 +187,7 @@ impl Network {
     pub fn unpin(&mut self, i: usize) {
         if let Ok(k) = self.pins.binary_search_by_key(&i, |pin| pin.particle) {
             self.pins.remove(k);
+            self.strained = None;
             self.inverse_masses[i] = 1.0 / self.masses[i];
         }
     }
@@ -322,6 +334,7 @@ impl Network {
             );
         }
         list(self.tear.is_some(), "tearing");
+        list(!self.strain_limits.is_empty(), "strain limit");
         names
     }
 

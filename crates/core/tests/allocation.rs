@@ -143,3 +143,20 @@ fn no_step_after_an_adjustment_allocates() {
         assert_eq!(count, 0, "{}", method.name);
     }
 }
+
+/// Springs whose strain is limited are listed in the first step, and no later step allocates.
+#[test]
+fn no_step_that_limits_strain_allocates_but_the_first() {
+    for name in ["verlet", "implicit", "dopri5"] {
+        let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
+        if let Model::Network(network) = &mut scene.model {
+            let all = 0..network.particles();
+            network.set_strain_limit(all, Some(1.05)).unwrap();
+        }
+        let method = integrators::find(name).unwrap();
+        let mut run = Simulation::new(scene, method, method.default_control).unwrap();
+        run.take_steps(1).unwrap();
+        let count = allocations(|| run.take_steps(100).unwrap());
+        assert_eq!(count, 0, "{name}");
+    }
+}

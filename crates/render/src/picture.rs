@@ -4,9 +4,12 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::camera::Camera;
 
-/// The number of looks of a surface: cloth in four colours, then jelly in four. The shader has the
-/// colours.
-pub const LOOKS: usize = 8;
+/// The number of looks of a surface: cloth in four colours, jelly in four, then [`STEEL_LOOK`]. The
+/// shader has the colours.
+pub const LOOKS: usize = 9;
+
+/// The look of a surface of steel.
+pub const STEEL_LOOK: usize = 8;
 
 /// The way in which surfaces are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -28,14 +28,16 @@ const SHADE = vec3(0.56, 0.60, 0.655);
 const INK = vec3(0.035, 0.05, 0.09);
 
 // The colours of surfaces by their look, outside and inside: cloth in red, teal, amber and violet,
-// and jelly in green, orange, berry and blue.
+// jelly in green, orange, berry and blue, and steel.
 const OUTSIDE = array(
     vec3(0.62, 0.045, 0.06), vec3(0.01, 0.30, 0.34), vec3(0.72, 0.30, 0.02), vec3(0.24, 0.09, 0.46),
     vec3(0.05, 0.42, 0.16), vec3(0.82, 0.22, 0.02), vec3(0.50, 0.03, 0.22), vec3(0.03, 0.20, 0.55),
+    vec3(0.30, 0.36, 0.44),
 );
 const INSIDE = array(
     vec3(0.50, 0.17, 0.05), vec3(0.10, 0.36, 0.22), vec3(0.58, 0.42, 0.12), vec3(0.40, 0.14, 0.36),
     vec3(0.12, 0.50, 0.24), vec3(0.90, 0.36, 0.08), vec3(0.62, 0.10, 0.32), vec3(0.10, 0.32, 0.66),
+    vec3(0.30, 0.36, 0.44),
 );
 
 // ---- Background: paper, darker towards the corners, drawn where nothing else is.
@@ -172,6 +174,7 @@ fn jelly(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
     var outside = OUTSIDE;
     var inside = INSIDE;
     let color = select(inside[in.look], outside[in.look], front);
+    if in.look == 8u { return vec4(lit(color, n, in.world, 0.5, 0.25), 1.0); }
     if in.look >= 4u { return vec4(jelly(color, n, in.world), 1.0); }
     return vec4(lit(color, n, in.world, 0.07, 0.35), 1.0);
 }

@@ -2,11 +2,12 @@
 //! begins at 0 again: paths and gusts are shifted in time.
 
 use a3_core::contact::Shape;
-use a3_core::{Checkpoint, Model, Network, Path};
+use a3_core::{Checkpoint, Model, Network, Path, Pose, rotation};
+use nalgebra::{Rotation3, UnitQuaternion};
 
 use crate::description::{
     BucklingSpec, CapsuleSpec, Description, Floor, FloorSpec, Pin, Shift, Sine, SphereSpec,
-    SpringSpec, State, Triple,
+    SpringSpec, State, Triple, Turn,
 };
 
 impl Description {
@@ -102,6 +103,7 @@ impl Description {
             wind.ahead += t;
         }
         self.write_obstacles(network, t);
+        self.write_strain_limits(network);
         for pins in self.body_pins() {
             pins.clear();
         }
@@ -114,10 +116,13 @@ impl Description {
         let mut spheres = self.sphere.iter_mut();
         let mut boxes = self.boxes.iter_mut();
         let mut capsules = self.capsule.iter_mut();
+        let mut solids = self.obstacle.iter_mut();
         self.floor = None;
         for obstacle in network.obstacles() {
-            let here = obstacle.path.at(t).position;
-            let (sine, shift) = motion(&obstacle.path, t);
+            let pose = obstacle.at(t);
+            let here = pose.place.position;
+            let Motion { sine, shift, about } = motion(&obstacle.path, t);
+            let turn = obstacle.turn.and_then(|turn| going_on(turn, about, t));
             let friction = obstacle.friction;
             match &obstacle.shape {
                 &Shape::Sphere { radius } => {
@@ -129,30 +134,42 @@ impl Description {
                             thickness: described.thickness,
                             sine,
                             shift,
+                            turn,
                         };
                     }
                 }
                 Shape::Box { .. } => {
                     if let Some(described) = boxes.next() {
                         described.center = here.into();
+                        described.rotation = turned(described.rotation, &pose);
                         described.friction = friction;
                         (described.sine, described.shift) = (sine, shift);
+                        described.turn = turn;
                     }
                 }
                 &Shape::Capsule { ends, radius } => {
                     if let Some(described) = capsules.next() {
                         *described = CapsuleSpec {
-                            from: (here + ends[0]).into(),
-                            to: (here + ends[1]).into(),
+                            from: pose.of(ends[0]).position.into(),
+                            to: pose.of(ends[1]).position.into(),
                             radius,
                             friction,
                             thickness: described.thickness,
                             sine,
                             shift,
+                            turn,
                         };
                     }
                 }
-                Shape::Mesh(_) => {}
+                Shape::Mesh(_) => {
+                    if let Some(described) = solids.next() {
+                        described.at = Some(here.into());
+                        described.rotation = turned(described.rotation, &pose);
+                        described.friction = friction;
+                        (described.sine, described.shift) = (sine, shift);
+                        described.turn = turn;
+                    }
+                }
                 Shape::Floor if friction == 0.0 && obstacle.thickness == 0.0 => {
                     self.floor = Some(Floor::Height(here.y));
                 }
@@ -166,6 +183,22 @@ impl Description {
                     }));
                 }
             }
+        }
+    }
+
+    /// Describes the limits of strain as they are: those of the bodies that had one, or else, if
+    /// limits were set since, those of the cloths.
+    fn write_strain_limits(&mut self, network: &Network) {
+        let cloths = self.cloth.iter_mut().map(|body| &mut body.strain_limit);
+        let jellies = self.jelly.iter_mut().map(|body| &mut body.strain_limit);
+        let meshes = self.mesh.iter_mut().map(|body| &mut body.strain_limit);
+        let mut bodies: Vec<_> = cloths.chain(jellies).chain(meshes).collect();
+        if bodies.iter().any(|limit| limit.is_some()) {
+            bodies.retain(|limit| limit.is_some());
+        }
+        let mut limits = network.strain_limits().iter().map(|(_, limit)| *limit);
+        for body in bodies {
+            *body = limits.next();
         }
     }
 
@@ -189,53 +222,114 @@ impl Description {
 fn pins(now: &Checkpoint) -> Vec<Pin> {
     let mut pins: Vec<Pin> = vec![];
     for &(i, path) in &now.pins {
-        let (sine, shift) = match now.grabbed.filter(|grabbed| grabbed.particle == i) {
-            None => motion(&path, now.time()),
-            Some(grabbed) if grabbed.was_pinned => (None, None),
-            Some(_) => continue,
+        let Motion { sine, shift, about } =
+            match now.grabbed.filter(|grabbed| grabbed.particle == i) {
+                None => motion(&path, now.time()),
+                Some(grabbed) if grabbed.was_pinned => Motion::default(),
+                Some(_) => continue,
+            };
+        let turn = match path {
+            Path::Turn { turn, .. } if about.is_some() => going_on(turn, about, now.time()),
+            _ => None,
         };
-        match pins
-            .iter_mut()
-            .find(|pin| pin.sine == sine && pin.shift == shift)
-        {
+        let pin = Pin {
+            sine,
+            shift,
+            turn,
+            ..Pin::default()
+        };
+        let alike = |other: &&mut Pin| {
+            (&other.sine, &other.shift, &other.turn) == (&pin.sine, &pin.shift, &pin.turn)
+        };
+        match pins.iter_mut().find(alike) {
             Some(pin) => pin.particles.push(i),
             None => pins.push(Pin {
                 particles: vec![i],
-                sine,
-                shift,
-                ..Pin::default()
+                ..pin
             }),
         }
     }
     pins
 }
 
-/// Continuation of a path from time t (s), which becomes time 0.
-fn motion(path: &Path, t: f64) -> (Option<Sine>, Option<Shift>) {
+/// Continuation of a path from a time, which becomes time 0.
+#[derive(Default)]
+struct Motion {
+    sine: Option<Sine>,
+    shift: Option<Shift>,
+    /// Point of the axis, where the path turns about one (m).
+    about: Option<Triple>,
+}
+
+/// Continuation of a path from time t (s).
+fn motion(path: &Path, t: f64) -> Motion {
     match *path {
         Path::Sine {
             center,
             amplitude,
             rate,
             phase,
-        } => {
-            let sine = Sine {
+        } => Motion {
+            sine: Some(Sine {
                 amplitude: amplitude.into(),
                 rate,
                 phase: rate * t + phase,
                 center: Some(center.into()),
-            };
-            (Some(sine), None)
-        }
-        Path::Line { to, start, end, .. } if t < end => {
-            let by: Triple = (to - path.at(t).position).into();
-            let shift = Shift {
-                by,
+            }),
+            ..Motion::default()
+        },
+        Path::Line { to, start, end, .. } if t < end => Motion {
+            shift: Some(Shift {
+                by: (to - path.at(t).position).into(),
                 start: (start - t).max(0.0),
                 end: end - t,
+            }),
+            ..Motion::default()
+        },
+        Path::Still(_) | Path::Line { .. } => Motion::default(),
+        Path::Turn {
+            from,
+            to,
+            start,
+            end,
+            ..
+        } => {
+            let axis = Path::Line {
+                from,
+                to,
+                start,
+                end,
             };
-            (None, Some(shift))
+            Motion {
+                about: Some(axis.at(t).position.into()),
+                ..motion(&axis, t)
+            }
         }
-        Path::Still(_) | Path::Line { .. } | Path::Turn { .. } => (None, None),
     }
+}
+
+/// Continuation of a turn from time t (s), if it has not ended.
+fn going_on(turn: a3_core::Turn, about: Option<Triple>, t: f64) -> Option<Turn> {
+    turn.end.is_none_or(|end| t < end).then(|| Turn {
+        about,
+        axis: turn.axis.into(),
+        rate: Some(turn.rate),
+        angle: None,
+        start: (turn.start - t).max(0.0),
+        end: turn.end.map(|end| end - t),
+    })
+}
+
+/// Rotation vector of a body that had this one before it turned to a pose.
+fn turned(before: Option<Triple>, pose: &Pose) -> Option<Triple> {
+    let Some(orientation) = pose.orientation else {
+        return before;
+    };
+    let before = rotation(before.unwrap_or_default().into());
+    let now = Rotation3::from_matrix_unchecked(orientation.rotation * before);
+    Some(
+        UnitQuaternion::from_rotation_matrix(&now)
+            .scaled_axis()
+            .into(),
+    )
 }

@@ -96,7 +96,7 @@ pub fn pick(
             pointer,
             aspect,
             c,
-            show::DRAWN_RADIUS * radius as f32,
+            show::drawn_radius(network) * radius as f32,
         )?;
         let (_, depth) = camera.project(surface, aspect)?;
         Some((depth, Target::Obstacle(k), at, distance))

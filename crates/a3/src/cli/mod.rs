@@ -157,6 +157,10 @@ pub struct Simulate {
     /// its largest drift, largest stretch, steps, evaluations, real time
     #[arg(long, value_name = "FILE.json")]
     pub summary: Option<PathBuf>,
+    /// Fail if surfaces pass through one another: every edge is checked against every triangle,
+    /// exactly, sixty times a simulated second
+    #[arg(long)]
+    pub check: bool,
 }
 
 #[derive(Args)]

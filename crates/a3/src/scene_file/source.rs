@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use a3_core::{Grid, Method, Scene, integrators};
+use a3_core::contact::Shape;
+use a3_core::{Grid, Method, Network, Scene, Vector3, integrators};
 use a3_scenes::{Description, Setup};
 
 use super::files::{beside, read_text};
@@ -94,13 +95,22 @@ impl Source {
         &self.text
     }
 
-    /// A text by which the scene differs from others: its name, and for a file a hash of its text
-    /// and its state, which depends on its meshes.
+    /// A text by which the scene differs from others: its name, and for a file a hash of its text,
+    /// and of its state and the points of its obstacles, which depend on its meshes.
     pub fn fingerprint(&self, scene: &Scene) -> String {
         if self.path.is_none() {
             return scene.name.clone();
         }
-        let state = scene.state.iter().flat_map(|y| y.to_le_bytes());
+        let network = scene.model.network().into_iter();
+        let meshes = network.flat_map(Network::obstacles).filter_map(|obstacle| {
+            let Shape::Mesh(mesh) = &obstacle.shape else {
+                return None;
+            };
+            Some(mesh.points())
+        });
+        let points = meshes.flatten().flat_map(Vector3::as_slice);
+        let state = scene.state.iter().chain(points);
+        let state = state.flat_map(|y| y.to_le_bytes());
         // FNV-1a, which is the same on every platform.
         let hash = self
             .text
@@ -114,8 +124,10 @@ impl Source {
 
     /// The files on which the scene depends: its own and those of its meshes.
     pub fn files(&self) -> Vec<PathBuf> {
-        let meshes = self.description.mesh.iter();
-        let meshes = meshes.filter_map(|mesh| beside(self.path.as_deref(), &mesh.file).ok());
+        let Description { mesh, obstacle, .. } = &*self.description;
+        let bodies = mesh.iter().map(|mesh| &mesh.file);
+        let names = bodies.chain(obstacle.iter().map(|obstacle| &obstacle.file));
+        let meshes = names.filter_map(|name| beside(self.path.as_deref(), name).ok());
         self.path.iter().cloned().chain(meshes).collect()
     }
 }

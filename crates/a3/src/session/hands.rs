@@ -136,7 +136,7 @@ mod tests {
         let mut session = session(&["r", "0.005", "--scene", "mit-sphere"]);
         let place = |session: &Session| {
             let run = session.first();
-            let sphere = run.model().network().unwrap().obstacles()[0];
+            let sphere = run.model().network().unwrap().obstacles()[0].clone();
             sphere.path.at(run.time()).position
         };
         let before = place(&session);

@@ -11,7 +11,7 @@ mod vectors;
 mod view;
 mod wires;
 
-pub use obstacles::DRAWN_RADIUS;
+pub use obstacles::drawn_radius;
 pub use parts::whole_triangles;
 pub use picture::Show;
 pub use springs::{kind_name, list_springs_of, springs_of};

@@ -1,14 +1,24 @@
-//! Obstacles as balls and solids.
+//! Obstacles as balls, solids and triangles.
 
-use a3_core::contact::Shape;
+use std::f64::consts::TAU;
+
+use a3_core::contact::{ClosedMesh, Obstacle, Shape};
 use a3_core::{Network, Vector3};
-use a3_render::{Ball, Solid};
+use a3_render::{Ball, Line, STEEL_LOOK, Solid};
 
-use super::colours::STEEL;
+use super::colours::{INK, STEEL};
 use super::vectors::{perpendicular, to_f32};
 
-/// Drawn radius of a sphere or a capsule, as a share of its radius.
-pub const DRAWN_RADIUS: f32 = 0.965;
+/// Drawn radius of a sphere or a capsule, as a share of its radius: a little smaller where only
+/// particles stay out of obstacles, so that the flat triangles between them stay outside too, and
+/// full where surfaces touch.
+pub fn drawn_radius(network: &Network) -> f32 {
+    if network.contact_layer().is_some() {
+        1.0
+    } else {
+        0.965
+    }
+}
 
 /// Draws the obstacles where they are at `time` (s), and returns the height of the floor (m) if
 /// there is one.
@@ -18,12 +28,12 @@ pub fn draw(
     balls: &mut Vec<Ball>,
     solids: &mut Vec<Solid>,
 ) -> Option<f32> {
-    // Obstacles are drawn a little smaller than they are, so that the flat triangles between the
-    // particles on them stay outside.
     let mut floor = None;
-    let inside = |radius: f64| DRAWN_RADIUS * radius as f32;
+    let share = drawn_radius(network);
+    let inside = |radius: f64| share * radius as f32;
     for obstacle in network.obstacles() {
-        let place = obstacle.path.at(time).position;
+        let pose = obstacle.at(time);
+        let place = pose.place.position;
         match &obstacle.shape {
             &Shape::Sphere { radius } => balls.push(Ball {
                 center: to_f32(place),
@@ -32,11 +42,13 @@ pub fn draw(
             }),
             &Shape::Box { half_extents, axes } => {
                 let least = half_extents.min();
-                let (gap, round) = (0.02 * least, 0.06 * least);
+                let gap = if share < 1.0 { 0.02 * least } else { 0.0 };
+                let round = 0.06 * least;
                 solids.push(Solid {
                     center: to_f32(place),
                     radius: round as f32,
-                    axes: [0, 1, 2].map(|k| axis(axes[k], half_extents[k] - gap - round)),
+                    axes: [0, 1, 2]
+                        .map(|k| axis(pose.outwards(axes[k]), half_extents[k] - gap - round)),
                     color: STEEL,
                 });
             }
@@ -44,10 +56,11 @@ pub fn draw(
                 ends: [a, b],
                 radius,
             } => {
-                let (along, side) = (b - a, perpendicular(b - a));
+                let along = pose.outwards(b - a);
+                let side = perpendicular(along);
                 let y = along.try_normalize(0.0).unwrap_or(Vector3::y());
                 solids.push(Solid {
-                    center: to_f32(place + 0.5 * (a + b)),
+                    center: to_f32(pose.of(0.5 * (a + b)).position),
                     radius: inside(radius),
                     axes: [
                         axis(side, 0.0),
@@ -57,11 +70,62 @@ pub fn draw(
                     color: STEEL,
                 });
             }
+            // Meshes are triangles of the picture.
             Shape::Mesh(_) => {}
             Shape::Floor => floor = Some(place.y as f32),
         }
     }
     floor
+}
+
+/// Obstacles that are meshes.
+pub fn meshes(network: &Network) -> impl Iterator<Item = (&ClosedMesh, &Obstacle)> {
+    let obstacles = network.obstacles().iter();
+    obstacles.filter_map(|obstacle| match &obstacle.shape {
+        Shape::Mesh(mesh) => Some((&**mesh, obstacle)),
+        _ => None,
+    })
+}
+
+/// Adds the points of meshes where they are at `time` (s), with the look of steel.
+pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
+    let share = f64::from(drawn_radius(network));
+    for (mesh, obstacle) in meshes(network) {
+        let pose = obstacle.at(time);
+        let corners = mesh.points();
+        let low = corners.iter().fold(corners[0], |low, point| low.inf(point));
+        let high = corners.iter().fold(low, |high, point| high.sup(point));
+        let inwards = (1.0 - share) * 0.5 * (high - low).min();
+        points.extend(corners.iter().zip(mesh.normals()).map(|(point, normal)| {
+            let [x, y, z] = to_f32(pose.of(point - normal * inwards).position);
+            [x, y, z, STEEL_LOOK as f32]
+        }));
+    }
+}
+
+/// Three great circles through the poles of each sphere that turns, where they are at `time` (s).
+pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
+    const CORNERS: usize = 48;
+    let share = f64::from(drawn_radius(network));
+    let turning = network.obstacles().iter().filter_map(move |obstacle| {
+        match (&obstacle.shape, obstacle.turn) {
+            (Shape::Sphere { radius }, Some(turn)) => Some((*radius, turn.axis, obstacle.at(time))),
+            _ => None,
+        }
+    });
+    turning.flat_map(move |(radius, axis, pose)| {
+        let radius = share * radius * 1.002;
+        let side = perpendicular(axis);
+        (0..3).flat_map(move |circle| {
+            let (sin, cos) = (TAU / 6.0 * f64::from(circle)).sin_cos();
+            let across = side * cos + axis.cross(&side) * sin;
+            let corner = move |k: usize| {
+                let (sin, cos) = (TAU / CORNERS as f64 * k as f64).sin_cos();
+                to_f32(pose.of((axis * cos + across * sin) * radius).position)
+            };
+            (0..CORNERS).map(move |k| Line::new(corner(k), corner(k + 1), 1.6, INK))
+        })
+    })
 }
 
 /// Half axis of a solid: its direction and its length.

@@ -4,8 +4,10 @@
 use std::sync::Arc;
 
 use a3_core::{Network, Simulation, Spring, SpringKind};
-use a3_render::{LOOKS, Topology};
+use a3_render::{STEEL_LOOK, Topology};
 use a3_scenes::{Presentation, Surface};
+
+use super::obstacles;
 
 /// Parts that change only with the scene or when something tears.
 #[derive(Default)]
@@ -52,8 +54,8 @@ impl Parts {
     }
 }
 
-/// A look for each body: in the first half of the looks for cloth, in the second for jelly, which
-/// is closed.
+/// A look for each body: in the first half of the looks before steel for cloth, in the second for
+/// jelly, which is closed.
 fn looks(surface: &Surface) -> Vec<f32> {
     let mut edges: Vec<_> = surface
         .triangles
@@ -67,7 +69,7 @@ fn looks(surface: &Surface) -> Vec<f32> {
         .filter(|triangles| triangles.len() == 1)
         .map(|border| border[0].0 as usize)
         .collect();
-    let (mut start, half) = (0, LOOKS / 2);
+    let (mut start, half) = (0, STEEL_LOOK / 2);
     let look = |(k, &end): (usize, &usize)| {
         let from = borders.partition_point(|i| *i < start);
         let closed = borders.get(from).is_none_or(|i| *i >= end);
@@ -90,16 +92,28 @@ fn springs(simulation: &Simulation) -> impl Iterator<Item = Spring> {
 }
 
 /// Triangles and wires, which stay the same from frame to frame until something tears. Parts
-/// without a surface are drawn by balls and coils instead.
+/// without a surface are drawn by balls and coils instead. Meshes of obstacles come last.
 pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
-    Topology {
+    let mut topology = Topology {
         points: simulation.particles(),
         triangles: whole_triangles(simulation).collect(),
         wires: springs(simulation)
             .filter(|s| s.kind == SpringKind::Structural && body(surface, s).is_some())
             .map(|s| [s.i as u32, s.j as u32])
             .collect(),
+    };
+    let network = simulation.model().network();
+    for (mesh, _) in network.into_iter().flat_map(obstacles::meshes) {
+        let first = topology.points as u32;
+        let triangles = mesh.triangles().iter();
+        topology
+            .triangles
+            .extend(triangles.map(|t| t.map(|i| first + i)));
+        let edges = mesh.edges().iter();
+        topology.wires.extend(edges.map(|e| e.map(|i| first + i)));
+        topology.points += mesh.points().len();
     }
+    topology
 }
 
 /// The triangles of the surface that are not torn.

@@ -136,6 +136,8 @@ impl Show {
         if let Some(network) = simulation.model().network() {
             let time = simulation.time();
             self.floor = obstacles::draw(network, time, &mut self.balls, &mut self.solids);
+            obstacles::add_points(network, time, &mut self.points);
+            self.lines.extend(obstacles::meridians(network, time));
         }
         if let Some(i) = self.springs_of {
             self.draw_springs_of(simulation, i);

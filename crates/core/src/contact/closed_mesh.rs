@@ -19,16 +19,17 @@ pub struct ClosedMesh {
     points: Vec<Vector3<f64>>,
     triangles: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
-    /// Outward normals of each triangle: its own, those of its corners, and those of the sides
-    /// opposite to them; those of corners and sides have any length.
-    normals: Vec<Normals>,
+    /// Outward unit normals of the points, or zero where there is none.
+    normals: Vec<Vector3<f64>>,
+    /// Outward normals of the triangles, and those of the sides opposite to their corners, of any
+    /// length.
+    faces: Vec<Face>,
     tree: Bvh,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Normals {
-    own: Vector3<f64>,
-    corners: [Vector3<f64>; 3],
+struct Face {
+    normal: Vector3<f64>,
     sides: [Vector3<f64>; 3],
 }
 
@@ -85,8 +86,10 @@ impl ClosedMesh {
         if volume == 0.0 {
             return invalid("a closed mesh must enclose a volume".into());
         }
+        let (normals, faces) = normals(&points, &triangles);
         Ok(Self {
-            normals: normals(&points, &triangles),
+            normals,
+            faces,
             tree: tree(&points, &triangles),
             points,
             triangles,
@@ -104,6 +107,13 @@ impl ClosedMesh {
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
+    }
+
+    /// Outward normals of the points: unit vectors, the mean of the normals of the triangles around
+    /// a point with their angles there as weights, or zero where they cancel.
+    #[must_use]
+    pub fn normals(&self) -> &[Vector3<f64>] {
+        &self.normals
     }
 
     /// Ends of the edges, the lower number first, in order.
@@ -127,24 +137,23 @@ impl ClosedMesh {
             Some(closest(PairKind::VertexTriangle, &[d, a, b, c]))
         };
         let (k, nearest) = self.tree.find_best(f64::MAX, of_box, of_triangle)?;
-        let normal = self.normals[k as usize].at(&nearest.weights);
+        let normal = self.normal(k as usize, &nearest.weights);
         (normal.dot(&nearest.offset) < 0.0).then(|| Nearest {
             point: d - nearest.offset,
             normal: normal.normalize(),
         })
     }
-}
 
-impl Normals {
-    /// Normal at the point with these weights, of which the last three are those of the corners.
-    fn at(&self, weights: &[f64; 4]) -> Vector3<f64> {
+    /// Normal at the point of triangle k with these weights, of which the last three are those of
+    /// its corners.
+    fn normal(&self, k: usize, weights: &[f64; 4]) -> Vector3<f64> {
         let zero = |k: usize| weights[k + 1] == 0.0;
         let corner = (0..3).find(|k| zero((k + 1) % 3) && zero((k + 2) % 3));
         let side = (0..3).find(|k| zero(*k));
         match (corner, side) {
-            (Some(k), _) => self.corners[k],
-            (None, Some(k)) => self.sides[k],
-            (None, None) => self.own,
+            (Some(corner), _) => self.normals[self.triangles[k][corner] as usize],
+            (None, Some(side)) => self.faces[k].sides[side],
+            (None, None) => self.faces[k].normal,
         }
     }
 }
@@ -178,34 +187,35 @@ fn edges(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Result<Vec<[u32; 2]
     )))
 }
 
-/// Normals of all triangles.
-fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Vec<Normals> {
+/// Normals of the points, and those of the triangles and their sides.
+fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>>, Vec<Face>) {
     let mut corners = vec![Vector3::zeros(); points.len()];
     let mut sides: BTreeMap<[u32; 2], Vector3<f64>> = BTreeMap::new();
-    let side = |a: u32, b: u32| [a.min(b), a.max(b)];
-    let own: Vec<_> = triangles
-        .iter()
-        .map(|t| {
-            let at = t.map(|i| points[i as usize]);
-            let normal = (at[1] - at[0]).cross(&(at[2] - at[0]));
-            let normal = normal.try_normalize(0.0).unwrap_or_default();
-            for k in 0..3 {
-                let (next, last) = ((k + 1) % 3, (k + 2) % 3);
-                let (along, back) = (at[next] - at[k], at[last] - at[k]);
-                let angle = libm::atan2(along.cross(&back).norm(), along.dot(&back));
-                corners[t[k] as usize] += normal * angle;
-                *sides.entry(side(t[next], t[last])).or_default() += normal;
-            }
-            normal
-        })
-        .collect();
-    let all = triangles.iter().zip(own);
-    all.map(|(t, own)| Normals {
-        own,
-        corners: t.map(|i| corners[i as usize]),
-        sides: [0, 1, 2].map(|k| sides[&side(t[(k + 1) % 3], t[(k + 2) % 3])]),
-    })
-    .collect()
+    let side = |t: &[u32; 3], k: usize| {
+        let (a, b) = (t[(k + 1) % 3], t[(k + 2) % 3]);
+        [a.min(b), a.max(b)]
+    };
+    let mut own = vec![];
+    for t in triangles {
+        let at = t.map(|i| points[i as usize]);
+        let normal = (at[1] - at[0]).cross(&(at[2] - at[0]));
+        let normal = normal.try_normalize(0.0).unwrap_or_default();
+        for k in 0..3 {
+            let (along, back) = (at[(k + 1) % 3] - at[k], at[(k + 2) % 3] - at[k]);
+            let angle = libm::atan2(along.cross(&back).norm(), along.dot(&back));
+            corners[t[k] as usize] += normal * angle;
+            *sides.entry(side(t, k)).or_default() += normal;
+        }
+        own.push(normal);
+    }
+    for normal in &mut corners {
+        *normal = normal.try_normalize(0.0).unwrap_or_default();
+    }
+    let faces = triangles.iter().zip(own).map(|(t, normal)| Face {
+        normal,
+        sides: [0, 1, 2].map(|k| sides[&side(t, k)]),
+    });
+    (corners, faces.collect())
 }
 
 /// Tree of boxes around the triangles.

@@ -333,7 +333,7 @@ fn rub(
             let held = hold(slip, most);
             contact.apply(-held, inverse_masses, v);
             let impulse = held.norm() / contact.inverse_mass;
-            *left -= impulse;
+            *left = (*left - impulse).max(0.0);
             guarded.impulse += impulse;
             let displaced = across(contact.relative(moves));
             let back = if held == slip {

@@ -27,7 +27,7 @@ pub(super) struct Scratch {
     pub candidates: Candidates,
     pub motion: Motion,
     pub cuts: Cuts,
-    x: Vec<Vector3<f64>>,
+    pub x: Vec<Vector3<f64>>,
     v: Vec<Vector3<f64>>,
 }
 

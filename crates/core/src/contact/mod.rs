@@ -13,9 +13,11 @@
 
 mod advance;
 mod candidates;
+mod check;
 mod closed_mesh;
 mod closest;
 mod cut;
+mod exact;
 mod guard;
 mod layer;
 mod listing;
@@ -24,15 +26,19 @@ mod obstacle;
 mod repulsion;
 mod resolve;
 mod shape;
+mod strain;
 mod surface;
 
 pub use advance::time_of_impact;
+pub use check::Crossed;
 pub use closed_mesh::ClosedMesh;
 pub use closest::{Closest, PairKind, closest, weighted};
 pub use cut::Squeezed;
+pub use exact::{Crossing, crossings};
 pub use guard::Guarded;
 pub use layer::ContactLayer;
 pub use obstacle::Obstacle;
 pub use resolve::{Contact, Statistics, Step, resolve};
 pub use shape::{Shape, Simplices};
+pub use strain::{StrainLimit, StrainLimiter, Strained};
 pub use surface::{Skin, Surface};

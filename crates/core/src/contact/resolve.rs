@@ -69,6 +69,12 @@ impl Contact {
         }
     }
 
+    /// Remembers the state that a step begins with, whatever there is.
+    pub fn remember(&mut self, y0: &[f64]) {
+        self.y0.clear();
+        self.y0.extend_from_slice(y0);
+    }
+
     /// State that the step began with, as far as [`begin`](Self::begin) remembered it.
     #[must_use]
     pub fn y0(&self) -> &[f64] {
@@ -92,12 +98,6 @@ impl Contact {
         let y0 = &self.y0;
         self.last = resolve(obstacles, inverse_masses, &Step { t, h, y0 }, y1);
         self.last
-    }
-
-    /// Remembers the state that a step begins with, whatever there is.
-    pub fn begin_guard(&mut self, y0: &[f64]) {
-        self.y0.clear();
-        self.y0.extend_from_slice(y0);
     }
 
     /// Guards the surfaces of a step of h (s) from time t (s) to y1.
@@ -243,8 +243,14 @@ impl Met<'_> {
             if self.friction > 0.0 {
                 let slip = across(velocity, nearest.normal);
                 let outwards = nearest.normal * outwards.max(0.0);
-                let along = slip * self.kept(slip, -inwards);
-                set(v, n, i, own + outwards + along);
+                let kept = self.kept(slip, -inwards);
+                // What sticks moves as the point at which it was left.
+                let own = if kept > 0.0 {
+                    own
+                } else {
+                    self.velocity(vector(x, n, i) - c)
+                };
+                set(v, n, i, own + outwards + slip * kept);
             }
             statistics.contacts += 1;
             let change = vector(v, n, i) - own - velocity;

@@ -1,7 +1,7 @@
 //! Contact of a network's surfaces.
 
 use super::Network;
-use crate::contact::{ContactLayer, Skin, Surface};
+use crate::contact::{ContactLayer, Crossed, Skin, Surface};
 use crate::elements::Element;
 use crate::error::Error;
 
@@ -51,6 +51,33 @@ impl Network {
     #[must_use]
     pub fn contact_layer(&self) -> Option<&ContactLayer> {
         self.elements.iter().find_map(Element::contact_layer)
+    }
+
+    /// The surfaces that pass through one another at time t (s) at x (m), n x 3, also where nothing
+    /// keeps them from it, because surfaces do not touch.
+    #[must_use]
+    pub fn crossed(&self, t: f64, x: &[f64]) -> Vec<Crossed> {
+        if let Some(layer) = self.contact_layer() {
+            return layer.crossed(t, x);
+        }
+        let skins = vec![Skin::default(); self.particles()];
+        let surface = Surface::new(&skins, &self.triangles, &[], &self.obstacles, true);
+        ContactLayer::new(surface, self.obstacles.clone()).crossed(t, x)
+    }
+
+    /// `Ok` if no surfaces pass through one another at time t (s) at x (m), n x 3.
+    ///
+    /// # Errors
+    /// Some do: the error names the first of them.
+    pub fn check_apart(&self, t: f64, x: &[f64]) -> Result<(), Error> {
+        match &self.crossed(t, x)[..] {
+            [] => Ok(()),
+            [first] => Err(Error::Invalid(format!("{first}"))),
+            [first, more @ ..] => {
+                let more = more.len();
+                Err(Error::Invalid(format!("{first}, and so do {more} other pairs")))
+            }
+        }
     }
 
     /// Makes the contact of surfaces anew, of the triangles and obstacles that are there now.

@@ -9,6 +9,7 @@ use crate::spring::{Spring, SpringKind};
 impl Network {
     /// Changes the single springs.
     fn change_springs(&mut self, change: impl FnOnce(&mut Springs)) {
+        self.strained = None;
         for element in &mut self.elements {
             if let Element::Springs(springs) = element {
                 return change(springs);

@@ -14,13 +14,14 @@ impl Network {
     /// Springs of rest length 0 never break.
     ///
     /// # Errors
-    /// The limit is not a finite number above 1.
+    /// The limit is not a finite number above 1, or a limit of strain keeps springs below it.
     pub fn set_tear(&mut self, limit: Option<f64>) -> Result<(), Error> {
         if let Some(limit) = limit.filter(|limit| !limit.is_finite() || *limit <= 1.0) {
             return Err(Error::Invalid(format!(
                 "the stretch at which springs break must be a finite number above 1, such as 2, not {limit}"
             )));
         }
+        self.check_tear(limit)?;
         self.tear = limit;
         Ok(())
     }
@@ -107,6 +108,7 @@ impl Network {
     /// Removes the springs between particles where one has broken.
     pub(super) fn remove_torn(&mut self) {
         if !self.torn.is_empty() {
+            self.strained = None;
             for element in &mut self.elements {
                 element.force_mut().remove_springs(&self.torn);
             }

@@ -13,7 +13,7 @@ pub use stepper::Progress;
 
 use nalgebra::Vector3;
 
-use crate::contact::{Contact, Guarded};
+use crate::contact::{Contact, Guarded, StrainLimiter};
 use crate::control::Control;
 use crate::error::{BlowUp, Error};
 use crate::integrators::{Method, Work};
@@ -35,6 +35,7 @@ pub struct Simulation {
     steps: u64,
     work: Work,
     contact: Contact,
+    limiter: StrainLimiter,
     /// What the guard of surfaces did since the beginning.
     guarded: Guarded,
     swinging: bool,
@@ -73,6 +74,10 @@ impl Simulation {
                 "the state of a scene must be n x 3 numbers, not {dim}"
             )));
         }
+        if let Some(network) = model.network().filter(|n| n.contact_layer().is_some()) {
+            let apart = network.check_apart(0.0, &scene.state[..dim / 2]);
+            apart.map_err(|e| Error::Invalid(format!("surfaces cannot begin crossed: {e}")))?;
+        }
         let y = scene.state.clone();
         let (middle, radius) = bounds(&y[..3 * model.particles()]);
         let contact = Contact::new(dim);
@@ -88,6 +93,7 @@ impl Simulation {
             steps: 0,
             work: Work::default(),
             contact,
+            limiter: StrainLimiter::new(dim),
             guarded: Guarded::default(),
             swinging: false,
             swing_phase: 0.0,

@@ -3,7 +3,7 @@
 
 use super::blow_up::blow_up_by;
 use super::{Simulation, Stepper};
-use crate::contact::{Contact, Obstacle, Squeezed, Statistics};
+use crate::contact::{Contact, Obstacle, Squeezed, Statistics, StrainLimiter, Strained};
 use crate::control::Control;
 use crate::error::{Cause, Error};
 use crate::network::Network;
@@ -14,6 +14,16 @@ use crate::system::{Mechanics, hold_pins};
 /// a particle into an obstacle: a state between the ends of the step is shown as it is, and must
 /// not sink visibly.
 const SUNK: f64 = 1e-3;
+
+/// Largest growth of the excess length of a spring in a step of an adaptive method, over the
+/// longest length that a limit of strain allows it: for the same reason.
+const STRETCHED: f64 = 1e-2;
+
+/// Least share of a step that is taken again because a spring became too long.
+const SHORTENED: f64 = 0.1;
+
+/// Price of a sweep over the springs that a limit of strain applies to, in evaluations.
+const SWEEP: f64 = 2.0;
 
 /// Length (s) below which a step is not shortened for that.
 const SHORT: f64 = 1e-6;
@@ -84,6 +94,7 @@ impl Simulation {
     /// Takes one step of h (s) with what follows it: contact, the search for a blow-up, and
     /// tearing.
     fn step_by(&mut self, h: f64) -> Result<(), Error> {
+        self.list_strained();
         let t = self.time();
         let system = self.model.system();
         let Stepper::Fixed(integrator) = &mut self.stepper else {
@@ -93,10 +104,15 @@ impl Simulation {
         let cause = match integrator.step(system, t, h, &mut self.y) {
             Ok(work) => {
                 self.work += work;
-                self.lost(&self.y).or_else(|| {
-                    let met = settle(&self.model, &mut self.contact, (t, h), &mut self.y);
-                    met.map(|met| self.guarded += met.guarded).err()
-                })
+                let phases = (&mut self.limiter, &mut self.contact);
+                match settle(&self.model, phases, (t, h), &mut self.y) {
+                    Ok(Settled { strained, met }) => {
+                        self.work.algebra += SWEEP * strained.sweeps as f64;
+                        self.guarded += met.guarded;
+                        self.lost(&self.y)
+                    }
+                    Err(cause) => Some(cause),
+                }
             }
             Err(error) => Some(blow_up_by(error)?),
         };
@@ -107,6 +123,7 @@ impl Simulation {
 
     /// Makes an adaptive method's step reach past the time shown. Returns its end (s).
     fn look_ahead(&mut self) -> Result<f64, Error> {
+        self.list_strained();
         let now = self.time();
         let system = self.model.system();
         let Stepper::Adaptive {
@@ -130,36 +147,48 @@ impl Simulation {
         let limit = SUNK * self.radius;
         let (cause, reached) = loop {
             look_back(&self.model, &mut self.contact, end, true);
+            let limit_of_strain = self.model.network().and_then(Network::strained);
+            let excess = limit_of_strain.map_or(0.0, |limit| {
+                self.contact.remember(end);
+                limit.excess(&end[..end.len() / 2])
+            });
             let taken = match adaptive.advance(system, begin, end) {
                 Ok(taken) => taken,
                 Err(error) => break (Some(blow_up_by(error)?), begin),
             };
             self.work += taken.work;
-            let met = match settle(&self.model, &mut self.contact, (begin, taken.h), end) {
-                Ok(met) => met,
-                Err(cause) => break (Some(cause), begin),
-            };
-            if met.guarded.impulses > 0 && taken.h > IMPACT {
-                // Contact is the force's: its error decides, after a step that is short enough.
+            let phases = (&mut self.limiter, &mut self.contact);
+            let Settled { met, strained } =
+                match settle(&self.model, phases, (begin, taken.h), end) {
+                    Ok(settled) => settled,
+                    Err(cause) => break (Some(cause), begin),
+                };
+            self.work.algebra += SWEEP * strained.sweeps as f64;
+            let grown = strained.excess - excess;
+            let touched = met.touched + (1.0 - met.touched) * 0.5 * limit / met.depth;
+            let strained = (0.5 * STRETCHED / grown).max(SHORTENED);
+            let again = (met.depth > limit).then_some(touched);
+            let again = again.or((grown > STRETCHED).then_some(strained));
+            // Contact of surfaces is the force's: its error decides, once a step is so short that
+            // the guard does nothing.
+            let held = met.guarded.impulses > 0 && taken.h > IMPACT;
+            let again = again.or(held.then_some((0.5 * met.guarded.first).max(SHORTENED)));
+            if let Some(share) = again.filter(|_| taken.h > SHORT) {
+                // The step is taken again, to just after the particle touched the obstacle, or
+                // the spring became too long, or surfaces would have met.
                 end.copy_from_slice(self.contact.y0());
                 adaptive.restart();
-                adaptive.try_first(taken.h * (0.5 * met.guarded.first).max(0.1));
-                self.work.rejections += 1;
-                continue;
-            }
-            self.guarded += met.guarded;
-            if met.depth > limit && taken.h > SHORT {
-                // The step is taken again, to just after the particle touched the obstacle.
-                end.copy_from_slice(self.contact.y0());
-                adaptive.restart();
-                let share = met.touched + (1.0 - met.touched) * 0.5 * limit / met.depth;
                 adaptive.try_first(taken.h * share);
                 self.work.rejections += 1;
                 continue;
             }
+            self.guarded += met.guarded;
             if met.depth > 0.0 {
                 // Under a constant force the depth grows with the square of the step.
                 adaptive.try_at_most(taken.h * 0.9 * (limit / met.depth).sqrt());
+            }
+            if grown > 0.0 {
+                adaptive.try_at_most(taken.h * 0.9 * (STRETCHED / grown).sqrt());
             }
             let reached = begin + taken.h;
             *until = Some(reached);
@@ -193,6 +222,13 @@ impl Simulation {
         }
     }
 
+    /// Lists the springs that are limited anew, if springs or pins have changed.
+    fn list_strained(&mut self) {
+        if let Model::Network(network) = &mut self.model {
+            network.list_strained();
+        }
+    }
+
     /// Breaks what is stretched too far in the state shown.
     fn tear(&mut self) {
         if let Model::Network(network) = &mut self.model
@@ -220,30 +256,46 @@ fn obstacles(model: &Model) -> &[Obstacle] {
 /// Remembers the state that a step begins with, as far as contact needs it.
 fn look_back(model: &Model, contact: &mut Contact, y0: &[f64], always: bool) {
     match model.network().and_then(Network::contact_layer) {
-        Some(_) => contact.begin_guard(y0),
+        Some(_) => contact.remember(y0),
         None => contact.begin(obstacles(model), y0, always),
     }
 }
 
-/// What follows a step of h (s) from t (s) to y1: pins are in their places, particles leave
-/// obstacles, and surfaces do not pass through one another.
+/// What the phases after a step did.
+#[derive(Default)]
+struct Settled {
+    strained: Strained,
+    met: Statistics,
+}
+
+/// What follows a step of h (s) from t (s) to y1: springs that are too long are shortened,
+/// particles leave obstacles, or surfaces do not pass through one another, and pins are in their
+/// places.
 fn settle(
     model: &Model,
-    contact: &mut Contact,
+    (limiter, contact): (&mut StrainLimiter, &mut Contact),
     (t, h): (f64, f64),
     y1: &mut [f64],
-) -> Result<Statistics, Cause> {
+) -> Result<Settled, Cause> {
+    let mut settled = Settled::default();
     let Some(network) = model.network() else {
         hold_pins(model.system(), t + h, y1);
-        return Ok(Statistics::default());
+        return Ok(settled);
     };
     let inverse_masses = network.inverse_masses();
-    if let Some(layer) = network.contact_layer() {
-        hold_pins(network, t + h, y1);
-        let guarded = contact.guard(layer, inverse_masses, (t, h), y1);
-        return guarded.map_err(|Squeezed { vertices }| Cause::Squeezed { vertices });
+    if let Some(limit) = network.strained() {
+        settled.strained = limiter.resolve(limit, inverse_masses, h, y1);
     }
-    let met = contact.resolve(network.obstacles(), inverse_masses, (t, h), y1);
+    let Some(layer) = network.contact_layer() else {
+        settled.met = contact.resolve(network.obstacles(), inverse_masses, (t, h), y1);
+        hold_pins(network, t + h, y1);
+        return Ok(settled);
+    };
     hold_pins(network, t + h, y1);
-    Ok(met)
+    // A state that is lost is found to be so afterwards.
+    if y1.iter().all(|y| y.is_finite()) {
+        let guarded = contact.guard(layer, inverse_masses, (t, h), y1);
+        settled.met = guarded.map_err(|Squeezed { vertices }| Cause::Squeezed { vertices })?;
+    }
+    Ok(settled)
 }

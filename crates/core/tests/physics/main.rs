@@ -10,6 +10,8 @@ mod elements;
 mod forces;
 mod friction;
 mod networks;
+mod solids;
 mod sweeps;
 mod tearing;
+mod turning;
 mod wind;

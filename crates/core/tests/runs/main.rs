@@ -10,4 +10,6 @@ mod jelly;
 mod mit;
 mod scenes;
 mod simulation;
+mod strain;
 mod tuning;
+mod turning;

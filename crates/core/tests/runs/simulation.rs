@@ -156,7 +156,7 @@ fn a_moving_sphere_pushes_without_friction() {
         end: 10.0,
     };
     let ball = Obstacle::smooth(Shape::Sphere { radius: 1.0 }, path);
-    network.add_obstacle(ball).unwrap();
+    network.add_obstacle(ball.clone()).unwrap();
     // The particle moves towards the sphere at 1 m/s. At t = 0.1 s it would be 0.7 m from the
     // sphere's centre, on the line of the sphere's motion.
     let state = vec![1.0, 0.0, -0.3, -1.0, 0.0, 3.0];

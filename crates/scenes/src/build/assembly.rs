@@ -1,5 +1,7 @@
 //! Assembly of the bodies of a scene: their particles, numbered through, and what joins them.
 
+use std::ops::Range;
+
 use a3_core::contact::Skin;
 use a3_core::elements::{Buckling, Sheet};
 use a3_core::{Constraint, MAX_PARTICLES, Path, Spring, Vector3};
@@ -26,6 +28,11 @@ pub(super) trait Body {
     /// Adds the body's particles, springs, constraints and surface.
     fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault>;
 
+    /// Largest length over rest length of the body's springs, if it is limited.
+    fn strain_limit(&self) -> Option<f64> {
+        None
+    }
+
     /// Pins of the body.
     fn pins(&self) -> &[Pin];
 
@@ -50,6 +57,8 @@ pub(super) struct Assembly {
     /// Edges and, with equal ends, points that are in no triangle.
     pub edges: Vec<[u32; 2]>,
     pub pins: Vec<(usize, Path)>,
+    /// Keys and particles of the bodies whose strain is limited, and the limits.
+    pub strain_limits: Vec<(String, Range<usize>, f64)>,
 }
 
 impl Assembly {
@@ -103,6 +112,10 @@ impl Assembly {
         }
         let first = self.masses.len();
         body.add_to(self).map_err(|fault| fault.within(key))?;
+        if let Some(limit) = body.strain_limit() {
+            let particles = first..self.masses.len();
+            self.strain_limits.push((key.into(), particles, limit));
+        }
         let positions = &self.positions[first..];
         let pins = pins(body.pins(), positions, |spot| body.spot(spot, positions))
             .map_err(|fault| fault.within(key))?;

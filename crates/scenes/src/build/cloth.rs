@@ -120,6 +120,10 @@ impl Body for Cloth {
         Ok(())
     }
 
+    fn strain_limit(&self) -> Option<f64> {
+        self.strain_limit
+    }
+
     fn pins(&self) -> &[Pin] {
         &self.pin
     }

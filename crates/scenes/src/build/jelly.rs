@@ -88,6 +88,10 @@ impl Body for Jelly {
         Ok(())
     }
 
+    fn strain_limit(&self) -> Option<f64> {
+        self.strain_limit
+    }
+
     fn pins(&self) -> &[Pin] {
         &self.pin
     }

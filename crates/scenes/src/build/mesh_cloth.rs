@@ -80,6 +80,10 @@ impl Body for LoadedMesh<'_> {
         Ok(())
     }
 
+    fn strain_limit(&self) -> Option<f64> {
+        self.cloth.strain_limit
+    }
+
     fn pins(&self) -> &[Pin] {
         &self.cloth.pin
     }

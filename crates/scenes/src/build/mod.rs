@@ -10,6 +10,7 @@ mod jelly;
 mod lattice;
 mod laws;
 mod mesh_cloth;
+mod motion;
 mod network;
 mod obstacles;
 mod pins;

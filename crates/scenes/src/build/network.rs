@@ -65,7 +65,11 @@ pub(super) fn build(
         at("", network.pin(i, path))?;
     }
     forces::set(description, &mut network)?;
-    obstacles::add(description, &mut network)?;
+    for (key, particles, limit) in assembly.strain_limits {
+        let limited = network.set_strain_limit(particles, Some(limit));
+        at("strain_limit", limited).map_err(|fault| fault.within(&key))?;
+    }
+    obstacles::add(description, &mut network, mesh)?;
     if description.self_collision || obstacles::is_one_thick(description) {
         let touch = Touch {
             skins: assembly.skins,

@@ -1,12 +1,17 @@
 //! Obstacles.
 
-use a3_core::contact::{Obstacle, Shape};
-use a3_core::{Network, Path, Vector3};
+use std::sync::Arc;
 
-use super::pins::path;
-use crate::check::{at, at_least, key_of, number, positive, vector};
-use crate::description::{BoxSpec, CapsuleSpec, Description, Floor, FloorSpec, SphereSpec};
+use a3_core::contact::{ClosedMesh, Obstacle, Shape};
+use a3_core::{Network, Path, Vector3, rotation};
+
+use super::motion::motion;
+use crate::check::{at, at_least, key_of, number, positive, vector, vector_or_zero};
+use crate::description::{
+    BoxSpec, CapsuleSpec, Description, Floor, FloorSpec, ObstacleSpec, SphereSpec,
+};
 use crate::fault::Fault;
+use crate::mesh::Mesh;
 
 /// Largest number of obstacles of one kind.
 const MAX_OBSTACLES: usize = 1000;
@@ -20,12 +25,19 @@ pub(super) fn is_one_thick(description: &Description) -> bool {
         Some(Floor::Table(FloorSpec { thickness, .. })) => thickness,
         _ => None,
     };
-    let mut all = spheres.chain(boxes).chain(capsules).chain([floor]);
+    let solids = description.obstacle.iter().map(|spec| spec.thickness);
+    let solid = spheres.chain(boxes).chain(capsules).chain(solids);
+    let mut all = solid.chain([floor]);
     all.any(|thickness| thickness.is_some())
 }
 
-/// Adds the obstacles of the description, of which the floor acts last.
-pub(super) fn add(description: &Description, network: &mut Network) -> Result<(), Fault> {
+/// Adds the obstacles of the description, of which the floor acts last. `mesh` reads a file of
+/// triangles.
+pub(super) fn add(
+    description: &Description,
+    network: &mut Network,
+    mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
+) -> Result<(), Fault> {
     each("sphere", &description.sphere, |spec| {
         at("radius", network.add_obstacle(sphere(spec)?))
     })?;
@@ -34,6 +46,9 @@ pub(super) fn add(description: &Description, network: &mut Network) -> Result<()
     })?;
     each("capsule", &description.capsule, |spec| {
         at("radius", network.add_obstacle(capsule(spec)?))
+    })?;
+    each("obstacle", &description.obstacle, |spec| {
+        at("file", network.add_obstacle(solid(spec, mesh)?))
     })?;
     match &description.floor {
         None => Ok(()),
@@ -62,10 +77,16 @@ fn sphere(spec: &SphereSpec) -> Result<Obstacle, Fault> {
     let radius = spec.radius;
     at("radius", positive("it", radius))?;
     let center = vector("center", spec.center)?;
+    let (path, turn) = motion(
+        spec.sine.as_ref(),
+        spec.shift.as_ref(),
+        spec.turn.as_ref(),
+        center,
+    )?;
     Ok(Obstacle {
         shape: Shape::Sphere { radius },
-        path: path(center, spec.sine.as_ref(), spec.shift.as_ref())?,
-        turn: None,
+        path,
+        turn,
         friction: friction(spec.friction)?,
         thickness: thickness(spec.thickness)?,
     })
@@ -73,16 +94,21 @@ fn sphere(spec: &SphereSpec) -> Result<Obstacle, Fault> {
 
 fn cuboid(spec: &BoxSpec) -> Result<Obstacle, Fault> {
     let center = vector("center", spec.center)?;
-    let path = path(center, spec.sine.as_ref(), spec.shift.as_ref())?;
+    let (path, turn) = motion(
+        spec.sine.as_ref(),
+        spec.shift.as_ref(),
+        spec.turn.as_ref(),
+        center,
+    )?;
     let size = vector("size", spec.size)?;
-    let turn = vector("rotation", spec.rotation.unwrap_or_default())?;
+    let rotation = vector_or_zero("rotation", spec.rotation)?;
     for edge in spec.size {
         at("size", positive("each edge", edge))?;
     }
     Ok(Obstacle {
-        shape: at("size", Shape::turned_box(0.5 * size, turn))?,
+        shape: at("size", Shape::turned_box(0.5 * size, rotation))?,
         path,
-        turn: None,
+        turn,
         friction: friction(spec.friction)?,
         thickness: thickness(spec.thickness)?,
     })
@@ -90,14 +116,46 @@ fn cuboid(spec: &BoxSpec) -> Result<Obstacle, Fault> {
 
 fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
     let (from, to) = (vector("from", spec.from)?, vector("to", spec.to)?);
-    let path = path(from, spec.sine.as_ref(), spec.shift.as_ref())?;
+    let (path, turn) = motion(
+        spec.sine.as_ref(),
+        spec.shift.as_ref(),
+        spec.turn.as_ref(),
+        from,
+    )?;
     Ok(Obstacle {
         shape: Shape::Capsule {
             ends: [Vector3::zeros(), to - from],
             radius: spec.radius,
         },
         path,
-        turn: None,
+        turn,
+        friction: friction(spec.friction)?,
+        thickness: thickness(spec.thickness)?,
+    })
+}
+
+/// The solid within the triangles of a file, whose equal points are made one.
+fn solid(
+    spec: &ObstacleSpec,
+    mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
+) -> Result<Obstacle, Fault> {
+    let (path, turn) = motion(
+        spec.sine.as_ref(),
+        spec.shift.as_ref(),
+        spec.turn.as_ref(),
+        vector_or_zero("at", spec.at)?,
+    )?;
+    let scale = spec.scale.unwrap_or(1.0);
+    at("scale", positive("it", scale))?;
+    let rotation = rotation(vector_or_zero("rotation", spec.rotation)?);
+    let mesh = at("file", mesh(&spec.file))?.welded();
+    let points = mesh.positions.iter();
+    let points = points.map(|p| rotation * (Vector3::from(*p) * scale));
+    let mesh = at("file", ClosedMesh::new(points.collect(), mesh.triangles))?;
+    Ok(Obstacle {
+        shape: Shape::Mesh(Arc::new(mesh)),
+        path,
+        turn,
         friction: friction(spec.friction)?,
         thickness: thickness(spec.thickness)?,
     })

@@ -1,9 +1,10 @@
-//! Pins and the paths of what moves as the scene says.
+//! Pins.
 
 use a3_core::{Path, Vector3};
 
-use crate::check::{key_of, number, vector};
-use crate::description::{Pin, Shift, Sine, Spot};
+use super::motion::motion;
+use crate::check::key_of;
+use crate::description::{Pin, Spot};
 use crate::fault::Fault;
 
 /// The pinned particles and their paths. `spot` gives the particles of a spot.
@@ -46,51 +47,20 @@ fn pinned(
             "the pin holds nothing: it needs the key `at` or `particles`",
         ));
     }
-    particles
-        .into_iter()
-        .map(|i| {
-            Ok((
-                i,
-                path(positions[i], pin.sine.as_ref(), pin.shift.as_ref())?,
-            ))
-        })
-        .collect()
-}
-
-/// The path that starts at `from` (m).
-pub(super) fn path(
-    from: Vector3<f64>,
-    sine: Option<&Sine>,
-    shift: Option<&Shift>,
-) -> Result<Path, Fault> {
-    match (sine, shift) {
-        (None, None) => Ok(Path::Still(from)),
-        (Some(sine), None) => Ok(Path::Sine {
-            center: match sine.center {
-                None => from,
-                Some(center) => vector("sine.center", center)?,
-            },
-            amplitude: vector("sine.amplitude", sine.amplitude)?,
-            rate: number("sine.rate", sine.rate)?,
-            phase: number("sine.phase", sine.phase)?,
-        }),
-        (None, Some(shift)) => {
-            let by = vector("shift.by", shift.by)?;
-            let start = number("shift.start", shift.start)?;
-            let end = number("shift.end", shift.end)?;
-            if end <= start {
-                return Err(Fault::new(
-                    "shift.end",
-                    format!("it must be later than {start} s, not {end}"),
-                ));
-            }
-            Ok(Path::Line {
-                from,
-                to: from + by,
-                start,
-                end,
-            })
-        }
-        (Some(_), Some(_)) => Err(Fault::not_both("sine", "shift")),
+    if pin.turn.as_ref().is_some_and(|turn| turn.about.is_none()) {
+        return Err(Fault::new(
+            "turn.about",
+            "the turn of a pin needs it: a point of the axis (m)",
+        ));
     }
+    let path = |i: usize| {
+        let (path, _) = motion(
+            pin.sine.as_ref(),
+            pin.shift.as_ref(),
+            pin.turn.as_ref(),
+            positions[i],
+        )?;
+        Ok((i, path))
+    };
+    particles.into_iter().map(path).collect()
 }

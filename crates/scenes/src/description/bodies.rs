@@ -36,6 +36,9 @@ pub struct Cloth {
     /// Damping over the critical damping of a particle on a structural spring, which is the same
     /// for every grid. An alternative is `damping`.
     pub damping_ratio: Option<f64>,
+    /// Largest length over rest length of structural and shear springs, above 1, such as 1.1: after
+    /// each step, longer ones are shortened. If it is not given, there is no limit.
+    pub strain_limit: Option<f64>,
     /// Law of bend springs that buckle; under tension they have the stiffness given above.
     pub buckling: Option<BucklingSpec>,
     /// Position of the middle of the first row (m). An alternative is `foot`.
@@ -86,6 +89,9 @@ pub struct Jelly {
     /// Damping over the critical damping of a particle on a structural spring. An alternative is
     /// `damping`.
     pub damping_ratio: Option<f64>,
+    /// Largest length over rest length of structural and shear springs, above 1, such as 1.1: after
+    /// each step, longer ones are shortened. If it is not given, there is no limit.
+    pub strain_limit: Option<f64>,
     /// Centre (m).
     pub at: Triple,
     /// Rotation vector: its direction is the axis, its length the angle (rad).
@@ -125,6 +131,9 @@ pub struct MeshCloth {
     /// Damping over the critical damping of a particle of mean mass on a structural spring. An
     /// alternative is `damping`.
     pub damping_ratio: Option<f64>,
+    /// Largest length over rest length of structural springs, above 1, such as 1.1: after each
+    /// step, longer ones are shortened. If it is not given, there is no limit.
+    pub strain_limit: Option<f64>,
     /// Velocity (m/s).
     pub velocity: Option<Triple>,
     /// Distance up to which its surface repels others where surfaces touch (m).

@@ -17,8 +17,8 @@ pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
 pub use floor::{Floor, FloorSpec};
 pub use forces::{BucklingSpec, SpringSpec, SwingSpec, WindSpec};
-pub use motion::{Pin, Shift, Sine, Spot, Triple};
-pub use obstacles::{BoxSpec, CapsuleSpec, SphereSpec};
+pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
+pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
 
 /// A scene: bodies, what acts on them, how it is run and where it is seen from. Units are m, kg, s,
 /// N and rad.
@@ -104,6 +104,9 @@ pub struct Description {
     /// Spheres that particles stay out of.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sphere: Vec<SphereSpec>,
+    /// Solids of any shape that particles stay out of, from files of triangles.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub obstacle: Vec<ObstacleSpec>,
     /// Positions and velocities of all particles at the start, in place of those of the bodies.
     pub state: Option<State>,
 }

@@ -36,8 +36,10 @@ pub struct Pin {
     pub particles: Vec<usize>,
     /// Oscillation of the pinned particles.
     pub sine: Option<Sine>,
-    /// Displacement of the pinned particles, once.
+    /// Displacement of the pinned particles, once; with a turn, that of its axis.
     pub shift: Option<Shift>,
+    /// Turn of the pinned particles about an axis, of which `about` gives a point.
+    pub turn: Option<Turn>,
 }
 
 /// Oscillation by `amplitude sin(rate t + phase)` about the initial position, or about `center`.
@@ -67,4 +69,27 @@ pub struct Shift {
     pub start: f64,
     /// Time at which the motion ends (s), later than `start`.
     pub end: f64,
+}
+
+/// Turn about an axis at constant angular velocity, anticlockwise as seen against the axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Turn {
+    /// Point of the axis (m). Obstacles turn about their own centre if it is not given.
+    #[serde(default)]
+    pub about: Option<Triple>,
+    /// Direction of the axis, of any length.
+    pub axis: Triple,
+    /// Angular velocity (rad/s). An alternative is `angle`.
+    #[serde(default)]
+    pub rate: Option<f64>,
+    /// Angle by which it has turned at `end` (rad). An alternative is `rate`.
+    #[serde(default)]
+    pub angle: Option<f64>,
+    /// Time at which the turn begins (s).
+    #[serde(default)]
+    pub start: f64,
+    /// Time at which the turn ends (s), later than `start`; if not given, it never does.
+    #[serde(default)]
+    pub end: Option<f64>,
 }

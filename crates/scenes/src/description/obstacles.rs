@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::motion::{Shift, Sine, Triple};
+use super::motion::{Shift, Sine, Triple, Turn};
 
 /// Sphere that particles stay out of. It may move.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -25,6 +25,9 @@ pub struct SphereSpec {
     /// Displacement of the sphere, once.
     #[serde(default)]
     pub shift: Option<Shift>,
+    /// Turn of the sphere.
+    #[serde(default)]
+    pub turn: Option<Turn>,
 }
 
 /// Box that particles stay out of. It may move.
@@ -50,6 +53,9 @@ pub struct BoxSpec {
     /// Displacement of the box, once.
     #[serde(default)]
     pub shift: Option<Shift>,
+    /// Turn of the box.
+    #[serde(default)]
+    pub turn: Option<Turn>,
 }
 
 /// Capsule that particles stay out of: all points within `radius` of a line segment. It may move.
@@ -74,6 +80,42 @@ pub struct CapsuleSpec {
     /// Displacement of the capsule, once.
     #[serde(default)]
     pub shift: Option<Shift>,
+    /// Turn of the capsule.
+    #[serde(default)]
+    pub turn: Option<Turn>,
+}
+
+/// Solid that particles stay out of, within a closed surface from a file of triangles. It may move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObstacleSpec {
+    /// A .obj, .gltf or .glb file in the scene file's folder or in one below it. Each edge has two
+    /// triangles, which wind alike.
+    pub file: String,
+    /// Unit of length of the file (m); 1 if not given.
+    #[serde(default)]
+    pub scale: Option<f64>,
+    /// Position of the file's origin (m), about which it turns.
+    #[serde(default)]
+    pub at: Option<Triple>,
+    /// Rotation vector: its direction is the axis, its length the angle (rad).
+    #[serde(default)]
+    pub rotation: Option<Triple>,
+    /// Coefficient of Coulomb friction; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_smooth")]
+    pub friction: f64,
+    /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
+    #[serde(default)]
+    pub thickness: Option<f64>,
+    /// Oscillation of the solid.
+    #[serde(default)]
+    pub sine: Option<Sine>,
+    /// Displacement of the solid, once.
+    #[serde(default)]
+    pub shift: Option<Shift>,
+    /// Turn of the solid.
+    #[serde(default)]
+    pub turn: Option<Turn>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]

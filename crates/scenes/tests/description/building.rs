@@ -204,3 +204,49 @@ fn editors_get_a_schema() {
         assert!(schema.contains(word), "{word}");
     }
 }
+
+/// Bodies with a limit of strain have it on their own particles, and what is written of a run has
+/// the limits as they are then.
+#[test]
+fn strain_is_limited_body_by_body() {
+    let limited = CLOTH.replace("[10, 5, 2]", "[10, 5, 2]\nstrain_limit = 1.25");
+    let text = format!(
+        "{limited}
+[[jelly]]
+grid = [2, 2, 2]
+size = [1, 1, 1]
+mass = 8
+stiffness = [1, 1, 1]
+at = [5, 0, 0]
+
+[[mesh]]
+file = \"square.obj\"
+density = 3
+stiffness = [7, 2]
+strain_limit = 1.5
+"
+    );
+    let mut scene = build(&text).unwrap();
+    let n = scene.model.particles();
+    let network = scene.model.network().unwrap();
+    assert_eq!(network.strain_limits(), [(0..12, 1.25), (20..n, 1.5)]);
+    let method = a3_core::integrators::find("verlet").unwrap();
+    if let Model::Network(network) = &mut scene.model {
+        network.set_strain_limit(20..n, Some(2.0)).unwrap();
+    }
+    let step = a3_core::Control::Step(0.01);
+    let run = a3_core::Simulation::new(scene, method, step).unwrap();
+    let mut description = Description::parse(&text).unwrap();
+    description.begin_with(run.model(), &run.checkpoint());
+    let limits = |d: &Description| {
+        [
+            d.cloth[0].strain_limit,
+            d.jelly[0].strain_limit,
+            d.mesh[0].strain_limit,
+        ]
+    };
+    assert_eq!(limits(&description), [Some(1.25), None, Some(2.0)]);
+    let tearing = format!("tear = 1.25\n{limited}");
+    let said = said(&tearing);
+    assert!(said.contains("never break at 1.25 times"), "{said}");
+}

@@ -123,6 +123,11 @@ const WRONG: &[(&str, &str, &str)] = &[
     ),
     ("gravity = [0, -9.81, 0]", "tear = 0.5", "line 1: tear: "),
     (
+        "[10, 5, 2]",
+        "[10, 5, 2]\nstrain_limit = 1",
+        "line 8: cloth.strain_limit: the limit of strain must be a finite number above 1",
+    ),
+    (
         "gravity = [0, -9.81, 0]",
         "torn = [[0, 1], [0, 700]]",
         "line 1: torn: there is no spring between particles 0 and 700",
@@ -156,6 +161,56 @@ const WRONG: &[(&str, &str, &str)] = &[
         "gravity = [0, -9.81, 0]",
         "box = [{ center = [0, 0, 0], size = [1, 1, 1] }, { center = [0, 0, 0], size = [1, 1, 1], friction = nan }]",
         "line 1: box.1.friction: it must be a finite number of at least 0, not NaN",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "box = [{ center = [0, 0, 0], size = [1, 1, 1], turn = { axis = [0, 0, 0], rate = 1 } }]",
+        "line 1: box.turn.axis: it must be a direction, not [0, 0, 0]",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "box = [{ center = [0, 0, 0], size = [1, 1, 1], turn = { axis = [0, 1, 0] } }]",
+        "line 1: box.turn: one of the keys `rate` and `angle` is needed",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "box = [{ center = [0, 0, 0], size = [1, 1, 1], turn = { axis = [0, 1, 0], rate = 1, angle = 2, end = 1 } }]",
+        "line 1: box.turn.angle: give either `rate` or `angle`, not both",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "box = [{ center = [0, 0, 0], size = [1, 1, 1], turn = { axis = [0, 1, 0], angle = 2 } }]",
+        "line 1: box.turn.end: with an `angle`, it is needed",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "box = [{ center = [0, 0, 0], size = [1, 1, 1], turn = { axis = [0, 1, 0], rate = 2, start = 1, end = 1 } }]",
+        "line 1: box.turn.end: it must be later than 1 s, not 1",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "sphere = [{ center = [0, 0, 0], radius = 1, sine = { amplitude = [1, 0, 0], rate = 1 }, turn = { about = [1, 0, 0], axis = [0, 1, 0], rate = 1 } }]",
+        "line 1: sphere.turn.about: give either `sine` or `turn.about`, not both",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "pin = [{ particles = [0], turn = { axis = [0, 1, 0], rate = 2 } }]",
+        "line 1: pin.turn.about: the turn of a pin needs it",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "obstacle = [{ file = 'square.obj' }]",
+        "line 1: obstacle.file: a closed mesh has two triangles at each edge, but at that from point 0 at (0, 0, 0) to point 1 at (1, 0, 0) not 1",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "obstacle = [{ file = 'none.obj' }]",
+        "line 1: obstacle.file: none.obj: there is no such file",
+    ),
+    (
+        "gravity = [0, -9.81, 0]",
+        "obstacle = [{ file = 'square.obj', scale = 0 }]",
+        "line 1: obstacle.scale: it must be a finite number above 0, not 0",
     ),
     (
         "gravity = [0, -9.81, 0]",

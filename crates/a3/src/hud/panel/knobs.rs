@@ -7,7 +7,7 @@ use a3_render::Style;
 use super::dial::{Dial, DialScale, Turn};
 use super::values::{
     damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
-    stiffness, switch,
+    stiffness, strain_limit, strain_limits, switch,
 };
 use crate::session::{Action, Session, Tuning};
 
@@ -60,6 +60,24 @@ pub static KNOBS: &[Knob] = &[
     knob("damping", damping, |session, _, factor| {
         session.tuning.damping = factor;
         set_springs(session);
+    }),
+    knob("strain limit", strain_limit, |session, _, value| {
+        let limits: Vec<_> = own(session).into_iter().flat_map(strain_limits).collect();
+        let Some(&(_, first)) = limits.first() else {
+            return;
+        };
+        session.adjust(|network| {
+            for (particles, own) in &limits {
+                // Each is as far above 1 in proportion to its own as the first is.
+                let limit = match (first, own) {
+                    (Some(first), Some(own)) => 1.0 + (own - 1.0) * (value - 1.0) / (first - 1.0),
+                    _ => value,
+                };
+                let limit = (value > 1.0).then_some(limit);
+                // The value is within its scale, so it is not refused.
+                let _ = network.set_strain_limit(particles.clone(), limit);
+            }
+        });
     }),
     knob("drag", drag, |session, _, drag| {
         session.adjust(|network| {

@@ -1,7 +1,9 @@
 //! The values that the knobs show.
 
+use std::ops::Range;
+
 use a3_core::contact::{Obstacle, Shape};
-use a3_core::{Control, Network, integrators};
+use a3_core::{Control, Network, Sheet, integrators};
 
 use super::dial::{Dial, DialScale, round_up, short};
 use crate::bounds;
@@ -125,6 +127,40 @@ pub fn drag(session: &Session, _: usize) -> Option<Dial> {
             step: 0.02 * to,
         },
         words: format!("{} kg/s", short(value, 3)),
+    })
+}
+
+/// Bodies of a network whose strain can be limited, and their limits: those that have one, or else
+/// the sheets.
+pub fn strain_limits(network: &Network) -> Vec<(Range<usize>, Option<f64>)> {
+    let limited = network.strain_limits().iter().cloned();
+    let limited: Vec<_> = limited.map(|(body, limit)| (body, Some(limit))).collect();
+    if limited.is_empty() {
+        let sheets = network.sheets().map(Sheet::particles);
+        return sheets.map(|body| (body, None)).collect();
+    }
+    limited
+}
+
+/// The limit of strain, 1 for none. A scene whose springs break has no such knob: limited springs
+/// would not.
+pub fn strain_limit(session: &Session, _: usize) -> Option<Dial> {
+    let own = own(session)?;
+    if own.tear_limit().is_some() {
+        return None;
+    }
+    let (_, own) = strain_limits(own).into_iter().next()?;
+    let now = network(session)?.strain_limits().first();
+    let value = now.map_or(1.0, |(_, limit)| *limit);
+    Some(Dial {
+        value,
+        own: own.unwrap_or(1.0),
+        scale: DialScale::Linear {
+            from: 1.0,
+            to: 1.5,
+            step: 0.02,
+        },
+        words: now.map_or("off".into(), |_| format!("× {}", short(value, 4))),
     })
 }
 

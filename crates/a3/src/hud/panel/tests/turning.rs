@@ -87,6 +87,10 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     turn(&mut damped, "damping", Turn::Own);
     assert_eq!(forces(&damped), before);
     let network = |session: &Session| session.first().model().network().unwrap().clone();
+    turn(&mut damped, "strain limit", Turn::To(1.2));
+    assert_eq!(network(&damped).strain_limits(), [(0..400, 1.2)]);
+    turn(&mut damped, "strain limit", Turn::Own);
+    assert!(network(&damped).strain_limits().is_empty());
     turn(&mut session, "sphere", Turn::To(0.75));
     let shapes = |session: &Session| {
         let network = network(session);

@@ -1,0 +1,103 @@
+//! The exact check of a state: surfaces that pass through one another.
+
+use std::fmt;
+
+use super::candidates::Candidate;
+use super::closest::{PairKind, closest};
+use super::exact::crossings;
+use super::layer::{ContactLayer, Scratch};
+use crate::error::Vertex;
+
+/// Two primitives that have a point in common, by their vertices.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Crossed {
+    /// Vertices of the first primitive: an edge, or what is inside a round obstacle or a floor.
+    pub first: Vec<Vertex>,
+    /// Vertices of the second primitive: a triangle, a round obstacle or a floor.
+    pub second: Vec<Vertex>,
+}
+
+impl fmt::Display for Crossed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let side = |vertices: &[Vertex]| match vertices {
+            [Vertex::Obstacle(k), ..] => format!("obstacle {k}"),
+            _ => {
+                let numbers = vertices.iter().filter_map(|vertex| match vertex {
+                    Vertex::Particle(i) => Some(i.to_string()),
+                    Vertex::Obstacle(_) => None,
+                });
+                let numbers = numbers.collect::<Vec<_>>().join(", ");
+                match vertices {
+                    [_] => format!("particle {numbers}"),
+                    [_, _] => format!("the edge of particles {numbers}"),
+                    _ => format!("the triangle of particles {numbers}"),
+                }
+            }
+        };
+        write!(f, "{} crosses {}", side(&self.first), side(&self.second))
+    }
+}
+
+impl ContactLayer {
+    /// The pairs of an edge and a triangle that have a point in common at time t (s), with
+    /// particles at x (m), n x 3: exactly, by signs of determinants; and what is inside a round
+    /// obstacle or a floor, to rounding. Obstacles among themselves are not looked at, nor bodies
+    /// among themselves that do not touch.
+    ///
+    /// # Panics
+    /// x has not three numbers for each particle.
+    #[must_use]
+    pub fn crossed(&self, t: f64, x: &[f64]) -> Vec<Crossed> {
+        let surface = self.surface();
+        let n = surface.particles();
+        assert_eq!(x.len(), 3 * n, "x has three numbers for each particle");
+        let mut scratch = self.scratch();
+        let Scratch {
+            candidates,
+            x: places,
+            ..
+        } = &mut *scratch;
+        surface.place(self.obstacles(), t, x, places);
+        let (edges, triangles): (Vec<_>, Vec<_>) =
+            (surface.edges().collect(), surface.triangles().collect());
+        let name = |points: &[u32]| points.iter().map(|i| surface.vertex(*i)).collect();
+        let counts = |edge: &[u32; 2], triangle: &[u32; 3]| {
+            let [a, b] = [edge[0], triangle[0]].map(|i| (i as usize) < n);
+            a && b && surface.touches_itself || a != b
+        };
+        let exact = crossings(x, &places[n..], &triangles, &edges).into_iter();
+        let exact = exact
+            .map(|crossing| (edges[crossing.edge], triangles[crossing.triangle]))
+            .filter(|(edge, triangle)| counts(edge, triangle))
+            .map(|(edge, triangle)| Crossed {
+                first: name(&edge),
+                second: name(&triangle),
+            });
+        let mut crossed: Vec<_> = exact.collect();
+        candidates.cover(surface, places, places);
+        let is_inside = |pair: &&Candidate| {
+            let (offset, radius) = (
+                closest(pair.kind, &pair.of(places)).offset,
+                surface.law(pair.kind, &pair.points).radius,
+            );
+            match pair.kind {
+                PairKind::VertexFloor => offset.y < 0.0,
+                _ => radius > 0.0 && offset.norm() < radius,
+            }
+        };
+        let inside = candidates.near(|_| f64::MIN_POSITIVE).filter(is_inside);
+        crossed.extend(inside.map(|pair| {
+            let (first, second) = pair.points.split_at(pair.kind.first());
+            let of = |points: &[u32]| {
+                let mut points = points.to_vec();
+                points.dedup();
+                name(&points)
+            };
+            Crossed {
+                first: of(first),
+                second: of(second),
+            }
+        }));
+        crossed
+    }
+}

@@ -1,0 +1,154 @@
+//! Edges that meet triangles, found exactly: the signs of determinants are those of real arithmetic
+//! (Shewchuk, *Adaptive precision floating-point arithmetic and fast robust geometric predicates*,
+//! 1997).
+
+use nalgebra::Vector3;
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
+use robust::{Coord, Coord3D, orient2d, orient3d};
+
+/// Edge and triangle that have a point in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Crossing {
+    /// Index of the edge.
+    pub edge: usize,
+    /// Index of the triangle.
+    pub triangle: usize,
+}
+
+/// Edges and triangles that share no corner and have a point in common, in ascending order.
+///
+/// `positions` are the points (m) as n x 3 numbers in column-major order, as at the beginning of a
+/// state; corners from n on stand for the points of `others` (m). All coordinates are finite.
+///
+/// The answer is exact as long as no product of three distances underflows. Edges and triangles are
+/// closed sets: to touch in one point, such as a corner, is to cross, and so is to overlap in one
+/// plane, as cloth does that is folded onto itself without any distance. Primitives in one plane
+/// that do not touch, as those of flat cloth, do not cross. Edges whose ends are equal are points,
+/// and flat triangles are made of their sides.
+///
+/// An edge and a triangle with a corner in common are not compared: they always meet there.
+///
+/// # Panics
+///
+/// If a corner is neither among the positions nor among the other points.
+#[must_use]
+pub fn crossings(
+    positions: &[f64],
+    others: &[Vector3<f64>],
+    triangles: &[[u32; 3]],
+    edges: &[[u32; 2]],
+) -> Vec<Crossing> {
+    let n = positions.len() / 3;
+    let point = |i: u32| {
+        let i = i as usize;
+        if i < n {
+            Vector3::new(positions[i], positions[n + i], positions[2 * n + i])
+        } else {
+            others[i - n]
+        }
+    };
+    let edges_tree = tree(edges.iter().map(|corners| corners.map(point)));
+    let triangles_tree = tree(triangles.iter().map(|corners| corners.map(point)));
+    let mut found: Vec<Crossing> = edges_tree
+        .leaf_pairs(&triangles_tree, BvhNode::intersects)
+        .map(|(edge, triangle)| (edge as usize, triangle as usize))
+        .filter(|&(edge, triangle)| {
+            let (edge, triangle) = (edges[edge], triangles[triangle]);
+            !edge.iter().any(|i| triangle.contains(i))
+                && edge_meets_triangle(edge.map(point), triangle.map(point))
+        })
+        .map(|(edge, triangle)| Crossing { edge, triangle })
+        .collect();
+    found.sort_unstable();
+    found
+}
+
+/// Tree of the boxes around primitives.
+fn tree<const N: usize>(primitives: impl Iterator<Item = [Vector3<f64>; N]>) -> Bvh {
+    let boxes: Vec<Aabb> = primitives
+        .map(|points| {
+            let mut around = Aabb::new_invalid();
+            for x in points {
+                around.take_point(Vector::new(x.x, x.y, x.z));
+            }
+            around
+        })
+        .collect();
+    Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+}
+
+/// Whether a closed edge and a closed triangle have a point in common.
+fn edge_meets_triangle([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
+    let sides = [[a, b], [b, c], [c, a]];
+    // Most pairs of a smooth surface lie beside one another. This is cheaper to see than how they
+    // lie in space, above all if they lie in one plane.
+    let axis = (b - a).cross(&(c - a)).iamax();
+    let whole = turn(axis, a, b, c);
+    if sides
+        .iter()
+        .any(|[a, b]| whole * turn(axis, *a, *b, p) < 0.0 && whole * turn(axis, *a, *b, q) < 0.0)
+    {
+        return false;
+    }
+    let (above, below) = (side(a, b, c, p), side(a, b, c, q));
+    if above * below > 0.0 {
+        return false;
+    }
+    if above != 0.0 || below != 0.0 {
+        // The edge meets the plane in one point.
+        let turns = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
+        return turns.iter().all(|turn| *turn >= 0.0) || turns.iter().all(|turn| *turn <= 0.0);
+    }
+    sides.iter().any(|side| edges_meet([p, q], *side))
+        || (0..3).any(|axis| {
+            let turns = sides.map(|[a, b]| turn(axis, a, b, p));
+            turns.iter().all(|turn| *turn > 0.0) || turns.iter().all(|turn| *turn < 0.0)
+        })
+}
+
+/// Whether two closed edges have a point in common.
+fn edges_meet([p, q]: [Vector3<f64>; 2], [a, b]: [Vector3<f64>; 2]) -> bool {
+    if side(p, q, a, b) != 0.0 {
+        return false;
+    }
+    // In one plane: seen along an axis that is not in it, or else on one line.
+    for axis in 0..3 {
+        let [a, b, p, q] = [
+            turn(axis, p, q, a),
+            turn(axis, p, q, b),
+            turn(axis, a, b, p),
+            turn(axis, a, b, q),
+        ];
+        if a != 0.0 || b != 0.0 || p != 0.0 || q != 0.0 {
+            return a * b <= 0.0 && p * q <= 0.0;
+        }
+    }
+    (0..3).all(|axis| {
+        p[axis].min(q[axis]) <= a[axis].max(b[axis]) && a[axis].min(b[axis]) <= p[axis].max(q[axis])
+    })
+}
+
+/// Sign of the volume of a tetrahedron: exactly -1, 0 or 1.
+fn side(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>, d: Vector3<f64>) -> f64 {
+    let at = |x: Vector3<f64>| Coord3D {
+        x: x.x,
+        y: x.y,
+        z: x.z,
+    };
+    sign(orient3d(at(a), at(b), at(c), at(d)))
+}
+
+/// Sign of the area of a triangle seen along an axis: exactly -1, 0 or 1.
+fn turn(axis: usize, a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> f64 {
+    let at = |x: Vector3<f64>| Coord {
+        x: x[(axis + 1) % 3],
+        y: x[(axis + 2) % 3],
+    };
+    sign(orient2d(at(a), at(b), at(c)))
+}
+
+fn sign(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value.signum() }
+}

@@ -1,0 +1,107 @@
+//! The paths and turns of what moves as the scene says.
+
+use a3_core::{Path, Turn, Vector3};
+
+use crate::check::{number, one_of, vector};
+use crate::description;
+use crate::description::{Shift, Sine};
+use crate::fault::Fault;
+
+/// The path from `from` (m) that a scene describes for a pin or an obstacle, and the turn.
+pub(super) fn motion(
+    sine: Option<&Sine>,
+    shift: Option<&Shift>,
+    spun: Option<&description::Turn>,
+    from: Vector3<f64>,
+) -> Result<(Path, Option<Turn>), Fault> {
+    let turn = spun.map(turn).transpose();
+    let turn = turn.map_err(|fault| fault.within("turn"))?;
+    let about = match spun.and_then(|turn| turn.about) {
+        None => None,
+        Some(about) => Some(vector("turn.about", about)?),
+    };
+    let path = match (turn.zip(about), sine, shift) {
+        (_, Some(_), Some(_)) => return Err(Fault::not_both("sine", "shift")),
+        (Some(_), Some(_), None) => return Err(Fault::not_both("sine", "turn.about")),
+        (Some((turn, about)), None, shift) => {
+            let (by, [start, end]) = match shift {
+                None => (Vector3::zeros(), [0.0; 2]),
+                Some(shift) => way(shift)?,
+            };
+            Path::Turn {
+                turn,
+                arm: from - about,
+                from: about,
+                to: about + by,
+                start,
+                end,
+            }
+        }
+        (None, None, None) => Path::Still(from),
+        (None, Some(sine), None) => Path::Sine {
+            center: match sine.center {
+                None => from,
+                Some(center) => vector("sine.center", center)?,
+            },
+            amplitude: vector("sine.amplitude", sine.amplitude)?,
+            rate: number("sine.rate", sine.rate)?,
+            phase: number("sine.phase", sine.phase)?,
+        },
+        (None, None, Some(shift)) => {
+            let (by, [start, end]) = way(shift)?;
+            Path::Line {
+                from,
+                to: from + by,
+                start,
+                end,
+            }
+        }
+    };
+    Ok((path, turn))
+}
+
+/// Displacement of a shift (m), and the times between which it happens (s).
+fn way(shift: &Shift) -> Result<(Vector3<f64>, [f64; 2]), Fault> {
+    let by = vector("shift.by", shift.by)?;
+    let start = number("shift.start", shift.start)?;
+    let end = number("shift.end", shift.end)?;
+    later("shift.end", start, end)?;
+    Ok((by, [start, end]))
+}
+
+fn later(key: &str, start: f64, end: f64) -> Result<(), Fault> {
+    if end > start {
+        return Ok(());
+    }
+    let why = format!("it must be later than {start} s, not {end}");
+    Err(Fault::new(key, why))
+}
+
+fn turn(turn: &description::Turn) -> Result<Turn, Fault> {
+    let axis = vector("axis", turn.axis)?;
+    let Some(axis) = axis.try_normalize(0.0) else {
+        let why = "it must be a direction, not [0, 0, 0]";
+        return Err(Fault::new("axis", why));
+    };
+    let start = number("start", turn.start)?;
+    if let Some(end) = turn.end {
+        later("end", start, number("end", end)?)?;
+    }
+    let rate = match (
+        one_of(("rate", turn.rate), ("angle", turn.angle))?,
+        turn.end,
+    ) {
+        ((true, rate), _) => number("rate", rate)?,
+        ((false, angle), Some(end)) => number("angle", angle)? / (end - start),
+        ((false, _), None) => {
+            let why = "with an `angle`, it is needed: the time at which the turn ends (s)";
+            return Err(Fault::new("end", why));
+        }
+    };
+    Ok(Turn {
+        axis,
+        rate,
+        start,
+        end: turn.end,
+    })
+}
