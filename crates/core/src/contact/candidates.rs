@@ -23,6 +23,12 @@ const LENGTH: f64 = 8.0;
 /// Time for which a list is made, as a share of that for which the one before it held.
 const HOLDING: f64 = 1.5;
 
+/// A list is made for new courses of some vertices only where these are at most one in so many.
+const FEW: usize = 8;
+
+/// Share of the margin from which on a vertex then gets a new course.
+const STRAY: f64 = 0.5;
+
 /// Longest time for which a list is made (s).
 const LONGEST: f64 = 1.0;
 
@@ -34,6 +40,18 @@ pub(super) struct Stretch<'a> {
     pub ends: [&'a [Vector3<f64>]; 2],
     /// Velocities (m/s), if they are known.
     pub speeds: Option<&'a [Vector3<f64>]>,
+}
+
+impl Stretch<'_> {
+    /// Velocity of a vertex (m/s); 0 if it is not known.
+    fn speed(&self, i: usize) -> Vector3<f64> {
+        let duration = self.times[1] - self.times[0];
+        if duration > 0.0 {
+            (self.ends[1][i] - self.ends[0][i]) / duration
+        } else {
+            self.speeds.map_or_else(Vector3::zeros, |speeds| speeds[i])
+        }
+    }
 }
 
 /// List of pairs.
@@ -48,6 +66,10 @@ pub(super) struct Candidates {
     /// Positions there (m), and velocities (m/s).
     base: Vec<Vector3<f64>>,
     speeds: Vec<Vector3<f64>>,
+    /// Mean velocity when all courses were new (m/s).
+    mean: Vector3<f64>,
+    /// Whether a vertex has a new course.
+    renewed: Vec<bool>,
     /// Time for which the courses go on (s).
     horizon: f64,
     /// Time for which the list before this one held (s).
@@ -59,6 +81,8 @@ pub(super) struct Candidates {
     margin: f64,
     /// Times since the beginning that are covered (s).
     since: [f64; 2],
+    /// Displacement that all vertices share at the first of them (m).
+    shared: Vector3<f64>,
     /// How far each vertex strays in them, and the most of that (m).
     travel: Vec<f64>,
     farthest: f64,
@@ -74,6 +98,9 @@ impl Default for Candidates {
             begin: 0.0,
             base: vec![],
             speeds: vec![],
+            mean: Vector3::zeros(),
+            renewed: vec![],
+            shared: Vector3::zeros(),
             horizon: 0.0,
             held: LONGEST,
             back: 0.0,
@@ -98,7 +125,7 @@ impl Candidates {
             && self.base.len() == stretch.ends[0].len();
         if is_ahead {
             self.measure(stretch);
-            if self.farthest <= self.margin {
+            if self.farthest <= self.margin || self.renew(surface, stretch) {
                 return;
             }
         }
@@ -129,6 +156,7 @@ impl Candidates {
         };
         travel.clear();
         let shared = mean(from, first);
+        self.shared = shared;
         travel.extend((0..count).map(|i| (astray(from, first, i) - shared).norm_squared()));
         if !is_point {
             let shared = mean(to, last);
@@ -143,26 +171,43 @@ impl Candidates {
         }
     }
 
+    /// Gives new courses to the vertices that stray, if they are few, and lists their pairs anew.
+    /// Returns whether the list covers a stretch then.
+    fn renew(&mut self, surface: &Surface, stretch: &Stretch) -> bool {
+        let stray = STRAY * self.margin;
+        self.renewed.clear();
+        self.renewed.extend(self.travel.iter().map(|travel| *travel > stray));
+        let count = self.renewed.iter().filter(|is_new| **is_new).count();
+        if count * FEW > self.base.len() {
+            return false;
+        }
+        let [first, _] = self.since;
+        for i in (0..self.base.len()).filter(|i| self.renewed[*i]) {
+            let speed = stretch.speed(i);
+            self.speeds[i] = speed;
+            self.base[i] = stretch.ends[0][i] - self.shared - speed * first;
+        }
+        self.measure(stretch);
+        if self.farthest > self.margin {
+            return false;
+        }
+        self.list(surface, true);
+        true
+    }
+
     /// Makes the list anew, for courses that begin with a stretch.
     fn make(&mut self, surface: &Surface, stretch: &Stretch) {
-        let [from, to] = stretch.ends;
+        let from = stretch.ends[0];
         let duration = stretch.times[1] - stretch.times[0];
         self.speeds.clear();
-        if duration > 0.0 {
-            let speeds = from.iter().zip(to).map(|(a, b)| (b - a) / duration);
-            self.speeds.extend(speeds);
-        } else if let Some(speeds) = stretch.speeds {
-            self.speeds.extend_from_slice(speeds);
-        } else {
-            self.speeds.resize(from.len(), Vector3::zeros());
-        }
+        self.speeds.extend((0..from.len()).map(|i| stretch.speed(i)));
         let before = if duration > 0.0 { 0.0 } else { self.back };
         self.begin = stretch.times[0] - before;
         self.base.clear();
         let starts = from.iter().zip(&self.speeds).map(|(x, v)| x - v * before);
         self.base.extend(starts);
-        let mean = self.speeds.iter().sum::<Vector3<f64>>() / from.len().max(1) as f64;
-        let speeds = self.speeds.iter().map(|v| (v - mean).norm_squared());
+        self.mean = self.speeds.iter().sum::<Vector3<f64>>() / from.len().max(1) as f64;
+        let speeds = self.speeds.iter().map(|v| (v - self.mean).norm_squared());
         let fastest = speeds.fold(0.0, f64::max).sqrt();
         let thickest = surface.thickest();
         let horizon = (self.shares[1] * thickest / fastest).min(HOLDING * self.held);
@@ -170,14 +215,20 @@ impl Candidates {
         self.measure(stretch);
         self.margin = (self.shares[0] * thickest).max(2.0 * self.farthest);
         self.parallel = threads(surface.particles()) > 1;
+        self.list(surface, false);
+    }
+
+    /// Lists the pairs anew: all, or those of vertices with new courses.
+    fn list(&mut self, surface: &Surface, some: bool) {
         let course = Course {
             base: &self.base,
             speeds: &self.speeds,
-            mean,
+            mean: self.mean,
             horizon: self.horizon,
             reach: 2.0 * self.margin,
         };
-        self.listing.list(surface, &course, self.parallel, &mut self.pairs);
+        let renewed = some.then_some(&self.renewed[..]);
+        self.listing.list(surface, &course, renewed, self.parallel, &mut self.pairs);
     }
 
     /// Whether a pair may come nearer than a gap beyond its thickness (m) in what was covered last.

@@ -77,30 +77,43 @@ pub(super) struct Course<'a> {
 /// Boxes along the axes at the beginning of the courses and at their end.
 #[derive(Clone, Copy)]
 struct Bounds {
-    low: [Vector3<f64>; 2],
-    high: [Vector3<f64>; 2],
+    low: [[f64; 3]; 2],
+    high: [[f64; 3]; 2],
 }
 
 impl Bounds {
-    fn with(&self, other: &Self) -> Self {
-        Self {
-            low: [0, 1].map(|t| self.low[t].inf(&other.low[t])),
-            high: [0, 1].map(|t| self.high[t].sup(&other.high[t])),
+    fn with(mut self, other: &Self) -> Self {
+        for t in 0..2 {
+            for k in 0..3 {
+                self.low[t][k] = self.low[t][k].min(other.low[t][k]);
+                self.high[t][k] = self.high[t][k].max(other.high[t][k]);
+            }
         }
+        self
     }
 
     /// Bound on the squared distance of what is within: along an axis, a gap between points on
     /// straight courses is least at an end.
     fn apart(&self, other: &Self) -> f64 {
-        let along = |k: usize| {
-            let after = |t: usize| other.low[t][k] - self.high[t][k];
-            let before = |t: usize| self.low[t][k] - other.high[t][k];
-            let gap = after(0).min(after(1)).max(before(0).min(before(1)));
-            gap.max(0.0)
-        };
-        let [x, y, z] = [along(0), along(1), along(2)];
-        x * x + y * y + z * z
+        let mut squared = 0.0;
+        for k in 0..3 {
+            let after = least(other.low[0][k] - self.high[0][k], other.low[1][k] - self.high[1][k]);
+            let before = least(self.low[0][k] - other.high[0][k], self.low[1][k] - other.high[1][k]);
+            let gap = most(0.0, most(after, before));
+            squared += gap * gap;
+        }
+        squared
     }
+}
+
+/// The smaller of two numbers, as one instruction.
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, as one instruction.
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// Trees and scratch of the making of lists.
@@ -112,31 +125,55 @@ pub(super) struct Listing {
 }
 
 impl Listing {
-    /// Lists the pairs that come within reach of each other on their courses, in canonical order.
+    /// Lists the pairs that come within reach of each other on their courses, in canonical order:
+    /// all, or, where only some vertices have new courses, those with such a vertex anew.
     pub fn list(
         &mut self,
         surface: &Surface,
         course: &Course,
+        renewed: Option<&[bool]>,
         parallel: bool,
         pairs: &mut Vec<Listed>,
     ) {
         let (bodies, obstacles) = (&surface.bodies, &surface.obstacles);
-        pairs.clear();
-        self.bodies.take(bodies, surface, course);
-        self.obstacles.take(obstacles, surface, course);
+        let is_new = |points: &[u32]| {
+            renewed.is_none_or(|renewed| points.iter().any(|i| renewed[*i as usize]))
+        };
+        pairs.retain(|pair| !is_new(&pair.candidate.points));
+        let kept = pairs.len();
+        self.bodies.take(bodies, surface, course, &is_new);
+        self.obstacles.take(obstacles, surface, course, &is_new);
         let way = Way { surface, course };
         let overlaps = &mut self.overlaps;
         if surface.touches_itself {
             overlaps.clear();
             let tree = &self.bodies.tree;
-            let mut add = |s, t| overlaps.push([s, t]);
-            tree.traverse_bvtt_single_tree::<false>(&mut self.bodies.workspace, &mut add);
+            if renewed.is_none() {
+                let mut add = |s, t| overlaps.push([s, t]);
+                tree.traverse_bvtt_single_tree::<false>(&mut self.bodies.workspace, &mut add);
+            } else {
+                self.bodies.meet(&self.bodies, bodies, &is_new, |s, t| {
+                    if s < t || s > t && !is_new(&bodies.corners[t as usize]) {
+                        overlaps.push([s, t]);
+                    }
+                });
+            }
             way.list([(bodies, &self.bodies); 2], overlaps, parallel, pairs);
         }
         if !obstacles.corners.is_empty() && !bodies.corners.is_empty() {
             overlaps.clear();
-            let both = self.bodies.tree.leaf_pairs(&self.obstacles.tree, BvhNode::intersects);
-            overlaps.extend(both.map(|(s, t)| [s, t]));
+            if renewed.is_none() {
+                let both = self.bodies.tree.leaf_pairs(&self.obstacles.tree, BvhNode::intersects);
+                overlaps.extend(both.map(|(s, t)| [s, t]));
+            } else {
+                let mut add = |s, t| overlaps.push([s, t]);
+                self.bodies.meet(&self.obstacles, bodies, &is_new, &mut add);
+                self.obstacles.meet(&self.bodies, obstacles, &is_new, |t, s| {
+                    if !is_new(&bodies.corners[s as usize]) {
+                        add(s, t);
+                    }
+                });
+            }
             let both = [(bodies, &self.bodies), (obstacles, &self.obstacles)];
             way.list(both, overlaps, parallel, pairs);
         }
@@ -146,7 +183,16 @@ impl Listing {
                 pairs.extend(way.pair(PairKind::VertexFloor, [i, floor], points));
             }
         }
-        if parallel {
+        if renewed.is_some() {
+            let mut k = 0;
+            pairs.retain(|pair| {
+                k += 1;
+                k <= kept || is_new(&pair.candidate.points)
+            });
+            pairs[kept..].sort_unstable_by_key(|pair| pair.key);
+            // Two runs, which are merged.
+            pairs.sort_by_key(|pair| pair.key);
+        } else if parallel {
             pairs.par_sort_unstable_by_key(|pair| pair.key);
         } else {
             pairs.sort_unstable_by_key(|pair| pair.key);
@@ -242,7 +288,7 @@ impl Way<'_> {
         let x = points.map(|i| course.base[i as usize] - origin);
         let normal = match kind {
             PairKind::VertexFloor => Vector3::y(),
-            _ => closest(kind, &x).offset.try_normalize(0.0)?,
+            _ => closest(kind, &x).offset.try_normalize(0.0).unwrap_or_default(),
         };
         // The plane between them bounds their distance, now and later.
         let apart = |v: [Vector3<f64>; 4]| {
@@ -255,7 +301,8 @@ impl Way<'_> {
         };
         let thickness = self.surface.thickness(kind, &points);
         let rounding = ROUNDING * self.surface.thickest();
-        let gap = apart(x) - self.surface.radii(kind, &points) - thickness - rounding;
+        let between = if normal == Vector3::zeros() { f64::NEG_INFINITY } else { apart(x) };
+        let gap = between - self.surface.radii(kind, &points) - thickness - rounding;
         let closing = -apart(points.map(|i| course.speeds[i as usize]));
         let listed = gap - closing.max(0.0) * course.horizon < course.reach;
         listed.then(|| Listed {
@@ -272,6 +319,8 @@ impl Way<'_> {
 struct Tree {
     tree: Bvh,
     workspace: BvhWorkspace,
+    /// Half of the reach of the list (m).
+    half: f64,
     items: Vec<Bounds>,
     vertices: Vec<Bounds>,
     edges: Vec<Bounds>,
@@ -284,41 +333,75 @@ impl std::fmt::Debug for Tree {
 }
 
 impl Tree {
-    /// Takes the boxes of the items on their courses.
-    fn take(&mut self, items: &Items, surface: &Surface, course: &Course) {
+    /// Takes the boxes of the items on their courses, if these are new.
+    fn take(
+        &mut self,
+        items: &Items,
+        surface: &Surface,
+        course: &Course,
+        is_new: &impl Fn(&[u32]) -> bool,
+    ) {
         let around = |i: u32| {
             let begin = course.base[i as usize];
             let end = begin + (course.speeds[i as usize] - course.mean) * course.horizon;
             let radius = surface.radius(i);
             Bounds {
-                low: [begin, end].map(|x| x.add_scalar(-radius)),
-                high: [begin, end].map(|x| x.add_scalar(radius)),
+                low: [begin, end].map(|x| x.add_scalar(-radius).into()),
+                high: [begin, end].map(|x| x.add_scalar(radius).into()),
             }
         };
         let first = self.items.len() != items.corners.len();
-        self.vertices.clear();
-        self.vertices.extend(items.vertices.iter().map(|i| around(*i)));
-        self.edges.clear();
-        let edges = items.edges.iter().map(|[i, j]| around(*i).with(&around(*j)));
-        self.edges.extend(edges);
-        self.items.clear();
-        let corners = items.corners.iter();
-        let boxes = corners.map(|[i, j, k]| around(*i).with(&around(*j)).with(&around(*k)));
-        self.items.extend(boxes);
-        let half = 0.5 * (course.reach + surface.thickest());
-        let corner = |v: Vector3<f64>, by: f64| Vector::new(v.x + by, v.y + by, v.z + by);
-        let leaf = |b: &Bounds| {
-            let [low, high] = [b.low[0].inf(&b.low[1]), b.high[0].sup(&b.high[1])];
-            Aabb::new(corner(low, -half), corner(high, half))
-        };
+        self.half = 0.5 * (course.reach + surface.thickest());
+        let triangle = |[i, j, k]: &[u32; 3]| around(*i).with(&around(*j)).with(&around(*k));
         if first {
-            let leaves: Vec<_> = self.items.iter().map(leaf).collect();
+            self.vertices = items.vertices.iter().map(|i| around(*i)).collect();
+            let edges = items.edges.iter();
+            self.edges = edges.map(|[i, j]| around(*i).with(&around(*j))).collect();
+            self.items = items.corners.iter().map(triangle).collect();
+            let leaves: Vec<_> = self.items.iter().map(|item| self.leaf(item)).collect();
             self.tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
-        } else {
-            for (k, bounds) in self.items.iter().enumerate() {
-                self.tree.insert_or_update_partially(leaf(bounds), k as u32, 0.0);
+            return;
+        }
+        for (i, bounds) in items.vertices.iter().zip(&mut self.vertices) {
+            if is_new(&[*i]) {
+                *bounds = around(*i);
             }
-            self.tree.refit(&mut self.workspace);
+        }
+        for (edge, bounds) in items.edges.iter().zip(&mut self.edges) {
+            if is_new(edge) {
+                *bounds = around(edge[0]).with(&around(edge[1]));
+            }
+        }
+        for (k, corners) in items.corners.iter().enumerate() {
+            if is_new(corners) {
+                self.items[k] = triangle(corners);
+                let leaf = self.leaf(&self.items[k]);
+                self.tree.insert_or_update_partially(leaf, k as u32, 0.0);
+            }
+        }
+        self.tree.refit(&mut self.workspace);
+    }
+
+    /// Box of an item in the tree: around both its boxes, with half of the reach.
+    fn leaf(&self, item: &Bounds) -> Aabb {
+        let [a, b] = item.low.map(|low| Vector::from(low.map(|x| x - self.half)));
+        let [c, d] = item.high.map(|high| Vector::from(high.map(|x| x + self.half)));
+        Aabb::new(a.min(b), c.max(d))
+    }
+
+    /// Visits the items with new courses, each with every item of another tree that its box meets.
+    fn meet(
+        &self,
+        other: &Self,
+        items: &Items,
+        is_new: &impl Fn(&[u32]) -> bool,
+        mut visit: impl FnMut(u32, u32),
+    ) {
+        for (k, corners) in items.corners.iter().enumerate() {
+            if is_new(corners) {
+                let leaf = self.leaf(&self.items[k]);
+                other.tree.intersect_aabb(&leaf).for_each(|l| visit(k as u32, l));
+            }
         }
     }
 }
