@@ -14,11 +14,11 @@ use super::surface::Surface;
 use crate::threads::threads;
 
 /// How far a vertex may stray from its course, as a share of the largest thickness.
-const MARGIN: f64 = 0.5;
+const MARGIN: f64 = 0.4;
 
 /// How far the fastest vertex, relative to the mean, goes on the courses for which a list is made,
 /// as a share of the largest thickness.
-const LENGTH: f64 = 8.0;
+const LENGTH: f64 = 4.0;
 
 /// Time for which a list is made, as a share of that for which the one before it held.
 const HOLDING: f64 = 1.5;

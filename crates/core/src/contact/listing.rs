@@ -136,14 +136,16 @@ impl Listing {
         pairs: &mut Vec<Listed>,
     ) {
         let (bodies, obstacles) = (&surface.bodies, &surface.obstacles);
-        let is_new = |points: &[u32]| {
-            renewed.is_none_or(|renewed| points.iter().any(|i| renewed[*i as usize]))
+        let way = Way {
+            surface,
+            course,
+            renewed,
         };
+        let is_new = |points: &[u32]| way.is_new(points);
         pairs.retain(|pair| !is_new(&pair.candidate.points));
         let kept = pairs.len();
         self.bodies.take(bodies, surface, course, &is_new);
         self.obstacles.take(obstacles, surface, course, &is_new);
-        let way = Way { surface, course };
         let overlaps = &mut self.overlaps;
         if surface.touches_itself {
             overlaps.clear();
@@ -184,11 +186,6 @@ impl Listing {
             }
         }
         if renewed.is_some() {
-            let mut k = 0;
-            pairs.retain(|pair| {
-                k += 1;
-                k <= kept || is_new(&pair.candidate.points)
-            });
             pairs[kept..].sort_unstable_by_key(|pair| pair.key);
             // Two runs, which are merged.
             pairs.sort_by_key(|pair| pair.key);
@@ -207,9 +204,17 @@ type Side<'a> = (&'a Items, &'a Tree);
 struct Way<'a> {
     surface: &'a Surface,
     course: &'a Course<'a>,
+    /// The vertices with new courses, if only their pairs are listed.
+    renewed: Option<&'a [bool]>,
 }
 
 impl Way<'_> {
+    /// Whether one of these vertices has a new course.
+    fn is_new(&self, points: &[u32]) -> bool {
+        self.renewed
+            .is_none_or(|renewed| points.iter().any(|i| renewed[*i as usize]))
+    }
+
     /// Adds the pairs of items whose boxes overlap.
     fn list(
         &self,
@@ -283,6 +288,9 @@ impl Way<'_> {
 
     /// The pair of these primitives, by their ranks and points, if it comes within reach.
     fn pair(&self, kind: PairKind, ranks: [u32; 2], points: [u32; 4]) -> Option<Listed> {
+        if !self.is_new(&points) {
+            return None;
+        }
         let course = self.course;
         let origin = course.base[points[0] as usize];
         let x = points.map(|i| course.base[i as usize] - origin);
