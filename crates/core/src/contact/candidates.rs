@@ -114,6 +114,12 @@ impl Default for Candidates {
 }
 
 impl Candidates {
+    /// Gives the list other margins and lengths of courses than [`MARGIN`] and [`LENGTH`].
+    #[cfg(test)]
+    pub fn set_shares(&mut self, shares: [f64; 2]) {
+        self.shares = shares;
+    }
+
     /// Makes sure that the list has every pair that comes nearer than its thickness in a stretch.
     pub fn cover(&mut self, surface: &Surface, stretch: &Stretch) {
         let [first, last] = stretch.times;
@@ -176,7 +182,8 @@ impl Candidates {
     fn renew(&mut self, surface: &Surface, stretch: &Stretch) -> bool {
         let stray = STRAY * self.margin;
         self.renewed.clear();
-        self.renewed.extend(self.travel.iter().map(|travel| *travel > stray));
+        self.renewed
+            .extend(self.travel.iter().map(|travel| *travel > stray));
         let count = self.renewed.iter().filter(|is_new| **is_new).count();
         if count * FEW > self.base.len() {
             return false;
@@ -200,7 +207,8 @@ impl Candidates {
         let from = stretch.ends[0];
         let duration = stretch.times[1] - stretch.times[0];
         self.speeds.clear();
-        self.speeds.extend((0..from.len()).map(|i| stretch.speed(i)));
+        self.speeds
+            .extend((0..from.len()).map(|i| stretch.speed(i)));
         let before = if duration > 0.0 { 0.0 } else { self.back };
         self.begin = stretch.times[0] - before;
         self.base.clear();
@@ -228,7 +236,8 @@ impl Candidates {
             reach: 2.0 * self.margin,
         };
         let renewed = some.then_some(&self.renewed[..]);
-        self.listing.list(surface, &course, renewed, self.parallel, &mut self.pairs);
+        self.listing
+            .list(surface, &course, renewed, self.parallel, &mut self.pairs);
     }
 
     /// Whether a pair may come nearer than a gap beyond its thickness (m) in what was covered last.
@@ -240,7 +249,10 @@ impl Candidates {
     /// The pairs, in canonical order, that may come nearer than a gap beyond their thickness (m),
     /// which is at most 0, in the stretch that was covered last.
     pub fn near(&self, gap: f64) -> impl Iterator<Item = &Candidate> {
-        let near = self.pairs.iter().filter(move |pair| self.is_near(pair, gap));
+        let near = self
+            .pairs
+            .iter()
+            .filter(move |pair| self.is_near(pair, gap));
         near.map(|pair| &pair.candidate)
     }
 

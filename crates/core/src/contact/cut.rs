@@ -76,13 +76,22 @@ impl Cuts {
     }
 
     /// Cuts the displacements of a pair at the plane between its primitives.
-    fn hold(&mut self, surface: &Surface, pair: &Candidate, motion: &Motion) -> Result<(), Squeezed> {
+    fn hold(
+        &mut self,
+        surface: &Surface,
+        pair: &Candidate,
+        motion: &Motion,
+    ) -> Result<(), Squeezed> {
         let x = pair.of(&motion.x0);
         let moves = pair.of(&self.before);
         let inverse_masses = pair.of(&motion.inverse_masses);
         let first = pair.kind.first();
         // The points that count: a floor has one.
-        let last = if pair.kind == PairKind::VertexFloor { 2 } else { 4 };
+        let last = if pair.kind == PairKind::VertexFloor {
+            2
+        } else {
+            4
+        };
         let near = closest(pair.kind, &x);
         let distance = near.offset.norm();
         let normal = near.offset / distance;
@@ -118,7 +127,11 @@ impl Cuts {
             }
             let (at, by) = (x[k].dot(&normal), moves[k].dot(&normal));
             let end = if k < first { first_end } else { second_end };
-            let passes = if k < first { at + by < end } else { at + by > end };
+            let passes = if k < first {
+                at + by < end
+            } else {
+                at + by > end
+            };
             if passes && by != 0.0 {
                 let share = ((end - at) / by).clamp(0.0, 1.0) * (1.0 - 1e-12);
                 let i = pair.points[k] as usize;

@@ -126,7 +126,10 @@ fn are_apart(
         let [first, second] = match kind {
             PairKind::VertexTriangle => [
                 [0.0; 2],
-                [low(1).min(low(2)).min(low(3)), high(1).max(high(2)).max(high(3))],
+                [
+                    low(1).min(low(2)).min(low(3)),
+                    high(1).max(high(2)).max(high(3)),
+                ],
             ],
             PairKind::EdgeEdge => [
                 [low(1).min(0.0), high(1).max(0.0)],
@@ -194,7 +197,11 @@ impl Contact {
 /// The part of a slip that friction takes, which is at most so long.
 fn hold(slip: Vector3<f64>, most: f64) -> Vector3<f64> {
     let length = slip.norm();
-    if length > most { slip * (most / length) } else { slip }
+    if length > most {
+        slip * (most / length)
+    } else {
+        slip
+    }
 }
 
 impl ContactLayer {
@@ -224,7 +231,10 @@ impl ContactLayer {
         let surface = self.surface();
         let half = y1.len() / 2;
         let Scratch {
-            candidates, motion, cuts, ..
+            candidates,
+            motion,
+            cuts,
+            ..
         } = scratch;
         motion.times = [t, t + h];
         surface.place(self.obstacles(), t, &y0[..half], &mut motion.x0);
@@ -242,7 +252,12 @@ impl ContactLayer {
         let mut moved = vec![];
         let mut clear = false;
         for pass in 0..PASSES {
-            let hits = find(surface, candidates, motion, (pass > 0).then_some(&moved[..]));
+            let hits = find(
+                surface,
+                candidates,
+                motion,
+                (pass > 0).then_some(&moved[..]),
+            );
             if hits.is_empty() {
                 clear = true;
                 break;
@@ -252,7 +267,15 @@ impl ContactLayer {
             moved.resize(motion.x0.len(), false);
             for (candidate, time) in hits {
                 guarded.first = guarded.first.min(time);
-                push(surface, &candidate, time, h, motion, &mut guarded, &mut moved);
+                push(
+                    surface,
+                    &candidate,
+                    time,
+                    h,
+                    motion,
+                    &mut guarded,
+                    &mut moved,
+                );
             }
             motion.cover(surface, candidates);
         }
@@ -356,9 +379,8 @@ fn find(
     motion: &Motion,
     moved: Option<&[bool]>,
 ) -> Vec<(Candidate, f64)> {
-    let has_moved = |pair: &Candidate| {
-        moved.is_none_or(|moved| pair.points.iter().any(|i| moved[*i as usize]))
-    };
+    let has_moved =
+        |pair: &Candidate| moved.is_none_or(|moved| pair.points.iter().any(|i| moved[*i as usize]));
     let hit = |pair: &Candidate| {
         let time = has_moved(pair).then(|| motion.impact(surface, pair))?;
         Some((*pair, time?))

@@ -166,7 +166,9 @@ impl ContactLayer {
         mut visit: impl FnMut([u32; 4], Stiffness),
     ) {
         let find = |candidate: &Candidate, pair: &Pair| Some((candidate.points, pair.stiffness()?));
-        self.visit(t, x, None, find, |(points, stiffness)| visit(points, stiffness));
+        self.visit(t, x, None, find, |(points, stiffness)| {
+            visit(points, stiffness)
+        });
     }
 
     /// Whether the forces depend on velocities.

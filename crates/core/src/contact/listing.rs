@@ -97,8 +97,14 @@ impl Bounds {
     fn apart(&self, other: &Self) -> f64 {
         let mut squared = 0.0;
         for k in 0..3 {
-            let after = least(other.low[0][k] - self.high[0][k], other.low[1][k] - self.high[1][k]);
-            let before = least(self.low[0][k] - other.high[0][k], self.low[1][k] - other.high[1][k]);
+            let after = least(
+                other.low[0][k] - self.high[0][k],
+                other.low[1][k] - self.high[1][k],
+            );
+            let before = least(
+                self.low[0][k] - other.high[0][k],
+                self.low[1][k] - other.high[1][k],
+            );
             let gap = most(0.0, most(after, before));
             squared += gap * gap;
         }
@@ -165,16 +171,20 @@ impl Listing {
         if !obstacles.corners.is_empty() && !bodies.corners.is_empty() {
             overlaps.clear();
             if renewed.is_none() {
-                let both = self.bodies.tree.leaf_pairs(&self.obstacles.tree, BvhNode::intersects);
+                let both = self
+                    .bodies
+                    .tree
+                    .leaf_pairs(&self.obstacles.tree, BvhNode::intersects);
                 overlaps.extend(both.map(|(s, t)| [s, t]));
             } else {
                 let mut add = |s, t| overlaps.push([s, t]);
                 self.bodies.meet(&self.obstacles, bodies, &is_new, &mut add);
-                self.obstacles.meet(&self.bodies, obstacles, &is_new, |t, s| {
-                    if !is_new(&bodies.corners[s as usize]) {
-                        add(s, t);
-                    }
-                });
+                self.obstacles
+                    .meet(&self.bodies, obstacles, &is_new, |t, s| {
+                        if !is_new(&bodies.corners[s as usize]) {
+                            add(s, t);
+                        }
+                    });
             }
             let both = [(bodies, &self.bodies), (obstacles, &self.obstacles)];
             way.list(both, overlaps, parallel, pairs);
@@ -268,8 +278,8 @@ impl Way<'_> {
             for j in second.edges_of(t) {
                 let f = second.edges[j];
                 // A point and an edge of a triangle: its corners and the point are a pair already.
-                let point = e[0] == e[1] && second.is_triangle(t)
-                    || f[0] == f[1] && first.is_triangle(s);
+                let point =
+                    e[0] == e[1] && second.is_triangle(t) || f[0] == f[1] && first.is_triangle(s);
                 if point
                     || e.iter().any(|i| f.contains(i))
                     || around.apart(&second_tree.edges[j]) >= squared
@@ -296,7 +306,10 @@ impl Way<'_> {
         let x = points.map(|i| course.base[i as usize] - origin);
         let normal = match kind {
             PairKind::VertexFloor => Vector3::y(),
-            _ => closest(kind, &x).offset.try_normalize(0.0).unwrap_or_default(),
+            _ => closest(kind, &x)
+                .offset
+                .try_normalize(0.0)
+                .unwrap_or_default(),
         };
         // The plane between them bounds their distance, now and later.
         let apart = |v: [Vector3<f64>; 4]| {
@@ -309,7 +322,11 @@ impl Way<'_> {
         };
         let thickness = self.surface.thickness(kind, &points);
         let rounding = ROUNDING * self.surface.thickest();
-        let between = if normal == Vector3::zeros() { f64::NEG_INFINITY } else { apart(x) };
+        let between = if normal == Vector3::zeros() {
+            f64::NEG_INFINITY
+        } else {
+            apart(x)
+        };
         let gap = between - self.surface.radii(kind, &points) - thickness - rounding;
         let closing = -apart(points.map(|i| course.speeds[i as usize]));
         let listed = gap - closing.max(0.0) * course.horizon < course.reach;
@@ -393,7 +410,9 @@ impl Tree {
     /// Box of an item in the tree: around both its boxes, with half of the reach.
     fn leaf(&self, item: &Bounds) -> Aabb {
         let [a, b] = item.low.map(|low| Vector::from(low.map(|x| x - self.half)));
-        let [c, d] = item.high.map(|high| Vector::from(high.map(|x| x + self.half)));
+        let [c, d] = item
+            .high
+            .map(|high| Vector::from(high.map(|x| x + self.half)));
         Aabb::new(a.min(b), c.max(d))
     }
 
@@ -408,7 +427,10 @@ impl Tree {
         for (k, corners) in items.corners.iter().enumerate() {
             if is_new(corners) {
                 let leaf = self.leaf(&self.items[k]);
-                other.tree.intersect_aabb(&leaf).for_each(|l| visit(k as u32, l));
+                other
+                    .tree
+                    .intersect_aabb(&leaf)
+                    .for_each(|l| visit(k as u32, l));
             }
         }
     }

@@ -28,6 +28,8 @@ mod resolve;
 mod shape;
 mod strain;
 mod surface;
+#[cfg(test)]
+mod tests;
 
 pub use advance::time_of_impact;
 pub use check::Crossed;

@@ -87,7 +87,8 @@ impl Pair {
     fn potential(&self, share: f64) -> f64 {
         let (k, d) = (self.law.skin.stiffness, self.law.skin.thickness);
         let past = share - 1.0;
-        k * d * d
+        k * d
+            * d
             * if past < 0.0 {
                 0.25 * share.powi(4)
             } else {
@@ -186,13 +187,16 @@ impl Pair {
             return None;
         }
         let [after, before] = [after, before].map(Option::unwrap_or_default);
-        Some(std::array::from_fn(|k| (after[k] - before[k]) / (2.0 * step)))
+        Some(std::array::from_fn(|k| {
+            (after[k] - before[k]) / (2.0 * step)
+        }))
     }
 
     /// Energy (J).
     pub fn energy(&self) -> f64 {
-        self.within()
-            .map_or(0.0, |within| self.potential(within.share) * self.crossing().0)
+        self.within().map_or(0.0, |within| {
+            self.potential(within.share) * self.crossing().0
+        })
     }
 
     /// Stiffness and damping, if there are any: the part of the differential that is positive

@@ -90,7 +90,9 @@ impl Items {
     ) -> Self {
         let mut items = Self::default();
         let (mut seen_vertices, mut seen_edges) = (BTreeSet::new(), BTreeSet::new());
-        let lone = edges.into_iter().map(|[a, b]| [a.min(b), a.max(b), a.max(b)]);
+        let lone = edges
+            .into_iter()
+            .map(|[a, b]| [a.min(b), a.max(b), a.max(b)]);
         for corners in triangles.into_iter().chain(lone) {
             let [a, b, c] = corners;
             if b == c && seen_edges.contains(&[a, b]) {
@@ -100,9 +102,15 @@ impl Items {
             let new = corners.into_iter().filter(|i| seen_vertices.insert(*i));
             items.vertices.extend(new);
             items.vertex_ends.push(items.vertices.len() as u32);
-            let sides: &[[u32; 2]] = if b == c { &[[a, b]] } else { &[[a, b], [b, c], [c, a]] };
+            let sides: &[[u32; 2]] = if b == c {
+                &[[a, b]]
+            } else {
+                &[[a, b], [b, c], [c, a]]
+            };
             let sides = sides.iter().map(|[i, j]| [*i.min(j), *i.max(j)]);
-            items.edges.extend(sides.filter(|side| seen_edges.insert(*side)));
+            items
+                .edges
+                .extend(sides.filter(|side| seen_edges.insert(*side)));
             items.edge_ends.push(items.edges.len() as u32);
         }
         items.ranks = ranks(&items.corners, others.corners.len());
@@ -210,7 +218,11 @@ impl Surface {
             surface.anchors.push(simplices.points);
         }
         surface.obstacles = Items::new(faces, sides, &surface.bodies);
-        let touching = surface.bodies.vertices.iter().chain(&surface.obstacles.vertices);
+        let touching = surface
+            .bodies
+            .vertices
+            .iter()
+            .chain(&surface.obstacles.vertices);
         let thicknesses = touching
             .chain(&surface.floors)
             .map(|i| surface.skins[*i as usize].thickness);
@@ -310,13 +322,25 @@ impl Surface {
     }
 
     /// Writes positions (m) of all vertices at time t (s), with particles at x, n x 3.
-    pub(super) fn place(&self, obstacles: &[Obstacle], t: f64, x: &[f64], out: &mut Vec<Vector3<f64>>) {
+    pub(super) fn place(
+        &self,
+        obstacles: &[Obstacle],
+        t: f64,
+        x: &[f64],
+        out: &mut Vec<Vector3<f64>>,
+    ) {
         particles_of(x, out);
         self.each_anchor(obstacles, t, |place| out.push(place.position));
     }
 
     /// Writes velocities (m/s) of all vertices at time t (s), with those of particles in v, n x 3.
-    pub(super) fn speeds(&self, obstacles: &[Obstacle], t: f64, v: &[f64], out: &mut Vec<Vector3<f64>>) {
+    pub(super) fn speeds(
+        &self,
+        obstacles: &[Obstacle],
+        t: f64,
+        v: &[f64],
+        out: &mut Vec<Vector3<f64>>,
+    ) {
         particles_of(v, out);
         self.each_anchor(obstacles, t, |place| out.push(place.velocity));
     }
