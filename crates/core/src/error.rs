@@ -147,7 +147,7 @@ impl fmt::Display for BlowUp {
             Cause::ReadsVelocity => write!(f, "{SERVES_POSITIONS}"),
             Cause::Squeezed { vertices: [a, b] } => write!(
                 f,
-                "surfaces are squeezed between what is led at {a} and at {b}"
+                "surfaces are squeezed: what is led leaves no room between {a} and {b}"
             ),
         }
     }

@@ -2,10 +2,11 @@
 
 use std::fmt;
 
-use super::candidates::Candidate;
+use super::candidates::Stretch;
 use super::closest::{PairKind, closest};
 use super::exact::crossings;
 use super::layer::{ContactLayer, Scratch};
+use super::listing::Candidate;
 use crate::error::Vertex;
 
 /// Two primitives that have a point in common, by their vertices.
@@ -51,12 +52,17 @@ impl ContactLayer {
         let surface = self.surface();
         let n = surface.particles();
         assert_eq!(x.len(), 3 * n, "x has three numbers for each particle");
-        let mut scratch = self.scratch();
+        self.with_scratch(|scratch| self.crossed_with(scratch, t, x))
+    }
+
+    fn crossed_with(&self, scratch: &mut Scratch, t: f64, x: &[f64]) -> Vec<Crossed> {
+        let surface = self.surface();
+        let n = surface.particles();
         let Scratch {
             candidates,
             x: places,
             ..
-        } = &mut *scratch;
+        } = scratch;
         surface.place(self.obstacles(), t, x, places);
         let (edges, triangles): (Vec<_>, Vec<_>) =
             (surface.edges().collect(), surface.triangles().collect());
@@ -74,7 +80,12 @@ impl ContactLayer {
                 second: name(&triangle),
             });
         let mut crossed: Vec<_> = exact.collect();
-        candidates.cover(surface, places, places);
+        let stretch = Stretch {
+            times: [t; 2],
+            ends: [places; 2],
+            speeds: None,
+        };
+        candidates.cover(surface, &stretch);
         let is_inside = |pair: &&Candidate| {
             let (offset, radius) = (
                 closest(pair.kind, &pair.of(places)).offset,
@@ -85,7 +96,7 @@ impl ContactLayer {
                 _ => radius > 0.0 && offset.norm() < radius,
             }
         };
-        let inside = candidates.near(|_| f64::MIN_POSITIVE).filter(is_inside);
+        let inside = candidates.near(surface.nearest()).filter(is_inside);
         crossed.extend(inside.map(|pair| {
             let (first, second) = pair.points.split_at(pair.kind.first());
             let of = |points: &[u32]| {

@@ -11,9 +11,10 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
-use super::candidates::{Candidate, Candidates};
+use super::candidates::Candidates;
 use super::closest::{PairKind, closest, weighted};
-use super::guard::Motion;
+use super::motion::Motion;
+use super::listing::Candidate;
 use super::surface::Surface;
 use crate::error::Vertex;
 
@@ -44,17 +45,21 @@ impl Cuts {
         self.shares.clear();
         self.shares.resize(motion.moves.len(), 1.0);
         let mut held = BTreeSet::new();
+        let mut squeezed = Ok(());
         loop {
             motion.cover(surface, candidates);
-            let nearest = 2.0 * surface.kept();
             let mut new = false;
-            for pair in candidates.near(|_| nearest) {
+            for pair in candidates.near(surface.nearest()) {
                 let key = (pair.kind, pair.points);
                 if !held.contains(&key) && motion.impact(surface, pair).is_some() {
                     held.insert(key);
                     new = true;
-                    self.hold(surface, pair, motion)?;
+                    squeezed = squeezed.and(self.hold(surface, pair, motion));
                 }
+            }
+            if let Err(squeezed) = squeezed {
+                motion.moves.clone_from(&self.before);
+                return Err(squeezed);
             }
             if !new {
                 break;
@@ -76,13 +81,22 @@ impl Cuts {
     }
 
     /// Cuts the displacements of a pair at the plane between its primitives.
-    fn hold(&mut self, surface: &Surface, pair: &Candidate, motion: &Motion) -> Result<(), Squeezed> {
+    fn hold(
+        &mut self,
+        surface: &Surface,
+        pair: &Candidate,
+        motion: &Motion,
+    ) -> Result<(), Squeezed> {
         let x = pair.of(&motion.x0);
         let moves = pair.of(&self.before);
         let inverse_masses = pair.of(&motion.inverse_masses);
         let first = pair.kind.first();
         // The points that count: a floor has one.
-        let last = if pair.kind == PairKind::VertexFloor { 2 } else { 4 };
+        let last = if pair.kind == PairKind::VertexFloor {
+            2
+        } else {
+            4
+        };
         let near = closest(pair.kind, &x);
         let distance = near.offset.norm();
         let normal = near.offset / distance;
@@ -101,7 +115,10 @@ impl Cuts {
         let room = distance - kept;
         let free = room - first_led - second_led;
         if free < 0.0 {
-            let vertices = [pair.points[0], pair.points[first]].map(|i| surface.vertex(i));
+            let vertices = [0..first, first..last].map(|mut side| {
+                let k = side.clone().find(|k| inverse_masses[*k] == 0.0);
+                surface.vertex(pair.points[k.or(side.next()).unwrap_or(0)])
+            });
             return Err(Squeezed { vertices });
         }
         let wishes = [first_all - first_led, second_all - second_led];
@@ -118,7 +135,11 @@ impl Cuts {
             }
             let (at, by) = (x[k].dot(&normal), moves[k].dot(&normal));
             let end = if k < first { first_end } else { second_end };
-            let passes = if k < first { at + by < end } else { at + by > end };
+            let passes = if k < first {
+                at + by < end
+            } else {
+                at + by > end
+            };
             if passes && by != 0.0 {
                 let share = ((end - at) / by).clamp(0.0, 1.0) * (1.0 - 1e-12);
                 let i = pair.points[k] as usize;

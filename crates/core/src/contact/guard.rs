@@ -6,169 +6,20 @@
 //! Fedkiw, Anderson, *Robust treatment of collisions, contact and friction for cloth animation*,
 //! 2002). What is left after them is [cut](super::cut).
 
-use std::ops::AddAssign;
-
-use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
-
-use super::advance::time_of_impact;
-use super::candidates::{Candidate, Candidates};
-use super::closest::{closest, weighted};
+use super::candidates::Candidates;
+use super::closest::closest;
 use super::cut::Squeezed;
+use super::friction::{Contact, rub};
 use super::layer::{ContactLayer, Scratch};
-use super::repulsion::Pair;
+use super::listing::Candidate;
+use super::motion::{Guarded, Motion};
 use super::surface::Surface;
 
 /// Passes of impulses before what is left is cut.
 const PASSES: usize = 12;
 
-/// Passes of friction between surfaces that the contact force keeps apart.
-const FRICTION_PASSES: usize = 4;
-
-/// Share of the most that friction takes of a velocity below which a slip counts as none.
-const STUCK: f64 = 1e-9;
-
-/// What the guard did in a step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Guarded {
-    /// Number of impulses.
-    pub impulses: usize,
-    /// Sum of the magnitudes of the impulses and of friction (N s).
-    pub impulse: f64,
-    /// Number of vertices whose way was cut.
-    pub cuts: usize,
-    /// Sum of the magnitudes of the momentum that cuts took (N s).
-    pub lost: f64,
-    /// Share of the step at which the first impulse was needed; 1 if none was.
-    pub first: f64,
-}
-
-impl Default for Guarded {
-    fn default() -> Self {
-        Self {
-            impulses: 0,
-            impulse: 0.0,
-            cuts: 0,
-            lost: 0.0,
-            first: 1.0,
-        }
-    }
-}
-
-impl AddAssign for Guarded {
-    fn add_assign(&mut self, other: Self) {
-        self.impulses += other.impulses;
-        self.impulse += other.impulse;
-        self.cuts += other.cuts;
-        self.lost += other.lost;
-        self.first = self.first.min(other.first);
-    }
-}
-
-/// Motion of all vertices in a step.
-#[derive(Debug, Default)]
-pub(super) struct Motion {
-    /// Positions at its beginning (m).
-    pub x0: Vec<Vector3<f64>>,
-    /// Displacements (m).
-    pub moves: Vec<Vector3<f64>>,
-    /// Velocities at its beginning (m/s), where friction acts.
-    pub v0: Vec<Vector3<f64>>,
-    /// Velocities at its end (m/s).
-    pub v: Vec<Vector3<f64>>,
-    /// Inverse masses (1/kg): 0 for vertices that are led.
-    pub inverse_masses: Vec<f64>,
-    ends: Vec<Vector3<f64>>,
-}
-
-impl Motion {
-    /// Makes sure that `candidates` has every pair that may touch.
-    pub fn cover(&mut self, surface: &Surface, candidates: &mut Candidates) {
-        self.ends.clear();
-        let ends = self.x0.iter().zip(&self.moves).map(|(x, move_)| x + move_);
-        self.ends.extend(ends);
-        candidates.cover(surface, &self.x0, &self.ends);
-    }
-
-    /// Share of the step at which a pair comes too near, if it does.
-    pub fn impact(&self, surface: &Surface, candidate: &Candidate) -> Option<f64> {
-        let x = candidate.of(&self.x0);
-        let moves = candidate.of(&self.moves);
-        let kept = self.kept(surface, candidate, &x);
-        time_of_impact(candidate.kind, &x, &moves, kept)
-    }
-
-    /// Distance (m) that a pair keeps, less than what it has at the beginning.
-    pub fn kept(&self, surface: &Surface, candidate: &Candidate, x: &[Vector3<f64>; 4]) -> f64 {
-        let law = surface.law(candidate.kind, &candidate.points);
-        law.kept(closest(candidate.kind, x).offset.norm())
-    }
-}
-
-/// Direction of a pair's contact: the weights of its closest points, the normal from the second
-/// primitive to the first, and the sum of the weighted inverse masses (1/kg).
-struct Contact {
-    points: [u32; 4],
-    weights: [f64; 4],
-    normal: Vector3<f64>,
-    inverse_mass: f64,
-}
-
-impl Contact {
-    fn new(points: [u32; 4], weights: [f64; 4], normal: Vector3<f64>, motion: &Motion) -> Self {
-        let inverse_masses = points.map(|i| motion.inverse_masses[i as usize]);
-        let terms = weights.iter().zip(inverse_masses).map(|(w, m)| w * w * m);
-        Self {
-            points,
-            weights,
-            normal,
-            inverse_mass: terms.sum(),
-        }
-    }
-
-    /// The relative vector of the closest points.
-    fn relative(&self, all: &[Vector3<f64>]) -> Vector3<f64> {
-        weighted(&self.weights, &self.points.map(|i| all[i as usize]))
-    }
-
-    /// The part across the normal of the relative vector of the closest points.
-    fn slip(&self, all: &[Vector3<f64>]) -> Vector3<f64> {
-        let relative = self.relative(all);
-        relative - self.normal * relative.dot(&self.normal)
-    }
-
-    /// Changes the relative vector of the closest points by `change`.
-    fn apply(&self, change: Vector3<f64>, inverse_masses: &[f64], all: &mut [Vector3<f64>]) {
-        let by = change / self.inverse_mass;
-        for (i, weight) in self.points.iter().zip(self.weights) {
-            let i = *i as usize;
-            if inverse_masses[i] > 0.0 && weight != 0.0 {
-                all[i] += by * (weight * inverse_masses[i]);
-            }
-        }
-    }
-
-    /// Stops an approach, and by friction at most mu times as much of a slip. Returns the impulse's
-    /// magnitude over the effective mass, 0 if there was no approach.
-    fn stop(&self, friction: f64, inverse_masses: &[f64], all: &mut [Vector3<f64>]) -> f64 {
-        let relative = self.relative(all);
-        let approach = -relative.dot(&self.normal);
-        if approach <= 0.0 {
-            return 0.0;
-        }
-        let slip = relative + self.normal * approach;
-        let held = hold(slip, friction * approach);
-        let change = self.normal * approach - held;
-        self.apply(change, inverse_masses, all);
-        change.norm()
-    }
-}
-
-/// The part of a slip that friction takes, which is at most so long.
-fn hold(slip: Vector3<f64>, most: f64) -> Vector3<f64> {
-    let length = slip.norm();
-    if length > most { slip * (most / length) } else { slip }
-}
+/// Times that these passes are repeated where cuts fail, because what is led leaves no room.
+const ROUNDS: usize = 20;
 
 impl ContactLayer {
     /// Guards the step of h (s) from the state y0 at time t (s) to y1, which it changes where
@@ -183,12 +34,26 @@ impl ContactLayer {
         y0: &[f64],
         y1: &mut [f64],
     ) -> Result<Guarded, Squeezed> {
+        self.with_scratch(|scratch| self.guard_with(scratch, inverse_masses, (t, h), y0, y1))
+    }
+
+    fn guard_with(
+        &self,
+        scratch: &mut Scratch,
+        inverse_masses: &[f64],
+        (t, h): (f64, f64),
+        y0: &[f64],
+        y1: &mut [f64],
+    ) -> Result<Guarded, Squeezed> {
         let surface = self.surface();
         let half = y1.len() / 2;
-        let mut scratch = self.scratch();
         let Scratch {
-            candidates, motion, cuts, ..
-        } = &mut *scratch;
+            candidates,
+            motion,
+            cuts,
+            ..
+        } = scratch;
+        motion.times = [t, t + h];
         surface.place(self.obstacles(), t, &y0[..half], &mut motion.x0);
         surface.place(self.obstacles(), t + h, &y1[..half], &mut motion.moves);
         for (end, start) in motion.moves.iter_mut().zip(&motion.x0) {
@@ -204,31 +69,51 @@ impl ContactLayer {
         let mut guarded = Guarded::default();
         motion.cover(surface, candidates);
         let mut changed = rub(surface, h, candidates, motion, &mut guarded);
-        let mut moved = vec![];
-        let mut clear = false;
-        for pass in 0..PASSES {
-            let hits = find(surface, candidates, motion, (pass > 0).then_some(&moved[..]));
-            if hits.is_empty() {
-                clear = true;
-                break;
+        let mut rounds = 0;
+        while !push_apart(surface, h, candidates, motion, &mut guarded, &mut changed) {
+            match cuts.cut(surface, candidates, motion) {
+                Ok(cut) => {
+                    (guarded.cuts, guarded.lost) = cut;
+                    break;
+                }
+                // More impulses may make way for what is led.
+                Err(_) if rounds < ROUNDS => rounds += 1,
+                Err(squeezed) => return Err(squeezed),
             }
-            changed = true;
-            moved.clear();
-            moved.resize(motion.x0.len(), false);
-            for (candidate, time) in hits {
-                guarded.first = guarded.first.min(time);
-                push(surface, &candidate, time, h, motion, &mut guarded, &mut moved);
-            }
-            motion.cover(surface, candidates);
-        }
-        if !clear {
-            (guarded.cuts, guarded.lost) = cuts.cut(surface, candidates, motion)?;
         }
         if changed {
             write_back(motion, y0, y1);
         }
         Ok(guarded)
     }
+}
+
+/// Passes of impulses. Returns whether no pair comes too near any more.
+fn push_apart(
+    surface: &Surface,
+    h: f64,
+    candidates: &mut Candidates,
+    motion: &mut Motion,
+    guarded: &mut Guarded,
+    changed: &mut bool,
+) -> bool {
+    let mut moved = vec![];
+    for pass in 0..PASSES {
+        let again = (pass > 0).then_some(&moved[..]);
+        let hits = find(surface, candidates, motion, again);
+        if hits.is_empty() {
+            return true;
+        }
+        *changed = true;
+        moved.clear();
+        moved.resize(motion.x0.len(), false);
+        for (candidate, time) in hits {
+            guarded.first = guarded.first.min(time);
+            push(surface, &candidate, time, h, motion, guarded, &mut moved);
+        }
+        motion.cover(surface, candidates);
+    }
+    false
 }
 
 /// Writes what was changed to y1 = [x | v].
@@ -251,87 +136,6 @@ fn write_back(motion: &Motion, y0: &[f64], y1: &mut [f64]) {
     }
 }
 
-/// Friction of pairs that the contact force keeps apart at the end of the step. Returns whether
-/// there was any.
-fn rub(
-    surface: &Surface,
-    h: f64,
-    candidates: &mut Candidates,
-    motion: &mut Motion,
-    guarded: &mut Guarded,
-) -> bool {
-    if !surface.is_rough() {
-        return false;
-    }
-    let mut pressed = vec![];
-    for candidate in candidates.near(|pair| surface.law(pair.kind, &pair.points).skin.thickness) {
-        let law = surface.law(candidate.kind, &candidate.points);
-        if law.skin.friction == 0.0 {
-            continue;
-        }
-        let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
-        let pair = Pair {
-            kind: candidate.kind,
-            law,
-            x: std::array::from_fn(|k| x0[k] + moves[k]),
-            v: candidate.of(&motion.v),
-        };
-        if let Some((force, weights, normal)) = pair.force() {
-            let contact = Contact::new(candidate.points, weights, normal, motion);
-            if contact.inverse_mass > 0.0 {
-                pressed.push((contact, law.skin.friction * force * h));
-            }
-        }
-    }
-    hold_pressed(&pressed, h, motion, guarded);
-    motion.cover(surface, candidates);
-    !pressed.is_empty()
-}
-
-/// Friction of contacts with the most impulse (N s) that each has: of velocities, and of
-/// displacements, which vanish where the velocities do, and follow them elsewhere.
-fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded: &mut Guarded) {
-    let Motion {
-        moves,
-        v0,
-        v,
-        inverse_masses,
-        ..
-    } = motion;
-    // Displacement per change of velocity in the step: half of it for most methods, all of it for
-    // implicit Euler.
-    let delay = |contact: &Contact| {
-        let begun = contact.slip(v0);
-        let (change, way) = (contact.slip(v) - begun, contact.slip(moves) - begun * h);
-        let squared = change.norm_squared();
-        if squared > 0.0 {
-            (way.dot(&change) / squared).clamp(0.0, h)
-        } else {
-            0.5 * h
-        }
-    };
-    let delays: Vec<f64> = pressed.iter().map(|(contact, _)| delay(contact)).collect();
-    let mut used = vec![0.0; pressed.len()];
-    for _ in 0..FRICTION_PASSES {
-        for (((contact, most), used), delay) in pressed.iter().zip(&mut used).zip(&delays) {
-            let slip = contact.slip(v);
-            let left = (most - *used).max(0.0) * contact.inverse_mass;
-            let taken = hold(slip, left);
-            contact.apply(-taken, inverse_masses, v);
-            *used += taken.norm() / contact.inverse_mass;
-            let limit = most * contact.inverse_mass;
-            let displaced = contact.slip(moves);
-            let back = if (slip - taken).norm() <= STUCK * limit {
-                hold(displaced, limit * h)
-            } else {
-                taken * *delay
-            };
-            contact.apply(-back, inverse_masses, moves);
-        }
-    }
-    guarded.impulse += used.iter().sum::<f64>();
-}
-
 /// The pairs that come too near, with the share of the step at which they do: all, or those of
 /// which a vertex has moved.
 fn find(
@@ -340,13 +144,15 @@ fn find(
     motion: &Motion,
     moved: Option<&[bool]>,
 ) -> Vec<(Candidate, f64)> {
-    let nearest = 2.0 * surface.kept();
-    let has_moved = |pair: &&Candidate| {
-        moved.is_none_or(|moved| pair.points.iter().any(|i| moved[*i as usize]))
+    let has_moved =
+        |pair: &Candidate| moved.is_none_or(|moved| pair.points.iter().any(|i| moved[*i as usize]));
+    let hit = |pair: &Candidate| {
+        let time = has_moved(pair).then(|| motion.impact(surface, pair))?;
+        Some((*pair, time?))
     };
-    let pairs = candidates.near(|_| nearest).filter(has_moved);
-    let hit = |pair: &Candidate| Some((*pair, motion.impact(surface, pair)?));
-    pairs.filter_map(hit).collect()
+    let mut hits = vec![];
+    candidates.each(surface.nearest(), hit, |hit| hits.push(hit));
+    hits
 }
 
 /// Impulse of a pair that touches at that share of the step.

@@ -1,12 +1,13 @@
 //! Contact of surfaces in a network: their primitives, and the list of those that may touch.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use nalgebra::Vector3;
 
-use super::candidates::{Candidate, Candidates};
+use super::candidates::{Candidates, Stretch};
 use super::cut::Cuts;
-use super::guard::Motion;
+use super::motion::Motion;
+use super::listing::Candidate;
 use super::obstacle::Obstacle;
 use super::repulsion::{Pair, Stiffness};
 use super::surface::Surface;
@@ -63,51 +64,71 @@ impl ContactLayer {
         self.obstacles[k] = obstacle;
     }
 
-    pub(super) fn scratch(&self) -> MutexGuard<'_, Scratch> {
-        self.scratch.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Lends the scratch. Nothing is locked meanwhile: who asks for it then gets a new one.
+    pub(super) fn with_scratch<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
+        let lock = || self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut scratch = std::mem::take(&mut *lock());
+        let result = work(&mut scratch);
+        *lock() = scratch;
+        result
     }
 
-    /// Visits the pairs that are within their thickness at time t (s) in the state (x, v), or
-    /// at rest without v, in canonical order.
-    fn visit(
+    /// Visits what `find` has found for the pairs that may be within their thickness at time t (s)
+    /// in the state (x, v), or at rest without v, in canonical order. Several threads may call
+    /// `find`.
+    fn visit<R: Send>(
         &self,
         t: f64,
         x: &[f64],
         v: Option<&[f64]>,
-        mut visit: impl FnMut(&Candidate, &Pair),
+        find: impl Fn(&Candidate, &Pair) -> Option<R> + Sync,
+        visit: impl FnMut(R),
     ) {
-        let mut scratch = self.scratch();
+        self.with_scratch(|scratch| self.visit_with(scratch, (t, x, v), find, visit));
+    }
+
+    fn visit_with<R: Send>(
+        &self,
+        scratch: &mut Scratch,
+        (t, x, v): (f64, &[f64], Option<&[f64]>),
+        find: impl Fn(&Candidate, &Pair) -> Option<R> + Sync,
+        visit: impl FnMut(R),
+    ) {
         let Scratch {
             candidates,
             x: places,
             v: speeds,
             ..
-        } = &mut *scratch;
+        } = scratch;
         self.surface.place(&self.obstacles, t, x, places);
         speeds.clear();
         match v {
             Some(v) => self.surface.speeds(&self.obstacles, t, v, speeds),
             None => speeds.resize(places.len(), Vector3::zeros()),
         }
-        candidates.cover(&self.surface, places, places);
-        let law = |pair: &Candidate| self.surface.law(pair.kind, &pair.points);
-        for candidate in candidates.near(|pair| law(pair).skin.thickness) {
+        let stretch = Stretch {
+            times: [t; 2],
+            ends: [places; 2],
+            speeds: Some(speeds),
+        };
+        candidates.cover(&self.surface, &stretch);
+        let find = |candidate: &Candidate| {
             let pair = Pair {
                 kind: candidate.kind,
-                law: law(candidate),
+                law: self.surface.law(candidate.kind, &candidate.points),
                 x: candidate.of(places),
                 v: candidate.of(speeds),
             };
-            visit(candidate, &pair);
-        }
+            find(candidate, &pair)
+        };
+        candidates.each(0.0, find, visit);
     }
 
     /// Adds the forces (N) at time t (s) in the state (x, v) to f.
     pub(crate) fn add_repulsion(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.visit(t, x, Some(v), |candidate, pair| {
-            if let Some(forces) = pair.forces() {
-                add(&candidate.points, &forces, f);
-            }
+        let find = |candidate: &Candidate, pair: &Pair| Some((candidate.points, pair.forces()?));
+        self.visit(t, x, Some(v), find, |(points, forces)| {
+            add(&points, &forces, f);
         });
     }
 
@@ -119,17 +140,20 @@ impl ContactLayer {
         [dx, dv]: [&[f64]; 2],
         df: &mut [f64],
     ) {
-        self.visit(t, x, Some(v), |candidate, pair| {
+        let find = |candidate: &Candidate, pair: &Pair| {
             let of = |a: &[f64]| candidate.points.map(|i| row(a, i));
-            let forces = pair.differential(&of(dx), &of(dv));
-            add(&candidate.points, &forces, df);
+            Some((candidate.points, pair.differential(&of(dx), &of(dv))?))
+        };
+        self.visit(t, x, Some(v), find, |(points, forces)| {
+            add(&points, &forces, df);
         });
     }
 
     /// Energy at time t (s) at x (J).
     pub(crate) fn repulsion_energy(&self, t: f64, x: &[f64]) -> f64 {
         let mut energy = 0.0;
-        self.visit(t, x, None, |_, pair| energy += pair.energy());
+        let find = |_: &Candidate, pair: &Pair| Some(pair.energy());
+        self.visit(t, x, None, find, |of_pair| energy += of_pair);
         energy
     }
 
@@ -141,10 +165,9 @@ impl ContactLayer {
         x: &[f64],
         mut visit: impl FnMut([u32; 4], Stiffness),
     ) {
-        self.visit(t, x, None, |candidate, pair| {
-            if let Some(stiffness) = pair.stiffness() {
-                visit(candidate.points, stiffness);
-            }
+        let find = |candidate: &Candidate, pair: &Pair| Some((candidate.points, pair.stiffness()?));
+        self.visit(t, x, None, find, |(points, stiffness)| {
+            visit(points, stiffness)
         });
     }
 

@@ -87,7 +87,8 @@ impl Pair {
     fn potential(&self, share: f64) -> f64 {
         let (k, d) = (self.law.skin.stiffness, self.law.skin.thickness);
         let past = share - 1.0;
-        k * d * d
+        k * d
+            * d
             * if past < 0.0 {
                 0.25 * share.powi(4)
             } else {
@@ -157,17 +158,17 @@ impl Pair {
     }
 
     /// Change of the forces (N) where the points move by dx (m) and their velocities change by dv
-    /// (m/s): a difference quotient.
+    /// (m/s), if there is any: a difference quotient.
     pub fn differential(
         &self,
         dx: &[Vector3<f64>; 4],
         dv: &[Vector3<f64>; 4],
-    ) -> [Vector3<f64>; 4] {
+    ) -> Option<[Vector3<f64>; 4]> {
         let most = |d: &[Vector3<f64>; 4]| d.iter().map(Vector3::norm).fold(0.0, f64::max);
         let skin = self.law.skin;
         let size = (most(dx) / skin.thickness).max(most(dv) * skin.damping);
         if size == 0.0 {
-            return [Vector3::zeros(); 4];
+            return None;
         }
         let step = DIFFERENCE / size;
         let at = |step: f64| {
@@ -179,16 +180,23 @@ impl Pair {
                 v: moved(&self.v, dv),
                 ..*self
             };
-            pair.forces().unwrap_or_default()
+            pair.forces()
         };
         let (after, before) = (at(step), at(-step));
-        std::array::from_fn(|k| (after[k] - before[k]) / (2.0 * step))
+        if after.is_none() && before.is_none() {
+            return None;
+        }
+        let [after, before] = [after, before].map(Option::unwrap_or_default);
+        Some(std::array::from_fn(|k| {
+            (after[k] - before[k]) / (2.0 * step)
+        }))
     }
 
     /// Energy (J).
     pub fn energy(&self) -> f64 {
-        self.within()
-            .map_or(0.0, |within| self.potential(within.share) * self.crossing().0)
+        self.within().map_or(0.0, |within| {
+            self.potential(within.share) * self.crossing().0
+        })
     }
 
     /// Stiffness and damping, if there are any: the part of the differential that is positive

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::nearest::{Nearest, of_box, of_capsule, of_floor, of_sphere};
 use super::cut::Squeezed;
-use super::guard::Guarded;
+use super::motion::Guarded;
 use super::layer::ContactLayer;
+use super::nearest::{Nearest, of_box, of_capsule, of_floor, of_sphere};
 use super::obstacle::Obstacle;
 use super::shape::Shape;
 use crate::path::Pose;

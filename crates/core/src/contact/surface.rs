@@ -1,6 +1,7 @@
 //! What of a network can touch: vertices, edges and triangles of its bodies and of its obstacles.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use nalgebra::Vector3;
 
@@ -48,6 +49,11 @@ pub(super) struct Law {
 }
 
 impl Law {
+    /// Distance of the pair that is kept at most (m).
+    pub fn most_kept(&self) -> f64 {
+        self.radius + KEPT * self.skin.thickness
+    }
+
     /// Least distance of the pair that is kept (m), if it is so far apart already.
     pub fn kept(&self, distance: f64) -> f64 {
         let room = distance - self.radius;
@@ -62,21 +68,31 @@ impl Law {
 pub(super) struct Items {
     /// Corners of the items. The last two of an edge are equal, and all three of a point.
     pub corners: Vec<[u32; 3]>,
-    vertices: Vec<u32>,
+    /// Rank of each item by its corners, among those of bodies and then of obstacles.
+    pub ranks: Vec<u32>,
+    /// Vertices, item by item.
+    pub vertices: Vec<u32>,
     vertex_ends: Vec<u32>,
-    edges: Vec<[u32; 2]>,
+    /// Edges, item by item, the lower end of each first.
+    pub edges: Vec<[u32; 2]>,
+    /// Rank of each edge by its ends, among those of bodies and then of obstacles.
+    pub edge_ranks: Vec<u32>,
     edge_ends: Vec<u32>,
 }
 
 impl Items {
-    /// Items of these triangles, and of those edges and points that are in none of them.
+    /// Items of these triangles, and of those edges and points that are in none of them. They rank
+    /// after other items.
     fn new(
         triangles: impl IntoIterator<Item = [u32; 3]>,
         edges: impl IntoIterator<Item = [u32; 2]>,
+        others: &Self,
     ) -> Self {
         let mut items = Self::default();
         let (mut seen_vertices, mut seen_edges) = (BTreeSet::new(), BTreeSet::new());
-        let lone = edges.into_iter().map(|[a, b]| [a.min(b), a.max(b), a.max(b)]);
+        let lone = edges
+            .into_iter()
+            .map(|[a, b]| [a.min(b), a.max(b), a.max(b)]);
         for corners in triangles.into_iter().chain(lone) {
             let [a, b, c] = corners;
             if b == c && seen_edges.contains(&[a, b]) {
@@ -86,11 +102,19 @@ impl Items {
             let new = corners.into_iter().filter(|i| seen_vertices.insert(*i));
             items.vertices.extend(new);
             items.vertex_ends.push(items.vertices.len() as u32);
-            let sides: &[[u32; 2]] = if b == c { &[[a, b]] } else { &[[a, b], [b, c], [c, a]] };
+            let sides: &[[u32; 2]] = if b == c {
+                &[[a, b]]
+            } else {
+                &[[a, b], [b, c], [c, a]]
+            };
             let sides = sides.iter().map(|[i, j]| [*i.min(j), *i.max(j)]);
-            items.edges.extend(sides.filter(|side| seen_edges.insert(*side)));
+            items
+                .edges
+                .extend(sides.filter(|side| seen_edges.insert(*side)));
             items.edge_ends.push(items.edges.len() as u32);
         }
+        items.ranks = ranks(&items.corners, others.corners.len());
+        items.edge_ranks = ranks(&items.edges, others.edges.len());
         items
     }
 
@@ -100,23 +124,29 @@ impl Items {
         b != c
     }
 
-    /// Vertices that belong to item k.
-    pub fn vertices(&self, k: usize) -> &[u32] {
-        &self.vertices[range(&self.vertex_ends, k)]
+    /// Indices of the vertices that belong to item k.
+    pub fn vertices_of(&self, k: usize) -> Range<usize> {
+        range(&self.vertex_ends, k)
     }
 
-    /// Edges that belong to item k, the lower end first.
-    pub fn edges(&self, k: usize) -> &[[u32; 2]] {
-        &self.edges[range(&self.edge_ends, k)]
-    }
-
-    /// All vertices.
-    pub fn all_vertices(&self) -> &[u32] {
-        &self.vertices
+    /// Indices of the edges that belong to item k.
+    pub fn edges_of(&self, k: usize) -> Range<usize> {
+        range(&self.edge_ends, k)
     }
 }
 
-fn range(ends: &[u32], k: usize) -> std::ops::Range<usize> {
+/// Ranks of values, from `first` on.
+fn ranks<T: Ord>(values: &[T], first: usize) -> Vec<u32> {
+    let mut order: Vec<_> = (0..values.len()).collect();
+    order.sort_by_key(|k| &values[*k]);
+    let mut ranks = vec![0; values.len()];
+    for (rank, k) in order.into_iter().enumerate() {
+        ranks[k] = (first + rank) as u32;
+    }
+    ranks
+}
+
+fn range(ends: &[u32], k: usize) -> Range<usize> {
     let start = if k == 0 { 0 } else { ends[k - 1] };
     start as usize..ends[k] as usize
 }
@@ -137,6 +167,7 @@ pub struct Surface {
     /// Whether bodies can touch bodies.
     pub(super) touches_itself: bool,
     thickest: f64,
+    thinnest: f64,
 }
 
 impl Surface {
@@ -154,7 +185,11 @@ impl Surface {
             particles: skins.len(),
             skins: skins.to_vec(),
             radii: vec![0.0; skins.len()],
-            bodies: Items::new(triangles.iter().copied(), edges.iter().copied()),
+            bodies: Items::new(
+                triangles.iter().copied(),
+                edges.iter().copied(),
+                &Items::default(),
+            ),
             touches_itself,
             ..Self::default()
         };
@@ -182,12 +217,19 @@ impl Surface {
             sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
             surface.anchors.push(simplices.points);
         }
-        surface.obstacles = Items::new(faces, sides);
-        let touching = surface.bodies.vertices.iter().chain(&surface.obstacles.vertices);
-        surface.thickest = touching
+        surface.obstacles = Items::new(faces, sides, &surface.bodies);
+        let touching = surface
+            .bodies
+            .vertices
+            .iter()
+            .chain(&surface.obstacles.vertices);
+        let thicknesses = touching
             .chain(&surface.floors)
-            .map(|i| surface.skins[*i as usize].thickness)
-            .fold(0.0, f64::max);
+            .map(|i| surface.skins[*i as usize].thickness);
+        (surface.thinnest, surface.thickest) = thicknesses
+            .fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), d| {
+                (least.min(d), most.max(d))
+            });
         surface
     }
 
@@ -244,9 +286,9 @@ impl Surface {
         self.skins.iter().any(|skin| skin.friction > 0.0)
     }
 
-    /// Largest gap that is kept between two surfaces (m).
-    pub(super) fn kept(&self) -> f64 {
-        KEPT * self.thickest
+    /// Gap beyond their thickness (m) below which surfaces may come nearer than what they keep.
+    pub(super) fn nearest(&self) -> f64 {
+        2.0 * KEPT * self.thickest - self.thinnest
     }
 
     /// Radius of a vertex (m): 0 but for those of round obstacles.
@@ -256,27 +298,49 @@ impl Surface {
 
     /// What holds between the primitives of a pair.
     pub(super) fn law(&self, kind: PairKind, points: &[u32; 4]) -> Law {
-        let ends = [points[0], points[kind.first()]].map(|i| i as usize);
-        let [a, b] = ends.map(|i| self.skins[i]);
+        let [a, b] = [points[0], points[kind.first()]].map(|i| self.skins[i as usize]);
         Law {
             skin: Skin {
-                thickness: 0.5 * (a.thickness + b.thickness),
+                thickness: self.thickness(kind, points),
                 stiffness: a.stiffness.min(b.stiffness),
                 damping: a.damping.max(b.damping),
                 friction: a.friction.max(b.friction),
             },
-            radius: self.radii[ends[0]] + self.radii[ends[1]],
+            radius: self.radii(kind, points),
         }
     }
 
+    /// Thickness of a pair (m).
+    pub(super) fn thickness(&self, kind: PairKind, points: &[u32; 4]) -> f64 {
+        let [a, b] = [points[0], points[kind.first()]].map(|i| self.skins[i as usize].thickness);
+        0.5 * (a + b)
+    }
+
+    /// Sum of the radii of a pair (m).
+    pub(super) fn radii(&self, kind: PairKind, points: &[u32; 4]) -> f64 {
+        self.radius(points[0]) + self.radius(points[kind.first()])
+    }
+
     /// Writes positions (m) of all vertices at time t (s), with particles at x, n x 3.
-    pub(super) fn place(&self, obstacles: &[Obstacle], t: f64, x: &[f64], out: &mut Vec<Vector3<f64>>) {
+    pub(super) fn place(
+        &self,
+        obstacles: &[Obstacle],
+        t: f64,
+        x: &[f64],
+        out: &mut Vec<Vector3<f64>>,
+    ) {
         particles_of(x, out);
         self.each_anchor(obstacles, t, |place| out.push(place.position));
     }
 
     /// Writes velocities (m/s) of all vertices at time t (s), with those of particles in v, n x 3.
-    pub(super) fn speeds(&self, obstacles: &[Obstacle], t: f64, v: &[f64], out: &mut Vec<Vector3<f64>>) {
+    pub(super) fn speeds(
+        &self,
+        obstacles: &[Obstacle],
+        t: f64,
+        v: &[f64],
+        out: &mut Vec<Vector3<f64>>,
+    ) {
         particles_of(v, out);
         self.each_anchor(obstacles, t, |place| out.push(place.velocity));
     }

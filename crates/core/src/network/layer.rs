@@ -75,7 +75,9 @@ impl Network {
             [first] => Err(Error::Invalid(format!("{first}"))),
             [first, more @ ..] => {
                 let more = more.len();
-                Err(Error::Invalid(format!("{first}, and so do {more} other pairs")))
+                Err(Error::Invalid(format!(
+                    "{first}, and so do {more} other pairs"
+                )))
             }
         }
     }

@@ -43,7 +43,11 @@ impl Network {
         self.check_obstacle(k)?;
         self.obstacles[k].path = path;
         let obstacle = self.obstacles[k].clone();
-        if let Some(layer) = self.elements.iter_mut().find_map(Element::contact_layer_mut) {
+        if let Some(layer) = self
+            .elements
+            .iter_mut()
+            .find_map(Element::contact_layer_mut)
+        {
             layer.set_obstacle(k, obstacle);
         }
         Ok(())

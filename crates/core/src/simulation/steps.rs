@@ -158,11 +158,11 @@ impl Simulation {
             };
             self.work += taken.work;
             let phases = (&mut self.limiter, &mut self.contact);
-            let Settled { met, strained } =
-                match settle(&self.model, phases, (begin, taken.h), end) {
-                    Ok(settled) => settled,
-                    Err(cause) => break (Some(cause), begin),
-                };
+            let Settled { met, strained } = match settle(&self.model, phases, (begin, taken.h), end)
+            {
+                Ok(settled) => settled,
+                Err(cause) => break (Some(cause), begin),
+            };
             self.work.algebra += SWEEP * strained.sweeps as f64;
             let grown = strained.excess - excess;
             let touched = met.touched + (1.0 - met.touched) * 0.5 * limit / met.depth;

@@ -1,0 +1,437 @@
+//! Making of a list of pairs that may touch: trees of boxes find items that come near each other,
+//! and planes between their primitives bound how near.
+
+use nalgebra::Vector3;
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode, BvhWorkspace};
+use rayon::prelude::*;
+
+use super::closest::{PairKind, closest};
+use super::surface::{Items, Surface};
+
+/// Share of the largest thickness by which gaps are listed smaller than they are computed, for
+/// rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Number of overlapping boxes, or of pairs, that a thread takes at a time.
+pub(super) const CHUNK: usize = 1024;
+
+/// Pair that may touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Candidate {
+    pub points: [u32; 4],
+    pub kind: PairKind,
+}
+
+impl Candidate {
+    /// The positions, or other vectors, of its points.
+    pub fn of<T: Copy>(&self, all: &[T]) -> [T; 4] {
+        self.points.map(|i| all[i as usize])
+    }
+
+    /// Most by which its primitives come nearer if each vertex moves so far.
+    pub fn approach(&self, travel: &[f64]) -> f64 {
+        let [a, b, c, d] = self.of(travel);
+        match self.kind {
+            PairKind::VertexTriangle => a + b.max(c).max(d),
+            PairKind::EdgeEdge => a.max(b) + c.max(d),
+            PairKind::VertexFloor => a + b,
+        }
+    }
+}
+
+/// Pair of a list, with a bound on its gap while all vertices are on the course of the list.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Listed {
+    /// Number that grows in canonical order.
+    key: u64,
+    pub candidate: Candidate,
+    /// Gap at the beginning (m): distance less radii and thickness.
+    gap: f64,
+    /// Speed at which the gap shrinks at most (m/s); negative if it grows.
+    closing: f64,
+}
+
+impl Listed {
+    /// Bound on the gap between two times after the beginning (s), in m.
+    pub fn gap(&self, [first, last]: [f64; 2]) -> f64 {
+        self.gap - (self.closing * first).max(self.closing * last)
+    }
+}
+
+/// Straight courses of all vertices, from which they may stray by half of the reach.
+pub(super) struct Course<'a> {
+    /// Positions at the beginning (m).
+    pub base: &'a [Vector3<f64>],
+    /// Velocities (m/s).
+    pub speeds: &'a [Vector3<f64>],
+    /// Mean velocity (m/s).
+    pub mean: Vector3<f64>,
+    /// Time for which the courses go on (s).
+    pub horizon: f64,
+    /// Gap below which pairs are listed (m).
+    pub reach: f64,
+}
+
+/// Boxes along the axes at the beginning of the courses and at their end.
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: [[f64; 3]; 2],
+    high: [[f64; 3]; 2],
+}
+
+impl Bounds {
+    fn with(mut self, other: &Self) -> Self {
+        for t in 0..2 {
+            for k in 0..3 {
+                self.low[t][k] = self.low[t][k].min(other.low[t][k]);
+                self.high[t][k] = self.high[t][k].max(other.high[t][k]);
+            }
+        }
+        self
+    }
+
+    /// Bound on the squared distance of what is within: along an axis, a gap between points on
+    /// straight courses is least at an end.
+    fn apart(&self, other: &Self) -> f64 {
+        let mut squared = 0.0;
+        for k in 0..3 {
+            let after = least(
+                other.low[0][k] - self.high[0][k],
+                other.low[1][k] - self.high[1][k],
+            );
+            let before = least(
+                self.low[0][k] - other.high[0][k],
+                self.low[1][k] - other.high[1][k],
+            );
+            let gap = most(0.0, most(after, before));
+            squared += gap * gap;
+        }
+        squared
+    }
+}
+
+/// The smaller of two numbers, as one instruction.
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, as one instruction.
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// Trees and scratch of the making of lists.
+#[derive(Debug, Default)]
+pub(super) struct Listing {
+    bodies: Tree,
+    obstacles: Tree,
+    overlaps: Vec<[u32; 2]>,
+}
+
+impl Listing {
+    /// Lists the pairs that come within reach of each other on their courses, in canonical order:
+    /// all, or, where only some vertices have new courses, those with such a vertex anew.
+    pub fn list(
+        &mut self,
+        surface: &Surface,
+        course: &Course,
+        renewed: Option<&[bool]>,
+        parallel: bool,
+        pairs: &mut Vec<Listed>,
+    ) {
+        let (bodies, obstacles) = (&surface.bodies, &surface.obstacles);
+        let way = Way {
+            surface,
+            course,
+            renewed,
+        };
+        let is_new = |points: &[u32]| way.is_new(points);
+        pairs.retain(|pair| !is_new(&pair.candidate.points));
+        let kept = pairs.len();
+        self.bodies.take(bodies, surface, course, &is_new);
+        self.obstacles.take(obstacles, surface, course, &is_new);
+        let overlaps = &mut self.overlaps;
+        if surface.touches_itself {
+            overlaps.clear();
+            let tree = &self.bodies.tree;
+            if renewed.is_none() {
+                let mut add = |s, t| overlaps.push([s, t]);
+                tree.traverse_bvtt_single_tree::<false>(&mut self.bodies.workspace, &mut add);
+            } else {
+                self.bodies.meet(&self.bodies, bodies, &is_new, |s, t| {
+                    if s < t || s > t && !is_new(&bodies.corners[t as usize]) {
+                        overlaps.push([s, t]);
+                    }
+                });
+            }
+            way.list([(bodies, &self.bodies); 2], overlaps, parallel, pairs);
+        }
+        if !obstacles.corners.is_empty() && !bodies.corners.is_empty() {
+            overlaps.clear();
+            if renewed.is_none() {
+                let both = self
+                    .bodies
+                    .tree
+                    .leaf_pairs(&self.obstacles.tree, BvhNode::intersects);
+                overlaps.extend(both.map(|(s, t)| [s, t]));
+            } else {
+                let mut add = |s, t| overlaps.push([s, t]);
+                self.bodies.meet(&self.obstacles, bodies, &is_new, &mut add);
+                self.obstacles
+                    .meet(&self.bodies, obstacles, &is_new, |t, s| {
+                        if !is_new(&bodies.corners[s as usize]) {
+                            add(s, t);
+                        }
+                    });
+            }
+            let both = [(bodies, &self.bodies), (obstacles, &self.obstacles)];
+            way.list(both, overlaps, parallel, pairs);
+        }
+        for &floor in &surface.floors {
+            for &i in &bodies.vertices {
+                let points = [i, floor, floor, floor];
+                pairs.extend(way.pair(PairKind::VertexFloor, [i, floor], points));
+            }
+        }
+        if renewed.is_some() {
+            pairs[kept..].sort_unstable_by_key(|pair| pair.key);
+            // Two runs, which are merged.
+            pairs.sort_by_key(|pair| pair.key);
+        } else if parallel {
+            pairs.par_sort_unstable_by_key(|pair| pair.key);
+        } else {
+            pairs.sort_unstable_by_key(|pair| pair.key);
+        }
+    }
+}
+
+/// Items with their tree.
+type Side<'a> = (&'a Items, &'a Tree);
+
+/// What a list is made for.
+struct Way<'a> {
+    surface: &'a Surface,
+    course: &'a Course<'a>,
+    /// The vertices with new courses, if only their pairs are listed.
+    renewed: Option<&'a [bool]>,
+}
+
+impl Way<'_> {
+    /// Whether one of these vertices has a new course.
+    fn is_new(&self, points: &[u32]) -> bool {
+        self.renewed
+            .is_none_or(|renewed| points.iter().any(|i| renewed[*i as usize]))
+    }
+
+    /// Adds the pairs of items whose boxes overlap.
+    fn list(
+        &self,
+        sides: [Side; 2],
+        overlaps: &[[u32; 2]],
+        parallel: bool,
+        pairs: &mut Vec<Listed>,
+    ) {
+        if parallel {
+            pairs.par_extend(overlaps.par_chunks(CHUNK).flat_map_iter(|overlaps| {
+                let mut found = vec![];
+                for items in overlaps {
+                    self.find(sides, items.map(|k| k as usize), &mut found);
+                }
+                found
+            }));
+        } else {
+            for items in overlaps {
+                self.find(sides, items.map(|k| k as usize), pairs);
+            }
+        }
+    }
+
+    /// Adds the pairs of primitives of two items that come within reach.
+    fn find(&self, sides: [Side; 2], [s, t]: [usize; 2], pairs: &mut Vec<Listed>) {
+        let reach = self.course.reach + self.surface.thickest();
+        let squared = reach * reach;
+        let [(first, first_tree), (second, second_tree)] = sides;
+        if first_tree.items[s].apart(&second_tree.items[t]) >= squared {
+            return;
+        }
+        for ([(a, at), (b, bt)], [k, l]) in [(sides, [s, t]), ([sides[1], sides[0]], [t, s])] {
+            if !b.is_triangle(l) {
+                continue;
+            }
+            let corners = b.corners[l];
+            for i in a.vertices_of(k) {
+                let v = a.vertices[i];
+                if !corners.contains(&v) && at.vertices[i].apart(&bt.items[l]) < squared {
+                    let [p, q, r] = corners;
+                    let ranks = [v, b.ranks[l]];
+                    pairs.extend(self.pair(PairKind::VertexTriangle, ranks, [v, p, q, r]));
+                }
+            }
+        }
+        for i in first.edges_of(s) {
+            let (e, around) = (first.edges[i], &first_tree.edges[i]);
+            if around.apart(&second_tree.items[t]) >= squared {
+                continue;
+            }
+            for j in second.edges_of(t) {
+                let f = second.edges[j];
+                // A point and an edge of a triangle: its corners and the point are a pair already.
+                let point =
+                    e[0] == e[1] && second.is_triangle(t) || f[0] == f[1] && first.is_triangle(s);
+                if point
+                    || e.iter().any(|i| f.contains(i))
+                    || around.apart(&second_tree.edges[j]) >= squared
+                {
+                    continue;
+                }
+                let [mut e, mut f] = [(first.edge_ranks[i], e), (second.edge_ranks[j], f)];
+                if f.0 < e.0 {
+                    std::mem::swap(&mut e, &mut f);
+                }
+                let ((m, [a, b]), (n, [c, d])) = (e, f);
+                pairs.extend(self.pair(PairKind::EdgeEdge, [m, n], [a, b, c, d]));
+            }
+        }
+    }
+
+    /// The pair of these primitives, by their ranks and points, if it comes within reach.
+    fn pair(&self, kind: PairKind, ranks: [u32; 2], points: [u32; 4]) -> Option<Listed> {
+        if !self.is_new(&points) {
+            return None;
+        }
+        let course = self.course;
+        let origin = course.base[points[0] as usize];
+        let x = points.map(|i| course.base[i as usize] - origin);
+        let normal = match kind {
+            PairKind::VertexFloor => Vector3::y(),
+            _ => closest(kind, &x)
+                .offset
+                .try_normalize(0.0)
+                .unwrap_or_default(),
+        };
+        // The plane between them bounds their distance, now and later.
+        let apart = |v: [Vector3<f64>; 4]| {
+            let [a, b, c, d] = v.map(|v| v.dot(&normal));
+            match kind {
+                PairKind::VertexTriangle => a - b.max(c).max(d),
+                PairKind::EdgeEdge => a.min(b) - c.max(d),
+                PairKind::VertexFloor => a - b,
+            }
+        };
+        let thickness = self.surface.thickness(kind, &points);
+        let rounding = ROUNDING * self.surface.thickest();
+        let between = if normal == Vector3::zeros() {
+            f64::NEG_INFINITY
+        } else {
+            apart(x)
+        };
+        let gap = between - self.surface.radii(kind, &points) - thickness - rounding;
+        let closing = -apart(points.map(|i| course.speeds[i as usize]));
+        let listed = gap - closing.max(0.0) * course.horizon < course.reach;
+        listed.then(|| Listed {
+            key: (kind as u64) << 62 | u64::from(ranks[0]) << 31 | u64::from(ranks[1]),
+            candidate: Candidate { points, kind },
+            gap,
+            closing,
+        })
+    }
+}
+
+/// Tree of the boxes of items, with the boxes of their vertices and edges.
+#[derive(Default)]
+struct Tree {
+    tree: Bvh,
+    workspace: BvhWorkspace,
+    /// Half of the reach of the list (m).
+    half: f64,
+    items: Vec<Bounds>,
+    vertices: Vec<Bounds>,
+    edges: Vec<Bounds>,
+}
+
+impl std::fmt::Debug for Tree {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "a tree of {} boxes", self.items.len())
+    }
+}
+
+impl Tree {
+    /// Takes the boxes of the items on their courses, if these are new.
+    fn take(
+        &mut self,
+        items: &Items,
+        surface: &Surface,
+        course: &Course,
+        is_new: &impl Fn(&[u32]) -> bool,
+    ) {
+        let around = |i: u32| {
+            let begin = course.base[i as usize];
+            let end = begin + (course.speeds[i as usize] - course.mean) * course.horizon;
+            let radius = surface.radius(i);
+            Bounds {
+                low: [begin, end].map(|x| x.add_scalar(-radius).into()),
+                high: [begin, end].map(|x| x.add_scalar(radius).into()),
+            }
+        };
+        let first = self.items.len() != items.corners.len();
+        self.half = 0.5 * (course.reach + surface.thickest());
+        let triangle = |[i, j, k]: &[u32; 3]| around(*i).with(&around(*j)).with(&around(*k));
+        if first {
+            self.vertices = items.vertices.iter().map(|i| around(*i)).collect();
+            let edges = items.edges.iter();
+            self.edges = edges.map(|[i, j]| around(*i).with(&around(*j))).collect();
+            self.items = items.corners.iter().map(triangle).collect();
+            let leaves: Vec<_> = self.items.iter().map(|item| self.leaf(item)).collect();
+            self.tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
+            return;
+        }
+        for (i, bounds) in items.vertices.iter().zip(&mut self.vertices) {
+            if is_new(&[*i]) {
+                *bounds = around(*i);
+            }
+        }
+        for (edge, bounds) in items.edges.iter().zip(&mut self.edges) {
+            if is_new(edge) {
+                *bounds = around(edge[0]).with(&around(edge[1]));
+            }
+        }
+        for (k, corners) in items.corners.iter().enumerate() {
+            if is_new(corners) {
+                self.items[k] = triangle(corners);
+                let leaf = self.leaf(&self.items[k]);
+                self.tree.insert_or_update_partially(leaf, k as u32, 0.0);
+            }
+        }
+        self.tree.refit(&mut self.workspace);
+    }
+
+    /// Box of an item in the tree: around both its boxes, with half of the reach.
+    fn leaf(&self, item: &Bounds) -> Aabb {
+        let [a, b] = item.low.map(|low| Vector::from(low.map(|x| x - self.half)));
+        let [c, d] = item
+            .high
+            .map(|high| Vector::from(high.map(|x| x + self.half)));
+        Aabb::new(a.min(b), c.max(d))
+    }
+
+    /// Visits the items with new courses, each with every item of another tree that its box meets.
+    fn meet(
+        &self,
+        other: &Self,
+        items: &Items,
+        is_new: &impl Fn(&[u32]) -> bool,
+        mut visit: impl FnMut(u32, u32),
+    ) {
+        for (k, corners) in items.corners.iter().enumerate() {
+            if is_new(corners) {
+                let leaf = self.leaf(&self.items[k]);
+                other
+                    .tree
+                    .intersect_aabb(&leaf)
+                    .for_each(|l| visit(k as u32, l));
+            }
+        }
+    }
+}
