@@ -76,7 +76,7 @@ pub fn choose(
         match search.run()? {
             Found::Stopped => return Ok(None),
             Found::Nothing => {}
-            Found::Best(candidate) => found.push(candidate),
+            Found::Best(candidate) => found.push(*candidate),
         }
         found.sort_by(|a, b| {
             let work = |c: &Candidate| c.outcome.work.total();
@@ -89,7 +89,7 @@ pub fn choose(
 /// Result of the search for one method.
 enum Found {
     /// Cheapest run that meets the error.
-    Best(Candidate),
+    Best(Box<Candidate>),
     /// No run meets the error, or it would be too dear.
     Nothing,
     /// The search was told to stop.
@@ -179,11 +179,11 @@ impl Search<'_> {
                 bad = Some(middle.value());
             }
         }
-        Ok(Found::Best(Candidate {
+        Ok(Found::Best(Box::new(Candidate {
             method: self.method,
             control: good,
             outcome,
-        }))
+        })))
     }
 
     /// Step or tolerance above which no run meets the error: what the order predicts, with a

@@ -1,10 +1,11 @@
 //! Orders of convergence of bounces that the force of contact turns: each method's own, up to about
 //! 4, since the third derivative of the force jumps where it begins.
 
+use a3_core::accuracy::{Frames, Metric, Precision, Reference, Scope, choose};
 use a3_core::contact::{Obstacle, Shape, Skin};
 use a3_core::{Method, Network, Path, Touch, Vector3, integrators};
 
-use crate::common::{distance, method};
+use crate::common::{described, distance, method};
 
 /// Length of all runs (s).
 const UNTIL: f64 = 1.0;
@@ -109,4 +110,35 @@ fn methods_keep_their_order_up_to_four() {
             );
         }
     }
+}
+
+/// The scene of the chart in docs/methods.md: its reference is sure, no run of these steps is held
+/// by the guard, and what is chosen for an error meets it.
+#[test]
+fn the_chart_of_a_bounce_has_a_sure_reference() {
+    let scene = described(include_str!("../../../../docs/scenes/bounce.toml"));
+    let precision = Precision {
+        metric: Metric::Position,
+        uncertainty: 1e-10,
+        most: 80_000.0,
+    };
+    let (frames, scope, go_on) = (Frames::new(UNTIL), Scope::default(), || true);
+    let reference = Reference::new(&scene, frames, scope, precision, &go_on)
+        .unwrap()
+        .unwrap();
+    assert!(
+        reference.floor.position < 1e-9,
+        "{:e} m",
+        reference.floor.position
+    );
+    let best = choose(&scene, &reference, Metric::Position, 1e-4, &go_on, |_| ())
+        .unwrap()
+        .unwrap();
+    let outcome = best[0].outcome;
+    assert!(
+        outcome.errors.position <= 1e-4,
+        "{:e} m",
+        outcome.errors.position
+    );
+    assert_eq!(outcome.guarded.impulses, 0);
 }
