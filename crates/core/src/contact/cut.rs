@@ -13,8 +13,8 @@ use nalgebra::Vector3;
 
 use super::candidates::Candidates;
 use super::closest::{PairKind, closest, weighted};
-use super::guard::Motion;
 use super::listing::Candidate;
+use super::motion::Motion;
 use super::surface::Surface;
 use crate::error::Vertex;
 

@@ -11,12 +11,12 @@ use std::ops::AddAssign;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::advance::time_of_impact;
-use super::candidates::{Candidates, Stretch};
-use super::closest::{PairKind, closest, weighted};
+use super::candidates::Candidates;
+use super::closest::{closest, weighted};
 use super::cut::Squeezed;
 use super::layer::{ContactLayer, Scratch};
 use super::listing::Candidate;
+use super::motion::Motion;
 use super::repulsion::Pair;
 use super::surface::Surface;
 
@@ -61,84 +61,6 @@ impl AddAssign for Guarded {
         self.lost += other.lost;
         self.first = self.first.min(other.first);
     }
-}
-
-/// Motion of all vertices in a step.
-#[derive(Debug, Default)]
-pub(super) struct Motion {
-    /// Times of its beginning and its end (s).
-    pub times: [f64; 2],
-    /// Positions at its beginning (m).
-    pub x0: Vec<Vector3<f64>>,
-    /// Displacements (m).
-    pub moves: Vec<Vector3<f64>>,
-    /// Velocities at its end (m/s).
-    pub v: Vec<Vector3<f64>>,
-    /// Inverse masses (1/kg): 0 for vertices that are led.
-    pub inverse_masses: Vec<f64>,
-    ends: Vec<Vector3<f64>>,
-}
-
-impl Motion {
-    /// Makes sure that `candidates` has every pair that may touch.
-    pub fn cover(&mut self, surface: &Surface, candidates: &mut Candidates) {
-        self.ends.clear();
-        let ends = self.x0.iter().zip(&self.moves).map(|(x, move_)| x + move_);
-        self.ends.extend(ends);
-        let stretch = Stretch {
-            times: self.times,
-            ends: [&self.x0, &self.ends],
-            speeds: None,
-        };
-        candidates.cover(surface, &stretch);
-    }
-
-    /// Share of the step at which a pair comes too near, if it does.
-    pub fn impact(&self, surface: &Surface, candidate: &Candidate) -> Option<f64> {
-        let x = candidate.of(&self.x0);
-        let moves = candidate.of(&self.moves);
-        let law = surface.law(candidate.kind, &candidate.points);
-        if are_apart(candidate.kind, &x, &moves, 2.0 * law.most_kept()) {
-            return None;
-        }
-        let kept = self.kept(surface, candidate, &x);
-        time_of_impact(candidate.kind, &x, &moves, kept)
-    }
-
-    /// Distance (m) that a pair keeps, less than what it has at the beginning.
-    pub fn kept(&self, surface: &Surface, candidate: &Candidate, x: &[Vector3<f64>; 4]) -> f64 {
-        let law = surface.law(candidate.kind, &candidate.points);
-        law.kept(closest(candidate.kind, x).offset.norm())
-    }
-}
-
-/// Whether the boxes of two primitives, as point 0 sees them move, are farther apart than a gap.
-fn are_apart(
-    kind: PairKind,
-    from: &[Vector3<f64>; 4],
-    moves: &[Vector3<f64>; 4],
-    gap: f64,
-) -> bool {
-    let (x, u) = (from.map(|x| x - from[0]), moves.map(|u| u - moves[0]));
-    (0..3).any(|axis| {
-        let low = |k: usize| x[k][axis].min(x[k][axis] + u[k][axis]);
-        let high = |k: usize| x[k][axis].max(x[k][axis] + u[k][axis]);
-        let [first, second] = match kind {
-            PairKind::VertexTriangle => [
-                [0.0; 2],
-                [
-                    low(1).min(low(2)).min(low(3)),
-                    high(1).max(high(2)).max(high(3)),
-                ],
-            ],
-            PairKind::EdgeEdge => [
-                [low(1).min(0.0), high(1).max(0.0)],
-                [low(2).min(low(3)), high(2).max(high(3))],
-            ],
-            PairKind::VertexFloor => return false,
-        };
-        second[0] - first[1] > gap || first[0] - second[1] > gap
-    })
 }
 
 /// Direction of a pair's contact: the weights of its closest points, the normal from the second

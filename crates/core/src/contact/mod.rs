@@ -12,6 +12,7 @@
 //! the obstacle: what rests does not creep.
 
 mod advance;
+mod boxes;
 mod candidates;
 mod check;
 mod closed_mesh;
@@ -21,6 +22,7 @@ mod exact;
 mod guard;
 mod layer;
 mod listing;
+mod motion;
 mod nearest;
 mod obstacle;
 mod repulsion;

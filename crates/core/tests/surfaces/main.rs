@@ -19,15 +19,36 @@ sway = [0, 0, 0.2]
 
 #[test]
 fn pile() {
-    let setup = Description::parse(PILE).unwrap().build(None, &mut |_| Err(String::new())).unwrap();
-    for (name, control) in [("r", Control::Step(1.0 / 300.0)), ("v", Control::Step(1.0 / 600.0)), ("i", Control::Step(1.0 / 60.0)), ("x", Control::Tolerance(1e-5)), ("b", Control::Step(1.0/60.0))] {
+    let setup = Description::parse(PILE)
+        .unwrap()
+        .build(None, &mut |_| Err(String::new()))
+        .unwrap();
+    for (name, control) in [
+        ("r", Control::Step(1.0 / 300.0)),
+        ("v", Control::Step(1.0 / 600.0)),
+        ("i", Control::Step(1.0 / 60.0)),
+        ("x", Control::Tolerance(1e-5)),
+        ("b", Control::Step(1.0 / 60.0)),
+    ] {
         let method = integrators::find(name).unwrap();
         let mut run = Simulation::new(setup.scene.clone(), method, control).unwrap();
         let start = std::time::Instant::now();
         for frame in 1..=90 {
-            if let Err(e) = run.advance_to(f64::from(frame) / 60.0) { println!("{name} {e}"); break; }
+            if let Err(e) = run.advance_to(f64::from(frame) / 60.0) {
+                println!("{name} {e}");
+                break;
+            }
             if frame % 15 == 0 {
-                println!("{name} t {:.2} {:.2?} steps {} {:?} energy {:.4} lowest {:.4} {:?}", run.time(), start.elapsed(), run.steps(), run.guarded(), run.energy().unwrap().total(), run.lowest(), run.work().rejections);
+                println!(
+                    "{name} t {:.2} {:.2?} steps {} {:?} energy {:.4} lowest {:.4} {:?}",
+                    run.time(),
+                    start.elapsed(),
+                    run.steps(),
+                    run.guarded(),
+                    run.energy().unwrap().total(),
+                    run.lowest(),
+                    run.work().rejections
+                );
             }
         }
     }
