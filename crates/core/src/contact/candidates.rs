@@ -9,7 +9,8 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::listing::{CHUNK, Candidate, Course, Listed, Listing};
+use super::boxes::Course;
+use super::listing::{CHUNK, Candidate, Listed, Listing};
 use super::surface::Surface;
 use crate::threads::threads;
 

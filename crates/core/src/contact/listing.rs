@@ -2,11 +2,10 @@
 //! and planes between their primitives bound how near.
 
 use nalgebra::Vector3;
-use parry3d_f64::bounding_volume::Aabb;
-use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode, BvhWorkspace};
+use parry3d_f64::partitioning::BvhNode;
 use rayon::prelude::*;
 
+use super::boxes::{Course, Tree};
 use super::closest::{PairKind, closest};
 use super::surface::{Items, Surface};
 
@@ -58,68 +57,6 @@ impl Listed {
     pub fn gap(&self, [first, last]: [f64; 2]) -> f64 {
         self.gap - (self.closing * first).max(self.closing * last)
     }
-}
-
-/// Straight courses of all vertices, from which they may stray by half of the reach.
-pub(super) struct Course<'a> {
-    /// Positions at the beginning (m).
-    pub base: &'a [Vector3<f64>],
-    /// Velocities (m/s).
-    pub speeds: &'a [Vector3<f64>],
-    /// Mean velocity (m/s).
-    pub mean: Vector3<f64>,
-    /// Time for which the courses go on (s).
-    pub horizon: f64,
-    /// Gap below which pairs are listed (m).
-    pub reach: f64,
-}
-
-/// Boxes along the axes at the beginning of the courses and at their end.
-#[derive(Clone, Copy)]
-struct Bounds {
-    low: [[f64; 3]; 2],
-    high: [[f64; 3]; 2],
-}
-
-impl Bounds {
-    fn with(mut self, other: &Self) -> Self {
-        for t in 0..2 {
-            for k in 0..3 {
-                self.low[t][k] = self.low[t][k].min(other.low[t][k]);
-                self.high[t][k] = self.high[t][k].max(other.high[t][k]);
-            }
-        }
-        self
-    }
-
-    /// Bound on the squared distance of what is within: along an axis, a gap between points on
-    /// straight courses is least at an end.
-    fn apart(&self, other: &Self) -> f64 {
-        let mut squared = 0.0;
-        for k in 0..3 {
-            let after = least(
-                other.low[0][k] - self.high[0][k],
-                other.low[1][k] - self.high[1][k],
-            );
-            let before = least(
-                self.low[0][k] - other.high[0][k],
-                self.low[1][k] - other.high[1][k],
-            );
-            let gap = most(0.0, most(after, before));
-            squared += gap * gap;
-        }
-        squared
-    }
-}
-
-/// The smaller of two numbers, as one instruction.
-fn least(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// The larger of two numbers, as one instruction.
-fn most(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 /// Trees and scratch of the making of lists.
@@ -336,102 +273,5 @@ impl Way<'_> {
             gap,
             closing,
         })
-    }
-}
-
-/// Tree of the boxes of items, with the boxes of their vertices and edges.
-#[derive(Default)]
-struct Tree {
-    tree: Bvh,
-    workspace: BvhWorkspace,
-    /// Half of the reach of the list (m).
-    half: f64,
-    items: Vec<Bounds>,
-    vertices: Vec<Bounds>,
-    edges: Vec<Bounds>,
-}
-
-impl std::fmt::Debug for Tree {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "a tree of {} boxes", self.items.len())
-    }
-}
-
-impl Tree {
-    /// Takes the boxes of the items on their courses, if these are new.
-    fn take(
-        &mut self,
-        items: &Items,
-        surface: &Surface,
-        course: &Course,
-        is_new: &impl Fn(&[u32]) -> bool,
-    ) {
-        let around = |i: u32| {
-            let begin = course.base[i as usize];
-            let end = begin + (course.speeds[i as usize] - course.mean) * course.horizon;
-            let radius = surface.radius(i);
-            Bounds {
-                low: [begin, end].map(|x| x.add_scalar(-radius).into()),
-                high: [begin, end].map(|x| x.add_scalar(radius).into()),
-            }
-        };
-        let first = self.items.len() != items.corners.len();
-        self.half = 0.5 * (course.reach + surface.thickest());
-        let triangle = |[i, j, k]: &[u32; 3]| around(*i).with(&around(*j)).with(&around(*k));
-        if first {
-            self.vertices = items.vertices.iter().map(|i| around(*i)).collect();
-            let edges = items.edges.iter();
-            self.edges = edges.map(|[i, j]| around(*i).with(&around(*j))).collect();
-            self.items = items.corners.iter().map(triangle).collect();
-            let leaves: Vec<_> = self.items.iter().map(|item| self.leaf(item)).collect();
-            self.tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
-            return;
-        }
-        for (i, bounds) in items.vertices.iter().zip(&mut self.vertices) {
-            if is_new(&[*i]) {
-                *bounds = around(*i);
-            }
-        }
-        for (edge, bounds) in items.edges.iter().zip(&mut self.edges) {
-            if is_new(edge) {
-                *bounds = around(edge[0]).with(&around(edge[1]));
-            }
-        }
-        for (k, corners) in items.corners.iter().enumerate() {
-            if is_new(corners) {
-                self.items[k] = triangle(corners);
-                let leaf = self.leaf(&self.items[k]);
-                self.tree.insert_or_update_partially(leaf, k as u32, 0.0);
-            }
-        }
-        self.tree.refit(&mut self.workspace);
-    }
-
-    /// Box of an item in the tree: around both its boxes, with half of the reach.
-    fn leaf(&self, item: &Bounds) -> Aabb {
-        let [a, b] = item.low.map(|low| Vector::from(low.map(|x| x - self.half)));
-        let [c, d] = item
-            .high
-            .map(|high| Vector::from(high.map(|x| x + self.half)));
-        Aabb::new(a.min(b), c.max(d))
-    }
-
-    /// Visits the items with new courses, each with every item of another tree that its box meets.
-    fn meet(
-        &self,
-        other: &Self,
-        items: &Items,
-        is_new: &impl Fn(&[u32]) -> bool,
-        mut visit: impl FnMut(u32, u32),
-    ) {
-        for (k, corners) in items.corners.iter().enumerate() {
-            if is_new(corners) {
-                let leaf = self.leaf(&self.items[k]);
-                other
-                    .tree
-                    .intersect_aabb(&leaf)
-                    .for_each(|l| visit(k as u32, l));
-            }
-        }
     }
 }

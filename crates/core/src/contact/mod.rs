@@ -12,6 +12,7 @@
 //! the obstacle: what rests does not creep.
 
 mod advance;
+mod boxes;
 mod candidates;
 mod check;
 mod closed_mesh;
