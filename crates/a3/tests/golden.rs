@@ -27,6 +27,9 @@ const LARGE: [(&str, &str, u32); 3] = [
     ("flag", "64x66", 40),
 ];
 const STEPS: u32 = 300;
+/// Step (s), relative tolerance and steps in scenes whose surfaces touch, where each frame is
+/// checked for surfaces that pass through one another.
+const TOUCHING: (f64, &str, u32) = (5e-3, "1e-3", 60);
 
 struct Run {
     scene: String,
@@ -35,6 +38,7 @@ struct Run {
     setting: String,
     until: f64,
     threads: u32,
+    check: bool,
 }
 
 impl Run {
@@ -63,6 +67,7 @@ impl Run {
             "-".into(),
         ]
         .into();
+        words.extend(self.check.then(|| "--check".into()));
         words.extend(
             self.grid
                 .into_iter()
@@ -73,11 +78,13 @@ impl Run {
             .env("RAYON_NUM_THREADS", self.threads.to_string())
             .output()
             .unwrap();
+        let why = text(&output.stderr);
+        assert!(!why.contains("crosses"), "{}: {why}", self.name());
         match output.status.code() {
             Some(0) => {}
             Some(1) => return "lost".into(),
             Some(2) => return "refused".into(),
-            _ => panic!("{}: {}", self.name(), text(&output.stderr)),
+            _ => panic!("{}: {why}", self.name()),
         }
         let state: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
@@ -117,17 +124,25 @@ fn runs() -> Vec<Run> {
     small
         .chain(large)
         .flat_map(|(scene, grid, steps, threads)| {
+            let toml = std::fs::read_to_string(&scene).unwrap_or_default();
+            let check = toml.contains("self_collision = true");
+            let (step, tolerance, steps) = if check {
+                TOUCHING
+            } else {
+                (STEP, TOLERANCE, steps)
+            };
             METHODS.iter().map(move |method| Run {
                 scene: scene.clone(),
                 grid,
                 method: method.letter,
                 setting: if method.is_adaptive() {
-                    TOLERANCE.into()
+                    tolerance.into()
                 } else {
-                    STEP.to_string()
+                    step.to_string()
                 },
-                until: f64::from(steps) * STEP,
+                until: f64::from(steps) * step,
                 threads,
+                check,
             })
         })
         .collect()

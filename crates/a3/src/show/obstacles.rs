@@ -110,7 +110,9 @@ pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
     let share = f64::from(drawn_radius(network));
     let turning = network.obstacles().iter().filter_map(move |obstacle| {
         match (&obstacle.shape, obstacle.turn) {
-            (Shape::Sphere { radius }, Some(turn)) if share < 1.0 => Some((*radius, turn.axis, obstacle.at(time))),
+            (Shape::Sphere { radius }, Some(turn)) if share < 1.0 => {
+                Some((*radius, turn.axis, obstacle.at(time)))
+            }
             _ => None,
         }
     });

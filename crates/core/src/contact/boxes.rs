@@ -72,7 +72,7 @@ fn most(a: f64, b: f64) -> f64 {
 /// Tree of the boxes of items, with the boxes of their vertices and edges.
 #[derive(Default)]
 pub(super) struct Tree {
-    pub tree: Bvh,
+    pub bvh: Bvh,
     pub workspace: BvhWorkspace,
     /// Half of the reach of the list (m).
     half: f64,
@@ -114,7 +114,7 @@ impl Tree {
             self.edges = edges.map(|[i, j]| around(*i).with(&around(*j))).collect();
             self.items = items.corners.iter().map(triangle).collect();
             let leaves: Vec<_> = self.items.iter().map(|item| self.leaf(item)).collect();
-            self.tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
+            self.bvh = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
             return;
         }
         for (i, bounds) in items.vertices.iter().zip(&mut self.vertices) {
@@ -131,10 +131,10 @@ impl Tree {
             if is_new(corners) {
                 self.items[k] = triangle(corners);
                 let leaf = self.leaf(&self.items[k]);
-                self.tree.insert_or_update_partially(leaf, k as u32, 0.0);
+                self.bvh.insert_or_update_partially(leaf, k as u32, 0.0);
             }
         }
-        self.tree.refit(&mut self.workspace);
+        self.bvh.refit(&mut self.workspace);
     }
 
     /// Box of an item in the tree: around both its boxes, with half of the reach.
@@ -158,7 +158,7 @@ impl Tree {
             if is_new(corners) {
                 let leaf = self.leaf(&self.items[k]);
                 other
-                    .tree
+                    .bvh
                     .intersect_aabb(&leaf)
                     .for_each(|l| visit(k as u32, l));
             }

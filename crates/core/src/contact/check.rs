@@ -20,19 +20,19 @@ pub struct Crossed {
 
 impl fmt::Display for Crossed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let side = |vertices: &[Vertex]| match vertices {
-            [Vertex::Obstacle(k), ..] => format!("obstacle {k}"),
-            _ => {
-                let numbers = vertices.iter().filter_map(|vertex| match vertex {
-                    Vertex::Particle(i) => Some(i.to_string()),
-                    Vertex::Obstacle(_) => None,
-                });
-                let numbers = numbers.collect::<Vec<_>>().join(", ");
-                match vertices {
-                    [_] => format!("particle {numbers}"),
-                    [_, _] => format!("the edge of particles {numbers}"),
-                    _ => format!("the triangle of particles {numbers}"),
-                }
+        let side = |vertices: &[Vertex]| {
+            if let [Vertex::Obstacle(k), ..] = vertices {
+                return format!("obstacle {k}");
+            }
+            let numbers = vertices.iter().filter_map(|vertex| match vertex {
+                Vertex::Particle(i) => Some(i.to_string()),
+                Vertex::Obstacle(_) => None,
+            });
+            let numbers = numbers.collect::<Vec<_>>().join(", ");
+            match vertices {
+                [_] => format!("particle {numbers}"),
+                [_, _] => format!("the edge of particles {numbers}"),
+                _ => format!("the triangle of particles {numbers}"),
             }
         };
         write!(f, "{} crosses {}", side(&self.first), side(&self.second))

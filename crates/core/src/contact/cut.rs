@@ -13,8 +13,8 @@ use nalgebra::Vector3;
 
 use super::candidates::Candidates;
 use super::closest::{PairKind, closest, weighted};
-use super::motion::Motion;
 use super::listing::Candidate;
+use super::motion::Motion;
 use super::surface::Surface;
 use crate::error::Vertex;
 
@@ -100,7 +100,7 @@ impl Cuts {
         let near = closest(pair.kind, &x);
         let distance = near.offset.norm();
         let normal = near.offset / distance;
-        let kept = motion.kept(surface, pair, &x);
+        let kept = Motion::kept(surface, pair, &x);
         // How far either side comes towards the other, and its led vertices alone.
         let approach = |k: usize| {
             let towards = if k < first { -moves[k] } else { moves[k] };

@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 
 use super::candidates::{Candidates, Stretch};
 use super::cut::Cuts;
-use super::motion::Motion;
 use super::listing::Candidate;
+use super::motion::Motion;
 use super::obstacle::Obstacle;
 use super::repulsion::{Pair, Stiffness};
 use super::surface::Surface;
@@ -167,7 +167,7 @@ impl ContactLayer {
     ) {
         let find = |candidate: &Candidate, pair: &Pair| Some((candidate.points, pair.stiffness()?));
         self.visit(t, x, None, find, |(points, stiffness)| {
-            visit(points, stiffness)
+            visit(points, stiffness);
         });
     }
 

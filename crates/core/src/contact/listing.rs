@@ -92,7 +92,7 @@ impl Listing {
         let overlaps = &mut self.overlaps;
         if surface.touches_itself {
             overlaps.clear();
-            let tree = &self.bodies.tree;
+            let tree = &self.bodies.bvh;
             if renewed.is_none() {
                 let mut add = |s, t| overlaps.push([s, t]);
                 tree.traverse_bvtt_single_tree::<false>(&mut self.bodies.workspace, &mut add);
@@ -110,8 +110,8 @@ impl Listing {
             if renewed.is_none() {
                 let both = self
                     .bodies
-                    .tree
-                    .leaf_pairs(&self.obstacles.tree, BvhNode::intersects);
+                    .bvh
+                    .leaf_pairs(&self.obstacles.bvh, BvhNode::intersects);
                 overlaps.extend(both.map(|(s, t)| [s, t]));
             } else {
                 let mut add = |s, t| overlaps.push([s, t]);

@@ -88,12 +88,12 @@ impl Motion {
         if are_apart(candidate.kind, &x, &moves, 2.0 * law.most_kept()) {
             return None;
         }
-        let kept = self.kept(surface, candidate, &x);
+        let kept = Self::kept(surface, candidate, &x);
         time_of_impact(candidate.kind, &x, &moves, kept)
     }
 
     /// Distance (m) that a pair keeps, less than what it has at the beginning.
-    pub fn kept(&self, surface: &Surface, candidate: &Candidate, x: &[Vector3<f64>; 4]) -> f64 {
+    pub fn kept(surface: &Surface, candidate: &Candidate, x: &[Vector3<f64>; 4]) -> f64 {
         let law = surface.law(candidate.kind, &candidate.points);
         law.kept(closest(candidate.kind, x).offset.norm())
     }

@@ -47,6 +47,7 @@ struct Within {
 }
 
 /// Stiffness of a pair, to first order: along the normal, between its points by their weights.
+#[expect(clippy::struct_field_names, reason = "the field's terms")]
 pub(crate) struct Stiffness {
     pub weights: [f64; 4],
     pub normal: Vector3<f64>,

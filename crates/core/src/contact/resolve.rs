@@ -5,8 +5,8 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::cut::Squeezed;
-use super::motion::Guarded;
 use super::layer::ContactLayer;
+use super::motion::Guarded;
 use super::nearest::{Nearest, of_box, of_capsule, of_floor, of_sphere};
 use super::obstacle::Obstacle;
 use super::shape::Shape;

@@ -349,7 +349,9 @@ impl Surface {
     fn each_anchor(&self, obstacles: &[Obstacle], t: f64, mut visit: impl FnMut(Place)) {
         for (points, obstacle) in self.anchors.iter().zip(obstacles) {
             let pose = obstacle.at(t);
-            points.iter().for_each(|point| visit(pose.of(*point)));
+            for point in points {
+                visit(pose.of(*point));
+            }
         }
     }
 }

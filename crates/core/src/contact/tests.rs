@@ -114,9 +114,9 @@ fn lists_are_complete_and_in_order() {
     }
     let mut lists = SHARES.map(|shares| {
         let mut list = Candidates::default();
-        shares
-            .into_iter()
-            .for_each(|shares| list.set_shares(shares));
+        for shares in shares {
+            list.set_shares(shares);
+        }
         list
     });
     let (h, mut touching) = (0.005, 0);
@@ -191,9 +191,9 @@ fn no_bit_depends_on_the_list() {
             .and_then(|network| network.contact_layer())
             .unwrap();
         layer.with_scratch(|scratch| {
-            shares
-                .into_iter()
-                .for_each(|shares| scratch.candidates.set_shares(shares));
+            for shares in shares {
+                scratch.candidates.set_shares(shares);
+            }
         });
         run.advance_to(0.8).unwrap();
         assert!(run.guarded().impulse > 0.0, "nothing touched");

@@ -16,6 +16,7 @@ macro_rules! elements {
     ($($(#[$doc:meta])* $name:ident,)*) => {
         /// One of the forces of a network.
         #[derive(Clone, Debug)]
+        #[expect(clippy::large_enum_variant, reason = "the large one occurs once in a network")]
         #[non_exhaustive]
         pub enum Element {
             $($(#[$doc])* $name($name),)*

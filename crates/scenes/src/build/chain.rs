@@ -159,7 +159,9 @@ impl Body for Particles {
         };
         let spacing = self.thickness.map_or(POINT, |thickness| 4.0 * thickness);
         assembly.skins.extend(skin.uniform(&masses, spacing)?);
-        assembly.edges.extend((first..first + n).map(|i| [i as u32; 2]));
+        assembly
+            .edges
+            .extend((first..first + n).map(|i| [i as u32; 2]));
         assembly.masses.extend(masses);
         assembly.add_springs(first, springs);
         Ok(())

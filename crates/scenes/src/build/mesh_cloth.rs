@@ -73,7 +73,9 @@ impl Body for LoadedMesh<'_> {
             stiffness: structural,
             time,
         };
-        assembly.skins.extend(skin.fitted(&masses, &scaled.heights())?);
+        assembly
+            .skins
+            .extend(skin.fitted(&masses, &scaled.heights())?);
         assembly.masses.extend(masses);
         assembly.add_surface(first, mesh.triangles.iter().copied());
         assembly.add_springs(first, springs);

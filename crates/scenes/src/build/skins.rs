@@ -62,7 +62,9 @@ impl SkinSpec {
             self.thickness.map_or(most, |thickness| thickness.min(most))
         };
         let all = masses.iter().zip(spacings);
-        Ok(all.map(|(m, spacing)| self.skin(*m, thickness(*spacing))).collect())
+        Ok(all
+            .map(|(m, spacing)| self.skin(*m, thickness(*spacing)))
+            .collect())
     }
 
     fn check(&self) -> Result<(), Fault> {
