@@ -216,6 +216,16 @@ impl Simulation {
             } else {
                 self.work += adaptive.interpolate(system, time, &mut self.y);
                 hold_pins(system, time, &mut self.y);
+                let (begin, y0) = (adaptive.last().t, self.contact.y0());
+                if let Some(network) = self.model.network()
+                    && let Some(layer) = network.contact_layer()
+                    && y0.len() == self.y.len()
+                {
+                    // A polynomial knows of no surfaces. Where what is led leaves no room, the step
+                    // itself has ended the run.
+                    let way = (begin, time - begin);
+                    let _ = layer.guard(network.inverse_masses(), way, y0, &mut self.y);
+                }
             }
             self.since = time;
             self.tear();
