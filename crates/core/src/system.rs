@@ -197,8 +197,8 @@ pub struct AxialCoupling {
 pub struct BlockCoupling {
     /// Particle at one end.
     pub i: usize,
-    /// Particle at the other end; i again where the other end is a place that does not depend on the
-    /// state, as on an obstacle.
+    /// Particle at the other end; i again where the other end is a place that does not depend on
+    /// the state, as on an obstacle.
     pub j: usize,
     /// K (N/m).
     pub stiffness: [f64; 6],

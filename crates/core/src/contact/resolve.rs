@@ -265,7 +265,8 @@ impl Met<'_> {
         orientation.map_or(along, |turned| along + turned.spin.cross(&point))
     }
 
-    /// Position at the end of the step of what is at x at its beginning and moves with the obstacle.
+    /// Position at the end of the step of what is at x at its beginning and moves with the
+    /// obstacle.
     fn carried(&self, x: Vector3<f64>) -> Vector3<f64> {
         let (before, after) = (&self.before.place.position, &self.after.place.position);
         if self.after.orientation.is_some() {

@@ -68,8 +68,8 @@ impl Tangent {
         axial.chain(self.blocks.iter().map(|c| (c.i as u32, c.j as u32)))
     }
 
-    /// Gathers the couplings at time t (s) at x for steps of length a (s). With `clamped`, A is positive
-    /// definite.
+    /// Gathers the couplings at time t (s) at x for steps of length a (s). With `clamped`, A is
+    /// positive definite.
     pub fn gather(
         &mut self,
         system: &dyn Linearized,
@@ -212,8 +212,8 @@ fn add_axial(c: &AxialCoupling, iso: f64, along: f64, p: &[f64], out: &mut [f64]
     add(c.i, c.j, |axis| iso * d[axis] + share * u[axis], out);
 }
 
-/// Adds a block times d at one end of a coupling, and subtracts it at the other; at its only end, if
-/// the other is a place.
+/// Adds a block times d at one end of a coupling, and subtracts it at the other; at its only end,
+/// if the other is a place.
 fn add_block(c: &BlockCoupling, [xx, yy, zz, xy, xz, yz]: [f64; 6], p: &[f64], out: &mut [f64]) {
     let n = p.len() / 3;
     let anchored = c.i == c.j;

@@ -11,8 +11,8 @@ use a3_core::contact::{PairKind, closest};
 use nalgebra::Rotation3;
 
 /// Error of F in units of the largest coordinate. Of roundings of 2^-53 there are at most 10 in F
-/// (parameters are dyadic, so 1 - t and 1 - u - v are exact), 2 at the end of the step, and 11 where
-/// the points are turned.
+/// (parameters are dyadic, so 1 - t and 1 - u - v are exact), 2 at the end of the step, and 11
+/// where the points are turned.
 const FILTER: f64 = 32.0 * f64::EPSILON / 2.0;
 
 /// Variation of F (m) below which a box is not split.
