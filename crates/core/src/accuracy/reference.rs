@@ -12,9 +12,9 @@ use super::{Errors, Frames, GoOn, Metric, Scope, run};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, Work, find};
-use crate::scene::{Model, Scene};
+use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::stability::{largest_step, spectrum};
+use crate::stability::{LargestMode, Mode, largest_step, spectrum};
 use crate::system::{Mechanics, ParticleSystem};
 
 /// Largest and smallest tolerance of the reference. A tighter one loses more to rounding than it
@@ -69,6 +69,8 @@ pub struct Reference {
     pub still: Errors,
     /// Work of all runs that make the reference.
     pub work: Work,
+    /// State from which all runs start.
+    pub(super) start: Snapshot,
     scope: Scope,
     trajectory: Trajectory,
 }
@@ -129,7 +131,6 @@ impl Reference {
                 particles.max(1) - 1
             )));
         }
-        let start = Snapshot::of(&scene.model, 0.0, &scene.state);
         let mut making = Making {
             scene,
             precision,
@@ -140,6 +141,7 @@ impl Reference {
                 floor: Errors::default(),
                 still: Errors::default(),
                 work: Work::default(),
+                start: Snapshot::of(&scene.model, 0.0, &scene.state),
                 scope,
                 trajectory: Trajectory::new(vec![], scope),
             },
@@ -154,16 +156,14 @@ impl Reference {
         reference.floor = others;
         reference.work = making.work;
         let still = (1..=frames.count).filter(|k| reference.counts(*k));
-        let still = still.map(|k| reference.trajectory.errors(k, &start, scope));
+        let still = still.map(|k| reference.errors(k, &reference.start.still(frames.time(k))));
         reference.still = still.fold(Errors::default(), Errors::max);
         Ok(Some(reference))
     }
 
-    /// Errors of the state y of a model at frame k, counted from 1.
-    #[must_use]
-    pub fn errors(&self, k: u64, model: &Model, y: &[f64]) -> Errors {
-        let found = Snapshot::of(model, self.frames.time(k), y);
-        self.trajectory.errors(k, &found, self.scope)
+    /// Errors of a state at frame k, counted from 1.
+    pub(super) fn errors(&self, k: u64, found: &Snapshot) -> Errors {
+        self.trajectory.errors(k, found, self.scope)
     }
 
     /// Whether errors at frame k, counted from 1, count.
@@ -200,9 +200,11 @@ impl Making<'_> {
     fn run(&mut self, method: &'static Method, control: Control) -> Result<Option<Run>, Error> {
         let mut simulation = Simulation::new(self.scene.clone(), method, control)?;
         let frames = self.reference.frames;
-        let mut snapshots = Vec::with_capacity(frames.count as usize);
+        let start = &self.reference.start;
+        let mut snapshots: Vec<Snapshot> = Vec::with_capacity(frames.count as usize);
         let mut visit = |k: u64, run: &Simulation, state: &[f64]| {
-            snapshots.push(Snapshot::of(run.model(), frames.time(k), state));
+            let last = snapshots.last().unwrap_or(start);
+            snapshots.push(last.next(run.model(), frames.time(k), state));
         };
         let end = run(&mut simulation, &frames, self.go_on, Some(&mut visit))?;
         self.work += simulation.work();
@@ -256,12 +258,29 @@ impl Making<'_> {
         }
     }
 
+    /// Fastest mode at each frame, where surfaces touch: contact may be much stiffer than all that is
+    /// there at the start.
+    fn contact_modes(&self) -> Vec<Mode> {
+        let network = self.scene.model.network();
+        let Some(network) = network.filter(|network| network.contact_layer().is_some()) else {
+            return vec![];
+        };
+        let frames = self.reference.trajectory.snapshots.iter().zip(1..);
+        let fastest = frames.filter_map(|(snapshot, k)| {
+            let time = self.reference.frames.time(k);
+            // Another contact is another shape, so each estimate begins anew.
+            LargestMode::default().estimate(network, time, snapshot.positions())
+        });
+        fastest.collect()
+    }
+
     /// Disagreement of the reference with the other method, whose step is halved until that is as
     /// small as asked for, or as the reference's `own` uncertainty, or no longer falls.
     fn by_steps(&mut self, own: Errors) -> Result<Option<Errors>, Error> {
         let system = self.scene.model.system();
         let method = find(other(system)).ok_or_else(missing)?;
-        let modes = spectrum(system, 0.0, &self.scene.state);
+        let mut modes = spectrum(system, 0.0, &self.scene.state);
+        modes.extend(self.contact_modes());
         let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
         let spacing = self.reference.frames.spacing();
         let mut step = spacing / (spacing / (SHARE * limit)).ceil().max(1.0);
