@@ -29,6 +29,9 @@ const ORDER: i32 = 4;
 /// Disagreement with the other method over that of the tolerances, below which it is the former
 /// that is in doubt: the looser tolerance makes nearly all of the latter.
 const SURE: f64 = 0.3;
+/// The same, where tighter tolerances no longer agree better: where friction of surfaces, a limit of
+/// strain or the guard acts after each step, the reference itself is known no better.
+const BLURRED: f64 = 2.0;
 /// Most times that the step is halved.
 const REFINEMENTS: usize = 12;
 /// Most powers of the step that are extrapolated away.
@@ -146,10 +149,10 @@ impl Reference {
                 trajectory: Trajectory::new(vec![], scope),
             },
         };
-        let Some(own) = making.by_tolerances()? else {
+        let Some((own, sure)) = making.by_tolerances()? else {
             return Ok(None);
         };
-        let Some(others) = making.by_steps(own)? else {
+        let Some(others) = making.by_steps(sure * making.precision.metric.of(&own))? else {
             return Ok(None);
         };
         let mut reference = making.reference;
@@ -221,8 +224,8 @@ impl Making<'_> {
     }
 
     /// Finds the reference by DOP853 at smaller and smaller tolerances. Returns the disagreement of
-    /// the last two.
-    fn by_tolerances(&mut self) -> Result<Option<Errors>, Error> {
+    /// the last two, and the share of it below which that with the other method tells no more.
+    fn by_tolerances(&mut self) -> Result<Option<(Errors, f64)>, Error> {
         let method = find("dop853").ok_or_else(missing)?;
         let (loosest, tightest) = TOLERANCES;
         let mut tolerance = if self.precision.most.is_finite() {
@@ -245,12 +248,11 @@ impl Making<'_> {
             let found = self.reference.disagreement(&looser);
             history.push(self.precision.metric.of(&found));
             let predicted = next * next / work;
-            if self.is_enough(&found)
-                || is_stuck(&history)
-                || tolerance <= tightest
-                || predicted > self.precision.most
-            {
-                return Ok(Some(found));
+            if is_stuck(&history) {
+                return Ok(Some((found, BLURRED)));
+            }
+            if self.is_enough(&found) || tolerance <= tightest || predicted > self.precision.most {
+                return Ok(Some((found, SURE)));
             }
             work = next;
             looser = std::mem::take(&mut self.reference.trajectory.snapshots);
@@ -259,7 +261,7 @@ impl Making<'_> {
     }
 
     /// Fastest mode at each frame, where surfaces touch: contact may be much stiffer than all that is
-    /// there at the start.
+    /// there at the start. Longer steps than its limit would show what the guard does.
     fn contact_modes(&self) -> Vec<Mode> {
         let network = self.scene.model.network();
         let Some(network) = network.filter(|network| network.contact_layer().is_some()) else {
@@ -275,15 +277,18 @@ impl Making<'_> {
     }
 
     /// Disagreement of the reference with the other method, whose step is halved until that is as
-    /// small as asked for, or as the reference's `own` uncertainty, or no longer falls.
-    fn by_steps(&mut self, own: Errors) -> Result<Option<Errors>, Error> {
+    /// small as asked for, or as `own`, which the reference leaves in doubt itself, or no longer
+    /// falls.
+    fn by_steps(&mut self, own: f64) -> Result<Option<Errors>, Error> {
         let system = self.scene.model.system();
         let method = find(other(system)).ok_or_else(missing)?;
-        let mut modes = spectrum(system, 0.0, &self.scene.state);
-        modes.extend(self.contact_modes());
-        let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
+        let longest = |modes: &[Mode]| -> Result<f64, Error> {
+            Ok(largest_step(method, modes)?.map_or(f64::INFINITY, |limit| limit.step))
+        };
+        let limit = SHARE * longest(&spectrum(system, 0.0, &self.scene.state))?;
+        let limit = limit.min(longest(&self.contact_modes())?);
         let spacing = self.reference.frames.spacing();
-        let mut step = spacing / (spacing / (SHARE * limit)).ceil().max(1.0);
+        let mut step = spacing / (spacing / limit).ceil().max(1.0);
         let metric = self.precision.metric;
         let mut least = Errors::with_all(f64::INFINITY);
         let (mut history, mut sum) = (vec![], 0.0);
@@ -307,7 +312,7 @@ impl Making<'_> {
                     }
                     history.push(metric.of(&least));
                     sum += work;
-                    let as_good = metric.of(&least) <= SURE * metric.of(&own);
+                    let as_good = metric.of(&least) <= own;
                     if self.is_enough(&least)
                         || as_good
                         || is_stuck(&history)
