@@ -7,7 +7,7 @@ use a3_core::stability::spectrum;
 use a3_core::{Control, Method, Scene};
 
 use crate::chart::measure::{precision, reference, time, words};
-use crate::chart::{describe, look_ahead, methods, metric, scope, unit};
+use crate::chart::{check_contact, describe, look_ahead, methods, metric, scope, unit};
 use crate::cli::{Choose, What};
 use crate::failure::Failure;
 use crate::progress::Bar;
@@ -41,6 +41,7 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         None => precision(&scene, horizon.motion),
     };
     let reference = reference(&scene, Frames::new(until), scope, precision)?.ok_or_else(stopped)?;
+    check_contact(metric, metric.of(&reference.still), until)?;
     let (found, goal) = match (options.error, options.budget) {
         (Some(error), _) => {
             let (floor, still) = (metric.of(&reference.floor), metric.of(&reference.still));

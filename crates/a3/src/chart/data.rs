@@ -14,7 +14,7 @@ use crate::output;
 const LARGEST_FILE: u64 = 64 << 20;
 
 /// A run, with its error and its work.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Record {
     /// Version of the program that measured it.
@@ -43,6 +43,10 @@ pub struct Record {
     pub error_momentum: f64,
     /// Error of the phase (s).
     pub error_phase: f64,
+    /// Error of the penetration, as a share of the thickness.
+    pub error_penetration: f64,
+    /// Error of the times of the first impact (s).
+    pub error_impact: f64,
     /// Error of the reference itself: of the positions (m).
     pub floor_position: f64,
     /// Error of the reference itself: of the energy (J).
@@ -53,10 +57,18 @@ pub struct Record {
     pub floor_momentum: f64,
     /// Error of the reference itself: of the phase (s).
     pub floor_phase: f64,
+    /// Error of the reference itself: of the penetration.
+    pub floor_penetration: f64,
+    /// Error of the reference itself: of the first impact (s).
+    pub floor_impact: f64,
     /// Error of a run in which nothing moves: of the positions (m).
     pub still_position: f64,
     /// Error of a run in which nothing moves: of the springs' stretch.
     pub still_strain: f64,
+    /// Error of a run in which nothing moves: of the penetration.
+    pub still_penetration: f64,
+    /// Error of a run in which nothing moves: of the first impact (s).
+    pub still_impact: f64,
     /// Simulated time at which the run blew up (s).
     pub lost_at: Option<f64>,
     /// Impulses by which the guard of surfaces held the run.
@@ -107,6 +119,8 @@ impl Record {
             strain: self.error_strain,
             momentum: self.error_momentum,
             phase: self.error_phase,
+            penetration: self.error_penetration,
+            impact: self.error_impact,
         })
     }
 
@@ -118,6 +132,8 @@ impl Record {
             strain: self.floor_strain,
             momentum: self.floor_momentum,
             phase: self.floor_phase,
+            penetration: self.floor_penetration,
+            impact: self.floor_impact,
         })
     }
 
@@ -127,6 +143,8 @@ impl Record {
         match metric {
             Metric::Position => self.still_position,
             Metric::Strain => self.still_strain,
+            Metric::Penetration => self.still_penetration,
+            Metric::Impact => self.still_impact,
             Metric::Energy | Metric::Momentum | Metric::Phase => f64::INFINITY,
         }
     }

@@ -9,6 +9,7 @@ use a3_core::accuracy::{
 use a3_core::stability::{Mode, largest_step, spectrum};
 use a3_core::{Control, Method, Model, Scene, Simulation};
 
+use super::check_contact;
 use super::data::{Data, Record, VERSION};
 use crate::failure::Failure;
 use crate::interrupt;
@@ -72,32 +73,8 @@ impl<'a> Study<'a> {
             swing,
             stiffness,
             until,
-            solver: String::new(),
-            setting: 0.0,
             scope: words(scope),
-            error_position: 0.0,
-            error_energy: 0.0,
-            error_strain: 0.0,
-            error_momentum: 0.0,
-            error_phase: 0.0,
-            floor_position: 0.0,
-            floor_energy: 0.0,
-            floor_strain: 0.0,
-            floor_momentum: 0.0,
-            floor_phase: 0.0,
-            still_position: 0.0,
-            still_strain: 0.0,
-            lost_at: None,
-            guard_impulses: 0,
-            guard_cuts: 0,
-            guard_lost: 0.0,
-            seconds: None,
-            work: 0.0,
-            evaluations: 0,
-            solves: 0,
-            iterations: 0,
-            factorizations: 0,
-            rejections: 0,
+            ..Record::default()
         };
         Self {
             frames: Frames::new(until),
@@ -220,12 +197,17 @@ impl<'a> Study<'a> {
             ..self.blank.clone()
         };
         bar.say(format!("{:<10} ", method.name));
-        if let Some(record) = data.find(&like, self.timed) {
-            return Ok(Some(record.clone()));
-        }
-        let record = self.measure(method, like, bar)?;
+        let known = data.find(&like, self.timed).cloned();
+        let is_new = known.is_none();
+        let record = match known {
+            Some(known) => Some(known),
+            None => self.measure(method, like, bar)?,
+        };
         if let Some(record) = &record {
-            data.add(record.clone());
+            check_contact(self.metric, record.still(self.metric), record.until)?;
+            if is_new {
+                data.add(record.clone());
+            }
         }
         Ok(record)
     }
@@ -273,6 +255,8 @@ impl<'a> Study<'a> {
             strain,
             momentum,
             phase,
+            penetration,
+            impact,
         } = errors;
         let (floor, still) = (reference.floor, reference.still);
         Ok(Some(Record {
@@ -281,13 +265,19 @@ impl<'a> Study<'a> {
             error_strain: strain,
             error_momentum: momentum,
             error_phase: phase,
+            error_penetration: penetration,
+            error_impact: impact,
             floor_position: floor.position,
             floor_energy: floor.energy,
             floor_strain: floor.strain,
             floor_momentum: floor.momentum,
             floor_phase: floor.phase,
+            floor_penetration: floor.penetration,
+            floor_impact: floor.impact,
             still_position: still.position,
             still_strain: still.strain,
+            still_penetration: still.penetration,
+            still_impact: still.impact,
             lost_at: lost.map(|lost| lost.time),
             guard_impulses: guarded.impulses,
             guard_cuts: guarded.cuts,

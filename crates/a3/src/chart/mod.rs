@@ -125,6 +125,20 @@ pub fn methods(scene: &Scene, asked: &[&'static Method]) -> Result<Vec<&'static 
     Ok(methods)
 }
 
+/// Refuses a metric of contact whose error is 0 for a run in which nothing moves: then there is no
+/// impact, or nothing within a thickness.
+pub fn check_contact(metric: Metric, still: f64, until: f64) -> Result<(), Failure> {
+    match metric {
+        Metric::Impact if still == 0.0 => Err(Failure::usage(format!(
+            "no impact begins or ends in {until} s: ask for penetration, or for a longer --until"
+        ))),
+        Metric::Penetration if still == 0.0 => Err(Failure::usage(format!(
+            "no surfaces come nearer than their thickness in {until} s: ask for a longer --until"
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// The metric that was asked for. Refuses one that the scene does not have.
 pub fn metric(error: ErrorMeasure, scene: &Scene) -> Result<Metric, Failure> {
     let metric = match error {
@@ -133,9 +147,19 @@ pub fn metric(error: ErrorMeasure, scene: &Scene) -> Result<Metric, Failure> {
         ErrorMeasure::Strain => Metric::Strain,
         ErrorMeasure::Momentum => Metric::Momentum,
         ErrorMeasure::Phase => Metric::Phase,
+        ErrorMeasure::Penetration => Metric::Penetration,
+        ErrorMeasure::Impact => Metric::Impact,
     };
+    let of_contact = matches!(metric, Metric::Penetration | Metric::Impact);
+    let network = scene.model.network();
+    if of_contact && network.is_none_or(|network| network.contact_layer().is_none()) {
+        return Err(Failure::usage(format!(
+            "no surfaces touch in the scene {}: ask for another error, or give it self_collision = true",
+            scene.name
+        )));
+    }
     let of_motion = matches!(metric, Metric::Position | Metric::Phase);
-    if of_motion || scene.model.network().is_some() {
+    if of_motion || network.is_some() {
         Ok(metric)
     } else {
         Err(Failure::usage(format!(
@@ -168,7 +192,8 @@ pub fn unit(metric: Metric) -> &'static str {
         Metric::Energy => "J",
         Metric::Strain => "of length",
         Metric::Momentum => "kg m/s",
-        Metric::Phase => "s",
+        Metric::Penetration => "of thickness",
+        Metric::Phase | Metric::Impact => "s",
     }
 }
 
@@ -180,7 +205,8 @@ pub fn look_ahead(
     stiffness: f64,
     bar: &Bar,
 ) -> Result<Option<Horizon>, Failure> {
-    let Some(found) = horizon(scene, &interrupt::go_on).map_err(Failure::run)? else {
+    let longest = asked.unwrap_or(f64::INFINITY);
+    let Some(found) = horizon(scene, longest, &interrupt::go_on).map_err(Failure::run)? else {
         return Ok(None);
     };
     let Horizon {

@@ -75,6 +75,8 @@ fn x_label(metric: Metric, scope: Scope) -> String {
         (Metric::Energy, _) => "error of the energy".to_owned(),
         (Metric::Strain, _) => "RMS error of the springs' stretch".to_owned(),
         (Metric::Momentum, _) => "error of the momentum".to_owned(),
+        (Metric::Penetration, _) => "error of the penetration".to_owned(),
+        (Metric::Impact, _) => "error of the times of the first impact".to_owned(),
         (Metric::Phase, None) => "error of the phase".to_owned(),
         (Metric::Phase, Some(i)) => format!("error of the phase of particle {i}"),
     };

@@ -211,6 +211,10 @@ pub enum ErrorMeasure {
     Momentum,
     /// Time by which the motion is ahead or behind (s)
     Phase,
+    /// Largest share of its thickness by which a surface is within it
+    Penetration,
+    /// Times at which surfaces first touch, and at which nothing touches any more (s)
+    Impact,
 }
 
 /// Where errors are taken.

@@ -16,6 +16,9 @@ pub fn said(folder: &Path, words: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
+/// The scene of a bounce.
+const BOUNCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/bounce.toml");
+
 const CHAIN: [&str; 5] = ["chart", "--scene", "chain", "--work", "evaluations"];
 
 #[test]
@@ -259,6 +262,18 @@ fn wrong_usage_is_one_line() {
                 "choose", "--error", "1e-3", "--of", "strain", "--scene", "simple",
             ],
             "ask for position or phase",
+            2,
+        ),
+        (
+            vec!["chart", "--error", "impact", "--scene", "chain"],
+            "no surfaces touch in the scene chain",
+            2,
+        ),
+        (
+            vec![
+                "choose", "--error", "1e-3", "--of", "impact", "--until", "0.1", "--scene", BOUNCE,
+            ],
+            "no impact begins or ends in 0.1 s",
             2,
         ),
         (

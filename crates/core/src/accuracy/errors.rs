@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::impact::Impact;
 use crate::elements::force::distance;
 use crate::network::Network;
 use crate::scene::Model;
@@ -30,10 +31,14 @@ pub(super) struct Snapshot {
     momentum: Vector3<f64>,
     /// Length over rest length of each structural spring.
     strains: Vec<f64>,
+    /// Largest share of its thickness by which anything is within it.
+    penetration: f64,
+    /// First impact so far.
+    impact: Impact,
 }
 
 impl Snapshot {
-    /// Quantities of the state y of a model at time t (s).
+    /// Quantities of the state y of a model at time t (s), at which a run starts.
     pub fn of(model: &Model, t: f64, y: &[f64]) -> Self {
         let Some(network) = model.network() else {
             let mut velocities = vec![0.0; y.len()];
@@ -52,15 +57,45 @@ impl Snapshot {
             let free = column.zip(inverse_masses).filter(|(_, w)| **w > 0.0);
             free.map(|(v, w)| v / w).sum()
         });
+        let penetration = network.contact_layer();
+        let penetration = penetration.map_or(0.0, |layer| layer.penetration(t, positions));
         Self {
             energy: network.energy_at(t, positions, velocities).total(),
             momentum,
+            penetration,
+            impact: Impact::at_start(t),
             strains: structural(network)
                 .map(|s| distance(positions, s.i, s.j) / s.law.rest_length)
                 .collect(),
             positions: positions.to_vec(),
             velocities: velocities.to_vec(),
         }
+    }
+
+    /// Quantities of the state y of a model at time t (s), by which the run has come from here.
+    pub fn next(&self, model: &Model, t: f64, y: &[f64]) -> Self {
+        let mut next = Self::of(model, t, y);
+        if let Some(layer) = model.network().and_then(Network::contact_layer) {
+            let ends = [self, &next].map(|s| [&*s.positions, &*s.velocities]);
+            let touch = [self, &next].map(|s| s.penetration > 0.0);
+            next.impact = self.impact.next(layer, t, ends, touch);
+        } else {
+            next.impact = self.impact.later(t);
+        }
+        next
+    }
+
+    /// Quantities at time t (s) if nothing moves from here on.
+    pub fn still(&self, t: f64) -> Self {
+        Self {
+            impact: self.impact.still(t, self.penetration > 0.0),
+            ..self.clone()
+        }
+    }
+
+    /// Positions (m): all x, all y, all z.
+    pub fn positions(&self) -> &[f64] {
+        &self.positions
     }
 
     /// Differences of another snapshot of the same scene from this one, which is exact. The phase
@@ -79,6 +114,8 @@ impl Snapshot {
             strain: (stretch.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / springs).sqrt(),
             momentum: (self.momentum - other.momentum).norm(),
             phase: self.mean(scope, along).abs(),
+            penetration: (self.penetration - other.penetration).abs(),
+            impact: self.impact.error_of(&other.impact),
         }
     }
 
@@ -109,6 +146,8 @@ impl Snapshot {
             energy: both(&coarse.energy, &fine.energy),
             momentum: fine.momentum + (fine.momentum - coarse.momentum) * share,
             strains: all(&coarse.strains, &fine.strains),
+            penetration: both(&coarse.penetration, &fine.penetration),
+            impact: Impact::extrapolate(&coarse.impact, &fine.impact, both),
         }
     }
 }
@@ -136,6 +175,12 @@ pub struct Errors {
     /// Time (s) by which the run is ahead of the reference or behind it: the error of the positions
     /// along the reference velocities, over the largest speed squared of the reference.
     pub phase: f64,
+    /// Error of the penetration of surfaces that touch: the largest share of its thickness by which
+    /// anything is within it. 0 where surfaces do not touch.
+    pub penetration: f64,
+    /// Error of the first impact (s): that of the time at which surfaces first touch, or that at
+    /// which nothing touches any more, whichever is larger. 0 where surfaces do not touch.
+    pub impact: f64,
 }
 
 impl Errors {
@@ -153,6 +198,8 @@ impl Errors {
             strain: f(self.strain, other.strain),
             momentum: f(self.momentum, other.momentum),
             phase: f(self.phase, other.phase),
+            penetration: f(self.penetration, other.penetration),
+            impact: f(self.impact, other.impact),
         }
     }
 
@@ -181,6 +228,10 @@ pub enum Metric {
     Momentum,
     /// Error of the phase (s).
     Phase,
+    /// Error of the penetration of surfaces, as a share of the thickness.
+    Penetration,
+    /// Error of the times of the first impact (s).
+    Impact,
 }
 
 impl Metric {
@@ -193,6 +244,8 @@ impl Metric {
             Self::Strain => errors.strain,
             Self::Momentum => errors.momentum,
             Self::Phase => errors.phase,
+            Self::Penetration => errors.penetration,
+            Self::Impact => errors.impact,
         }
     }
 }

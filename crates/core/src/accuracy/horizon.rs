@@ -40,15 +40,15 @@ pub struct Horizon {
 }
 
 /// Horizon of a scene, estimated from two runs that start side by side. They run for up to 10 s, or
-/// for up to 3 s if the period of the scene's fastest mode is below 0.1 s. `None` if `go_on`
-/// returned false.
+/// for up to 3 s if the period of the scene's fastest mode is below 0.1 s, and no longer than
+/// `until` (s), which may be infinite. `None` if `go_on` returned false.
 ///
 /// Both runs take the same fixed steps, so that their distance is that of the motion and not of two
 /// sequences of steps.
 ///
 /// # Errors
 /// The scene cannot be run.
-pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
+pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>, Error> {
     let method = find("rk4")
         .ok_or_else(|| Error::Invalid("no method to look ahead with is in the table".into()))?;
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
@@ -87,10 +87,12 @@ pub fn horizon(scene: &Scene, go_on: GoOn) -> Result<Option<Horizon>, Error> {
         (3.0 * sum / n as f64).sqrt()
     };
     let mut motion: f64 = 0.0;
+    let longest = longest.min(until);
+    let rounds = ROUND.into_iter().filter(|t| *t < longest);
     let (mut until, mut most, mut grown) = (ROUND[0], 1.0f64, (ROUND[0], 1.0f64));
     let parts = 10.0;
     let mut time = 0.0;
-    'rounds: for round in ROUND.into_iter().filter(|t| *t <= longest) {
+    'rounds: for round in rounds.chain([longest]) {
         let begin = time;
         for part in 1..=10 {
             if !go_on() {

@@ -5,6 +5,7 @@ mod choose;
 mod errors;
 mod hermite;
 mod horizon;
+mod impact;
 mod ladder;
 mod reference;
 mod run;
@@ -95,9 +96,11 @@ pub fn measure(
 ) -> Result<Option<Outcome>, Error> {
     let mut simulation = Simulation::new(scene.clone(), method, control)?;
     let mut errors = Errors::default();
+    let mut last = reference.start.clone();
     let mut visit = |k: u64, run: &Simulation, state: &[f64]| {
+        last = last.next(run.model(), reference.frames.time(k), state);
         if reference.counts(k) {
-            errors = errors.max(reference.errors(k, run.model(), state));
+            errors = errors.max(reference.errors(k, &last));
         }
     };
     let end = run(&mut simulation, &reference.frames, go_on, Some(&mut visit))?;

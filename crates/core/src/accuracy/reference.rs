@@ -12,9 +12,9 @@ use super::{Errors, Frames, GoOn, Metric, Scope, run};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, Work, find};
-use crate::scene::{Model, Scene};
+use crate::scene::Scene;
 use crate::simulation::Simulation;
-use crate::stability::{largest_step, spectrum};
+use crate::stability::{LargestMode, Mode, largest_step, spectrum};
 use crate::system::{Mechanics, ParticleSystem};
 
 /// Largest and smallest tolerance of the reference. A tighter one loses more to rounding than it
@@ -29,6 +29,9 @@ const ORDER: i32 = 4;
 /// Disagreement with the other method over that of the tolerances, below which it is the former
 /// that is in doubt: the looser tolerance makes nearly all of the latter.
 const SURE: f64 = 0.3;
+/// The same, where tighter tolerances no longer agree better: where friction of surfaces, a limit of
+/// strain or the guard acts after each step, the reference itself is known no better.
+const BLURRED: f64 = 2.0;
 /// Most times that the step is halved.
 const REFINEMENTS: usize = 12;
 /// Most powers of the step that are extrapolated away.
@@ -69,6 +72,8 @@ pub struct Reference {
     pub still: Errors,
     /// Work of all runs that make the reference.
     pub work: Work,
+    /// State from which all runs start.
+    pub(super) start: Snapshot,
     scope: Scope,
     trajectory: Trajectory,
 }
@@ -129,7 +134,6 @@ impl Reference {
                 particles.max(1) - 1
             )));
         }
-        let start = Snapshot::of(&scene.model, 0.0, &scene.state);
         let mut making = Making {
             scene,
             precision,
@@ -140,30 +144,29 @@ impl Reference {
                 floor: Errors::default(),
                 still: Errors::default(),
                 work: Work::default(),
+                start: Snapshot::of(&scene.model, 0.0, &scene.state),
                 scope,
                 trajectory: Trajectory::new(vec![], scope),
             },
         };
-        let Some(own) = making.by_tolerances()? else {
+        let Some((own, sure)) = making.by_tolerances()? else {
             return Ok(None);
         };
-        let Some(others) = making.by_steps(own)? else {
+        let Some(others) = making.by_steps(sure * making.precision.metric.of(&own))? else {
             return Ok(None);
         };
         let mut reference = making.reference;
         reference.floor = others;
         reference.work = making.work;
         let still = (1..=frames.count).filter(|k| reference.counts(*k));
-        let still = still.map(|k| reference.trajectory.errors(k, &start, scope));
+        let still = still.map(|k| reference.errors(k, &reference.start.still(frames.time(k))));
         reference.still = still.fold(Errors::default(), Errors::max);
         Ok(Some(reference))
     }
 
-    /// Errors of the state y of a model at frame k, counted from 1.
-    #[must_use]
-    pub fn errors(&self, k: u64, model: &Model, y: &[f64]) -> Errors {
-        let found = Snapshot::of(model, self.frames.time(k), y);
-        self.trajectory.errors(k, &found, self.scope)
+    /// Errors of a state at frame k, counted from 1.
+    pub(super) fn errors(&self, k: u64, found: &Snapshot) -> Errors {
+        self.trajectory.errors(k, found, self.scope)
     }
 
     /// Whether errors at frame k, counted from 1, count.
@@ -200,9 +203,11 @@ impl Making<'_> {
     fn run(&mut self, method: &'static Method, control: Control) -> Result<Option<Run>, Error> {
         let mut simulation = Simulation::new(self.scene.clone(), method, control)?;
         let frames = self.reference.frames;
-        let mut snapshots = Vec::with_capacity(frames.count as usize);
+        let start = &self.reference.start;
+        let mut snapshots: Vec<Snapshot> = Vec::with_capacity(frames.count as usize);
         let mut visit = |k: u64, run: &Simulation, state: &[f64]| {
-            snapshots.push(Snapshot::of(run.model(), frames.time(k), state));
+            let last = snapshots.last().unwrap_or(start);
+            snapshots.push(last.next(run.model(), frames.time(k), state));
         };
         let end = run(&mut simulation, &frames, self.go_on, Some(&mut visit))?;
         self.work += simulation.work();
@@ -219,8 +224,8 @@ impl Making<'_> {
     }
 
     /// Finds the reference by DOP853 at smaller and smaller tolerances. Returns the disagreement of
-    /// the last two.
-    fn by_tolerances(&mut self) -> Result<Option<Errors>, Error> {
+    /// the last two, and the share of it below which that with the other method tells no more.
+    fn by_tolerances(&mut self) -> Result<Option<(Errors, f64)>, Error> {
         let method = find("dop853").ok_or_else(missing)?;
         let (loosest, tightest) = TOLERANCES;
         let mut tolerance = if self.precision.most.is_finite() {
@@ -243,12 +248,11 @@ impl Making<'_> {
             let found = self.reference.disagreement(&looser);
             history.push(self.precision.metric.of(&found));
             let predicted = next * next / work;
-            if self.is_enough(&found)
-                || is_stuck(&history)
-                || tolerance <= tightest
-                || predicted > self.precision.most
-            {
-                return Ok(Some(found));
+            if is_stuck(&history) {
+                return Ok(Some((found, BLURRED)));
+            }
+            if self.is_enough(&found) || tolerance <= tightest || predicted > self.precision.most {
+                return Ok(Some((found, SURE)));
             }
             work = next;
             looser = std::mem::take(&mut self.reference.trajectory.snapshots);
@@ -256,15 +260,35 @@ impl Making<'_> {
         }
     }
 
+    /// Fastest mode at each frame, where surfaces touch: contact may be much stiffer than all that is
+    /// there at the start. Longer steps than its limit would show what the guard does.
+    fn contact_modes(&self) -> Vec<Mode> {
+        let network = self.scene.model.network();
+        let Some(network) = network.filter(|network| network.contact_layer().is_some()) else {
+            return vec![];
+        };
+        let frames = self.reference.trajectory.snapshots.iter().zip(1..);
+        let fastest = frames.filter_map(|(snapshot, k)| {
+            let time = self.reference.frames.time(k);
+            // Another contact is another shape, so each estimate begins anew.
+            LargestMode::default().estimate(network, time, snapshot.positions())
+        });
+        fastest.collect()
+    }
+
     /// Disagreement of the reference with the other method, whose step is halved until that is as
-    /// small as asked for, or as the reference's `own` uncertainty, or no longer falls.
-    fn by_steps(&mut self, own: Errors) -> Result<Option<Errors>, Error> {
+    /// small as asked for, or as `own`, which the reference leaves in doubt itself, or no longer
+    /// falls.
+    fn by_steps(&mut self, own: f64) -> Result<Option<Errors>, Error> {
         let system = self.scene.model.system();
         let method = find(other(system)).ok_or_else(missing)?;
-        let modes = spectrum(system, 0.0, &self.scene.state);
-        let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
+        let longest = |modes: &[Mode]| -> Result<f64, Error> {
+            Ok(largest_step(method, modes)?.map_or(f64::INFINITY, |limit| limit.step))
+        };
+        let limit = SHARE * longest(&spectrum(system, 0.0, &self.scene.state))?;
+        let limit = limit.min(longest(&self.contact_modes())?);
         let spacing = self.reference.frames.spacing();
-        let mut step = spacing / (spacing / (SHARE * limit)).ceil().max(1.0);
+        let mut step = spacing / (spacing / limit).ceil().max(1.0);
         let metric = self.precision.metric;
         let mut least = Errors::with_all(f64::INFINITY);
         let (mut history, mut sum) = (vec![], 0.0);
@@ -288,7 +312,7 @@ impl Making<'_> {
                     }
                     history.push(metric.of(&least));
                     sum += work;
-                    let as_good = metric.of(&least) <= SURE * metric.of(&own);
+                    let as_good = metric.of(&least) <= own;
                     if self.is_enough(&least)
                         || as_good
                         || is_stuck(&history)

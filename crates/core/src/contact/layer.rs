@@ -157,6 +157,16 @@ impl ContactLayer {
         energy
     }
 
+    /// Penetration at time t (s) at x (m), n x 3: the largest share of its thickness by which
+    /// anything is within it. 0 where nothing touches, 1 where a gap is 0.
+    #[must_use]
+    pub fn penetration(&self, t: f64, x: &[f64]) -> f64 {
+        let mut deepest = 0.0_f64;
+        let find = |_: &Candidate, pair: &Pair| Some(pair.share());
+        self.visit(t, x, None, find, |share| deepest = deepest.max(share));
+        deepest
+    }
+
     /// Visits the stiffness of each pair, with its points, at time t (s) at x, at
     /// rest.
     pub(crate) fn stiffnesses(

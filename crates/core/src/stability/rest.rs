@@ -31,6 +31,10 @@ const SETTLING: [(f64, u32, bool); 5] = [
     (5.0, 400, false),
 ];
 
+/// Next step over one in which the guard of surfaces acted, and over one in which it did not.
+const SHORTER: f64 = 0.25;
+const LONGER: f64 = 1.5;
+
 /// Scene at rest, with the modes around this state.
 #[derive(Clone)]
 pub struct RestState {
@@ -81,8 +85,20 @@ pub fn rest(scene: &Scene) -> Result<Option<RestState>, Error> {
         run.set_control(Control::Step(step))?;
         for _ in 0..steps {
             let before = run.state().to_vec();
+            let held = acts(&run);
             if run.take_steps(1).is_err() {
                 return Ok(None);
+            }
+            // Where the guard of surfaces holds what falls, nothing rests on the force of contact.
+            let now = run.control().value();
+            let next = if acts(&run) > held {
+                SHORTER * now
+            } else {
+                step.min(LONGER * now)
+            };
+            if next != now {
+                run.set_control(Control::Step(next))?;
+                continue;
             }
             let half = before.len() / 2;
             let moved = |part: &[f64], was: &[f64]| {
@@ -96,9 +112,11 @@ pub fn rest(scene: &Scene) -> Result<Option<RestState>, Error> {
     }
     let mut y = run.state().to_vec();
     let half = y.len() / 2;
+    let held = acts(&run);
+    let rests = run.take_steps(1).is_ok() && acts(&run) == held;
     let speed = y[half..].iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     y[half..].fill(0.0);
-    if speed > 1e-4 {
+    if speed > 1e-4 || !rests {
         return Ok(None);
     }
     let (modes, shapes) = shapes(network, 0.0, &y[..half]).into_iter().unzip();
@@ -108,6 +126,12 @@ pub fn rest(scene: &Scene) -> Result<Option<RestState>, Error> {
         modes,
         shapes,
     }))
+}
+
+/// Number of times that the guard of surfaces has acted in a run.
+fn acts(run: &Simulation) -> usize {
+    let guarded = run.guarded();
+    guarded.impulses + guarded.cuts
 }
 
 /// Largest step with which a small disturbance of the scene at rest grows less than [`GROWTH`]

@@ -163,9 +163,11 @@ fn buckling_out_of_a_plane_is_no_chaos() {
             [2, 4, 400, 1.41421356, 0], [1, 4, 400, 1, 0], [2, 5, 400, 1, 0]]
         pin = [{ particles = [0, 3] }]",
     );
-    let found = horizon(&truss, GO_ON).unwrap().unwrap();
+    let found = horizon(&truss, f64::INFINITY, GO_ON).unwrap().unwrap();
     assert!(found.buckles && found.lyapunov < 1.0, "{found:?}");
-    let found = horizon(&scene("double-pendulum"), GO_ON).unwrap().unwrap();
+    let found = horizon(&scene("double-pendulum"), f64::INFINITY, GO_ON)
+        .unwrap()
+        .unwrap();
     assert!(!found.buckles && found.lyapunov.is_finite(), "{found:?}");
 }
 
@@ -181,7 +183,7 @@ fn references_agree_with_themselves() {
         .filter(|entry| entry.name != "flag")
     {
         let scene = entry.build(None).unwrap().scene;
-        let horizon = horizon(&scene, GO_ON).unwrap().unwrap();
+        let horizon = horizon(&scene, f64::INFINITY, GO_ON).unwrap().unwrap();
         let reference = reference(&scene, horizon.until);
         println!(
             "{:<11} until {} s, lyapunov {:.2} s, floor {:.1e} m {:.1e} J {:.1e}, {:?}",
@@ -258,7 +260,7 @@ fn a_run_can_be_stopped() {
             .unwrap()
             .is_none()
     );
-    assert!(horizon(&mit, stop).unwrap().is_none());
+    assert!(horizon(&mit, f64::INFINITY, stop).unwrap().is_none());
     let reference = reference(&mit, 0.1);
     assert!(
         measure(&mit, method("rk4"), Control::Step(0.01), &reference, stop)
@@ -321,7 +323,7 @@ fn the_choice_is_the_best() {
         .collect();
     scenes.extend(["random", "jellyhang"].map(crate::reference::scene_of));
     for scene in scenes {
-        let horizon = horizon(&scene, GO_ON).unwrap().unwrap();
+        let horizon = horizon(&scene, f64::INFINITY, GO_ON).unwrap().unwrap();
         let reference = reference(&scene, horizon.until.min(1.0));
         for error in [1e-2, 1e-4, 1e-6] {
             let found = choose(&scene, &reference, Metric::Position, error, GO_ON, |_| ())

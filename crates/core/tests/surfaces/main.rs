@@ -6,6 +6,7 @@ mod common;
 mod bounce;
 mod conserved;
 mod force;
+mod impact;
 mod implicit;
 mod pairs;
 mod resting;

@@ -1,10 +1,10 @@
 //! Stability of what rests on the force of contact.
 
 use a3_core::contact::{Obstacle, Shape, Skin};
-use a3_core::stability::{largest_step, spectrum};
+use a3_core::stability::{Edge, RestState, largest_step, observe_at_rest, rest, spectrum};
 use a3_core::{Control, Model, Network, Path, Scene, Simulation, Touch, Vector3};
 
-use crate::common::method;
+use crate::common::{described, method};
 
 /// Mass (kg), thickness (m), stiffness (N/m) and gravity (m/s2).
 const MASS: f64 = 0.5;
@@ -69,6 +69,122 @@ fn runs_beyond_that_limit_grow_and_others_do_not() {
                 most = most.max((run.state()[1] - rest).abs());
             }
             assert_eq!(most > 1e-6, grows, "{name}, {share} of the limit: {most} m");
+        }
+    }
+}
+
+/// The scene with the stiffness and the damping of its contact multiplied.
+fn multiplied(mut scene: Scene, stiffness: f64, damping: f64) -> Scene {
+    if let Model::Network(network) = &mut scene.model {
+        let mut touch = network.touch().unwrap().clone();
+        for skin in &mut touch.skins {
+            skin.stiffness *= stiffness;
+            skin.damping *= damping;
+        }
+        network.set_touch(Some(touch)).unwrap();
+    }
+    scene
+}
+
+/// State of rest, on the force of contact alone.
+fn at_rest(scene: &Scene) -> RestState {
+    let rest = rest(scene).unwrap().expect("a state of rest");
+    let y = &rest.scene.state;
+    let mut f = y.clone();
+    rest.scene.model.system().eval_f(0.0, y, &mut f);
+    let largest = f.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+    assert!(largest < 1e-6, "{largest} m/s2");
+    rest
+}
+
+/// A sheet lies on a floor, or a second one on the first.
+fn lying(sheets: usize) -> Scene {
+    let sheet = |height: f64| {
+        format!(
+            "[[cloth]]
+            grid = [4, 4]
+            width = 0.4
+            density = 0.2
+            stiffness = [0.4, 0.2, 0.005]
+            damping_ratio = 0.1
+            thickness = 0.02
+            right = [1, 0, 0]
+            down = [0, 0, 1]
+            at = [{height}, {height}, {height}]
+            "
+        )
+    };
+    let all: String = [0.02, 0.04][..sheets].iter().map(|h| sheet(*h)).collect();
+    described(&format!(
+        "gravity = [0, -9.81, 0]
+        drag_per_mass = 0.5
+        floor = {{ height = 0, thickness = 0.02 }}
+        self_collision = true
+        {all}"
+    ))
+}
+
+/// Without springs across it, a flat sheet moves up and down as its particles do alone: each of mass
+/// m by w2 = 3 k s2 / m with m g = k d s3, so that w6 = 27 k g2 / (m d2), and the lightest is fastest.
+/// Contact that is 64 times as stiff halves the step.
+#[test]
+fn stiffer_contact_lowers_the_limit_of_a_sheet_as_it_should() {
+    let limit = |stiffness: f64| {
+        let scene = multiplied(lying(1), stiffness, 0.0);
+        let rest = at_rest(&scene);
+        let network = scene.model.network().unwrap();
+        let skin = network.touch().unwrap().skins[0];
+        let lightest = network
+            .masses()
+            .iter()
+            .copied()
+            .fold(f64::INFINITY, f64::min);
+        let exact =
+            (27.0 * skin.stiffness * (GRAVITY / skin.thickness).powi(2) / lightest).powf(1.0 / 6.0);
+        let found = rest.modes[0].frequency();
+        assert!(
+            (found / exact - 1.0).abs() < 1e-3,
+            "{found} 1/s, not {exact}"
+        );
+        largest_step(method("symplectic"), &rest.modes)
+            .unwrap()
+            .unwrap()
+            .step
+    };
+    let ratio = limit(64.0) / limit(64.0 * 64.0);
+    assert!((ratio - 2.0).abs() < 0.01, "{ratio}");
+}
+
+/// At rest the force is m g, and its damping is that times the damping of the skin.
+#[test]
+fn the_mode_of_contact_has_the_damping_of_the_skin() {
+    let mut scene = resting(0.05).0;
+    if let Model::Network(network) = &mut scene.model {
+        let mut touch = network.touch().unwrap().clone();
+        touch.skins[0].damping = 0.7;
+        network.set_touch(Some(touch)).unwrap();
+    }
+    let damping = at_rest(&scene).modes[0].damping;
+    assert!(
+        (damping / (0.7 * GRAVITY) - 1.0).abs() < 1e-6,
+        "{damping} 1/s"
+    );
+}
+
+#[test]
+fn limits_of_sheets_that_lie_on_one_another_are_seen() {
+    for (sheets, stiffness) in [(1, 64.0), (2, 1.0), (2, 64.0)] {
+        let rest = at_rest(&multiplied(lying(sheets), stiffness, 1.0));
+        for name in ["symplectic", "rk4"] {
+            let m = method(name);
+            let limit = largest_step(m, &rest.modes).unwrap().unwrap();
+            let seen = observe_at_rest(&rest, m, Some(&limit), || true)
+                .unwrap()
+                .unwrap();
+            assert!(
+                (seen.step / limit.step - 1.0).abs() < 0.03 && seen.edge != Edge::Open,
+                "{sheets} sheets, {name}: {seen:?}, not {limit:?}"
+            );
         }
     }
 }

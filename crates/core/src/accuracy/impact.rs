@@ -1,0 +1,92 @@
+//! First impact of a run: when surfaces first touch, and when nothing touches any more.
+//!
+//! Both times are found between the frames by which a run is looked at, on cubic polynomials through
+//! the positions and velocities of two frames. They are functions of these states alone, the same
+//! for every method, so their errors fall with the order of the method. A touch that begins and ends
+//! between two frames is not seen.
+
+use crate::contact::ContactLayer;
+
+/// Times of the first impact: where it has not begun or ended yet, the time of the state.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Impact {
+    /// Time of the state (s).
+    t: f64,
+    /// Time at which surfaces touched first, and time at which nothing touched any more (s).
+    times: [f64; 2],
+}
+
+impl Impact {
+    /// Impact of a run that starts at time t (s).
+    pub fn at_start(t: f64) -> Self {
+        Self { t, times: [t; 2] }
+    }
+
+    /// Impact at time t (s), if nothing begins or ends until then.
+    pub fn later(&self, t: f64) -> Self {
+        let times = self.times.map(|time| if time < self.t { time } else { t });
+        Self { t, times }
+    }
+
+    /// Impact at time t (s), if nothing moves until then, where surfaces `touch` or do not.
+    pub fn still(&self, t: f64, touch: bool) -> Self {
+        let mut later = self.later(t);
+        if touch {
+            later.times[0] = later.times[0].min(self.t);
+        }
+        later
+    }
+
+    /// Impact at time t (s), with positions (m) and velocities (m/s) here and there, and whether
+    /// surfaces touch here and there.
+    pub fn next(
+        &self,
+        layer: &ContactLayer,
+        t: f64,
+        ends: [[&[f64]; 2]; 2],
+        touch: [bool; 2],
+    ) -> Self {
+        let mut next = self.still(t, touch[0]);
+        let ended = next.times[1] < t;
+        if touch[0] == touch[1] || ended {
+            return next;
+        }
+        let mut x = vec![0.0; ends[0][0].len()];
+        let (mut low, mut high) = (0.0, 1.0);
+        // Until the times next to each other are as close as double precision tells.
+        for _ in 0..50 {
+            let middle = f64::midpoint(low, high);
+            between(ends, t - self.t, middle, &mut x);
+            let at = self.t + middle * (t - self.t);
+            if (layer.penetration(at, &x) > 0.0) == touch[0] {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        next.times[usize::from(touch[0])] = self.t + low * (t - self.t);
+        next
+    }
+
+    /// Larger difference of both times of another impact from those of this one (s).
+    pub fn error_of(&self, other: &Self) -> f64 {
+        let [begins, ends] = [0, 1].map(|k| (self.times[k] - other.times[k]).abs());
+        begins.max(ends)
+    }
+
+    /// Combination of both times of two runs.
+    pub fn extrapolate(coarse: &Self, fine: &Self, both: impl Fn(&f64, &f64) -> f64) -> Self {
+        let times = [0, 1].map(|k| both(&coarse.times[k], &fine.times[k]));
+        Self { t: fine.t, times }
+    }
+}
+
+/// Writes the positions (m) at a share s of the time (s) between two states to x.
+fn between([[xa, va], [xb, vb]]: [[&[f64]; 2]; 2], time: f64, s: f64, x: &mut [f64]) {
+    let r = 1.0 - s;
+    let [a, b] = [(1.0 + 2.0 * s) * r * r, (1.0 + 2.0 * r) * s * s];
+    let [va_weight, vb_weight] = [s * r * r * time, -s * s * r * time];
+    for (k, x) in x.iter_mut().enumerate() {
+        *x = a * xa[k] + b * xb[k] + va_weight * va[k] + vb_weight * vb[k];
+    }
+}
