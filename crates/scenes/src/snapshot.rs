@@ -98,6 +98,7 @@ impl Description {
         self.gravity = network.gravity().map(Into::into);
         (self.drag, self.drag_per_mass) = (network.drag(), None);
         self.torn.clone_from(&now.torn);
+        self.self_collision = now.touching;
         if let Some(wind) = &mut self.wind {
             wind.on = now.wind.is_some();
             wind.ahead += t;

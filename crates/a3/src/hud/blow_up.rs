@@ -21,6 +21,7 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     let hold = limit.zip(pane.limit.would_hold());
     ui.label(text(match (lost.control, hold) {
         _ if lost.cause == Cause::ReadsVelocity => format!("{method} does not serve such forces."),
+        _ if is_squeezed(lost) => "A shorter step does not help.".into(),
         (Control::Tolerance(tolerance), _) if matches!(lost.cause, Cause::StepTooSmall { .. }) => {
             format!("{method} found no step to a tolerance of {tolerance:e}: a larger one may do.")
         }
@@ -39,8 +40,16 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     }));
 }
 
+/// Whether surfaces that are led left no room, whatever the step.
+fn is_squeezed(lost: &BlowUp) -> bool {
+    matches!(lost.cause, Cause::Squeezed { .. })
+}
+
 /// The keys that lead out of a blow-up.
-pub fn way_out() -> String {
+pub fn way_out(lost: &BlowUp) -> String {
+    if is_squeezed(lost) {
+        return "Press , to go back, or x to let surfaces pass through one another, then r.".into();
+    }
     "Press - for a shorter step, or a digit for another solver, then r.".into()
 }
 

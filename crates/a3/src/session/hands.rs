@@ -59,6 +59,28 @@ impl Session {
         }
     }
 
+    /// Lets surfaces touch in every run, or pass through one another. Where they cross in one, a
+    /// message names what does, and all stay as they are.
+    pub(super) fn toggle_touch(&mut self) {
+        if self.first().scene().touch.is_none() {
+            return self.say("There are no surfaces here that could touch.");
+        }
+        let on = !self.first().touching();
+        let mut refused = None;
+        self.change_all(|run| {
+            if refused.is_none() {
+                refused = run.set_touching(on).err();
+            }
+        });
+        if let Some(why) = refused {
+            self.change_all(|run| {
+                // To let surfaces pass is never refused.
+                let _ = run.set_touching(!on);
+            });
+            self.say(why.to_string());
+        }
+    }
+
     /// Takes hold of particle i in every run, and returns whether any run holds it.
     pub fn grab(&mut self, i: usize) -> bool {
         self.align();
