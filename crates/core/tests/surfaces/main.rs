@@ -7,6 +7,7 @@ mod bounce;
 mod conserved;
 mod force;
 mod implicit;
+mod led;
 mod pairs;
 mod resting;
 mod slope;
