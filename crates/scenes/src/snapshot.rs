@@ -222,7 +222,11 @@ impl Description {
 /// pinned where it is if it was pinned before.
 fn pins(now: &Checkpoint) -> Vec<Pin> {
     let mut pins: Vec<Pin> = vec![];
-    for &(i, path) in &now.pins {
+    let held = now.grabbed.filter(|grabbed| grabbed.was_pinned);
+    let held = held.map(|grabbed| (grabbed.particle, grabbed.path));
+    let is_led = |i: usize| now.pins.iter().any(|(pin, _)| *pin == i);
+    let held = held.filter(|(i, _)| !is_led(*i));
+    for (i, path) in now.pins.iter().copied().chain(held) {
         let Motion { sine, shift, about } =
             match now.grabbed.filter(|grabbed| grabbed.particle == i) {
                 None => motion(&path, now.time()),

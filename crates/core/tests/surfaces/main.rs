@@ -6,6 +6,7 @@ mod common;
 mod bounce;
 mod conserved;
 mod force;
+mod hands;
 mod implicit;
 mod led;
 mod pairs;
