@@ -185,6 +185,28 @@ mod tests {
     }
 
     #[test]
+    fn what_held_a_run_is_said_where_it_was_held() {
+        let said = |steps| {
+            let mut pane = pane("jelly", "t", 0.005);
+            pane.simulation.set_touching(true).unwrap();
+            pane.simulation.take_steps(steps).unwrap();
+            let guarded = pane.simulation.guarded();
+            (
+                read(&[pane], &Readings::default(), [1280.0, 720.0]).0,
+                guarded,
+            )
+        };
+        let (words, guarded) = said(20);
+        assert!(
+            guarded.impulses == 0 && !words.contains("contact"),
+            "{words}"
+        );
+        let (words, guarded) = said(200);
+        let held = format!("contact\n{} impulses\n", guarded.impulses);
+        assert!(guarded.impulses > 1 && words.contains(&held), "{words}");
+    }
+
+    #[test]
     fn the_limit_is_said_in_its_colour() {
         let said = |scene: &str, method: &str, value: f64| {
             let mut pane = pane(scene, method, value);
