@@ -265,7 +265,11 @@ fn command(what: &What, method: &Method, control: Control, until: f64) -> String
     if let Some(grid) = what.grid {
         let _ = write!(words, " --grid {}x{}", grid.rows(), grid.cols());
     }
-    for (on, option) in [(what.wind, " --wind"), (what.swing, " --swing")] {
+    for (on, option) in [
+        (what.wind, " --wind"),
+        (what.swing, " --swing"),
+        (what.self_collision, " --self-collision"),
+    ] {
         if on {
             words += option;
         }

@@ -69,7 +69,7 @@ pub fn simulation(options: &RunOptions) -> Result<(Simulation, Arc<Presentation>
     Ok((simulation, setup.presentation))
 }
 
-/// The scene, with the wind and the swing that were asked for.
+/// The scene, with the wind, the swing and the self-collision that were asked for.
 pub fn scene(what: &What) -> Result<Scene, Failure> {
     // Euler's method serves every scene.
     let run = simulate(what, &build(what)?, &integrators::METHODS[0], None)?;
@@ -96,6 +96,7 @@ fn simulate(
     for (asked, there, option) in [
         (what.wind, scene.wind.is_some(), "wind"),
         (what.swing, scene.swing.is_some(), "swing"),
+        (what.self_collision, scene.touch.is_some(), "self-collision"),
     ] {
         if asked && !there {
             return Err(Failure::usage(format!(
@@ -127,6 +128,9 @@ fn simulate(
             .map_err(Failure::usage)?;
     }
     simulation.set_swinging(what.swing);
+    if what.self_collision {
+        simulation.set_touching(true).map_err(Failure::usage)?;
+    }
     Ok(simulation)
 }
 

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use crate::elements::{Sheet, Wind};
 use crate::grid::Grid;
-use crate::network::Network;
+use crate::network::{Network, Touch};
 use crate::system::{ParticleSystem, hold_pins};
 
 /// First-order system, shared among runs.
@@ -70,12 +70,14 @@ pub struct Scene {
     pub swing: Option<Swing>,
     /// Wind that can be turned on.
     pub wind: Option<Wind>,
+    /// Surfaces that can be made to touch one another and themselves.
+    pub touch: Option<Arc<Touch>>,
     /// Largest length, in rest lengths, to which a hand pulls the springs of the particle it holds.
     pub reach: f64,
 }
 
 impl Scene {
-    /// Scene without swing and wind, in which a hand pulls springs to at most ten rest lengths. It
+    /// Scene without swing, wind and surfaces that can touch, in which a hand pulls springs to at most ten rest lengths. It
     /// starts from `state` with the pins in their places, at rest or with the velocity of their
     /// paths: whatever else they were given would be felt by the springs in the first step alone.
     #[must_use]
@@ -89,6 +91,7 @@ impl Scene {
             state,
             swing: None,
             wind: None,
+            touch: None,
             reach: 10.0,
         }
     }

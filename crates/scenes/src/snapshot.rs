@@ -98,6 +98,7 @@ impl Description {
         self.gravity = network.gravity().map(Into::into);
         (self.drag, self.drag_per_mass) = (network.drag(), None);
         self.torn.clone_from(&now.torn);
+        self.self_collision = now.touching;
         if let Some(wind) = &mut self.wind {
             wind.on = now.wind.is_some();
             wind.ahead += t;
@@ -221,7 +222,11 @@ impl Description {
 /// pinned where it is if it was pinned before.
 fn pins(now: &Checkpoint) -> Vec<Pin> {
     let mut pins: Vec<Pin> = vec![];
-    for &(i, path) in &now.pins {
+    let held = now.grabbed.filter(|grabbed| grabbed.was_pinned);
+    let held = held.map(|grabbed| (grabbed.particle, grabbed.path));
+    let is_led = |i: usize| now.pins.iter().any(|(pin, _)| *pin == i);
+    let held = held.filter(|(i, _)| !is_led(*i));
+    for (i, path) in now.pins.iter().copied().chain(held) {
         let Motion { sine, shift, about } =
             match now.grabbed.filter(|grabbed| grabbed.particle == i) {
                 None => motion(&path, now.time()),

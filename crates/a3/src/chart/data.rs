@@ -24,6 +24,9 @@ pub struct Record {
     pub cols: usize,
     pub wind: bool,
     pub swing: bool,
+    /// Whether surfaces were made to touch that pass through one another in the scene itself.
+    #[serde(default)]
+    pub self_collision: bool,
     /// Stiffness of the springs, as a factor of the scene's own.
     pub stiffness: f64,
     /// Simulated time (s).
@@ -96,7 +99,8 @@ impl Record {
     pub fn same_scene(&self, other: &Self) -> bool {
         (&self.version, &self.scene, self.rows, self.cols)
             == (&other.version, &other.scene, other.rows, other.cols)
-            && (self.wind, self.swing) == (other.wind, other.swing)
+            && (self.wind, self.swing, self.self_collision)
+                == (other.wind, other.swing, other.self_collision)
             && (self.stiffness, self.until, &self.scope)
                 == (other.stiffness, other.until, &other.scope)
     }

@@ -11,6 +11,7 @@ use a3_core::{Control, Method, Model, Scene, Simulation};
 
 use super::check_contact;
 use super::data::{Data, Record, VERSION};
+use crate::cli::What;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Bar;
@@ -51,12 +52,12 @@ pub struct Study<'a> {
 }
 
 impl<'a> Study<'a> {
-    /// A study of the scene. `name`, `wind` and `swing` describe it in the records; errors are of a
-    /// metric in a scope, on a scene whose particles move so far (m); `timed` says whether
+    /// A study of the scene. `name` and the flags of `what` describe it in the records; errors are
+    /// of a metric in a scope, on a scene whose particles move so far (m); `timed` says whether
     /// computing times are measured.
     pub fn new(
         scene: Scene,
-        (name, wind, swing): (&str, bool, bool),
+        (name, what): (&str, &What),
         stiffness: f64,
         until: f64,
         methods: &'a [&'static Method],
@@ -69,8 +70,9 @@ impl<'a> Study<'a> {
             scene: name.into(),
             rows: grid.map_or(0, |grid| grid.rows()),
             cols: grid.map_or(0, |grid| grid.cols()),
-            wind,
-            swing,
+            wind: what.wind,
+            swing: what.swing,
+            self_collision: what.self_collision,
             stiffness,
             until,
             scope: words(scope),

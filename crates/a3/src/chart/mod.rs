@@ -49,12 +49,11 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     let until = until.ok_or_else(|| Failure::run("interrupted before anything was measured"))?;
     let what = &options.what;
     let name = what.scene.fingerprint(&scene);
-    let flags = (&*name, what.wind, what.swing);
     let mut studies: Vec<_> = studies
         .into_iter()
         .map(|(factor, scene, motion)| {
             let of = (metric, scope, motion);
-            Study::new(scene, flags, factor, until, &methods, of, timed)
+            Study::new(scene, (&name, what), factor, until, &methods, of, timed)
         })
         .collect();
     let mut expected = 0.0;
@@ -250,5 +249,10 @@ pub fn describe(what: &What, scene: &Scene) -> String {
         .map_or(String::new(), |g| format!(" {} × {}", g.rows(), g.cols()));
     let wind = if what.wind { ", wind" } else { "" };
     let swing = if what.swing { ", swing" } else { "" };
-    format!("{}{grid}{wind}{swing}", scene.name)
+    let touch = if what.self_collision {
+        ", self-collision"
+    } else {
+        ""
+    };
+    format!("{}{grid}{wind}{swing}{touch}", scene.name)
 }

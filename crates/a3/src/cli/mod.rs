@@ -86,6 +86,9 @@ pub struct What {
     /// Swing the pins
     #[arg(long)]
     pub swing: bool,
+    /// Keep surfaces from passing through one another and themselves
+    #[arg(long)]
+    pub self_collision: bool,
 }
 
 #[derive(Args)]

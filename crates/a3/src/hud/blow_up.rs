@@ -21,6 +21,7 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     let hold = limit.zip(pane.limit.would_hold());
     ui.label(text(match (lost.control, hold) {
         _ if lost.cause == Cause::ReadsVelocity => format!("{method} does not serve such forces."),
+        _ if is_squeezed(lost) => "A shorter step does not help.".into(),
         (Control::Tolerance(tolerance), _) if matches!(lost.cause, Cause::StepTooSmall { .. }) => {
             format!("{method} found no step to a tolerance of {tolerance:e}: a larger one may do.")
         }
@@ -39,17 +40,26 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     }));
 }
 
+/// Whether surfaces that are led left no room, whatever the step.
+fn is_squeezed(lost: &BlowUp) -> bool {
+    matches!(lost.cause, Cause::Squeezed { .. })
+}
+
 /// The keys that lead out of a blow-up.
-pub fn way_out() -> String {
+pub fn way_out(lost: &BlowUp) -> String {
+    if is_squeezed(lost) {
+        return "Press , to go back, or x to let surfaces pass through one another, then r.".into();
+    }
     "Press - for a shorter step, or a digit for another solver, then r.".into()
 }
 
 #[cfg(test)]
 mod tests {
-    use a3_core::{Control, integrators};
+    use a3_core::{Control, Simulation, integrators};
 
     use crate::hud::{pane, read};
-    use crate::session::Readings;
+    use crate::session::{Pane, Readings};
+    use crate::show::Show;
 
     #[test]
     fn a_blow_up_says_which_limit_was_passed() {
@@ -64,6 +74,29 @@ mod tests {
         ] {
             assert!(words.contains(said), "{said} in {words}");
         }
+    }
+
+    #[test]
+    fn what_leaves_no_room_is_named() {
+        let squeezed = "self_collision = true\n\
+            [[cloth]]\ngrid = [3, 3]\nwidth = 1\nmass = 0.1\nstiffness = [40, 20, 1]\n\
+            down = [0, 0, 1]\npin = [{ at = ['top', 'bottom'] }]\n\
+            [[sphere]]\ncenter = [0, 1, 0]\nradius = 0.2\nshift = { by = [0, -2, 0], end = 1 }\n";
+        let setup = a3_scenes::Description::parse(squeezed).unwrap();
+        let setup = setup.build(None, &mut |_| unreachable!()).unwrap();
+        let method = integrators::find("v").unwrap();
+        let simulation = Simulation::new(setup.scene, method, Control::Step(0.001)).unwrap();
+        let mut pane = Pane::new(simulation, Show::new(setup.presentation, false, None));
+        while pane.simulation.take_steps(1).is_ok() {}
+        let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
+        let words = words.replace('\n', " ");
+        for said in [
+            "surfaces are squeezed: what is led leaves no room between obstacle 0 and particle 0",
+            "A shorter step does not help. Press , to go back",
+        ] {
+            assert!(words.contains(said), "{said} in {words}");
+        }
+        assert!(!words.contains("too long"), "{words}");
     }
 
     #[test]

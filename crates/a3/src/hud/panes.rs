@@ -127,6 +127,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let error = ("error", text(error(pane, readings)));
     let (name, value) = energy(pane);
     let energy = (name, text(value));
+    let contact = words::contact(run).map(|words| ("contact", text(words)));
     let cost = ("cost", text(cost));
     let lines = if low {
         vec![vec![step, time], vec![error], vec![cost]]
@@ -137,6 +138,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
             vec![time],
             vec![error],
             vec![energy],
+            contact.into_iter().collect(),
             vec![cost],
         ]
     };

@@ -21,7 +21,7 @@ pub fn show(ctx: &Context, pane: &Pane, readings: &Readings) {
         if let Some(lost) = pane.simulation.blow_up() {
             sheet(ui, |ui| {
                 blow_up(ui, pane, &lost);
-                ui.label(text(way_out()));
+                ui.label(text(way_out(&lost)));
             });
         }
         if let Some(message) = &readings.message {
@@ -71,6 +71,9 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             row(name, text(value));
             if let Some(stretch) = pane.stretch {
                 row("stretch", text(format!("{stretch:.3} at most")));
+            }
+            if let Some(contact) = words::contact(simulation) {
+                row("contact", text(contact));
             }
             row("frames", text(words::frames(readings)));
             row("each", text(words::each(readings)));

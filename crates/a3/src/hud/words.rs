@@ -77,6 +77,26 @@ pub fn limit(pane: &Pane) -> Option<(String, Color32)> {
     Some((words, colour))
 }
 
+/// What the guard of surfaces did since the beginning, if it did anything: its impulses, and the
+/// ways of vertices that it cut with the momentum that this took.
+pub fn contact(simulation: &Simulation) -> Option<String> {
+    let guarded = simulation.guarded();
+    let count = |n: usize, what: &str| match n {
+        1 => format!("1 {what}"),
+        n => format!("{n} {what}s"),
+    };
+    let impulses = count(guarded.impulses, "impulse");
+    let cuts = count(guarded.cuts, "cut");
+    match (guarded.impulses, guarded.cuts) {
+        (0, 0) => None,
+        (_, 0) => Some(impulses),
+        _ => Some(format!(
+            "{impulses}, {cuts} ({} N s lost)",
+            digits(guarded.lost)
+        )),
+    }
+}
+
 /// The simulated time, with as many digits as tell one step from the next.
 pub fn time(simulation: &Simulation) -> String {
     let step = simulation.control().step().unwrap_or(1e-3);
@@ -162,6 +182,28 @@ mod tests {
         ] {
             assert_eq!(digits(number), words);
         }
+    }
+
+    #[test]
+    fn what_held_a_run_is_said_where_it_was_held() {
+        let said = |steps| {
+            let mut pane = pane("jelly", "t", 0.005);
+            pane.simulation.set_touching(true).unwrap();
+            pane.simulation.take_steps(steps).unwrap();
+            let guarded = pane.simulation.guarded();
+            (
+                read(&[pane], &Readings::default(), [1280.0, 720.0]).0,
+                guarded,
+            )
+        };
+        let (words, guarded) = said(20);
+        assert!(
+            guarded.impulses == 0 && !words.contains("contact"),
+            "{words}"
+        );
+        let (words, guarded) = said(200);
+        let held = format!("contact\n{} impulses\n", guarded.impulses);
+        assert!(guarded.impulses > 1 && words.contains(&held), "{words}");
     }
 
     #[test]

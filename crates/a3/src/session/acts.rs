@@ -30,7 +30,11 @@ impl Session {
                 return true;
             }
             Action::Reset => {
+                let touching = self.first().touching();
                 self.panes.iter_mut().for_each(Pane::reset);
+                if touching && !self.first().touching() {
+                    self.say("Surfaces cross at the beginning: they pass through again.");
+                }
                 self.clear_timeline();
                 if let Some(reference) = &mut self.reference {
                     reference.reset();
@@ -54,6 +58,7 @@ impl Session {
                 self.align();
                 self.do_to_all(|run| run.set_wind(on));
             }
+            Action::Touch => self.toggle_touch(),
             Action::Wireframe => {
                 for pane in &mut self.panes {
                     pane.show.style = match pane.show.style {
@@ -198,11 +203,15 @@ impl Session {
         self.asked.source = source;
         self.shown = self.asked.clone();
         self.scene_number = 0;
-        let (windy, swinging) = (self.first().windy(), self.first().swinging());
+        let before = self.first();
+        let (windy, swinging) = (before.windy(), before.swinging());
+        let touching = before.touching();
         self.set_scene(&setup);
         self.do_to_all(|run| {
             run.set_wind(windy);
             run.set_swinging(swinging);
+            // What crosses in the file as it is now begins as the file has it.
+            let _ = run.set_touching(touching);
         });
         if let Some(method) = run {
             let control = setup.defaults.control_of(method);

@@ -34,9 +34,28 @@ impl Session {
         self.read = None;
     }
 
-    /// Changes the model of every run. A reset keeps the change.
+    /// Changes the model of every run. A reset keeps the change. Where surfaces touch and would
+    /// cross then, a message names what does, and nothing is changed.
     pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
-        self.change_all(|run| run.adjust(&change));
+        let apart = |run: &Simulation| {
+            let Some(network) = run.model().network() else {
+                return Ok(());
+            };
+            if network.contact_layer().is_none() {
+                return Ok(());
+            }
+            let mut changed = network.clone();
+            change(&mut changed);
+            let state = run.state();
+            changed.check_apart(run.time(), &state[..state.len() / 2])
+        };
+        let runs = self.panes.iter().map(|pane| &pane.simulation);
+        let reference = self.reference.as_ref().map(ReferenceRun::any);
+        let crossed = runs.chain(reference).find_map(|run| apart(run).err());
+        match crossed {
+            Some(why) => self.say(format!("Surfaces would cross: {why}")),
+            None => self.change_all(|run| run.adjust(&change)),
+        }
     }
 
     /// Brings several panes to the same time exactly, by a shorter step where need be, so that a
@@ -56,6 +75,28 @@ impl Session {
         for run in self.runs() {
             // A blow-up is shown from now on.
             let _ = run.advance_to(clock);
+        }
+    }
+
+    /// Lets surfaces touch in every run, or pass through one another. Where they cross in one, a
+    /// message names what does, and all stay as they are.
+    pub(super) fn toggle_touch(&mut self) {
+        if self.first().scene().touch.is_none() {
+            return self.say("There are no surfaces here that could touch.");
+        }
+        let on = !self.first().touching();
+        let mut refused = None;
+        self.change_all(|run| {
+            if refused.is_none() {
+                refused = run.set_touching(on).err();
+            }
+        });
+        if let Some(why) = refused {
+            self.change_all(|run| {
+                // To let surfaces pass is never refused.
+                let _ = run.set_touching(!on);
+            });
+            self.say(why.to_string());
         }
     }
 
@@ -130,6 +171,7 @@ mod tests {
     use crate::session::{compared, frames, session, times};
 
     use super::*;
+    use a3_core::contact::Shape;
 
     #[test]
     fn a_sphere_is_let_go_of_where_it_was_pushed() {
@@ -150,6 +192,51 @@ mod tests {
         session.pull(before);
         frames(&mut session, 1.0);
         assert_eq!(place(&session), pushed);
+    }
+
+    #[test]
+    fn surfaces_touch_in_every_run_or_in_none() {
+        let mut session = compared(&["r:0.013", "r:0.005", "--scene", "mit-sphere"], 0.1);
+        let touching = |session: &Session| {
+            let panes = session.panes.iter();
+            let mut touching: Vec<_> = panes.map(|pane| pane.simulation.touching()).collect();
+            touching.extend(session.reference.as_ref().map(|r| r.any().touching()));
+            touching
+        };
+        session.act(Action::Touch, 0);
+        assert_eq!(touching(&session), [true; 3]);
+        assert_eq!(session.readings.message, None);
+        // A sphere that would reach into the cloth stays as it is.
+        let radius = |session: &Session| {
+            let network = session.first().model().network().unwrap();
+            network.obstacles()[0].shape.clone()
+        };
+        let own = radius(&session);
+        session.adjust(|network| {
+            let shape = Shape::Sphere { radius: 4.5 };
+            network.reshape_obstacle(0, shape).unwrap();
+        });
+        let said = session.readings.message.clone().unwrap();
+        assert!(said.starts_with("Surfaces would cross: "), "{said}");
+        assert!(said.contains("obstacle 0"), "{said}");
+        assert_eq!(radius(&session), own);
+        session.act(Action::Touch, 0);
+        assert_eq!(touching(&session), [false; 3]);
+        // Where one crosses, all stay as they are.
+        let shape = Shape::Sphere { radius: 4.5 };
+        let last = &mut session.panes[1].simulation;
+        last.adjust(|network| network.reshape_obstacle(0, shape.clone()).unwrap());
+        session.act(Action::Touch, 0);
+        let said = session.readings.message.clone().unwrap();
+        assert!(
+            said.starts_with("surfaces that cross cannot begin to touch: "),
+            "{said}"
+        );
+        assert_eq!(touching(&session), [false; 3]);
+        let mut session = crate::session::session(&["e", "0.01", "--scene", "simple"]);
+        session.act(Action::Touch, 0);
+        let said = session.readings.message.unwrap();
+        assert_eq!(said, "There are no surfaces here that could touch.");
     }
 
     #[test]

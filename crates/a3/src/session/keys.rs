@@ -8,6 +8,8 @@ pub enum Action {
     Swing,
     Wireframe,
     Wind,
+    /// Let surfaces touch one another and themselves, or pass through.
+    Touch,
     Pause,
     Step,
     /// Choose a solver, by its number in the table of methods.
@@ -44,6 +46,7 @@ pub static KEYS: &[Binding] = &[
     bind(&["s"], Action::Swing, "swing the pins"),
     bind(&["w"], Action::Wireframe, "wireframe or surface"),
     bind(&["d"], Action::Wind, "wind"),
+    bind(&["x"], Action::Touch, "self-collision"),
     bind(&["Space"], Action::Pause, "pause"),
     bind(&["."], Action::Step, "one step, one frame on"),
     bind(&[","], Action::Scrub(-1), "one frame back"),

@@ -42,6 +42,9 @@ impl ReferenceRun {
             Simulation::new(run.scene().clone(), method, control).map_err(Failure::run)?;
         simulation.set_wind(run.windy());
         simulation.set_swinging(run.swinging());
+        simulation
+            .set_touching(run.touching())
+            .map_err(Failure::run)?;
         Ok(Some(Self {
             simulation,
             late: 0,

@@ -22,6 +22,7 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
             vec!["t", "0.01", "--scene", "simple", "--wind"],
             "leave out --wind",
         ),
+        (vec!["--scene", "simple", "--self-collision"], "leave out"),
         (
             vec!["t", "0.01", "--scene", "simple", "--springs-of", "0"],
             "no springs",

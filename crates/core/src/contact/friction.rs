@@ -58,6 +58,11 @@ impl Contact {
         }
     }
 
+    /// Whether the closest points do not approach.
+    pub fn parts(&self, all: &[Vector3<f64>]) -> bool {
+        self.relative(all).dot(&self.normal) >= 0.0
+    }
+
     /// Stops an approach, and by friction at most mu times as much of a slip. Returns the impulse's
     /// magnitude over the effective mass, 0 if there was no approach.
     pub fn stop(&self, friction: f64, inverse_masses: &[f64], all: &mut [Vector3<f64>]) -> f64 {

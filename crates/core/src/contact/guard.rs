@@ -7,7 +7,7 @@
 //! 2002). What is left after them is [cut](super::cut).
 
 use super::candidates::Candidates;
-use super::closest::closest;
+use super::closest::{Closest, closest};
 use super::cut::Squeezed;
 use super::friction::{Contact, rub};
 use super::layer::{ContactLayer, Scratch};
@@ -155,7 +155,8 @@ fn find(
     hits
 }
 
-/// Impulse of a pair that touches at that share of the step.
+/// Impulse of a pair that touches at that share of the step, or, if it parts there, when it touches
+/// next. A pair that gets none although it touches is looked at again.
 fn push(
     surface: &Surface,
     candidate: &Candidate,
@@ -165,18 +166,24 @@ fn push(
     guarded: &mut Guarded,
     moved: &mut [bool],
 ) {
-    let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
-    let at = std::array::from_fn(|k| x0[k] + moves[k] * time);
-    let touching = closest(candidate.kind, &at);
-    let distance = touching.offset.norm();
-    if distance == 0.0 {
-        return;
+    let mut touch = contact_at(candidate, time, motion);
+    if touch
+        .as_ref()
+        .is_some_and(|contact| contact.parts(&motion.moves))
+    {
+        let Some(next) = motion.impact_after(surface, candidate, time) else {
+            return;
+        };
+        touch = contact_at(candidate, next, motion);
     }
-    let normal = touching.offset / distance;
-    let contact = Contact::new(candidate.points, touching.weights, normal, motion);
-    if contact.inverse_mass == 0.0 {
+    let contact =
+        touch.filter(|contact| contact.inverse_mass > 0.0 && !contact.parts(&motion.moves));
+    let Some(contact) = contact else {
+        for i in candidate.points {
+            moved[i as usize] = true;
+        }
         return;
-    }
+    };
     let friction = surface.law(candidate.kind, &candidate.points).skin.friction;
     let Motion {
         moves,
@@ -186,11 +193,19 @@ fn push(
     } = motion;
     let by_move = contact.stop(friction, inverse_masses, moves);
     let by_speed = contact.stop(friction, inverse_masses, v);
-    if by_move > 0.0 {
-        guarded.impulses += 1;
-        guarded.impulse += by_speed.max(by_move / h) / contact.inverse_mass;
-        for i in candidate.points {
-            moved[i as usize] |= inverse_masses[i as usize] > 0.0;
-        }
+    guarded.impulses += 1;
+    guarded.impulse += by_speed.max(by_move / h) / contact.inverse_mass;
+    for i in candidate.points {
+        moved[i as usize] |= inverse_masses[i as usize] > 0.0;
     }
+}
+
+/// Contact of a pair at a share of the step, unless its closest points are at one place then.
+fn contact_at(candidate: &Candidate, time: f64, motion: &Motion) -> Option<Contact> {
+    let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
+    let at = std::array::from_fn(|k| x0[k] + moves[k] * time);
+    let Closest { weights, offset } = closest(candidate.kind, &at);
+    let distance = offset.norm();
+    let normal = offset / distance;
+    (distance > 0.0).then(|| Contact::new(candidate.points, weights, normal, motion))
 }

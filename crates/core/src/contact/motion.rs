@@ -92,6 +92,16 @@ impl Motion {
         time_of_impact(candidate.kind, &x, &moves, kept)
     }
 
+    /// Share of the step, after another one, at which a pair comes too near, if it does.
+    pub fn impact_after(&self, surface: &Surface, candidate: &Candidate, time: f64) -> Option<f64> {
+        let (x, moves) = (candidate.of(&self.x0), candidate.of(&self.moves));
+        let at = std::array::from_fn(|k| x[k] + moves[k] * time);
+        let rest = moves.map(|u| u * (1.0 - time));
+        let kept = Self::kept(surface, candidate, &x);
+        let share = time_of_impact(candidate.kind, &at, &rest, kept)?;
+        Some(time + (1.0 - time) * share)
+    }
+
     /// Distance (m) that a pair keeps, less than what it has at the beginning.
     pub fn kept(surface: &Surface, candidate: &Candidate, x: &[Vector3<f64>; 4]) -> f64 {
         let law = surface.law(candidate.kind, &candidate.points);

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Simulation;
 use super::stepper::{Progress, Stepper};
+use super::tuning::{let_touch, touches_itself};
 use crate::contact::{Guarded, Shape};
 use crate::control::Control;
 use crate::elements::Wind;
@@ -66,6 +67,9 @@ pub struct Checkpoint {
     pub swing_phase: f64,
     /// The wind that blows.
     pub wind: Option<Wind>,
+    /// Whether surfaces touch one another and themselves.
+    #[serde(default)]
+    pub touching: bool,
     /// Springs that have broken, by the particles at their ends, the lower number first, in order.
     pub torn: Vec<[usize; 2]>,
     /// Progress of an adaptive method.
@@ -92,6 +96,7 @@ impl Checkpoint {
             swinging: false,
             swing_phase: 0.0,
             wind: None,
+            touching: false,
             torn: vec![],
             adaptive: None,
         }
@@ -210,6 +215,7 @@ impl Simulation {
             swinging: self.swinging,
             swing_phase: self.swing_phase,
             wind: network.and_then(Network::wind).copied(),
+            touching: self.touching(),
             torn: old.torn,
             adaptive: self.stepper.progress(false),
         };
@@ -225,6 +231,9 @@ impl Simulation {
         checkpoint.check(self.y.len())?;
         let mut model = self.scene.model.clone();
         if let (Model::Network(network), Some(whole)) = (&mut model, self.scene.model.network()) {
+            if checkpoint.touching != touches_itself(&self.scene.model) {
+                let_touch(network, &self.scene, checkpoint.touching)?;
+            }
             checkpoint.bind(network, whole)?;
         }
         let mut stepper = Stepper::new(checkpoint.method, model.system(), checkpoint.control)?;
@@ -247,7 +256,8 @@ impl Simulation {
 
     /// Goes back to the state of a moment, and on from there as the run is now, also after a
     /// blow-up: hands let go; method, control, work, wind, swing and which particles are pinned
-    /// stay. Pins whose path does not lead there stay where they are in that state, or swing from
+    /// stay. Surfaces touch if they
+    /// did at that moment. Pins whose path does not lead there stay where they are in that state, or swing from
     /// there.
     ///
     /// # Errors
@@ -273,17 +283,24 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes back to the state of a moment of this run: time, springs that had not broken, and
-    /// obstacles.
+    /// Goes back to the state of a moment of this run: time, springs that had not broken,
+    /// obstacles, and whether surfaces touched.
     pub(super) fn go_back(&mut self, moment: &Checkpoint) -> Result<(), Error> {
+        let touching = self.touching();
         if let (Model::Network(network), Some(whole)) =
             (&mut self.model, self.scene.model.network())
         {
             for (k, path) in &moment.obstacles {
                 network.lead_obstacle(*k, *path)?;
             }
-            if network.torn() != moment.torn {
+            let torn = network.torn() != moment.torn;
+            if torn {
                 network.mend(whole, &moment.torn)?;
+            }
+            if moment.touching != touching {
+                let_touch(network, &self.scene, moment.touching)?;
+            }
+            if torn || moment.touching != touching {
                 self.refit();
             }
         }

@@ -16,8 +16,19 @@ const PULL_TIME: f64 = 1.0 / 30.0;
 /// ... unless that is faster than this many radii of the scene per second.
 const PULL_SPEED: f64 = 10.0;
 
-/// Greatest distance, in radii of the scene, from which a spring attracts what constraints hold.
+/// Greatest distance, in radii of the scene, from which a spring attracts what constraints hold ...
 const PULL_REACH: f64 = 0.05;
+
+/// ... and what they do not, where surfaces touch.
+const FREE_REACH: f64 = 0.5;
+
+/// Natural frequency of that spring over that of the particle on its own springs: it pulls a cloth
+/// along, and hardly shortens the largest stable step.
+const PULL_STIFFNESS: f64 = 0.3;
+
+/// Share of the particle's way to its target by which each pull moves the hand on: so it gets there
+/// whatever hangs on it.
+const FOLLOW: f64 = 0.25;
 
 /// Least and greatest length that a hand gives to a rod whose other end has not followed yet, in
 /// lengths of the rod.
@@ -25,16 +36,26 @@ const ROD: (f64, f64) = (0.95, 1.05);
 
 impl Grabbed {
     /// Whether a spring attracts the particle: a pin would tear constraints that hold it too, and
-    /// would go through surfaces that can touch.
+    /// would not stop where surfaces that touch leave it no room.
     fn is_attracted(&self, network: &Network) -> bool {
         let touches = network.contact_layer().is_some();
-        !self.was_pinned && (touches || network.is_held(self.particle))
+        touches || !self.was_pinned && network.is_held(self.particle)
     }
 
     /// Attracts the particle to its path, if it is not led as a pin.
     pub(super) fn attract(&self, network: &mut Network) {
         if self.is_attracted(network) {
-            network.attract(self.particle, self.path, 1.0 / PULL_TIME);
+            let own = network.springs_of(self.particle);
+            let stiffness: f64 = own.map(|s| s.law.stiffness).sum();
+            let own = (stiffness / network.masses()[self.particle]).sqrt();
+            let free = !network.is_held(self.particle);
+            let least = 1.0 / PULL_TIME;
+            let frequency = if free {
+                least.max(PULL_STIFFNESS * own)
+            } else {
+                least
+            };
+            network.attract(self.particle, self.path, frequency);
         }
     }
 }
@@ -122,8 +143,8 @@ impl Simulation {
         self.grabbed.map(|grabbed| grabbed.particle)
     }
 
-    /// Takes hold of particle i, and lets go of any other. The particle is a pin then, or, if it is
-    /// free but for constraints, a spring attracts it. Does nothing in a scene without masses,
+    /// Takes hold of particle i, and lets go of any other. The particle is a pin then, or a spring
+    /// attracts it: if it is free but for constraints, and wherever surfaces touch. Does nothing in a scene without masses,
     /// where there is nothing to hold against.
     ///
     /// # Errors
@@ -143,13 +164,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// Leads the grabbed particle along its path: as a pin, or, if it is free but for constraints,
-    /// by a spring.
+    /// Leads the grabbed particle along its path, as a pin or by a spring.
     fn lead(&mut self, grabbed: Grabbed) {
         self.grabbed = Some(grabbed);
         if !self.attracts(&grabbed) {
             self.pin(grabbed.particle, grabbed.path);
         } else if let Some(network) = self.network_mut() {
+            network.unpin(grabbed.particle);
             grabbed.attract(network);
         }
     }
@@ -166,12 +187,20 @@ impl Simulation {
         let Some(grabbed) = self.grabbed else { return };
         let i = grabbed.particle;
         let from = self.position(i);
-        let target = if self.attracts(&grabbed) {
-            from + (target - from).cap_magnitude(PULL_REACH * self.radius)
-        } else {
-            self.within_reach(i, from, target)
+        let is_held = |network: &Network| network.is_held(i);
+        let held = self.model.network().is_some_and(is_held);
+        let within =
+            |share: f64, ahead: Vector3<f64>| from + ahead.cap_magnitude(share * self.radius);
+        let path = match self.attracts(&grabbed) {
+            true if held => self.way(from, within(PULL_REACH, target - from)),
+            // The hand goes on where it was, until the particle is at the target.
+            true => {
+                let hand = grabbed.path.at(self.time()).position;
+                let ahead = hand - from + (target - from) * FOLLOW;
+                self.way(hand, within(FREE_REACH, ahead))
+            }
+            false => self.way(from, self.within_reach(i, from, target)),
         };
-        let path = self.way(from, target);
         self.lead(Grabbed { path, ..grabbed });
     }
 
@@ -215,11 +244,12 @@ impl Simulation {
             return;
         };
         let i = grabbed.particle;
-        if grabbed.was_pinned {
-            self.leave_pin(i);
-        } else if let Some(network) = self.network_mut() {
+        if let Some(network) = self.network_mut() {
             network.unpin(i);
             network.let_go();
+        }
+        if grabbed.was_pinned {
+            self.leave_pin(i);
         }
     }
 

@@ -110,9 +110,10 @@ impl Simulation {
     }
 
     /// Goes back to the beginning, with what was torn mended. Wind and swing stay on if they are,
-    /// and pins free; the hand lets go.
+    /// and pins free; surfaces go on touching, unless they cross at the beginning. The hand lets
+    /// go.
     pub fn reset(&mut self) {
-        let (windy, swinging) = (self.windy(), self.swinging);
+        let (windy, swinging, touching) = (self.windy(), self.swinging, self.touching());
         self.model = self.scene.model.clone();
         self.y.copy_from_slice(&self.scene.state);
         (self.since, self.taken, self.steps) = (0.0, 0, 0);
@@ -129,6 +130,8 @@ impl Simulation {
         }
         self.set_wind(windy);
         self.set_swinging(swinging);
+        // Where surfaces cross, they begin as the scene has it.
+        let _ = self.set_touching(touching);
     }
 
     /// Goes on with another method, in fixed steps or to a tolerance.

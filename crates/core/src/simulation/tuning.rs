@@ -2,8 +2,9 @@
 
 use super::{Simulation, Stepper};
 use crate::elements::Wind;
-use crate::network::Network;
-use crate::scene::Model;
+use crate::error::Error;
+use crate::network::{Network, Touch};
+use crate::scene::{Model, Scene};
 
 impl Simulation {
     /// Changes the model as it is now, and the one that a reset goes back to. The state and the
@@ -35,6 +36,45 @@ impl Simulation {
             self.scene.wind = Some(wind);
             self.set_wind(self.windy());
         }
+    }
+
+    /// Whether surfaces touch one another and themselves.
+    #[must_use]
+    pub fn touching(&self) -> bool {
+        touches_itself(&self.model)
+    }
+
+    /// Lets the scene's surfaces touch one another and themselves, or pass through. A scene without
+    /// surfaces stays as it is. A reset keeps this, unless surfaces cross at the beginning.
+    ///
+    /// # Errors
+    /// Surfaces cross now, and the error names the first pair; or the method does not serve
+    /// contact. The run goes on as before then.
+    pub fn set_touching(&mut self, on: bool) -> Result<(), Error> {
+        if on == self.touching() {
+            return Ok(());
+        }
+        let Some(network) = self.model.network().filter(|_| self.scene.touch.is_some()) else {
+            return Ok(());
+        };
+        if on {
+            let mut touching = network.clone();
+            let_touch(&mut touching, &self.scene, true)?;
+            let apart = touching.check_apart(self.time(), &self.y[..self.y.len() / 2]);
+            apart.map_err(|e| {
+                Error::Invalid(format!("surfaces that cross cannot begin to touch: {e}"))
+            })?;
+            self.method.check(&touching)?;
+        }
+        // Where surfaces touch, a hand attracts a particle that it would lead as a pin elsewhere.
+        let held = self.grabbed();
+        self.release();
+        if let Model::Network(network) = &mut self.model {
+            let_touch(network, &self.scene, on)?;
+        }
+        self.look_again();
+        self.refit();
+        held.map_or(Ok(()), |i| self.grab(i))
     }
 
     /// Whether the scene's pins hold.
@@ -72,4 +112,21 @@ impl Simulation {
             }
         }
     }
+}
+
+/// Whether the surfaces of a model touch one another and themselves.
+pub(super) fn touches_itself(model: &Model) -> bool {
+    let touch = model.network().and_then(Network::touch);
+    touch.is_some_and(|touch| touch.bodies)
+}
+
+/// Lets the surfaces of a scene touch one another, themselves and obstacles, or, without `on`, only
+/// what they touch in any case.
+pub(super) fn let_touch(network: &mut Network, scene: &Scene, on: bool) -> Result<(), Error> {
+    let own = scene.model.network().is_some_and(|n| n.touch().is_some());
+    let touch = scene.touch.as_deref().filter(|_| on || own);
+    network.set_touch(touch.map(|touch| Touch {
+        bodies: on,
+        ..touch.clone()
+    }))
 }

@@ -74,17 +74,18 @@ impl Description {
     }
 
     fn assemble(&self, mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>) -> Result<Setup, Fault> {
-        let (model, mut state, surface) = if let Some(circle) = &self.circle {
+        let (model, mut state, surface, touch) = if let Some(circle) = &self.circle {
             let start = vector("circle.start", circle.start)?;
             let model = Model::FirstOrder(Arc::new(Circling));
-            (model, start.as_slice().to_vec(), Surface::default())
+            (model, start.as_slice().to_vec(), Surface::default(), None)
         } else {
             let NetworkParts {
                 network,
                 state,
                 surface,
+                touch,
             } = network::build(self, mesh)?;
-            (Model::Network(Box::new(network)), state, surface)
+            (Model::Network(Box::new(network)), state, surface, touch)
         };
         if self.circle.is_some() && network::bodies(self) > 0 {
             return Err(Fault::new(
@@ -100,6 +101,7 @@ impl Description {
             return Err(Fault::no_particle("trail", trail, n));
         }
         let mut scene = Scene::new(self.name.clone().unwrap_or_default(), model, state);
+        scene.touch = touch;
         let presentation = Presentation {
             viewpoint: self.viewpoint(&scene)?,
             surface,

@@ -1,5 +1,7 @@
 //! The network of a description: bodies, pins, constraints, forces and obstacles.
 
+use std::sync::Arc;
+
 use a3_core::{Network, Touch, Vector3};
 
 use super::assembly::{Assembly, Body};
@@ -16,6 +18,8 @@ pub(super) struct NetworkParts {
     pub network: Network,
     pub state: Vec<f64>,
     pub surface: Surface,
+    /// What can touch, if there is any surface.
+    pub touch: Option<Arc<Touch>>,
 }
 
 /// Number of bodies, without the circle.
@@ -70,18 +74,25 @@ pub(super) fn build(
         at("strain_limit", limited).map_err(|fault| fault.within(&key))?;
     }
     obstacles::add(description, &mut network, mesh)?;
+    let touch = Touch {
+        skins: assembly.skins,
+        edges: assembly.edges,
+        bodies: true,
+    };
     if description.self_collision || obstacles::is_one_thick(description) {
         let touch = Touch {
-            skins: assembly.skins,
-            edges: assembly.edges,
             bodies: description.self_collision,
+            ..touch.clone()
         };
         at("self_collision", network.set_touch(Some(touch)))?;
     }
+    let has_edges = touch.edges.iter().any(|[i, j]| i != j);
+    let has_surface = has_edges || !network.triangles().is_empty();
     Ok(NetworkParts {
         network,
         state,
         surface: assembly.surface,
+        touch: has_surface.then(|| Arc::new(touch)),
     })
 }
 

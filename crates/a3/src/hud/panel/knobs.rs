@@ -1,7 +1,7 @@
 //! Knobs: all that can be tuned while a scene runs, in one table for the mouse and the keys.
 
-use a3_core::Vector3;
 use a3_core::contact::Shape;
+use a3_core::{Network, Vector3};
 use a3_render::Style;
 
 use super::dial::{Dial, DialScale, Turn};
@@ -124,6 +124,18 @@ pub static KNOBS: &[Knob] = &[
             Some(switch(session.first().pinned(), true))
         },
         |session, _, on| session.change_all(|run| run.set_pinned(on != 0.0)),
+    ),
+    knob(
+        "self-collision",
+        |session, _| {
+            session.first().scene().touch.as_ref()?;
+            let own = own(session).and_then(Network::touch);
+            let own = own.is_some_and(|touch| touch.bodies);
+            Some(switch(session.first().touching(), own))
+        },
+        |session, at, _| {
+            session.act(Action::Touch, at);
+        },
     ),
     knob("sphere", sphere, |session, _, radius| {
         let radii: Vec<_> = own(session).into_iter().flat_map(radii).collect();
