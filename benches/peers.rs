@@ -120,7 +120,7 @@ fn main() {
         }
     }
     let measured = given("--bench") && !given("--test");
-    for (method, steps) in [("i", 1), ("v", 32)] {
+    for (method, steps) in [("i", 1), ("i", 10), ("v", 32)] {
         time(method, steps, if measured { FRAMES } else { 2 });
     }
 }
