@@ -64,7 +64,7 @@ fn the_guard_adds_no_energy_and_keeps_momentum() {
     let (mut impulses, mut cuts) = ([0; 2], 0);
     for [first, second] in [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]] {
         for k in 0..TRIES {
-            let friction = [0.0, 0.6][k % 2];
+            let friction = [0.0, 2.0][k % 2];
             let height = if first == 1 || second == 1 { 0.75 } else { 0.3 };
             let speed = 2.0 + 20.0 * random.unit();
             let text = format!(
@@ -109,6 +109,6 @@ fn the_guard_adds_no_energy_and_keeps_momentum() {
             cuts += run.guarded().cuts;
         }
     }
-    println!("{impulses:?} {cuts}");
+    assert!(cuts > 0, "nothing was cut");
     assert!(impulses.iter().all(|count| *count > 400), "{impulses:?}");
 }
