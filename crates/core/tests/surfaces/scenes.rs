@@ -73,7 +73,7 @@ const SCENES: [(&str, &str, &[[&str; 2]], f64); 8] = [
 ];
 
 /// Mesh of a file of docs/scenes.
-fn mesh(name: &str) -> Result<Mesh, String> {
+fn mesh(name: &str) -> Mesh {
     let text = match name {
         "funnel.obj" => include_str!("../../../../docs/scenes/funnel.obj"),
         _ => include_str!("../../../../docs/scenes/ring.obj"),
@@ -93,12 +93,13 @@ fn mesh(name: &str) -> Result<Mesh, String> {
             _ => {}
         }
     }
-    Ok(mesh)
+    mesh
 }
 
 fn build(text: &str) -> Scene {
     let description = Description::parse(text);
-    let setup = description.and_then(|description| description.build(None, &mut mesh));
+    let setup =
+        description.and_then(|description| description.build(None, &mut |name| Ok(mesh(name))));
     setup.unwrap().scene
 }
 
