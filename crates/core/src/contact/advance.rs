@@ -29,7 +29,7 @@ const ROUNDING: f64 = 1e-13;
 const NEAR: f64 = 0.1;
 
 /// Number of planes after which the time reached so far is given.
-const PLANES: usize = 200;
+const PLANES: usize = 20_000;
 
 /// Share of a step at which a pair comes as near as `gap`, or `None` if it never does.
 ///
@@ -37,8 +37,8 @@ const PLANES: usize = 200;
 /// the radii of the primitives. `None` is a certificate: the pair is farther apart than the gap at
 /// every time of the step. `Some(t)` is conservative: the pair is so until t, and then apart by the
 /// gap and at most a tenth of it, or a tenth of what it had above the gap at first; by more only if
-/// 200 planes do not decide. Both allow for 1e-10 m and about 1e-12 of the largest coordinate, more
-/// than the rounding here and in the sums `from + moves`.
+/// 20 000 planes do not decide. Both allow for 1e-10 m and about 1e-12 of the largest coordinate,
+/// more than the rounding here and in the sums `from + moves`.
 ///
 /// A pair that begins nearer than the gap is hit at once, `Some(0.0)`, if its closest points
 /// approach. If they do not, the pair may part, slide and turn: it is only hit where it would come

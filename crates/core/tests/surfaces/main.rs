@@ -4,6 +4,7 @@
 mod common;
 
 mod bounce;
+mod collisions;
 mod conserved;
 mod force;
 mod hands;
@@ -12,4 +13,5 @@ mod implicit;
 mod led;
 mod pairs;
 mod resting;
+mod scenes;
 mod slope;
