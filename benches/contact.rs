@@ -16,7 +16,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 const RATE: f64 = 60.0;
 
 /// First frame that is timed, and the number of frames.
-const FRAMES: [u32; 2] = [12, 8];
+const FRAMES: [u32; 2] = [24, 8];
 
 /// Cloth of that many particles a side, whose surface touches.
 fn folding(side: usize, method: &str, step: f64) -> Simulation {
