@@ -34,7 +34,8 @@ pub(super) struct Cuts {
 
 impl Cuts {
     /// Shortens displacements so that no pair comes too near. Returns the number of vertices that
-    /// are cut, and the sum of the magnitudes of the momentum that they lose (N s).
+    /// are cut, and the sum of the magnitudes of the momentum that they lose (N s). Displacements
+    /// that leave no room stay as they are.
     pub fn cut(
         &mut self,
         surface: &Surface,
@@ -59,6 +60,7 @@ impl Cuts {
             }
             if let Err(squeezed) = squeezed {
                 motion.moves.clone_from(&self.before);
+                motion.cover(surface, candidates);
                 return Err(squeezed);
             }
             if !new {
