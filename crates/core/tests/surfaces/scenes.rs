@@ -128,9 +128,8 @@ fn values(name: &str, method: &Method) -> [f64; 2] {
 
 /// Length of a run (s), if there is one: adaptive methods take short steps while surfaces touch.
 fn length(name: &str, method: &Method, until: f64) -> Option<f64> {
-    // Explicit Euler makes any motion grow, until it is lost.
     if !method.is_adaptive() {
-        return (method.name != "euler").then_some(until);
+        return Some(until);
     }
     match name {
         "ball" => Some(0.25),
@@ -195,7 +194,9 @@ fn nothing_crosses_in_any_documented_scene_by_any_method() {
         while let Some((name, scene, method, value, until)) =
             runs.get(next.fetch_add(1, Ordering::Relaxed))
         {
-            found.push((*name, run(name, scene, method, *value, *until)));
+            let [touched, lost] = run(name, scene, method, *value, *until);
+            // Explicit Euler makes any motion grow, until it is lost.
+            found.push((*name, [touched, lost && method.name != "euler"]));
         }
         found
     };
