@@ -1,4 +1,5 @@
-//! What contact of surfaces adds to a frame: `cargo bench --bench contact -- verlet/64` runs a part.
+//! What contact of surfaces adds to a frame: `cargo bench --bench contact -- verlet/64` runs a
+//! part.
 //!
 //! A cloth falls on the floor edge first and folds. A frame is 1/60 s: the mean of those in which
 //! the cloth folds. What is timed is the frame with contact less the same steps from the same state

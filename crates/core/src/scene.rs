@@ -77,9 +77,10 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Scene without swing, wind and surfaces that can touch, in which a hand pulls springs to at most ten rest lengths. It
-    /// starts from `state` with the pins in their places, at rest or with the velocity of their
-    /// paths: whatever else they were given would be felt by the springs in the first step alone.
+    /// Scene without swing, wind and surfaces that can touch, in which a hand pulls springs to at
+    /// most ten rest lengths. It starts from `state` with the pins in their places, at rest or with
+    /// the velocity of their paths: whatever else they were given would be felt by the springs in
+    /// the first step alone.
     #[must_use]
     pub fn new(name: impl Into<String>, model: Model, mut state: Vec<f64>) -> Self {
         if state.len() == model.system().dim() {

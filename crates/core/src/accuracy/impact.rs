@@ -1,9 +1,9 @@
 //! First impact of a run: when surfaces first touch, and when nothing touches any more.
 //!
-//! Both times are found between the frames by which a run is looked at, on cubic polynomials through
-//! the positions and velocities of two frames. They are functions of these states alone, the same
-//! for every method, so their errors fall with the order of the method. A touch that begins and ends
-//! between two frames is not seen.
+//! Both times are found between the frames by which a run is looked at, on cubic polynomials
+//! through the positions and velocities of two frames. They are functions of these states alone,
+//! the same for every method, so their errors fall with the order of the method. A touch that
+//! begins and ends between two frames is not seen.
 
 use crate::contact::ContactLayer;
 

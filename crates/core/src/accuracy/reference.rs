@@ -29,8 +29,8 @@ const ORDER: i32 = 4;
 /// Disagreement with the other method over that of the tolerances, below which it is the former
 /// that is in doubt: the looser tolerance makes nearly all of the latter.
 const SURE: f64 = 0.3;
-/// The same, where tighter tolerances no longer agree better: where friction of surfaces, a limit of
-/// strain or the guard acts after each step, the reference itself is known no better.
+/// The same, where tighter tolerances no longer agree better: where friction of surfaces, a limit
+/// of strain or the guard acts after each step, the reference itself is known no better.
 const BLURRED: f64 = 2.0;
 /// Most times that the step is halved.
 const REFINEMENTS: usize = 12;
@@ -260,8 +260,8 @@ impl Making<'_> {
         }
     }
 
-    /// Fastest mode at each frame, where surfaces touch: contact may be much stiffer than all that is
-    /// there at the start. Longer steps than its limit would show what the guard does.
+    /// Fastest mode at each frame, where surfaces touch: contact may be much stiffer than all that
+    /// is there at the start. Longer steps than its limit would show what the guard does.
     fn contact_modes(&self) -> Vec<Mode> {
         let network = self.scene.model.network();
         let Some(network) = network.filter(|network| network.contact_layer().is_some()) else {

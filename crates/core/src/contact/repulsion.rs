@@ -193,7 +193,8 @@ impl Pair {
         }))
     }
 
-    /// Share of the thickness that the gap lacks: above 0 within the thickness, 1 where the gap is 0.
+    /// Share of the thickness that the gap lacks: above 0 within the thickness, 1 where the gap is
+    /// 0.
     pub fn share(&self) -> f64 {
         self.within().map_or(0.0, |within| within.share)
     }

@@ -257,8 +257,8 @@ impl Simulation {
     /// Goes back to the state of a moment, and on from there as the run is now, also after a
     /// blow-up: hands let go; method, control, work, wind, swing and which particles are pinned
     /// stay. Surfaces touch if they
-    /// did at that moment. Pins whose path does not lead there stay where they are in that state, or swing from
-    /// there.
+    /// did at that moment. Pins whose path does not lead there stay where they are in that state,
+    /// or swing from there.
     ///
     /// # Errors
     /// The moment is of another scene, or a number is not finite.

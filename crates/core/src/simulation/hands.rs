@@ -144,8 +144,8 @@ impl Simulation {
     }
 
     /// Takes hold of particle i, and lets go of any other. The particle is a pin then, or a spring
-    /// attracts it: if it is free but for constraints, and wherever surfaces touch. Does nothing in a scene without masses,
-    /// where there is nothing to hold against.
+    /// attracts it: if it is free but for constraints, and wherever surfaces touch. Does nothing in
+    /// a scene without masses, where there is nothing to hold against.
     ///
     /// # Errors
     /// There is no such particle.

@@ -66,7 +66,8 @@ obstacle = [{ file = 'solid', scale = 2, at = [0, 9, 0], rotation = [0.5, 0, 0],
     }
 }
 
-/// A ball in the hand goes on turning, and a checkpoint with pins that turn can be written and read.
+/// A ball in the hand goes on turning, and a checkpoint with pins that turn can be written and
+/// read.
 #[test]
 fn what_turns_does_so_in_the_hand_and_after_a_checkpoint() {
     let text = "\

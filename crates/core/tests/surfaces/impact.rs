@@ -1,4 +1,5 @@
-//! Errors of contact: of the penetration and of the times of the first impact, where both are known.
+//! Errors of contact: of the penetration and of the times of the first impact, where both are
+//! known.
 
 use a3_core::accuracy::{Frames, Metric, Precision, Reference, Scope, measure};
 use a3_core::contact::{Obstacle, Shape, Skin};

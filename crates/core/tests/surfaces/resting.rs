@@ -124,9 +124,9 @@ fn lying(sheets: usize) -> Scene {
     ))
 }
 
-/// Without springs across it, a flat sheet moves up and down as its particles do alone: each of mass
-/// m by w2 = 3 k s2 / m with m g = k d s3, so that w6 = 27 k g2 / (m d2), and the lightest is fastest.
-/// Contact that is 64 times as stiff halves the step.
+/// Without springs across it, a flat sheet moves up and down as its particles do alone: each of
+/// mass m by w2 = 3 k s2 / m with m g = k d s3, so that w6 = 27 k g2 / (m d2), and the lightest is
+/// fastest. Contact that is 64 times as stiff halves the step.
 #[test]
 fn stiffer_contact_lowers_the_limit_of_a_sheet_as_it_should() {
     let limit = |stiffness: f64| {
