@@ -153,9 +153,9 @@ fn methods_keep_their_order_up_to_four() {
             if m.check(&bounce.network).is_err() {
                 continue;
             }
-            // The classical Runge-Kutta method needs short steps, above all on a floor: in longer ones,
-            // its errors of smooth motion and of touches cancel. The others of order 4 and more are
-            // soon as exact as double precision allows.
+            // The classical Runge-Kutta method needs short steps, above all on a floor: in longer
+            // ones, its errors of smooth motion and of touches cancel. The others of order 4 and
+            // more are soon as exact as double precision allows.
             let shortest = if on_floor { 3200 } else { 800 };
             let (measured, own) = match m.order {
                 order @ 1..=2 => ([1, 4000, 2], f64::from(order)..=f64::from(order)),

@@ -2,9 +2,9 @@
 //! known.
 
 use a3_core::accuracy::{Frames, Metric, Precision, Reference, Scope, measure};
-use a3_core::contact::{Obstacle, Shape, Skin};
-use a3_core::{Control, Model, Network, Path, Scene, Touch, Vector3};
+use a3_core::{Control, Model, Scene};
 
+use crate::bead_above_floor;
 use crate::common::method;
 
 /// Thickness (m), stiffness (N/m), and speed of a bead of 1 kg without gravity (m/s).
@@ -18,24 +18,7 @@ const QUARTER: f64 = 1.311_028_777_146_059_9;
 
 /// A bead above a floor, at that height (m) and velocity (m/s).
 fn bead(height: f64, velocity: f64, gravity: f64) -> Scene {
-    let mut network = Network::new(vec![1.0]).unwrap();
-    network.set_gravity(Vector3::new(0.0, -gravity, 0.0));
-    let floor = Obstacle {
-        thickness: THICKNESS,
-        ..Obstacle::smooth(Shape::Floor, Path::Still(Vector3::zeros()))
-    };
-    network.add_obstacle(floor).unwrap();
-    let skin = Skin {
-        thickness: THICKNESS,
-        stiffness: STIFFNESS,
-        ..Skin::default()
-    };
-    let touch = Touch {
-        skins: vec![skin],
-        edges: vec![[0, 0]],
-        bodies: false,
-    };
-    network.set_touch(Some(touch)).unwrap();
+    let network = bead_above_floor(1.0, gravity, [THICKNESS, STIFFNESS]);
     let state = vec![0.0, height, 0.0, 0.0, velocity, 0.0];
     Scene::new("bead", Model::Network(Box::new(network)), state)
 }

@@ -1,9 +1,9 @@
 //! Stability of what rests on the force of contact.
 
-use a3_core::contact::{Obstacle, Shape, Skin};
 use a3_core::stability::{Edge, RestState, largest_step, observe_at_rest, rest, spectrum};
-use a3_core::{Control, Model, Network, Path, Scene, Simulation, Touch, Vector3};
+use a3_core::{Control, Model, Scene, Simulation};
 
+use crate::bead_above_floor;
 use crate::common::{described, method};
 
 /// Mass (kg), thickness (m), stiffness (N/m) and gravity (m/s2).
@@ -14,24 +14,7 @@ const GRAVITY: f64 = 9.81;
 
 /// A particle that rests on a floor, or is `lifted` so far (m), and its angular frequency (1/s).
 fn resting(lifted: f64) -> (Scene, f64) {
-    let mut network = Network::new(vec![MASS]).unwrap();
-    network.set_gravity(Vector3::new(0.0, -GRAVITY, 0.0));
-    let floor = Obstacle {
-        thickness: THICKNESS,
-        ..Obstacle::smooth(Shape::Floor, Path::Still(Vector3::zeros()))
-    };
-    network.add_obstacle(floor).unwrap();
-    let skin = Skin {
-        thickness: THICKNESS,
-        stiffness: STIFFNESS,
-        ..Skin::default()
-    };
-    let touch = Touch {
-        skins: vec![skin],
-        edges: vec![[0, 0]],
-        bodies: false,
-    };
-    network.set_touch(Some(touch)).unwrap();
+    let network = bead_above_floor(MASS, GRAVITY, [THICKNESS, STIFFNESS]);
     // m g = k d s3, and w2 = 3 k s2 / m.
     let share = (MASS * GRAVITY / (STIFFNESS * THICKNESS)).cbrt();
     let height = THICKNESS * (1.0 - share) + lifted;
