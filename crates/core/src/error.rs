@@ -36,6 +36,13 @@ pub enum Error {
         /// Step at which the search for a shorter one ended (s).
         step: f64,
     },
+    /// Derivative that is not finite, from which no step can go on.
+    NotFinite {
+        /// Time at the beginning of the step (s).
+        time: f64,
+        /// Index of the first such component.
+        component: usize,
+    },
     /// Failure of an implicit method: the equations of a step were not solved.
     NoConvergence {
         /// Size of the last Newton correction over that of the first; 1 if its linear system could
@@ -71,7 +78,7 @@ pub enum Cause {
         /// Distance of the particle from the centre of the scene (m).
         distance: f64,
     },
-    /// Particle whose position or velocity is not finite.
+    /// Particle whose position, velocity or acceleration is not finite.
     NotFinite {
         /// Index of the first such particle.
         particle: usize,
@@ -118,6 +125,16 @@ impl fmt::Display for Vertex {
 const SERVES_POSITIONS: &str = "forces must not depend on the velocity, except by drag: with wind, \
     air, damped springs or constraints, take another explicit solver";
 
+/// Says that an implicit method did not solve the equations of a step.
+fn not_solved(residual: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    f.write_str("the equations of the step were not solved")?;
+    if residual.is_finite() {
+        write!(f, " (relative residual {residual:.1e})")
+    } else {
+        f.write_str(": their numbers are not finite")
+    }
+}
+
 impl fmt::Display for BlowUp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
@@ -131,7 +148,7 @@ impl fmt::Display for BlowUp {
             Cause::NotFinite { particle } => {
                 write!(
                     f,
-                    "the position or velocity of particle {particle} is not finite"
+                    "the position, velocity or acceleration of particle {particle} is not finite"
                 )
             }
             Cause::StepTooSmall { step } => {
@@ -140,10 +157,7 @@ impl fmt::Display for BlowUp {
                     "no step meets the tolerance, not even one of {step:.1e} s"
                 )
             }
-            Cause::NoConvergence { residual } => write!(
-                f,
-                "the equations of the step were not solved (relative residual {residual:.1e})"
-            ),
+            Cause::NoConvergence { residual } => not_solved(*residual, f),
             Cause::ReadsVelocity => write!(f, "{SERVES_POSITIONS}"),
             Cause::Squeezed { vertices: [a, b] } => write!(
                 f,
@@ -174,10 +188,11 @@ impl fmt::Display for Error {
                 f,
                 "no step meets the tolerance at t = {time:.4} s, not even one of {step:.1e} s: use a larger tolerance"
             ),
-            Self::NoConvergence { residual } => write!(
+            Self::NotFinite { time, component } => write!(
                 f,
-                "the equations of the step were not solved (relative residual {residual:.1e})"
+                "component {component} of the derivative is not finite at t = {time:.4} s"
             ),
+            Self::NoConvergence { residual } => not_solved(*residual, f),
             Self::BlowUp(blow_up) => blow_up.fmt(f),
         }
     }

@@ -115,8 +115,8 @@ impl Adaptive {
     ///
     /// # Errors
     /// The state has another length than the system's; a force depends on the velocity, and the
-    /// method does not serve such forces; or no step that gets anywhere meets the
-    /// tolerance: y is as it was then.
+    /// method does not serve such forces; f is not finite at y; or no step that gets anywhere meets
+    /// the tolerance. y is as it was then.
     pub fn advance(
         &mut self,
         system: &dyn ParticleSystem,
@@ -148,10 +148,17 @@ impl Adaptive {
         }
         let mut h = self.next;
         loop {
-            if h < SHORTEST.max(16.0 * f64::EPSILON * t.abs()) {
+            // A length that is not a number gets nowhere either.
+            let shortest = SHORTEST.max(16.0 * f64::EPSILON * t.abs());
+            if h.is_nan() || h < shortest {
                 // A guess for whoever tries again.
                 self.next = 0.0;
-                return Err(Error::StepTooSmall { time: t, step: h });
+                let f = &mut self.first[0];
+                self.trial.derivative(system, f);
+                return Err(match f.iter().position(|f| !f.is_finite()) {
+                    Some(component) => Error::NotFinite { time: t, component },
+                    None => Error::StepTooSmall { time: t, step: h },
+                });
             }
             let (cost, error) = self.trial.attempt(system, t, h, &norm);
             work += cost;

@@ -86,9 +86,12 @@ impl Simulation {
     }
 }
 
-/// The cause of a blow-up by a step that failed; other errors are handed on.
-pub(super) fn blow_up_by(error: Error) -> Result<Cause, Error> {
+/// The cause of a blow-up of n particles by a step that failed; other errors are handed on.
+pub(super) fn blow_up_by(error: Error, n: usize) -> Result<Cause, Error> {
     match error {
+        Error::NotFinite { component, .. } => Ok(Cause::NotFinite {
+            particle: component % n,
+        }),
         Error::StepTooSmall { step, .. } => Ok(Cause::StepTooSmall { step }),
         Error::NoConvergence { residual } => Ok(Cause::NoConvergence { residual }),
         Error::ReadsVelocity { .. } => Ok(Cause::ReadsVelocity),

@@ -114,7 +114,7 @@ impl Simulation {
                     Err(cause) => Some(cause),
                 }
             }
-            Err(error) => Some(blow_up_by(error)?),
+            Err(error) => Some(blow_up_by(error, self.model.particles())?),
         };
         self.judge(cause, t + h)?;
         self.tear();
@@ -154,7 +154,10 @@ impl Simulation {
             });
             let taken = match adaptive.advance(system, begin, end) {
                 Ok(taken) => taken,
-                Err(error) => break (Some(blow_up_by(error)?), begin),
+                Err(error) => {
+                    let cause = blow_up_by(error, self.model.particles())?;
+                    break (Some(cause), begin);
+                }
             };
             self.work += taken.work;
             let phases = (&mut self.limiter, &mut self.contact);

@@ -259,6 +259,47 @@ fn where_no_step_will_do_it_says_so() {
     ));
 }
 
+/// System whose derivative is no number from a time on (s).
+struct Undefined(f64);
+
+impl ParticleSystem for Undefined {
+    fn dim(&self) -> usize {
+        3
+    }
+
+    fn eval_f(&self, t: f64, _y: &[f64], dydt: &mut [f64]) {
+        dydt.fill(if t < self.0 { 1.0 } else { f64::NAN });
+    }
+}
+
+#[test]
+fn a_derivative_that_is_no_number_ends_a_run() {
+    let serving = |m: &&Method| !m.needs_mechanics;
+    for m in integrators::METHODS.iter().filter(serving) {
+        for from in [0.0, 0.2] {
+            let mut bare = scene("simple");
+            bare.model = a3_core::Model::FirstOrder(std::sync::Arc::new(Undefined(from)));
+            bare.state = vec![1.0; 3];
+            let control = if m.is_adaptive() {
+                Control::Tolerance(1e-6)
+            } else {
+                Control::Step(0.05)
+            };
+            let mut run = Simulation::new(bare, m, control).unwrap();
+            let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else {
+                panic!("{}: it went on without a derivative", m.name);
+            };
+            let named = match lost.cause {
+                Cause::NotFinite { particle: 0 } => true,
+                Cause::StepTooSmall { .. } => m.is_adaptive() && from > 0.0,
+                Cause::NoConvergence { .. } => m.implicit,
+                _ => false,
+            };
+            assert!(named, "{}: {:?}", m.name, lost.cause);
+        }
+    }
+}
+
 #[test]
 fn tolerances_that_make_no_sense_are_refused() {
     for relative in [0.0, -1.0, f64::NAN, f64::INFINITY] {
