@@ -15,6 +15,8 @@ pub struct FrameTimes {
     pub from: f64,
     /// Frames a second (1/s).
     pub rate: f64,
+    /// Number of the first frame: 0, unless the run was taken up later.
+    pub first: usize,
     /// The number of frames, at least 1.
     pub count: usize,
     /// The end of the run (s).
@@ -40,14 +42,27 @@ impl FrameTimes {
         Ok(Self {
             from,
             rate,
+            first: 0,
             count: count as usize,
             until,
         })
     }
 
+    /// Those of these frames that are at a time (s) or later; at least the last.
+    pub fn since(self, time: f64) -> Self {
+        let before = self.times().filter(|t| *t < time).count();
+        let before = before.min(self.count - 1);
+        Self {
+            first: self.first + before,
+            count: self.count - before,
+            ..self
+        }
+    }
+
     /// The times of all frames (s).
     pub fn times(self) -> impl Iterator<Item = f64> {
-        (0..self.count).map(move |k| (self.from + k as f64 / self.rate).min(self.until))
+        let numbers = self.first..self.first + self.count;
+        numbers.map(move |k| (self.from + k as f64 / self.rate).min(self.until))
     }
 }
 
@@ -117,6 +132,17 @@ mod tests {
         assert_eq!(times(0.0, 0.3, 10.0).len(), 4);
         assert_eq!(times(0.0, 2.3, 10.0).len(), 24);
         assert!(times(0.0, 0.3, 10.0).iter().all(|t| *t <= 0.3));
+    }
+
+    #[test]
+    fn a_run_that_is_taken_up_has_the_frames_that_are_left() {
+        let all = FrameTimes::new(0.0, 1.0, 30.0).ok().unwrap();
+        let times: Vec<f64> = all.times().collect();
+        for (time, first) in [(0.0, 0), (times[7], 7), (0.24, 8), (1.0, 30)] {
+            let left = all.since(time);
+            assert_eq!((left.first, left.count), (first, 31 - first));
+            assert!(left.times().eq(times[first..].iter().copied()));
+        }
     }
 
     #[test]

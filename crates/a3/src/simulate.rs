@@ -1,12 +1,14 @@
 //! `a3 simulate`: the final state of a run, or all its frames, in files that other programs read.
 
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use a3_core::Simulation;
 use serde::Serialize;
 
+use crate::checkpoint::{Keeper, Kept};
 use crate::cli::Simulate;
+use crate::extremes::{Energy, Extremes};
 use crate::failure::Failure;
 use crate::frames::Sequence;
 use crate::progress::{self, Bar};
@@ -57,40 +59,6 @@ impl Contact {
     }
 }
 
-/// Total energy (J).
-#[derive(Clone, Copy, Serialize)]
-struct Energy {
-    begin: f64,
-    end: f64,
-    /// Largest distance from the energy at the beginning.
-    largest_drift: f64,
-}
-
-/// Energy and stretch on the way, for the summary.
-#[derive(Default)]
-struct Extremes {
-    energy: Option<Energy>,
-    stretch: Option<f64>,
-}
-
-impl Extremes {
-    /// Takes the values of the state as it is now.
-    fn look(&mut self, simulation: &Simulation) {
-        if let Some(total) = simulation.energy().map(|energy| energy.total()) {
-            let energy = self.energy.get_or_insert(Energy {
-                begin: total,
-                end: total,
-                largest_drift: 0.0,
-            });
-            energy.end = total;
-            energy.largest_drift = energy.largest_drift.max((total - energy.begin).abs());
-        }
-        if let Some(stretch) = simulation.largest_stretch() {
-            self.stretch = Some(self.stretch.map_or(stretch, |most| most.max(stretch)));
-        }
-    }
-}
-
 /// Runs the simulation and writes its files.
 pub fn run(options: &Simulate) -> Result<(), Failure> {
     let begun = Instant::now();
@@ -106,14 +74,31 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
             output::check(path, &["json"])?;
         }
     }
+    let wanted = options.summary.is_some() || options.checkpoint.is_some();
+    let mut extremes = wanted.then(Extremes::default);
+    if let Some(path) = &options.resume {
+        let kept = resume(path, options, &mut simulation)?;
+        extremes = extremes.map(|fresh| kept.extremes.unwrap_or(fresh));
+    }
     let (frames, mut export) = export::begin(options, &simulation, &presentation)?;
-    let mut extremes = options.summary.is_some().then(Extremes::default);
+    if frames.first > 0 && Sequence::of(&options.output).is_none() {
+        eprintln!(
+            "{} begins with frame {}, the first since the checkpoint",
+            options.output.display(),
+            frames.first
+        );
+    }
+    let every = Duration::from_secs_f64(options.every);
+    let keeper = options.checkpoint.as_deref();
+    let mut keeper = keeper.map(|path| Keeper::new(path, every)).transpose()?;
     if let Some(extremes) = &mut extremes {
         extremes.look(&simulation);
     }
     interrupt::listen();
-    let bar = Bar::new(options.run.end()?);
+    let bar = Bar::new(options.run.end()? - simulation.time());
     let mut crossed = check(&simulation, options.check);
+    let what = &options.run.what;
+    let mut written = Ok(());
     for (k, time) in frames.times().enumerate() {
         let mut before = simulation.time();
         let reached = progress::march(&mut simulation, time, |simulation| {
@@ -125,7 +110,10 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
             if crossed.is_ok() {
                 crossed = check(simulation, options.check);
             }
-            crossed.is_ok() && interrupt::go_on()
+            if let Some(keeper) = &mut keeper {
+                written = keeper.look(|| Kept::new(what, simulation, extremes));
+            }
+            crossed.is_ok() && written.is_ok() && interrupt::go_on()
         });
         if reached != Ok(true) {
             bar.clear();
@@ -137,7 +125,20 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
                 let why = crossed.err().unwrap_or_default();
                 return Err(Failure::run(format!("{why}; {}", kept())));
             }
-            Ok(false) => return Err(Failure::Interrupted(format!("interrupted: {}", kept()))),
+            Ok(false) => {
+                std::mem::replace(&mut written, Ok(()))?;
+                let saved = match &keeper {
+                    Some(keeper) => {
+                        let kept = Kept::new(what, &simulation, extremes);
+                        format!("; {}", keeper.write(&kept)?)
+                    }
+                    None => String::new(),
+                };
+                return Err(Failure::Interrupted(format!(
+                    "interrupted: {}{saved}",
+                    kept()
+                )));
+            }
             Err(error) if k > 0 => return Err(Failure::run(format!("{error}; {}", kept()))),
             Err(error) => return Err(Failure::run(error)),
         }
@@ -145,6 +146,9 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     }
     bar.clear();
     export.finish()?;
+    if let Some(keeper) = &keeper {
+        keeper.write(&Kept::new(what, &simulation, extremes))?;
+    }
     let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
     if simulation.tears() > 0 && ["pc2", "glb"].iter().any(one_mesh) {
         eprintln!(
@@ -175,6 +179,43 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     } else {
         output::write(path, text.as_bytes())
     }
+}
+
+/// Takes a run up where it was kept in a file. A solver, a step or a disturbance that is asked for
+/// has to be the one that it was kept with.
+fn resume(path: &Path, options: &Simulate, run: &mut Simulation) -> Result<Kept, Failure> {
+    let kept = Kept::read(path)?;
+    let (solver, control) = (run.method(), run.control());
+    kept.restore(path, &options.run.what, run)?;
+    let refuse = |why: String| Err(Failure::usage(format!("{}: {why}", path.display())));
+    let asked = &options.run;
+    if asked.solver.is_some() && solver.name != run.method().name
+        || asked.step.is_some() && control != run.control()
+    {
+        return refuse(format!(
+            "this run goes on with {} {}, which need not be given",
+            run.method().name,
+            run.control().value()
+        ));
+    }
+    for (asked, there, option) in [
+        (asked.what.wind, run.windy(), "wind"),
+        (asked.what.swing, run.swinging(), "swing"),
+        (asked.what.self_collision, run.touching(), "self-collision"),
+    ] {
+        if asked && !there {
+            return refuse(format!(
+                "this run goes on without {option}: leave out --{option}"
+            ));
+        }
+    }
+    let (now, end) = (run.time(), asked.end()?);
+    if now > end {
+        return refuse(format!(
+            "this run is at t = {now} s already, past --until {end}"
+        ));
+    }
+    Ok(kept)
 }
 
 /// `Ok` if no surfaces pass through one another, or none shall be looked for; else what does.

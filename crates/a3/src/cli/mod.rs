@@ -12,8 +12,8 @@ use clap_complete::Shell;
 use crate::failure::Failure;
 use crate::scene_file::Source;
 use values::{
-    beginning, budget, error, factor, grid, horizon, particle, picture_size, rate, size, solver,
-    solver_and_step, step, until,
+    beginning, budget, error, factor, grid, horizon, particle, pause, picture_size, rate, size,
+    solver, solver_and_step, step, until,
 };
 
 pub use explain::explain;
@@ -164,6 +164,16 @@ pub struct Simulate {
     /// exactly, sixty times a simulated second
     #[arg(long)]
     pub check: bool,
+    /// File in which the whole run is kept every now and then, on an interrupt and at the end
+    #[arg(long, value_name = "FILE.checkpoint")]
+    pub checkpoint: Option<PathBuf>,
+    /// Real time between two checkpoints, in seconds
+    #[arg(long, value_name = "S", default_value = "60", value_parser = pause, requires = "checkpoint")]
+    pub every: f64,
+    /// Go on from a checkpoint of this scene, to the same bits as if the run had never ended;
+    /// solver and step are those of the checkpoint
+    #[arg(long, value_name = "FILE.checkpoint")]
+    pub resume: Option<PathBuf>,
 }
 
 #[derive(Args)]

@@ -53,6 +53,16 @@ pub fn until(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Real time between two checkpoints (s).
+pub fn pause(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(time) if (0.0..=1e6).contains(&time) => Ok(time),
+        _ => Err(
+            "the time between checkpoints is a number of seconds from 0 to 1e6, such as 60".into(),
+        ),
+    }
+}
+
 /// The beginning of a film (s).
 pub fn beginning(text: &str) -> Result<f64, String> {
     match text.parse() {

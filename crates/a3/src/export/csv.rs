@@ -14,16 +14,16 @@ pub const ROW: f64 = 150.0;
 /// A CSV file in the making.
 pub struct Csv {
     writer: csv::Writer<Draft>,
-    /// The number of frames so far.
-    frames: usize,
+    /// Number of the next frame.
+    next: usize,
 }
 
 impl Csv {
-    /// A file with a heading.
-    pub fn new(path: &Path) -> Result<Self, Failure> {
+    /// A file with a heading, for frames from that number on.
+    pub fn new(path: &Path, first: usize) -> Result<Self, Failure> {
         let mut csv = Self {
             writer: csv::Writer::from_writer(Draft::new(path)?),
-            frames: 0,
+            next: first,
         };
         csv.row(("frame", "time", "particle", "x", "y", "z", "vx", "vy", "vz"))?;
         Ok(csv)
@@ -45,9 +45,9 @@ impl Export for Csv {
         );
         for i in 0..n {
             let of = |column: &[f64]| (column[i], column[n + i], column[2 * n + i]);
-            self.row((self.frames, simulation.time(), i, of(x), of(&v)))?;
+            self.row((self.next, simulation.time(), i, of(x), of(&v)))?;
         }
-        self.frames += 1;
+        self.next += 1;
         Ok(())
     }
 

@@ -71,13 +71,14 @@ pub fn begin(
     if ending == "json" && options.fps.is_none() {
         return Ok((last, Box::new(json::Json::new(path, false)?)));
     }
-    let several = FrameTimes::new(0.0, until, options.fps.unwrap_or(RATE))?;
+    let all = FrameTimes::new(0.0, until, options.fps.unwrap_or(RATE))?;
+    let several = all.since(simulation.time());
     let particles = simulation.particles() as f64;
     let check = |size: f64, largest: f64| check_size(size, largest).map(|()| several);
     Ok(match (ending.to_str(), sequence) {
         (Some("csv"), _) => {
             let frames = check(csv::ROW * particles * several.count as f64, LARGEST.0)?;
-            (frames, Box::new(csv::Csv::new(path)?))
+            (frames, Box::new(csv::Csv::new(path, frames.first)?))
         }
         (Some("pc2"), _) => {
             let frames = check(pc2::size(simulation, several), LARGEST.0)?;
@@ -100,12 +101,13 @@ pub fn begin(
             )
         }
         (Some("obj"), Some(sequence)) => {
-            sequence.check(several.count)?;
+            sequence.check(all.count)?;
             let frames = check(
                 obj::size(surface, simulation) * several.count as f64,
                 LARGEST.0,
             )?;
-            (frames, Box::new(obj(obj::Files::Many(sequence, 0))))
+            let files = obj::Files::Many(sequence, frames.first);
+            (frames, Box::new(obj(files)))
         }
         _ => {
             let frames = check(json::ROW * particles * several.count as f64, LARGEST.0)?;

@@ -23,7 +23,7 @@ pub struct Obj {
 pub enum Files {
     /// The file of the final state.
     One(PathBuf),
-    /// The numbered files, and how many of them are written.
+    /// The numbered files, and the number of the next frame.
     Many(Sequence, usize),
 }
 
@@ -31,9 +31,9 @@ impl Export for Obj {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         let path = match &mut self.files {
             Files::One(path) => path.clone(),
-            Files::Many(sequence, count) => {
-                *count += 1;
-                sequence.file(*count - 1)
+            Files::Many(sequence, next) => {
+                *next += 1;
+                sequence.file(*next - 1)
             }
         };
         output::write_with(&path, |file| {

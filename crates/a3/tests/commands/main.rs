@@ -13,6 +13,7 @@ mod hand_in;
 mod help;
 mod manual;
 mod pictures;
+mod resumed;
 mod scene_files;
 mod states;
 mod usage;

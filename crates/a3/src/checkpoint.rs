@@ -1,0 +1,236 @@
+//! Checkpoints in files: all that a run needs to go on to the same bits, also after the program was
+//! killed.
+//!
+//! A file is a line with the version of the program, the run in the format of `postcard`, and the
+//! CRC-32 of all that stands before it.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use a3_core::{Checkpoint, Simulation};
+use serde::{Deserialize, Serialize};
+
+use crate::cli::What;
+use crate::extremes::Extremes;
+use crate::failure::Failure;
+use crate::output;
+
+/// Ending of the files.
+pub const ENDING: &str = "checkpoint";
+
+/// First words of a file, before the version.
+const TITLE: &[u8] = b"a3 checkpoint, version ";
+
+/// Version of the program that reads and writes the files: no other one promises the same bits.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Size of the largest file that is read (bytes).
+const LARGEST: u64 = 4 << 30;
+
+/// A run as it is kept in a file.
+#[derive(Serialize, Deserialize)]
+pub struct Kept {
+    /// Name of the scene.
+    name: String,
+    /// What tells the scene from others of this name: its grid, and a hash of its files.
+    scene: String,
+    /// The run.
+    pub checkpoint: Checkpoint,
+    /// Extremes of the run for its summary, if one is wanted.
+    pub extremes: Option<Extremes>,
+}
+
+impl Kept {
+    /// The run as it is now.
+    pub fn new(what: &What, run: &Simulation, extremes: Option<Extremes>) -> Self {
+        Self {
+            name: run.scene().name.clone(),
+            scene: identity(what, run),
+            checkpoint: run.checkpoint(),
+            extremes,
+        }
+    }
+
+    /// Writes the file.
+    pub fn write(&self, path: &Path) -> Result<(), Failure> {
+        output::write(path, &self.bytes()?)
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, Failure> {
+        let bytes = [TITLE, VERSION.as_bytes(), b"\n"].concat();
+        let mut bytes = postcard::to_extend(self, bytes).map_err(Failure::run)?;
+        bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+        Ok(bytes)
+    }
+
+    /// Reads a file.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let refuse = |why: String| Failure::usage(format!("{}: {why}", path.display()));
+        let bytes = bytes_of(path).map_err(refuse)?;
+        Self::parse(&bytes).map_err(refuse)
+    }
+
+    /// The run in the bytes of a file.
+    fn parse(bytes: &[u8]) -> Result<Self, String> {
+        if !bytes.starts_with(TITLE) {
+            return Err("this is no checkpoint of a3".into());
+        }
+        let damaged = "this checkpoint is damaged: its checksum is wrong";
+        let (content, sum) = bytes.split_last_chunk().ok_or(damaged)?;
+        if crc32fast::hash(content) != u32::from_le_bytes(*sum) {
+            return Err(damaged.into());
+        }
+        let content = &content[TITLE.len()..];
+        let line = content.iter().position(|byte| *byte == b'\n');
+        let (version, run) = content.split_at(line.ok_or(damaged)?);
+        if version != VERSION.as_bytes() {
+            return Err(format!(
+                "this checkpoint was written by a3 {}, but this is a3 {VERSION}, whose bits may differ",
+                String::from_utf8_lossy(version)
+            ));
+        }
+        postcard::from_bytes(&run[1..])
+            .map_err(|why| format!("this checkpoint cannot be read: {why}"))
+    }
+
+    /// Takes a run up where it was kept.
+    pub fn restore(&self, path: &Path, what: &What, run: &mut Simulation) -> Result<(), Failure> {
+        let refuse = |why: String| Failure::usage(format!("{}: {why}", path.display()));
+        let name = &run.scene().name;
+        if self.name != *name {
+            return Err(refuse(format!(
+                "this checkpoint is of the scene {}, not of {name}",
+                self.name
+            )));
+        }
+        if self.scene != identity(what, run) {
+            return Err(refuse(format!(
+                "this checkpoint is of another scene {name}: its file, its meshes or its grid were others"
+            )));
+        }
+        run.restore(&self.checkpoint)
+            .map_err(|why| refuse(why.to_string()))
+    }
+}
+
+/// What tells the scene of a run from others of its name.
+fn identity(what: &What, run: &Simulation) -> String {
+    let own = what.scene.fingerprint(run.scene());
+    match what.grid {
+        Some(grid) => format!("{own} {}x{}", grid.rows(), grid.cols()),
+        None => own,
+    }
+}
+
+/// The bytes of an ordinary file that is not too large.
+fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
+    let read = || -> std::io::Result<Option<Vec<u8>>> {
+        let file = File::open(path)?;
+        let there = file.metadata()?;
+        if !there.is_file() || there.len() > LARGEST {
+            return Ok(None);
+        }
+        let mut bytes = vec![];
+        file.take(LARGEST).read_to_end(&mut bytes)?;
+        Ok(Some(bytes))
+    };
+    match read() {
+        Ok(Some(bytes)) => Ok(bytes),
+        Ok(None) => Err("this is no checkpoint of a3".into()),
+        Err(why) => Err(format!("could not be read: {why}")),
+    }
+}
+
+/// The file in which a run is kept again and again.
+pub struct Keeper {
+    path: PathBuf,
+    /// Real time between two writes.
+    every: Duration,
+    last: Instant,
+}
+
+impl Keeper {
+    /// A file that is written when so much real time has passed since the last time.
+    pub fn new(path: &Path, every: Duration) -> Result<Self, Failure> {
+        output::check(path, &[ENDING])?;
+        Ok(Self {
+            path: path.into(),
+            every,
+            last: Instant::now(),
+        })
+    }
+
+    /// Writes what `kept` returns, if it is time to.
+    pub fn look(&mut self, kept: impl FnOnce() -> Kept) -> Result<(), Failure> {
+        if self.last.elapsed() < self.every {
+            return Ok(());
+        }
+        kept().write(&self.path)?;
+        self.last = Instant::now();
+        Ok(())
+    }
+
+    /// Writes what is kept now. Returns a clause that says so.
+    pub fn write(&self, kept: &Kept) -> Result<String, Failure> {
+        kept.write(&self.path)?;
+        let time = kept.checkpoint.time();
+        Ok(format!(
+            "{} has the run at t = {time:.4} s",
+            self.path.display()
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene_file::Source;
+
+    fn kept() -> Kept {
+        let what = What {
+            scene: Source::find("pendulum").unwrap(),
+            grid: None,
+            wind: false,
+            swing: false,
+            self_collision: false,
+        };
+        let setup = what.scene.build(None).unwrap();
+        let method = a3_core::integrators::find("dop853").unwrap();
+        let control = a3_core::Control::Tolerance(1e-6);
+        let mut run = Simulation::new(setup.scene, method, control).unwrap();
+        run.advance_to(0.3).unwrap();
+        Kept::new(&what, &run, None)
+    }
+
+    #[test]
+    fn a_file_gives_back_what_was_kept() {
+        let kept = kept();
+        let again = Kept::parse(&kept.bytes().ok().unwrap()).unwrap();
+        assert_eq!(again.checkpoint, kept.checkpoint);
+        assert_eq!(again.scene, kept.scene);
+    }
+
+    #[test]
+    fn every_flipped_byte_and_every_cut_is_found() {
+        let bytes = kept().bytes().ok().unwrap();
+        for k in 0..bytes.len() {
+            let mut flipped = bytes.clone();
+            flipped[k] ^= 1 + (37 * k % 255) as u8;
+            let why = Kept::parse(&flipped).err().unwrap();
+            assert!(why.contains("damaged") || k < TITLE.len(), "{k}: {why}");
+            assert!(Kept::parse(&bytes[..k]).is_err());
+        }
+    }
+
+    #[test]
+    fn another_version_is_refused_by_name() {
+        let mut bytes = kept().bytes().ok().unwrap();
+        bytes.truncate(bytes.len() - 4);
+        bytes[TITLE.len()] = b'7';
+        bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+        let why = Kept::parse(&bytes).err().unwrap();
+        assert!(why.contains("written by a3 7."), "{why}");
+    }
+}

@@ -1,0 +1,163 @@
+//! Runs that are killed and taken up again from their checkpoints: the same files, to the bit.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::common::{TEARING, a3, command, complaint, text};
+
+/// Cloth that folds on a floor and touches itself.
+const FOLDING: &str = "gravity = [0, -9.81, 0]\ndrag_per_mass = 0.5\n\
+    floor = { height = 0, friction = 0.4 }\nself_collision = true\n\
+    [[cloth]]\ngrid = [8, 8]\nwidth = 1\ndensity = 0.2\nstiffness = [40, 20, 0.5]\n\
+    damping_ratio = 0.1\nfriction = 0.3\nright = [1, 0, 0]\ndown = [0, -0.98, 0.2]\nat = [0, 1.05, 0]\n";
+
+/// Runs that together have all that a checkpoint keeps: tears, pins on paths, contact, rods, wind
+/// and swing, steps of their own choice and BDF's differences.
+const RUNS: &[&[&str]] = &[
+    &["--scene", "rag.toml", "--until", "1"],
+    &["v", "0.002", "--scene", "fold.toml", "--until", "0.8"],
+    &["x", "1e-5", "--wind", "--swing", "--until", "1.5"],
+    &["r", "0.0005", "--scene", "double-pendulum", "--until", "5"],
+    &["o", "1e-4", "--scene", "chain", "--until", "3"],
+    &["a", "1e-6", "--scene", "rag.toml", "--until", "1"],
+];
+
+/// The state and the summary that a run wrote, without what depends on the machine.
+fn written(folder: &Path) -> (String, Value) {
+    let state = fs::read_to_string(folder.join("state.json")).unwrap();
+    let summary = fs::read_to_string(folder.join("summary.json")).unwrap();
+    let mut summary: Value = serde_json::from_str(&summary).unwrap();
+    summary["wall_time"] = Value::Null;
+    (state, summary)
+}
+
+/// Words of a command that goes through a run and writes both.
+fn words<'a>(run: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
+    let files = ["--output", "state.json", "--summary", "summary.json"];
+    [&["simulate"], run, &files, more].concat()
+}
+
+/// `A3_KILLS` sets how many runs are killed.
+#[test]
+fn a_run_that_is_killed_goes_on_to_the_same_bits() {
+    let kills = std::env::var("A3_KILLS").map_or(12, |kills| kills.parse().unwrap());
+    let keep = ["--checkpoint", "run.checkpoint", "--every", "0"];
+    let mut resumed = 0;
+    for (k, run) in RUNS.iter().enumerate() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        fs::write(folder.join("rag.toml"), TEARING).unwrap();
+        fs::write(folder.join("fold.toml"), FOLDING).unwrap();
+        let go = |more: &[&str], threads: &str| {
+            let mut command = command(folder, &words(run, more));
+            let output = command.env("RAYON_NUM_THREADS", threads).output().unwrap();
+            assert!(output.status.success(), "{}", text(&output.stderr));
+            written(folder)
+        };
+        let whole = go(&[], "2");
+        let begun = Instant::now();
+        assert_eq!(go(&keep, "2"), whole, "keeping changes nothing");
+        let taken = begun.elapsed();
+        for kill in (k..kills).step_by(RUNS.len()) {
+            let _ = fs::remove_file(folder.join("run.checkpoint"));
+            let _ = fs::remove_file(folder.join("state.json"));
+            let mut child = command(folder, &words(run, &keep)).spawn().unwrap();
+            // Numbers that are spread evenly, by the golden section.
+            let share = (f64::from(kill as u32) * 0.618_033_988_75).fract();
+            std::thread::sleep(Duration::from_secs_f64(share * taken.as_secs_f64()));
+            child.kill().unwrap();
+            child.wait().unwrap();
+            // Killed before it kept anything, or after it had ended.
+            if folder.join("run.checkpoint").exists() {
+                let threads = ["1", "3"][kill % 2];
+                let again = go(&["--resume", "run.checkpoint"], threads);
+                assert!(again == whole, "{run:?} after {share} of its time");
+                resumed += 1;
+            }
+        }
+    }
+    assert!(2 * resumed > kills, "{resumed} of {kills}");
+}
+
+#[test]
+fn frames_go_on_where_the_checkpoint_was_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let run = |words: &[&str]| {
+        let output = a3(folder, &[&["simulate", "v", "0.01"], words].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stderr).to_owned()
+    };
+    let rows = |file: &str| fs::read_to_string(folder.join(file)).unwrap();
+    run(&["--until", "0.5", "--fps", "20", "-o", "whole.csv"]);
+    run(&[
+        "--until",
+        "0.2",
+        "--fps",
+        "20",
+        "-o",
+        "begin.csv",
+        "--checkpoint",
+        "c.checkpoint",
+    ]);
+    let resume = ["--until", "0.5", "--fps", "20", "--resume", "c.checkpoint"];
+    let said = run(&[&resume[..], &["-o", "end.csv"]].concat());
+    assert!(said.contains("end.csv begins with frame 4"), "{said}");
+    let (whole, end) = (rows("whole.csv"), rows("end.csv"));
+    let (heading, end) = end.split_once('\n').unwrap();
+    assert!(whole.starts_with(heading) && whole.ends_with(end) && end.starts_with("4,0.2"));
+    // Files of a sequence keep their numbers.
+    run(&[&resume[..], &["-o", "f-##.obj"]].concat());
+    assert!(!folder.join("f-04.obj").exists() && folder.join("f-05.obj").exists());
+}
+
+#[test]
+fn what_does_not_fit_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let scene = |mass: &str| {
+        let text = format!(
+            "[[chain]]\nparticles = 3\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = {mass}\nstiffness = 50\npin = [{{ particles = [0] }}]\n"
+        );
+        fs::write(folder.join("own.toml"), text).unwrap();
+    };
+    scene("1");
+    let keep = [
+        "--until",
+        "0.5",
+        "-o",
+        "x.json",
+        "--checkpoint",
+        "c.checkpoint",
+    ];
+    let output = a3(
+        folder,
+        &[&["simulate", "r", "0.01", "--scene", "own.toml"], &keep[..]].concat(),
+    );
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let refused = |words: &[&str], why: &str| {
+        let resume = ["-o", "y.json", "--resume", "c.checkpoint"];
+        let line = complaint(&a3(folder, &[&["simulate"], words, &resume].concat()), 2);
+        assert!(line.starts_with("error: c.checkpoint: "), "{line}");
+        assert!(line.contains(why), "{line}");
+        assert!(!folder.join("y.json").exists());
+    };
+    refused(&["--until", "1"], "of the scene own, not of cloth");
+    let own = ["--scene", "own.toml", "--until", "1"];
+    refused(&[&["v"], &own[..]].concat(), "goes on with rk4 0.01");
+    refused(
+        &[&["r", "0.02"], &own[..]].concat(),
+        "goes on with rk4 0.01",
+    );
+    refused(
+        &["--scene", "own.toml", "--until", "0.4"],
+        "at t = 0.5 s already",
+    );
+    scene("2");
+    refused(&own, "of another scene own");
+    fs::write(folder.join("c.checkpoint"), "{}").unwrap();
+    refused(&own, "no checkpoint of a3");
+}
