@@ -7,7 +7,7 @@ use a3_render::{Gpu, Offscreen};
 use crate::compare::{self, SIZE};
 use crate::failure::Failure;
 use crate::session::{Pane, Session};
-use crate::{output, progress};
+use crate::{output, progress, verdict};
 
 /// Simulated time (s).
 const SECONDS: u32 = 10;
@@ -45,7 +45,7 @@ fn tell(pane: &mut Pane) -> Result<(), Failure> {
         progress::advance(simulation, f64::from(second), |simulation| {
             show.follow(simulation);
         })
-        .map_err(Failure::run)?;
+        .map_err(|error| verdict::lost(simulation, &error, ""))?;
         output::say(&line(simulation))?;
     }
     Ok(())

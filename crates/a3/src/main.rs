@@ -30,6 +30,7 @@ mod setup;
 mod show;
 mod simulate;
 mod stability;
+mod verdict;
 mod window;
 
 use std::process::ExitCode;

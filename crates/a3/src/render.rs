@@ -4,7 +4,7 @@ use crate::cli::Render;
 use crate::failure::Failure;
 use crate::painter::Painter;
 use crate::show::{self, Show};
-use crate::{film, output, progress, setup};
+use crate::{film, output, progress, setup, verdict};
 
 /// Runs the simulation and writes its picture or its film.
 pub fn run(options: &Render) -> Result<(), Failure> {
@@ -27,7 +27,8 @@ pub fn run(options: &Render) -> Result<(), Failure> {
     progress::advance(&mut simulation, options.run.end()?, |simulation| {
         show.follow(simulation);
     })
-    .map_err(Failure::run)?;
+    .map_err(|error| verdict::lost(&simulation, &error, ""))?;
+    verdict::warn_of_gain(&simulation);
     let pixels = painter.draw(&mut show, &simulation)?;
     output::write(path, &output::png(&pixels, size)?)
 }

@@ -12,7 +12,7 @@ use crate::extremes::{Energy, Extremes};
 use crate::failure::Failure;
 use crate::frames::Sequence;
 use crate::progress::{self, Bar};
-use crate::{export, interrupt, output, setup};
+use crate::{export, interrupt, output, setup, verdict};
 
 /// Summary of a run.
 #[derive(Serialize)]
@@ -26,6 +26,8 @@ struct Summary {
     evaluations: u64,
     /// Total energy; none for a system without forces.
     energy: Option<Energy>,
+    /// Energy that nothing put in, if it is much (J).
+    energy_gained: Option<f64>,
     /// Largest length over rest length of a spring; none without springs.
     largest_stretch: Option<f64>,
     /// Number of springs that broke.
@@ -139,8 +141,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
                     kept()
                 )));
             }
-            Err(error) if k > 0 => return Err(Failure::run(format!("{error}; {}", kept()))),
-            Err(error) => return Err(Failure::run(error)),
+            Err(error) => return Err(verdict::lost(&simulation, &error, &kept())),
         }
         export.add(&simulation)?;
     }
@@ -157,6 +158,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
             options.output.display()
         );
     }
+    verdict::warn_of_gain(&simulation);
     let (Some(path), Some(extremes)) = (&options.summary, extremes) else {
         return Ok(());
     };
@@ -168,6 +170,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         steps: simulation.steps(),
         evaluations: simulation.work().evaluations,
         energy: extremes.energy,
+        energy_gained: simulation.gained().map(|gain| gain.energy),
         largest_stretch: extremes.stretch,
         torn: simulation.tears(),
         contact: Contact::of(&simulation),

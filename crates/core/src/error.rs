@@ -78,6 +78,11 @@ pub enum Cause {
         /// Distance of the particle from the centre of the scene (m).
         distance: f64,
     },
+    /// Energy that nothing put into the run, far more than the scene has: the step is too long.
+    Gained {
+        /// The energy (J).
+        energy: f64,
+    },
     /// Particle whose position, velocity or acceleration is not finite.
     NotFinite {
         /// Index of the first such particle.
@@ -144,6 +149,9 @@ impl fmt::Display for BlowUp {
         match cause {
             Cause::Away { particle, distance } => {
                 write!(f, "particle {particle} is {distance:.0} m away")
+            }
+            Cause::Gained { energy } => {
+                write!(f, "it gained {energy:.3e} J that nothing put in")
             }
             Cause::NotFinite { particle } => {
                 write!(

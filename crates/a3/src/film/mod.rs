@@ -14,7 +14,7 @@ use crate::frames::{FrameTimes, Sequence};
 use crate::painter::Painter;
 use crate::progress::{self, Bar};
 use crate::show::Show;
-use crate::{interrupt, output};
+use crate::{interrupt, output, verdict};
 
 /// Default frames a second: of a GIF, whose delays are whole hundredths of a second, and of others.
 const RATE: (f64, f64) = (25.0, 30.0);
@@ -142,8 +142,11 @@ pub fn shoot(
         )
     };
     match end {
-        Ok(true) => Ok(()),
+        Ok(true) => {
+            verdict::warn_of_gain(simulation);
+            Ok(())
+        }
         Ok(false) => Err(Failure::Interrupted(format!("interrupted: {kept}"))),
-        Err(error) => Err(Failure::run(format!("{error}; {kept}"))),
+        Err(error) => Err(verdict::lost(simulation, &error, &kept)),
     }
 }

@@ -127,6 +127,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let error = ("error", text(error(pane, readings)));
     let (name, value) = energy(pane);
     let energy = (name, text(value));
+    let gained = words::gained(run).map(|words| ("gained", words));
     let contact = words::contact(run).map(|words| ("contact", text(words)));
     let cost = ("cost", text(cost));
     let lines = if low {
@@ -138,6 +139,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
             vec![time],
             vec![error],
             vec![energy],
+            gained.into_iter().collect(),
             contact.into_iter().collect(),
             vec![cost],
         ]

@@ -69,6 +69,9 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             }
             let (name, value) = words::energy(pane);
             row(name, text(value));
+            if let Some(gained) = words::gained(simulation) {
+                row("gained", gained);
+            }
             if let Some(stretch) = pane.stretch {
                 row("stretch", text(format!("{stretch:.3} at most")));
             }

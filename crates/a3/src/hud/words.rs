@@ -115,6 +115,13 @@ pub fn energy(pane: &Pane) -> (&'static str, String) {
     }
 }
 
+/// The energy that nothing put into the run, if it is much.
+pub fn gained(simulation: &Simulation) -> Option<RichText> {
+    let gain = simulation.gained()?;
+    let words = format!("{} J from nowhere: shorten the step", digits(gain.energy));
+    Some(text(words).color(WARNING))
+}
+
 /// The rate of frames.
 pub fn frames(readings: &Readings) -> String {
     format!("{:.0} per second", readings.rate)

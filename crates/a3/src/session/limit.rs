@@ -88,6 +88,13 @@ impl LimitWatch {
     }
 }
 
+/// The longest step (s) that was seen to hold on the scene of a run, if it takes fixed steps.
+pub fn step_that_holds(run: &Simulation) -> Option<f64> {
+    let scene = run.scene();
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    would_hold(run, &modes)
+}
+
 /// The longest step (s) that was seen to hold, from just below the limit of all motion at the start
 /// of the scene. It depends on the scene and the method alone: not on the state that was lost, nor
 /// on the step that was too long. `None` for a run to a tolerance.

@@ -19,6 +19,7 @@ mod timeline;
 mod tuning;
 
 pub use keys::{Action, KEYS, MOUSE, action};
+pub use limit::step_that_holds;
 pub use origin::Origin;
 pub use pane::Pane;
 pub use readings::Readings;

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::{Checkpoint, Simulation};
 use crate::error::{BlowUp, Cause, Error};
+use crate::scene::Model;
 
 /// Distance from the scene's middle, in its radii, at which a particle is lost.
 const LOST: f64 = 100.0;
@@ -25,6 +26,9 @@ impl Simulation {
     pub(super) fn keep(&mut self) -> Result<(), Error> {
         if let Some(blow_up) = self.blow_up {
             return Err(blow_up.into());
+        }
+        if let Model::Network(network) = &self.model {
+            self.watch.forgive(network, self.time(), &self.y);
         }
         if self.beyond(GOOD, &self.y).is_none() {
             self.keep_good();

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
+use super::balance::Balance;
 use super::stepper::{Progress, Stepper};
 use super::tuning::{let_touch, touches_itself};
 use crate::contact::{Guarded, Shape};
@@ -49,6 +50,9 @@ pub struct Checkpoint {
     /// What the guard of surfaces did in these steps.
     #[serde(default)]
     pub guarded: Guarded,
+    /// Balance of its energy.
+    #[serde(default)]
+    pub balance: Balance,
     /// The state y: of a network [x | v], in m and m/s.
     pub y: Vec<f64>,
     /// Pinned particles and their paths.
@@ -87,6 +91,7 @@ impl Checkpoint {
             steps: 0,
             work: Work::default(),
             guarded: Guarded::default(),
+            balance: Balance::default(),
             y: vec![],
             pins: vec![],
             unpinned: false,
@@ -206,6 +211,7 @@ impl Simulation {
             steps: self.steps,
             work: self.work,
             guarded: self.guarded,
+            balance: self.watch.balance,
             y: old.y,
             pins: old.pins,
             unpinned: self.unpinned,
@@ -245,6 +251,7 @@ impl Simulation {
         (self.since, self.taken) = (checkpoint.since, checkpoint.taken);
         (self.steps, self.work) = (checkpoint.steps, checkpoint.work);
         self.guarded = checkpoint.guarded;
+        self.watch.resume(checkpoint.balance);
         self.y.copy_from_slice(&checkpoint.y);
         self.unpinned = checkpoint.unpinned;
         (self.grabbed, self.grabbed_obstacle) = (checkpoint.grabbed, checkpoint.grabbed_obstacle);
@@ -305,6 +312,7 @@ impl Simulation {
             }
         }
         self.y.copy_from_slice(&moment.y);
+        self.watch.resume(moment.balance);
         self.steps = moment.steps;
         // Another step is no multiple of the time that was counted then.
         (self.since, self.taken) = if moment.control == self.control {

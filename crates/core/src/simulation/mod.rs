@@ -1,5 +1,6 @@
 //! Simulations: a scene, a method, and the time that the method has brought the scene to.
 
+mod balance;
 mod blow_up;
 mod checkpoint;
 mod hands;
@@ -8,6 +9,7 @@ mod stepper;
 mod steps;
 mod tuning;
 
+pub use balance::{Balance, Gain};
 pub use checkpoint::{Checkpoint, Grabbed};
 pub use stepper::Progress;
 
@@ -18,6 +20,7 @@ use crate::control::Control;
 use crate::error::{BlowUp, Error};
 use crate::integrators::{Method, Work};
 use crate::scene::{Model, Scene, bounds};
+use balance::Watch;
 use stepper::Stepper;
 
 /// A run of a scene.
@@ -46,6 +49,8 @@ pub struct Simulation {
     /// Whether the pins of the scene are free.
     unpinned: bool,
     blow_up: Option<BlowUp>,
+    /// Energy that went in, and that the method added.
+    watch: Watch,
     /// The last state in shape, to go back to when a step fails.
     good: Checkpoint,
     middle: Vector3<f64>,
@@ -101,10 +106,12 @@ impl Simulation {
             grabbed_obstacle: None,
             unpinned: false,
             blow_up: None,
+            watch: Watch::default(),
             good: Checkpoint::empty(method, control),
             middle,
             radius,
         };
+        run.begin_watch();
         run.keep_good();
         Ok(run)
     }
@@ -132,6 +139,7 @@ impl Simulation {
         self.set_swinging(swinging);
         // Where surfaces cross, they begin as the scene has it.
         let _ = self.set_touching(touching);
+        self.begin_watch();
     }
 
     /// Goes on with another method, in fixed steps or to a tolerance.
@@ -144,6 +152,7 @@ impl Simulation {
         self.since = self.time();
         self.taken = 0;
         (self.method, self.control) = (method, control);
+        self.watch.start_over();
         Ok(())
     }
 
@@ -159,6 +168,7 @@ impl Simulation {
         self.since = self.time();
         self.taken = 0;
         self.control = control;
+        self.watch.start_over();
         Ok(())
     }
 }

@@ -110,6 +110,7 @@ impl Simulation {
                         self.work.algebra += SWEEP * strained.sweeps as f64;
                         self.guarded += met.guarded;
                         self.lost(&self.y)
+                            .or_else(|| self.watch.met(&self.model, (t + h, &self.y), &met))
                     }
                     Err(cause) => Some(cause),
                 }
@@ -198,7 +199,10 @@ impl Simulation {
             let Stepper::Adaptive { end, .. } = &self.stepper else {
                 return Ok(now);
             };
-            break (self.lost(end), reached);
+            let lost = self.lost(end);
+            let watch = &mut self.watch;
+            let lost = lost.or_else(|| watch.met(&self.model, (reached, end), &met));
+            break (lost, reached);
         };
         self.judge(cause, reached)?;
         Ok(reached)
@@ -258,6 +262,7 @@ impl Simulation {
         if let Stepper::Adaptive { until, .. } = &mut self.stepper {
             *until = None;
         }
+        self.watch.disturbed = true;
     }
 }
 

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod balance;
 mod checkpoint;
 mod default_cloth;
 mod hands;

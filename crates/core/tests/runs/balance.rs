@@ -1,0 +1,94 @@
+//! Balance of energy: what a method adds to a run is noticed, and nothing else is taken for it.
+
+use a3_core::{Cause, Control, Error, Simulation, Vector3};
+
+use super::common::{described, method, scene};
+
+/// Run of a built-in scene up to a time (s).
+fn run(name: &str, solver: &str, h: f64, until: f64) -> (Simulation, Result<(), Error>) {
+    let mut run = Simulation::new(scene(name), method(solver), Control::Step(h)).unwrap();
+    let end = run.advance_to(until);
+    (run, end)
+}
+
+#[test]
+fn energy_from_nowhere_is_noticed() {
+    // Their states are absurd, although no particle is far away.
+    for (name, solver, h) in [
+        ("chain", "v", 0.231),
+        ("mit", "p", 0.0516),
+        ("mit-sphere", "n", 0.378),
+        ("jelly", "i", 0.04),
+        ("jelly", "i", 0.24),
+    ] {
+        let (run, end) = run(name, solver, h, 5.0);
+        end.unwrap();
+        let gain = run.gained().unwrap_or_else(|| panic!("{name} by {solver}"));
+        assert!(gain.share > 0.5 && gain.energy > 100.0, "{name}: {gain:?}");
+    }
+    let (_, end) = run("pendulum", "m", 0.1947, 5.0);
+    let Err(Error::BlowUp(lost)) = end else {
+        panic!("it went on");
+    };
+    assert!(matches!(lost.cause, Cause::Gained { energy } if energy > 1e4));
+    assert!(lost.to_string().contains("J that nothing put in"), "{lost}");
+}
+
+#[test]
+fn work_is_no_gain() {
+    for entry in a3_scenes::SCENES {
+        let setup = entry.build(None).unwrap();
+        for name in ["t", "v", "r", "i", "a", "o"] {
+            let method = method(name);
+            if method.check(setup.scene.model.system()).is_err() {
+                continue;
+            }
+            let control = setup.defaults.control_of(method);
+            let mut run = Simulation::new(setup.scene.clone(), method, control).unwrap();
+            run.set_wind(true);
+            run.set_swinging(true);
+            if run.advance_to(2.0).is_ok() {
+                assert_eq!(run.gained(), None, "{} by {name}", entry.name);
+            }
+        }
+    }
+}
+
+/// Cloth that lies on a box, which lifts it fast.
+const LIFTED: &str = "gravity = [0, -9.81, 0]\n\
+    [[cloth]]\ngrid = [6, 6]\nwidth = 1\nmass = 0.02\nstiffness = [40, 20, 1]\n\
+    damping_ratio = 0.2\nat = [-0.5, 0.01, -0.5]\ndown = [0, 0, 1]\n\
+    [[box]]\ncenter = [0, -0.5, 0]\nsize = [4, 1, 4]\nfriction = 0.5\n\
+    shift = { by = [3, 30, 0], start = 0.2, end = 5 }\n";
+
+#[test]
+fn what_obstacles_and_hands_do_is_no_gain() {
+    let mut lifted = Simulation::new(described(LIFTED), method("v"), Control::Step(0.002)).unwrap();
+    lifted.advance_to(2.0).unwrap();
+    let energy = lifted.energy().unwrap();
+    assert!(energy.gravitational > 50.0, "{energy:?}");
+    assert_eq!(lifted.gained(), None);
+    // A hand pulls to and fro, stronger than the scene itself, and pins and lets go.
+    for name in ["cloth", "chain", "double-pendulum"] {
+        let mut run = Simulation::new(scene(name), method("r"), Control::Step(0.001)).unwrap();
+        let last = run.particles() - 1;
+        for k in 0..20 {
+            if k % 5 == 0 {
+                run.release();
+                run.grab(last).unwrap();
+            }
+            let side = [-1.0, 1.0][k % 2];
+            run.pull(run.position(last) + Vector3::new(side, 0.5, 0.3 * side));
+            run.advance_to(run.time() + 0.04).unwrap();
+        }
+        run.release();
+        run.advance_to(run.time() + 0.5).unwrap();
+        assert_eq!(run.gained(), None, "{name}");
+        // What is low falls upwards from now on.
+        run.reset();
+        run.advance_to(0.2).unwrap();
+        run.adjust(|network| network.set_gravity(Vector3::new(0.0, 60.0, 0.0)));
+        run.advance_to(0.7).unwrap();
+        assert_eq!(run.gained(), None, "{name}");
+    }
+}
