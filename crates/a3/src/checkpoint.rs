@@ -9,13 +9,13 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use a3_core::{Checkpoint, Simulation};
+use a3_core::{Checkpoint, Grid, Simulation};
 use serde::{Deserialize, Serialize};
 
-use crate::cli::What;
 use crate::extremes::Extremes;
 use crate::failure::Failure;
 use crate::output;
+use crate::scene_file::Source;
 
 /// Ending of the files.
 pub const ENDING: &str = "checkpoint";
@@ -40,16 +40,24 @@ pub struct Kept {
     pub checkpoint: Checkpoint,
     /// Extremes of the run for its summary, if one is wanted.
     pub extremes: Option<Extremes>,
+    /// What the panel of the window has tuned, by the names of its rows.
+    pub tuned: Vec<(String, f64)>,
 }
 
 impl Kept {
     /// The run as it is now.
-    pub fn new(what: &What, run: &Simulation, extremes: Option<Extremes>) -> Self {
+    pub fn new(
+        source: &Source,
+        grid: Option<Grid>,
+        run: &Simulation,
+        extremes: Option<Extremes>,
+    ) -> Self {
         Self {
             name: run.scene().name.clone(),
-            scene: identity(what, run),
+            scene: identity(source, grid, run),
             checkpoint: run.checkpoint(),
             extremes,
+            tuned: vec![],
         }
     }
 
@@ -95,8 +103,14 @@ impl Kept {
             .map_err(|why| format!("this checkpoint cannot be read: {why}"))
     }
 
-    /// Takes a run up where it was kept.
-    pub fn restore(&self, path: &Path, what: &What, run: &mut Simulation) -> Result<(), Failure> {
+    /// `Ok` if the file at `path` is of the scene of a run.
+    pub fn check(
+        &self,
+        path: &Path,
+        source: &Source,
+        grid: Option<Grid>,
+        run: &Simulation,
+    ) -> Result<(), Failure> {
         let refuse = |why: String| Failure::usage(format!("{}: {why}", path.display()));
         let name = &run.scene().name;
         if self.name != *name {
@@ -105,20 +119,19 @@ impl Kept {
                 self.name
             )));
         }
-        if self.scene != identity(what, run) {
+        if self.scene != identity(source, grid, run) {
             return Err(refuse(format!(
                 "this checkpoint is of another scene {name}: its file, its meshes or its grid were others"
             )));
         }
-        run.restore(&self.checkpoint)
-            .map_err(|why| refuse(why.to_string()))
+        Ok(())
     }
 }
 
 /// What tells the scene of a run from others of its name.
-fn identity(what: &What, run: &Simulation) -> String {
-    let own = what.scene.fingerprint(run.scene());
-    match what.grid {
+fn identity(source: &Source, grid: Option<Grid>, run: &Simulation) -> String {
+    let own = source.fingerprint(run.scene());
+    match grid {
         Some(grid) => format!("{own} {}x{}", grid.rows(), grid.cols()),
         None => own,
     }
@@ -186,22 +199,15 @@ impl Keeper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene_file::Source;
 
     fn kept() -> Kept {
-        let what = What {
-            scene: Source::find("pendulum").unwrap(),
-            grid: None,
-            wind: false,
-            swing: false,
-            self_collision: false,
-        };
-        let setup = what.scene.build(None).unwrap();
+        let source = Source::find("pendulum").unwrap();
+        let setup = source.build(None).unwrap();
         let method = a3_core::integrators::find("dop853").unwrap();
         let control = a3_core::Control::Tolerance(1e-6);
         let mut run = Simulation::new(setup.scene, method, control).unwrap();
         run.advance_to(0.3).unwrap();
-        Kept::new(&what, &run, None)
+        Kept::new(&source, None, &run, None)
     }
 
     #[test]

@@ -18,6 +18,7 @@ mod frames;
 mod headless;
 mod hud;
 mod interrupt;
+mod keep;
 mod list;
 mod manual;
 mod output;

@@ -100,6 +100,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     let bar = Bar::new(options.run.end()? - simulation.time());
     let mut crossed = check(&simulation, options.check);
     let what = &options.run.what;
+    let kept = |run: &Simulation, extremes| Kept::new(&what.scene, what.grid, run, extremes);
     let mut written = Ok(());
     for (k, time) in frames.times().enumerate() {
         let mut before = simulation.time();
@@ -113,42 +114,42 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
                 crossed = check(simulation, options.check);
             }
             if let Some(keeper) = &mut keeper {
-                written = keeper.look(|| Kept::new(what, simulation, extremes));
+                written = keeper.look(|| kept(simulation, extremes));
             }
             crossed.is_ok() && written.is_ok() && interrupt::go_on()
         });
         if reached != Ok(true) {
             bar.clear();
         }
-        let kept = || kept(&options.output, k, frames.count);
+        let written_so_far = || written_of(&options.output, k, frames.count);
         match reached {
             Ok(true) => {}
             Ok(false) if crossed.is_err() => {
                 let why = crossed.err().unwrap_or_default();
-                return Err(Failure::run(format!("{why}; {}", kept())));
+                return Err(Failure::run(format!("{why}; {}", written_so_far())));
             }
             Ok(false) => {
                 std::mem::replace(&mut written, Ok(()))?;
                 let saved = match &keeper {
                     Some(keeper) => {
-                        let kept = Kept::new(what, &simulation, extremes);
+                        let kept = kept(&simulation, extremes);
                         format!("; {}", keeper.write(&kept)?)
                     }
                     None => String::new(),
                 };
                 return Err(Failure::Interrupted(format!(
                     "interrupted: {}{saved}",
-                    kept()
+                    written_so_far()
                 )));
             }
-            Err(error) => return Err(verdict::lost(&simulation, &error, &kept())),
+            Err(error) => return Err(verdict::lost(&simulation, &error, &written_so_far())),
         }
         export.add(&simulation)?;
     }
     bar.clear();
     export.finish()?;
     if let Some(keeper) = &keeper {
-        keeper.write(&Kept::new(what, &simulation, extremes))?;
+        keeper.write(&kept(&simulation, extremes))?;
     }
     let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
     if simulation.tears() > 0 && ["pc2", "glb"].iter().any(one_mesh) {
@@ -189,9 +190,17 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
 fn resume(path: &Path, options: &Simulate, run: &mut Simulation) -> Result<Kept, Failure> {
     let kept = Kept::read(path)?;
     let (solver, control) = (run.method(), run.control());
-    kept.restore(path, &options.run.what, run)?;
-    let refuse = |why: String| Err(Failure::usage(format!("{}: {why}", path.display())));
     let asked = &options.run;
+    kept.check(path, &asked.what.scene, asked.what.grid, run)?;
+    let refuse = |why: String| Err(Failure::usage(format!("{}: {why}", path.display())));
+    if let Some((row, _)) = kept.tuned.first() {
+        return refuse(format!(
+            "this run was tuned in the window ({row}): a3 --resume opens it there"
+        ));
+    }
+    if let Err(why) = run.restore(&kept.checkpoint) {
+        return refuse(why.to_string());
+    }
     if asked.solver.is_some() && solver.name != run.method().name
         || asked.step.is_some() && control != run.control()
     {
@@ -233,7 +242,7 @@ fn check(simulation: &Simulation, wanted: bool) -> Result<(), String> {
 
 /// What an interrupted run has written: a file is complete or absent, and so is each file of a
 /// sequence.
-fn kept(path: &Path, done: usize, count: usize) -> String {
+fn written_of(path: &Path, done: usize, count: usize) -> String {
     if Sequence::of(path).is_some() && done > 0 {
         format!("{} has the first {done} of {count} frames", path.display())
     } else {

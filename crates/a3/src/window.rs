@@ -6,11 +6,14 @@ use crate::app::{self, End};
 use crate::cli::{Compare, WindowOptions};
 use crate::failure::Failure;
 use crate::session::Session;
-use crate::{headless, setup, show};
+use crate::{headless, keep, setup, show};
 
 /// Opens the window on one run.
 pub fn run(options: &WindowOptions) -> Result<(), Failure> {
-    let session = setup::window(options)?;
+    let mut session = setup::window(options)?;
+    if let Some(path) = &options.resume {
+        keep::take_up(&mut session, path)?;
+    }
     if let Some(i) = options.springs_of {
         print!("{}", show::list_springs_of(session.first(), i));
     }

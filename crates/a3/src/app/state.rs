@@ -13,6 +13,7 @@ use super::pointer::Mouse;
 use super::status::Status;
 use super::watch::Watch;
 use crate::failure::Failure;
+use crate::keep;
 use crate::session::{Action, Session};
 
 /// The window, from the first event to the last.
@@ -131,6 +132,26 @@ impl App {
                     Err(failure) => failure.message(),
                 };
                 self.session.say(message);
+            }
+            Action::Keep => {
+                let at = self.pointed();
+                let message = match keep::keep(&mut self.session, at) {
+                    Ok(path) => format!("kept in {}", path.display()),
+                    Err(failure) => failure.message(),
+                };
+                self.session.say(message);
+            }
+            Action::TakeUp => {
+                self.mouse.let_go();
+                let message = match self.session.kept.clone() {
+                    None => "Nothing was kept: k keeps the run in a file.".into(),
+                    Some(path) => match keep::take_up(&mut self.session, &path) {
+                        Ok(()) => format!("loaded {}", path.display()),
+                        Err(failure) => failure.message(),
+                    },
+                };
+                self.session.say(message);
+                self.scene_changed();
             }
             action => {
                 // No steps are due for the time in which nothing moved.

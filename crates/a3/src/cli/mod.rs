@@ -109,6 +109,9 @@ pub struct WindowOptions {
     /// Load the scene's file again whenever it is saved
     #[arg(long)]
     pub watch: bool,
+    /// Go on from a checkpoint of this scene, by its solver and step
+    #[arg(long, value_name = "FILE.checkpoint", conflicts_with = "solver")]
+    pub resume: Option<PathBuf>,
 }
 
 /// How a window begins.

@@ -97,7 +97,7 @@ impl Session {
                 Err(why) => self.say(why),
             },
             Action::Help => self.readings.help = !self.readings.help,
-            Action::Picture | Action::Quit => {}
+            Action::Picture | Action::Keep | Action::TakeUp | Action::Quit => {}
         }
         false
     }

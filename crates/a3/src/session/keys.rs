@@ -24,6 +24,10 @@ pub enum Action {
     Picture,
     Panel,
     WriteScene,
+    /// Keep the run in a file.
+    Keep,
+    /// Go on from the last such file.
+    TakeUp,
     Help,
     Quit,
 }
@@ -60,6 +64,8 @@ pub static KEYS: &[Binding] = &[
     bind(&["p"], Action::Picture, "save a picture"),
     bind(&["Tab"], Action::Panel, "tune and plot"),
     bind(&["f"], Action::WriteScene, "write a scene file"),
+    bind(&["k"], Action::Keep, "keep the run in a file"),
+    bind(&["l"], Action::TakeUp, "load what was kept"),
     bind(&["h", "?"], Action::Help, "this help"),
     bind(&["Esc"], Action::Quit, "quit"),
 ];

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use a3_core::{Checkpoint, Error};
+
 use super::reference::ReferenceRun;
 use super::state::Session;
 
@@ -49,6 +51,21 @@ impl Session {
         self.readings.rewound = self.timeline.position();
         self.hide_hand();
         self.start_anew();
+    }
+
+    /// Takes the first run up where it was kept in a checkpoint. A hand lets go.
+    pub fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+        let pane = &mut self.panes[0];
+        pane.simulation.restore(checkpoint)?;
+        pane.simulation.release();
+        pane.simulation.release_obstacle();
+        pane.wanted = pane.simulation.method();
+        pane.show.clear_trail();
+        pane.forces_changed();
+        pane.restart_cost();
+        self.clear_timeline();
+        self.start_anew();
+        Ok(())
     }
 
     /// Clears the timeline, because another run begins.

@@ -1,5 +1,6 @@
 //! A session: what its runs share.
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use a3_core::Simulation;
@@ -45,6 +46,8 @@ pub struct Session {
     pub defaults: Defaults,
     /// Changes that the panel made to the scene.
     pub tuning: Tuning,
+    /// The checkpoint that was written or opened last.
+    pub kept: Option<PathBuf>,
     /// The scene that was asked for, to come back to.
     pub(super) asked: Origin,
     /// The scene that is shown.
@@ -91,6 +94,7 @@ impl Session {
             panel: PanelState::default(),
             defaults: setup.defaults,
             tuning: Tuning::of(setup.scene),
+            kept: None,
             shown: origin.clone(),
             scene_number: a3_scenes::SCENES
                 .iter()
@@ -115,6 +119,11 @@ impl Session {
     /// The name or the file of the scene that is shown.
     pub fn shown(&self) -> &Source {
         &self.shown.source
+    }
+
+    /// The origin of the scene that is shown.
+    pub fn origin(&self) -> &Origin {
+        &self.shown
     }
 
     /// Whether the next frame will look different by itself.

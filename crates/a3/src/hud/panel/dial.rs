@@ -83,6 +83,16 @@ impl DialScale {
         }
     }
 
+    /// The value, or the end of the scale that it is beyond.
+    pub fn within(&self, value: f64) -> f64 {
+        match self {
+            Self::Linear { from, to, .. } | Self::Log { from, to } | Self::Whole { from, to } => {
+                value.max(*from).min(*to)
+            }
+            Self::Choice(_) | Self::Switch => value,
+        }
+    }
+
     /// The next value up or down, one of those that are a step apart.
     pub fn next(&self, value: f64, up: bool, other: bool) -> f64 {
         // A value that is off a rung by rounding is on it.

@@ -18,6 +18,8 @@ pub struct Knob {
     pub name: &'static str,
     /// Whether its row stands apart from the one above it.
     pub apart: bool,
+    /// Whether it tunes the scene itself, of which a checkpoint knows nothing.
+    pub tunes: bool,
     /// The dial for a session and the number of a pane, if the knob has a meaning there.
     pub read: fn(&Session, usize) -> Option<Dial>,
     /// Sets its value in a session and the pane of that number.
@@ -32,6 +34,7 @@ const fn knob(
     Knob {
         name,
         apart: false,
+        tunes: false,
         read,
         set,
     }
@@ -45,6 +48,14 @@ const fn apart(knob: Knob) -> Knob {
     }
 }
 
+/// The knob, as one that tunes the scene itself.
+const fn tunes(knob: Knob) -> Knob {
+    Knob {
+        tunes: true,
+        ..knob
+    }
+}
+
 /// All knobs, from top to bottom.
 pub static KNOBS: &[Knob] = &[
     knob("solver", solver, |session, at, i| {
@@ -53,15 +64,15 @@ pub static KNOBS: &[Knob] = &[
     knob("step", step, |session, at, value| {
         session.set_step_of(at, value);
     }),
-    apart(knob("stiffness", stiffness, |session, _, factor| {
+    apart(tunes(knob("stiffness", stiffness, |session, _, factor| {
         session.tuning.stiffness = factor;
         set_springs(session);
-    })),
-    knob("damping", damping, |session, _, factor| {
+    }))),
+    tunes(knob("damping", damping, |session, _, factor| {
         session.tuning.damping = factor;
         set_springs(session);
-    }),
-    knob("strain limit", strain_limit, |session, _, value| {
+    })),
+    tunes(knob("strain limit", strain_limit, |session, _, value| {
         let limits: Vec<_> = own(session).into_iter().flat_map(strain_limits).collect();
         let Some(&(_, first)) = limits.first() else {
             return;
@@ -78,19 +89,19 @@ pub static KNOBS: &[Knob] = &[
                 let _ = network.set_strain_limit(particles.clone(), limit);
             }
         });
-    }),
-    knob("drag", drag, |session, _, drag| {
+    })),
+    tunes(knob("drag", drag, |session, _, drag| {
         session.adjust(|network| {
             // The value is within its scale, so it is not refused.
             let _ = network.set_drag(drag);
         });
-    }),
-    knob("gravity", gravity, |session, _, g| {
+    })),
+    tunes(knob("gravity", gravity, |session, _, g| {
         session.adjust(|network| {
             let sideways = network.gravity().unwrap_or_default();
             network.set_gravity(Vector3::new(sideways.x, -g, sideways.z));
         });
-    }),
+    })),
     apart(knob(
         "wind",
         |session, _| {
@@ -101,12 +112,12 @@ pub static KNOBS: &[Knob] = &[
             session.act(Action::Wind, at);
         },
     )),
-    knob("gusts", gusts, |session, _, factor| {
+    tunes(knob("gusts", gusts, |session, _, factor| {
         session.tuning.gusts = factor;
         if let Some(wind) = session.tuning.own.wind {
             session.change_all(|run| run.change_wind(wind.scaled(factor)));
         }
-    }),
+    })),
     knob(
         "swing",
         |session, _| {
@@ -137,7 +148,7 @@ pub static KNOBS: &[Knob] = &[
             session.act(Action::Touch, at);
         },
     ),
-    knob("sphere", sphere, |session, _, radius| {
+    tunes(knob("sphere", sphere, |session, _, radius| {
         let radii: Vec<_> = own(session).into_iter().flat_map(radii).collect();
         let Some(&(_, first)) = radii.first() else {
             return;
@@ -148,8 +159,8 @@ pub static KNOBS: &[Knob] = &[
                 let _ = network.reshape_obstacle(k, Shape::Sphere { radius });
             }
         });
-    }),
-    knob(
+    })),
+    tunes(knob(
         "floor",
         |session, _| {
             floor(own(session)?)?;
@@ -168,7 +179,7 @@ pub static KNOBS: &[Knob] = &[
                 }
             });
         },
-    ),
+    )),
     apart(knob("springs of", springs_of, |session, _, i| {
         for pane in &mut session.panes {
             pane.show.springs_of = (i >= 0.0).then_some(i as usize);
@@ -186,6 +197,30 @@ pub static KNOBS: &[Knob] = &[
         },
     ),
 ];
+
+/// What is tuned other than the scene has it, by the names of its rows.
+pub fn tuned(session: &Session) -> Vec<(String, f64)> {
+    let tuning = KNOBS.iter().filter(|knob| knob.tunes);
+    let dials = tuning.filter_map(|knob| Some((knob.name, (knob.read)(session, 0)?)));
+    let other = dials.filter(|(_, dial)| dial.value != dial.own);
+    other
+        .map(|(name, dial)| (name.into(), dial.value))
+        .collect()
+}
+
+/// Tunes a session so, and all else as the scene has it.
+pub fn tune(session: &mut Session, tuned: &[(String, f64)]) {
+    for knob in KNOBS.iter().filter(|knob| knob.tunes) {
+        let Some(dial) = (knob.read)(session, 0) else {
+            continue;
+        };
+        let value = tuned.iter().find(|(name, _)| name == knob.name);
+        let value = value.map_or(dial.own, |(_, value)| dial.scale.within(*value));
+        if value != dial.value {
+            (knob.set)(session, 0, value);
+        }
+    }
+}
 
 impl Knob {
     /// Turns the knob, if it has a meaning.

@@ -8,6 +8,7 @@ mod row;
 mod values;
 mod view;
 
+pub use knobs::{tune, tuned};
 pub use request::{PanelKey, Request, apply, press};
 pub use view::{inset, leaves, show};
 
