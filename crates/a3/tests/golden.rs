@@ -119,7 +119,9 @@ fn runs() -> Vec<Run> {
     scenes.extend(documented);
     let small = scenes.into_iter().map(|scene| (scene, None, STEPS, 1));
     let large = LARGE.into_iter().flat_map(|(scene, grid, steps)| {
-        (1..=3).map(move |threads| (scene.to_owned(), Some(grid), steps, threads))
+        [1, 2, 3, 8]
+            .into_iter()
+            .map(move |threads| (scene.to_owned(), Some(grid), steps, threads))
     });
     small
         .chain(large)

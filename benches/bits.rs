@@ -1,0 +1,54 @@
+//! Hashes of states in a build for release: those of any other build. `cargo bench --bench bits`.
+//!
+//! The expected hashes are those of the program's own test, of the built-in scenes by every method
+//! with fixed steps.
+
+use std::collections::BTreeMap;
+
+use a3_core::integrators::METHODS;
+use a3_core::{Control, Method, Scene, Simulation};
+
+const HASHES: &str = include_str!("../crates/a3/tests/golden/states.txt");
+
+/// Step (s) and end (s) of all runs.
+const STEP: f64 = 2e-3;
+const UNTIL: f64 = 300.0 * STEP;
+
+/// FNV-1a of all bits of the state after a run, or why there is none.
+fn hash(scene: &Scene, method: &'static Method) -> String {
+    let Ok(mut run) = Simulation::new(scene.clone(), method, Control::Step(STEP)) else {
+        return "refused".into();
+    };
+    if run.advance_to(UNTIL).is_err() {
+        return "lost".into();
+    }
+    let (n, velocities) = (run.particles(), run.velocities());
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    for part in [&run.state()[..3 * n], &velocities] {
+        for (i, axis) in (0..n).flat_map(|i| (0..3).map(move |axis| (i, axis))) {
+            for byte in part[axis * n + i].to_bits().to_le_bytes() {
+                hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+            }
+        }
+    }
+    format!("{hash:016x}")
+}
+
+fn main() {
+    let expected: BTreeMap<_, _> = HASHES
+        .lines()
+        .filter_map(|line| line.rsplit_once(' '))
+        .collect();
+    let mut compared = 0;
+    for entry in a3_scenes::SCENES {
+        let scene = entry.build(None).expect("a built-in scene").scene;
+        for method in METHODS.iter().filter(|method| !method.is_adaptive()) {
+            let name = format!("{} - {}", entry.name, method.letter);
+            let found = hash(&scene, method);
+            assert_eq!(expected.get(name.as_str()), Some(&found.as_str()), "{name}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 100, "{compared} runs");
+    println!("{compared} runs have the bits of any other build");
+}
