@@ -12,10 +12,10 @@ use std::time::{Duration, Instant};
 use a3_core::{Checkpoint, Grid, Simulation};
 use serde::{Deserialize, Serialize};
 
-use crate::extremes::Extremes;
 use crate::failure::Failure;
 use crate::output;
 use crate::scene_file::Source;
+use crate::summary::Extremes;
 
 /// Ending of the files.
 pub const ENDING: &str = "checkpoint";

@@ -11,7 +11,6 @@ mod choose;
 mod cli;
 mod compare;
 mod export;
-mod extremes;
 mod failure;
 mod film;
 mod frames;
@@ -31,6 +30,7 @@ mod setup;
 mod show;
 mod simulate;
 mod stability;
+mod summary;
 mod verdict;
 mod window;
 

@@ -4,62 +4,14 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use a3_core::Simulation;
-use serde::Serialize;
 
 use crate::checkpoint::{Keeper, Kept};
 use crate::cli::Simulate;
-use crate::extremes::{Energy, Extremes};
 use crate::failure::Failure;
 use crate::frames::Sequence;
 use crate::progress::{self, Bar};
+use crate::summary::{self, Extremes};
 use crate::{export, interrupt, output, setup, verdict};
-
-/// Summary of a run.
-#[derive(Serialize)]
-struct Summary {
-    scene: String,
-    solver: &'static str,
-    frames: usize,
-    /// Simulated time (s).
-    time: f64,
-    steps: u64,
-    evaluations: u64,
-    /// Total energy; none for a system without forces.
-    energy: Option<Energy>,
-    /// Energy that nothing put in, if it is much (J).
-    energy_gained: Option<f64>,
-    /// Largest length over rest length of a spring; none without springs.
-    largest_stretch: Option<f64>,
-    /// Number of springs that broke.
-    torn: usize,
-    /// What the guard of surfaces did; none where surfaces do not touch.
-    contact: Option<Contact>,
-    /// Real time (s).
-    wall_time: f64,
-}
-
-/// What the guard of surfaces did.
-#[derive(Serialize)]
-struct Contact {
-    /// Number of impulses.
-    impulses: usize,
-    /// Number of vertices whose way was cut.
-    cuts: usize,
-    /// Momentum that cuts took (N s).
-    momentum_lost: f64,
-}
-
-impl Contact {
-    fn of(simulation: &Simulation) -> Option<Self> {
-        simulation.model().network()?.contact_layer()?;
-        let guarded = simulation.guarded();
-        Some(Self {
-            impulses: guarded.impulses,
-            cuts: guarded.cuts,
-            momentum_lost: guarded.lost,
-        })
-    }
-}
 
 /// Runs the simulation and writes its files.
 pub fn run(options: &Simulate) -> Result<(), Failure> {
@@ -92,65 +44,37 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     }
     let every = Duration::from_secs_f64(options.every);
     let keeper = options.checkpoint.as_deref();
-    let mut keeper = keeper.map(|path| Keeper::new(path, every)).transpose()?;
-    if let Some(extremes) = &mut extremes {
-        extremes.look(&simulation);
-    }
+    let mut looks = Looks {
+        options,
+        extremes,
+        keeper: keeper.map(|path| Keeper::new(path, every)).transpose()?,
+        crossed: None,
+        failure: None,
+    };
     interrupt::listen();
     let bar = Bar::new(options.run.end()? - simulation.time());
-    let mut crossed = check(&simulation, options.check);
-    let what = &options.run.what;
-    let kept = |run: &Simulation, extremes| Kept::new(&what.scene, what.grid, run, extremes);
-    let mut written = Ok(());
+    let mut goes_on = looks.look(&simulation);
     for (k, time) in frames.times().enumerate() {
         let mut before = simulation.time();
         let reached = progress::march(&mut simulation, time, |simulation| {
-            if let Some(extremes) = &mut extremes {
-                extremes.look(simulation);
-            }
             bar.advance(simulation.time() - before);
             before = simulation.time();
-            if crossed.is_ok() {
-                crossed = check(simulation, options.check);
-            }
-            if let Some(keeper) = &mut keeper {
-                written = keeper.look(|| kept(simulation, extremes));
-            }
-            crossed.is_ok() && written.is_ok() && interrupt::go_on()
+            goes_on &= looks.look(simulation);
+            goes_on
         });
         if reached != Ok(true) {
             bar.clear();
-        }
-        let written_so_far = || written_of(&options.output, k, frames.count);
-        match reached {
-            Ok(true) => {}
-            Ok(false) if crossed.is_err() => {
-                let why = crossed.err().unwrap_or_default();
-                return Err(Failure::run(format!("{why}; {}", written_so_far())));
-            }
-            Ok(false) => {
-                std::mem::replace(&mut written, Ok(()))?;
-                let saved = match &keeper {
-                    Some(keeper) => {
-                        let kept = kept(&simulation, extremes);
-                        format!("; {}", keeper.write(&kept)?)
-                    }
-                    None => String::new(),
-                };
-                return Err(Failure::Interrupted(format!(
-                    "interrupted: {}{saved}",
-                    written_so_far()
-                )));
-            }
-            Err(error) => return Err(verdict::lost(&simulation, &error, &written_so_far())),
+            let written = written(&options.output, k, frames.count);
+            return Err(match reached {
+                Err(error) => verdict::lost(&simulation, &error, &written),
+                Ok(_) => looks.stopped(&simulation, &written),
+            });
         }
         export.add(&simulation)?;
     }
     bar.clear();
     export.finish()?;
-    if let Some(keeper) = &keeper {
-        keeper.write(&kept(&simulation, extremes))?;
-    }
+    looks.keep(&simulation)?;
     let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
     if simulation.tears() > 0 && ["pc2", "glb"].iter().any(one_mesh) {
         eprintln!(
@@ -160,28 +84,63 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         );
     }
     verdict::warn_of_gain(&simulation);
-    let (Some(path), Some(extremes)) = (&options.summary, extremes) else {
-        return Ok(());
-    };
-    let summary = Summary {
-        scene: simulation.scene().name.clone(),
-        solver: simulation.method().name,
-        frames: frames.count,
-        time: simulation.time(),
-        steps: simulation.steps(),
-        evaluations: simulation.work().evaluations,
-        energy: extremes.energy,
-        energy_gained: simulation.gained().map(|gain| gain.energy),
-        largest_stretch: extremes.stretch,
-        torn: simulation.tears(),
-        contact: Contact::of(&simulation),
-        wall_time: begun.elapsed().as_secs_f64(),
-    };
-    let text = serde_json::to_string_pretty(&summary).map_err(Failure::run)? + "\n";
-    if path == stdout {
-        output::say(&text)
-    } else {
-        output::write(path, text.as_bytes())
+    if let (Some(path), Some(extremes)) = (&options.summary, &looks.extremes) {
+        summary::write(path, &simulation, frames.count, extremes, begun)?;
+    }
+    Ok(())
+}
+
+/// What a run is looked at for on its way.
+struct Looks<'a> {
+    options: &'a Simulate,
+    extremes: Option<Extremes>,
+    keeper: Option<Keeper>,
+    /// What passes through what, once something does.
+    crossed: Option<String>,
+    /// Failure of a checkpoint.
+    failure: Option<Failure>,
+}
+
+impl Looks<'_> {
+    /// Looks at the run. Returns whether it may go on.
+    fn look(&mut self, run: &Simulation) -> bool {
+        if let Some(extremes) = &mut self.extremes {
+            extremes.look(run);
+        }
+        self.crossed = check(run, self.options.check).err();
+        if let Some(mut keeper) = self.keeper.take() {
+            self.failure = keeper.look(|| self.kept(run)).err();
+            self.keeper = Some(keeper);
+        }
+        self.crossed.is_none() && self.failure.is_none() && interrupt::go_on()
+    }
+
+    /// The run as it is now.
+    fn kept(&self, run: &Simulation) -> Kept {
+        let what = &self.options.run.what;
+        Kept::new(&what.scene, what.grid, run, self.extremes)
+    }
+
+    /// Writes a last checkpoint, if any are wanted. Returns a clause that says so.
+    fn keep(&self, run: &Simulation) -> Result<String, Failure> {
+        let Some(keeper) = &self.keeper else {
+            return Ok(String::new());
+        };
+        Ok(format!("; {}", keeper.write(&self.kept(run))?))
+    }
+
+    /// Why a run was stopped that has written so much.
+    fn stopped(&mut self, run: &Simulation, written: &str) -> Failure {
+        if let Some(failure) = self.failure.take() {
+            return failure;
+        }
+        if let Some(why) = &self.crossed {
+            return Failure::run(format!("{why}; {written}"));
+        }
+        match self.keep(run) {
+            Ok(kept) => Failure::Interrupted(format!("interrupted: {written}{kept}")),
+            Err(failure) => failure,
+        }
     }
 }
 
@@ -242,7 +201,7 @@ fn check(simulation: &Simulation, wanted: bool) -> Result<(), String> {
 
 /// What an interrupted run has written: a file is complete or absent, and so is each file of a
 /// sequence.
-fn written_of(path: &Path, done: usize, count: usize) -> String {
+fn written(path: &Path, done: usize, count: usize) -> String {
     if Sequence::of(path).is_some() && done > 0 {
         format!("{} has the first {done} of {count} frames", path.display())
     } else {

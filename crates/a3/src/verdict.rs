@@ -22,9 +22,9 @@ fn advice(run: &Simulation, error: &Error) -> String {
         return String::new();
     };
     match (lost.cause, lost.control) {
-        (Cause::ReadsVelocity | Cause::Squeezed { .. }, _) => String::new(),
         (Cause::StepTooSmall { .. }, _) => "; a larger tolerance may do".into(),
-        (Cause::NotFinite { .. }, Control::Tolerance(_)) => String::new(),
+        (Cause::ReadsVelocity | Cause::Squeezed { .. }, _)
+        | (Cause::NotFinite { .. }, Control::Tolerance(_)) => String::new(),
         (_, Control::Tolerance(_)) => "; a smaller tolerance may hold".into(),
         (_, Control::Step(step)) => match step_that_holds(run) {
             Some(holds) if holds < step => format!("; a step of {holds} s would have held"),

@@ -83,6 +83,8 @@ impl Watch {
         let weight =
             network.gravity().map_or(0.0, |g| g.norm()) * network.masses().iter().sum::<f64>();
         (self.disturbed, self.radius) = (false, radius);
+        // A step allocates nothing.
+        self.scratch = [(); 2].map(|()| vec![0.0; y.len()]);
         self.balance = Balance {
             time: t,
             energy: energy.total(),
@@ -212,7 +214,6 @@ fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
 
 /// Rate at which the energy of the exact motion grows at y at time t (W).
 fn power(network: &Network, t: f64, y: &[f64], [state, f]: &mut [Vec<f64>; 2]) -> f64 {
-    f.resize(y.len(), 0.0);
     network.eval_f(t, y, f);
     let mut at = |moment: f64| {
         state.clear();

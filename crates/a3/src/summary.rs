@@ -1,0 +1,126 @@
+//! The summary of a run, with the extremes on its way.
+
+use std::path::Path;
+use std::time::Instant;
+
+use a3_core::Simulation;
+use serde::{Deserialize, Serialize};
+
+use crate::failure::Failure;
+use crate::output;
+
+/// Total energy (J).
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct Energy {
+    /// At the beginning.
+    begin: f64,
+    /// At the end.
+    end: f64,
+    /// Largest distance from the energy at the beginning.
+    largest_drift: f64,
+}
+
+/// Extremes of energy and stretch.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+pub struct Extremes {
+    /// The total energy; none for a system without forces.
+    energy: Option<Energy>,
+    /// Largest length over rest length of a spring; none without springs.
+    stretch: Option<f64>,
+}
+
+impl Extremes {
+    /// Takes the values of the state as it is now.
+    pub fn look(&mut self, simulation: &Simulation) {
+        if let Some(total) = simulation.energy().map(|energy| energy.total()) {
+            let energy = self.energy.get_or_insert(Energy {
+                begin: total,
+                end: total,
+                largest_drift: 0.0,
+            });
+            energy.end = total;
+            energy.largest_drift = energy.largest_drift.max((total - energy.begin).abs());
+        }
+        if let Some(stretch) = simulation.largest_stretch() {
+            self.stretch = Some(self.stretch.map_or(stretch, |most| most.max(stretch)));
+        }
+    }
+}
+
+/// Summary of a run.
+#[derive(Serialize)]
+struct Summary {
+    scene: String,
+    solver: &'static str,
+    frames: usize,
+    /// Simulated time (s).
+    time: f64,
+    steps: u64,
+    evaluations: u64,
+    /// Total energy; none for a system without forces.
+    energy: Option<Energy>,
+    /// Energy that nothing put in, if it is much (J).
+    energy_gained: Option<f64>,
+    /// Largest length over rest length of a spring; none without springs.
+    largest_stretch: Option<f64>,
+    /// Number of springs that broke.
+    torn: usize,
+    /// What the guard of surfaces did; none where surfaces do not touch.
+    contact: Option<Contact>,
+    /// Real time (s).
+    wall_time: f64,
+}
+
+/// What the guard of surfaces did.
+#[derive(Serialize)]
+struct Contact {
+    /// Number of impulses.
+    impulses: usize,
+    /// Number of vertices whose way was cut.
+    cuts: usize,
+    /// Momentum that cuts took (N s).
+    momentum_lost: f64,
+}
+
+impl Contact {
+    fn of(simulation: &Simulation) -> Option<Self> {
+        simulation.model().network()?.contact_layer()?;
+        let guarded = simulation.guarded();
+        Some(Self {
+            impulses: guarded.impulses,
+            cuts: guarded.cuts,
+            momentum_lost: guarded.lost,
+        })
+    }
+}
+
+/// Writes the summary of a run that began then and has written so many frames: to a file, or for -
+/// to standard output.
+pub fn write(
+    path: &Path,
+    simulation: &Simulation,
+    frames: usize,
+    extremes: &Extremes,
+    begun: Instant,
+) -> Result<(), Failure> {
+    let summary = Summary {
+        scene: simulation.scene().name.clone(),
+        solver: simulation.method().name,
+        frames,
+        time: simulation.time(),
+        steps: simulation.steps(),
+        evaluations: simulation.work().evaluations,
+        energy: extremes.energy,
+        energy_gained: simulation.gained().map(|gain| gain.energy),
+        largest_stretch: extremes.stretch,
+        torn: simulation.tears(),
+        contact: Contact::of(simulation),
+        wall_time: begun.elapsed().as_secs_f64(),
+    };
+    let text = serde_json::to_string_pretty(&summary).map_err(Failure::run)? + "\n";
+    if path == Path::new("-") {
+        output::say(&text)
+    } else {
+        output::write(path, text.as_bytes())
+    }
+}
