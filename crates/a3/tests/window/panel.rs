@@ -45,3 +45,30 @@ fn tuning() {
     app.press("Escape");
     assert!(app.exit().success());
 }
+
+/// By key k, and taken up by key l and by the command line: where it was, tuned alike.
+#[test]
+fn keeping() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["r", "0.01", "--paused"]);
+    app.press(".");
+    app.expect("steps", "1");
+    app.press("k");
+    let file = folder.path().join("a3-cloth-1.checkpoint");
+    until("a checkpoint", || file.exists().then_some(()));
+    app.press(".");
+    app.expect("steps", "2");
+    app.press_for("l", "steps", "1");
+    app.press("Escape");
+    assert!(app.exit().success());
+    let again = ["--resume", "a3-cloth-1.checkpoint", "--paused"];
+    let app = App::open(&display, folder.path(), &again);
+    for (key, value) in [("solver", "rk4"), ("step", "0.01"), ("steps", "1")] {
+        assert_eq!(app.get(key), value);
+    }
+    app.press("Escape");
+    assert!(app.exit().success());
+}
