@@ -8,7 +8,7 @@ pub enum Failure {
     Usage(String),
     /// The work was possible and failed: exit code 1.
     Run(String),
-    /// The user interrupted the work: exit code 130.
+    /// A signal interrupted the work: exit code 128 and its number.
     Interrupted(String),
 }
 

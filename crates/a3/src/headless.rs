@@ -14,7 +14,9 @@ const SECONDS: u32 = 10;
 
 /// Says `why` there is no window, and does its job without one.
 pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
-    eprintln!("{why}: simulating {SECONDS} seconds without a window.");
+    output::warn(&format!(
+        "{why}: simulating {SECONDS} seconds without a window."
+    ));
     let scene = session.first().scene().name.clone();
     if session.panes.len() > 1 {
         session.run_to(f64::from(SECONDS));
@@ -29,7 +31,7 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
             compare::save(&gpu, &offscreen, &mut session, name.as_ref())?;
             output::say(&format!("picture: {name}\n"))?;
         }
-        Err(why) => eprintln!("no picture: {why}"),
+        Err(why) => output::warn(&format!("no picture: {why}")),
     }
     Ok(())
 }

@@ -75,7 +75,7 @@ fn whole(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
 }
 
 fn say(bytes: Vec<u8>) -> Result<(), Failure> {
-    output::say(&text(bytes).map_err(Failure::run)?)
+    output::send(&text(bytes).map_err(Failure::run)?)
 }
 
 /// The text of a page, in which the section that follows the options is called notes.

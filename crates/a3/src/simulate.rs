@@ -147,11 +147,11 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     export.finish()?;
     let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
     if simulation.tears() > 0 && ["pc2", "glb"].iter().any(one_mesh) {
-        eprintln!(
+        output::warn(&format!(
             "{} springs broke, but {} has one mesh for all its frames: a sequence such as torn-####.obj has the holes",
             simulation.tears(),
             options.output.display()
-        );
+        ));
     }
     let (Some(path), Some(extremes)) = (&options.summary, extremes) else {
         return Ok(());
@@ -171,7 +171,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     };
     let text = serde_json::to_string_pretty(&summary).map_err(Failure::run)? + "\n";
     if path == stdout {
-        output::say(&text)
+        output::send(&text)
     } else {
         output::write(path, text.as_bytes())
     }

@@ -6,13 +6,13 @@ use crate::app::{self, End};
 use crate::cli::{Compare, WindowOptions};
 use crate::failure::Failure;
 use crate::session::Session;
-use crate::{headless, setup, show};
+use crate::{headless, output, setup, show};
 
 /// Opens the window on one run.
 pub fn run(options: &WindowOptions) -> Result<(), Failure> {
     let session = setup::window(options)?;
     if let Some(i) = options.springs_of {
-        print!("{}", show::list_springs_of(session.first(), i));
+        output::say(&show::list_springs_of(session.first(), i))?;
     }
     let files = if options.watch {
         options.what.scene.files()
