@@ -113,6 +113,10 @@ fn end() -> ! {
     while !words.is_finished() && begun.elapsed() < LAST_WORDS {
         thread::sleep(Duration::from_millis(1));
     }
+    // Drivers of the GPU that are at work in other threads would crash in their exit handlers.
+    #[cfg(unix)]
+    signal_hook::low_level::exit(i32::from(exit_code()));
+    #[cfg(not(unix))]
     std::process::exit(i32::from(exit_code()))
 }
 
