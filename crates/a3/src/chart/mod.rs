@@ -3,8 +3,10 @@
 pub mod data;
 pub mod measure;
 mod picture;
+mod record;
 pub mod style;
 mod table;
+mod text;
 
 use std::path::{Path, PathBuf};
 

@@ -194,7 +194,8 @@ pub struct Scratch(File);
 impl Scratch {
     /// A file in the folder of `path`.
     pub fn new(path: &Path) -> Result<Self, Failure> {
-        let file = resolve(path).and_then(|path| tempfile::tempfile_in(folder(&path)));
+        let make = || tempfile::tempfile_in(folder(&resolve(path)?));
+        let file = fault::point().and_then(|()| make());
         file.map(Self).map_err(|e| not_written(path, &e))
     }
 

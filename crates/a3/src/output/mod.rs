@@ -15,7 +15,7 @@ use crate::failure::Failure;
 
 pub use apart::{files_read, is_read, refuse_read};
 pub use draft::{Draft, Scratch};
-pub use place::not_written;
+pub use place::{lock, not_written};
 pub use terminal::{said, say, send, warn};
 
 /// `Ok` if the path has one of the extensions, its folder exists, and the file may be written:

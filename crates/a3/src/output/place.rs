@@ -1,6 +1,6 @@
 //! Where a file is written: the end of all links, in a folder that is there, unless protected.
 
-use std::fs::{self, Metadata};
+use std::fs::{self, File, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -41,6 +41,13 @@ pub fn there(place: &Path) -> io::Result<Option<Metadata>> {
         Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
         there => there.map(Some),
     }
+}
+
+/// Lock on the folder of a file, for as long as the value exists: what is read there can be replaced
+/// before another process that locks it too reads it. `None` where the system has no such locks.
+pub fn lock(path: &Path) -> Option<File> {
+    let folder = File::open(folder(&resolve(path).ok()?)).ok()?;
+    folder.lock().is_ok().then_some(folder)
 }
 
 /// `Ok` if a file may be written to the path, as far as can be told before.

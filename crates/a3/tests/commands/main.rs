@@ -7,13 +7,19 @@ mod choices;
 #[path = "../common/mod.rs"]
 mod common;
 mod exports;
+#[cfg(unix)]
+mod faults;
 mod films;
 #[cfg(unix)]
 mod hand_in;
 mod help;
 mod manual;
+#[cfg(unix)]
+mod outputs;
 mod pictures;
 mod scene_files;
+#[cfg(unix)]
+mod signals;
 mod states;
 mod usage;
 
