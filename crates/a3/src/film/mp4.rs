@@ -110,6 +110,7 @@ impl Mp4 {
         let first = said.lines().find(|line| !line.trim().is_empty());
         let why = match (first.filter(|_| read.is_ok()), status) {
             (Some(line), _) => line.trim().to_owned(),
+            (None, Ok(status)) if status.success() => "the film is incomplete".to_owned(),
             (None, Ok(status)) => status.to_string(),
             (None, Err(e)) => e.to_string(),
         };
@@ -133,14 +134,41 @@ impl Film for Mp4 {
 
     fn finish(mut self: Box<Self>) -> Result<(), Failure> {
         let status = self.wait();
-        match self
-            .draft
-            .take_if(|_| matches!(&status, Ok(status) if status.success()))
-        {
+        // When the disk is full, some versions of ffmpeg call a part of the file a success.
+        let succeeded = matches!(&status, Ok(status) if status.success());
+        let is_whole = |draft: &mut Draft| {
+            let path = draft.beside().filter(|_| succeeded);
+            path.is_some_and(|path| is_whole(path).unwrap_or(false))
+        };
+        match self.draft.take_if(is_whole) {
             Some(draft) => draft.place(),
             None => Err(self.complaint(status)),
         }
     }
+}
+
+/// Whether the boxes of an MP4 end where the file does, and the index of its frames is among them.
+/// A box begins with its length, in 4 bytes or, behind its name, in 8.
+fn is_whole(path: &Path) -> io::Result<bool> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    let (mut at, mut has_index) = (0, false);
+    while at < length {
+        let (mut short, mut name, mut long) = ([0; 4], [0; 4], [0; 8]);
+        file.seek(io::SeekFrom::Start(at))?;
+        file.read_exact(&mut short)?;
+        file.read_exact(&mut name)?;
+        let bytes = match u32::from_be_bytes(short) {
+            1 => {
+                file.read_exact(&mut long)?;
+                u64::from_be_bytes(long)
+            }
+            bytes => u64::from(bytes),
+        };
+        at = at.saturating_add(bytes.max(8));
+        has_index |= &name == b"moov";
+    }
+    Ok(at == length && has_index)
 }
 
 impl Drop for Mp4 {
