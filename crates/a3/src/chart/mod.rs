@@ -8,7 +8,7 @@ pub mod style;
 mod table;
 mod text;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use a3_core::accuracy::{Horizon, Metric, Scope, horizon};
 use a3_core::{Method, Scene, integrators};
@@ -28,7 +28,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     let methods = methods(&scene, &options.solvers)?;
     let path = match &options.output {
         Some(path) => path.clone(),
-        None => PathBuf::from(format!("a3-chart-{}.svg", scene.name)),
+        None => format!("a3-chart-{}.svg", output::part_of_name(&scene.name)).into(),
     };
     output::check(&path, &["svg", "png"])?;
     let metric = metric(options.error, &scene)?;

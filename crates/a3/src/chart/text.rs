@@ -28,13 +28,13 @@ pub fn write(records: &[Record], json: bool) -> Result<String, String> {
             let line = serde_json::to_string(record).map_err(|e| e.to_string())?;
             let open = line.strip_suffix('}').unwrap_or(&line);
             text += if k == 0 { "[\n" } else { "\"},\n" };
-            text += &format!("{open},\"{CHECK}\":\"");
+            text.extend([open, ",\"", CHECK, "\":\""]);
         } else {
             let lines = csv_lines(record, k == 0)?;
             if let Some((head, line)) = lines.split_once('\n').filter(|_| k == 0) {
-                text += &format!("{head},{CHECK}\n{line},");
+                text.extend([head, ",", CHECK, "\n", line, ","]);
             } else {
-                text += &format!("\n{lines},");
+                text.extend(["\n", &lines, ","]);
             }
         }
         sum.update(&text.as_bytes()[summed..]);

@@ -57,7 +57,7 @@ pub fn free_picture_name(scene: &str) -> Result<String, Failure> {
 /// The first of the names a3-SCENE-1, a3-SCENE-2, ... with an extension that is free in the folder.
 pub fn free_name(folder: &Path, scene: &str, extension: &str) -> Result<PathBuf, Failure> {
     (1..=9999)
-        .map(|k| folder.join(format!("a3-{scene}-{k}.{extension}")))
+        .map(|k| folder.join(format!("a3-{}-{k}.{extension}", part_of_name(scene))))
         // A link that leads nowhere takes a name too.
         .find(|path| fs::symlink_metadata(path).is_err())
         .ok_or_else(|| {
@@ -65,6 +65,12 @@ pub fn free_name(folder: &Path, scene: &str, extension: &str) -> Result<PathBuf,
                 "there are 9999 files a3-{scene}-*.{extension} already"
             ))
         })
+}
+
+/// The name of a scene as a part of the name of a file: without what leads to another folder, or
+/// cannot be seen.
+pub fn part_of_name(scene: &str) -> String {
+    scene.replace(|c: char| c.is_control() || "/\\".contains(c), "-")
 }
 
 /// Writes `bytes` to `path`.

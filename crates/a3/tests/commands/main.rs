@@ -6,6 +6,8 @@ mod charts;
 mod choices;
 #[path = "../common/mod.rs"]
 mod common;
+#[cfg(unix)]
+mod endings;
 mod exports;
 #[cfg(unix)]
 mod faults;

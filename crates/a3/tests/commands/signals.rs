@@ -24,9 +24,9 @@ fn names(folder: &Path) -> Vec<String> {
 fn begin(folder: &Path, words: &[&str]) -> Child {
     let mut child = command(folder, words).spawn().unwrap();
     let begun = Instant::now();
-    while !names(folder).iter().any(|name| name.ends_with(".tmp")) {
+    while !names(folder).iter().any(|name| name.starts_with(".a3-")) {
         assert!(child.try_wait().unwrap().is_none(), "it ended before");
-        assert!(begun.elapsed() < Duration::from_secs(60));
+        assert!(begun.elapsed() < Duration::from_mins(1));
         std::thread::sleep(Duration::from_millis(1));
     }
     child
