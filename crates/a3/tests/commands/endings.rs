@@ -1,5 +1,6 @@
 //! How the program ends: its exit codes, as the manual lists them, and its last words.
 
+use std::fmt::Write;
 use std::fs;
 use std::process::Stdio;
 
@@ -79,22 +80,18 @@ fn every_exit_code_is_in_the_manual_and_is_used() {
 fn nothing_from_a_file_or_a_name_moves_the_cursor() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("tricky.toml");
-    let name: String = TRICKS
-        .chars()
-        .map(|c| format!("\\u{:04x}", u32::from(c)))
-        .collect();
-    let body = "[[cloth]]\ngrid = [3, 3]\nwidth = 1\nmass = 0.01\nstiffness = [20, 10, 5]\n";
+    let mut name = String::new();
+    for c in TRICKS.chars() {
+        write!(name, "\\u{:04x}", u32::from(c)).unwrap();
+    }
+    let body = "gravity = [0, -9.81, 0]\n[[cloth]]\ngrid = [3, 3]\nwidth = 1\nmass = 0.01\nstiffness = [20, 10, 5]\npin = [{ at = [\"top\"] }]\n";
     let scene = format!("name = \"{name}/..\"\nsummary = \"{name}\"\n{body}");
     fs::write(&path, &scene).unwrap();
     let tricky = ["--scene", "tricky.toml"];
     let no_folder = format!("{TRICKS}/x.json");
     let quoted = format!("'{TRICKS}'\n{}", "long ".repeat(10_000));
     for words in [
-        [
-            &["stability", "--solvers", "r", "--step", "0.01"][..],
-            &tricky,
-        ]
-        .concat(),
+        [&["chart", "--solvers", "r", "--until", "0.1"][..], &tricky].concat(),
         [&["r", "0.01"][..], &tricky].concat(),
         [&["r", "0.01", "--springs-of", "0"][..], &tricky].concat(),
         [&["v", "0.01", "--wind"][..], &tricky].concat(),
@@ -118,7 +115,7 @@ fn nothing_from_a_file_or_a_name_moves_the_cursor() {
     // The chart has a name in this folder.
     let charts = fs::read_dir(folder.path()).unwrap().filter(|entry| {
         let name = entry.as_ref().unwrap().file_name().into_string().unwrap();
-        name.starts_with("a3-stability-") && !name.contains(char::is_control)
+        name.starts_with("a3-chart-") && !name.contains(char::is_control)
     });
     assert_eq!(charts.count(), 1);
     // Data stay as they are, and a name adds no line to them.
