@@ -5,8 +5,9 @@ use std::io::{self, IsTerminal, Write};
 
 use crate::failure::Failure;
 
-/// The most characters of a message, and how many of them are its end if it is shortened.
-const LONGEST: (usize, usize) = (1200, 300);
+/// The most characters of a message, and of a word in it.
+const LONGEST: usize = 1200;
+const LONGEST_WORD: usize = 160;
 
 /// Writes words to standard output.
 pub fn say(text: &str) -> Result<(), Failure> {
@@ -51,14 +52,23 @@ pub fn warn(message: &str) {
 /// A message in one line of limited length, in which every character can be seen.
 fn one_line(message: &str) -> String {
     let shown = printable(message).replace('\n', "\\n").replace('\t', "\\t");
-    let (most, end) = LONGEST;
-    let count = shown.chars().count();
+    let words: Vec<_> = shown
+        .split(' ')
+        .map(|word| shortened(word, LONGEST_WORD))
+        .collect();
+    shortened(&words.join(" "), LONGEST)
+}
+
+/// The text, of which the middle is left out if it has more than `most` characters.
+fn shortened(text: &str, most: usize) -> String {
+    let count = text.chars().count();
     if count <= most {
-        return shown;
+        return text.into();
     }
-    let begin = shown.chars().take(most - end - 5);
-    let end = shown.chars().skip(count - end);
-    begin.chain(" ... ".chars()).chain(end).collect()
+    let end = most / 4;
+    let begin = text.chars().take(most - end - 3);
+    let end = text.chars().skip(count - end);
+    begin.chain("...".chars()).chain(end).collect()
 }
 
 /// The text with its control characters, and all others that cannot be seen, as escapes.
@@ -97,11 +107,12 @@ mod tests {
 
     #[test]
     fn a_long_message_keeps_its_beginning_and_its_end() {
-        let line = one_line(&format!("x.toml:3: {} is too long", "é".repeat(100_000)));
-        assert_eq!(line.chars().count(), LONGEST.0);
-        assert!(
-            line.starts_with("x.toml:3: é") && line.ends_with("é is too long"),
-            "{line}"
-        );
+        for (value, length) in [("é", LONGEST_WORD + 22), ("é ", LONGEST)] {
+            let line = format!("x.toml:3: {}é is too long", value.repeat(100_000));
+            let line = one_line(&line);
+            assert_eq!(line.chars().count(), length);
+            assert!(line.starts_with("x.toml:3: é"), "{line}");
+            assert!(line.ends_with("é is too long"), "{line}");
+        }
     }
 }
