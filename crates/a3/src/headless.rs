@@ -27,9 +27,9 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     match pollster::block_on(Gpu::headless()) {
         Ok(gpu) => {
             let offscreen = Offscreen::new(&gpu, SIZE).map_err(Failure::run)?;
-            let name = output::free_picture_name(&scene)?;
-            compare::save(&gpu, &offscreen, &mut session, name.as_ref())?;
-            output::say(&format!("picture: {name}\n"))?;
+            let picture = compare::picture(&gpu, &offscreen, &mut session)?;
+            let path = output::write_new("".as_ref(), &scene, "png", &picture)?;
+            output::say(&format!("picture: {}\n", path.display()))?;
         }
         Err(why) => output::warn(&format!("no picture: {why}")),
     }

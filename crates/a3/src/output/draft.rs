@@ -23,6 +23,9 @@ pub struct Draft {
     file: BufWriter<Sink>,
 }
 
+/// How a temporary file gets the name of its place.
+type Rename = fn(NamedTempFile, PathBuf) -> Result<File, tempfile::PersistError>;
+
 /// Where a draft is written.
 enum Sink {
     /// A temporary file, and the place to which it will go.
@@ -71,13 +74,24 @@ impl Draft {
 
     /// Puts the complete file in its place.
     pub fn place(self) -> Result<(), Failure> {
-        let path = self.path;
-        let placed = self
-            .file
-            .into_inner()
+        self.put(NamedTempFile::persist).map(drop)
+    }
+
+    /// Puts the complete file in its place, if there is nothing. Returns whether there was nothing.
+    pub fn place_new(self) -> Result<bool, Failure> {
+        self.put(NamedTempFile::persist_noclobber)
+    }
+
+    fn put(self, rename: Rename) -> Result<bool, Failure> {
+        let sink = self.file.into_inner();
+        match sink
             .map_err(io::IntoInnerError::into_error)
-            .and_then(Sink::place);
-        placed.map_err(|e| not_written(&path, &e))
+            .and_then(|sink| sink.place(rename))
+        {
+            Ok(()) => Ok(true),
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+            Err(e) => Err(not_written(&self.path, &e)),
+        }
     }
 
     /// The failure of a write.
@@ -117,7 +131,7 @@ impl Sink {
     }
 
     /// Puts the complete file in its place, where it stays even if the power fails.
-    fn place(self) -> io::Result<()> {
+    fn place(self, rename: Rename) -> io::Result<()> {
         let Self::Beside { file, target, .. } = self else {
             return Ok(());
         };
@@ -125,7 +139,7 @@ impl Sink {
         file.as_file().sync_all()?;
         fault::point()?;
         let folder = folder(&target);
-        file.persist(target).map_err(|e| e.error)?;
+        rename(file, target).map_err(|e| e.error)?;
         fault::point()?;
         sync(&folder)
     }

@@ -18,6 +18,9 @@ pub use draft::{Draft, Scratch};
 pub use place::{lock, not_written};
 pub use terminal::{said, say, send, warn};
 
+/// Most numbered names of one scene.
+const MOST_NAMES: usize = 9999;
+
 /// `Ok` if the path has one of the extensions, its folder exists, and the file may be written:
 /// it is not protected, and the command neither reads it nor writes it for another purpose.
 /// Commands check each output once, before they work.
@@ -49,22 +52,31 @@ pub fn ends_in(path: &Path, extension: &str) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
-/// The first of the names a3-SCENE-1.png, a3-SCENE-2.png, ... that is free.
-pub fn free_picture_name(scene: &str) -> Result<String, Failure> {
-    free_name("".as_ref(), scene, "png").map(|path| path.to_string_lossy().into_owned())
-}
-
-/// The first of the names a3-SCENE-1, a3-SCENE-2, ... with an extension that is free in the folder.
-pub fn free_name(folder: &Path, scene: &str, extension: &str) -> Result<PathBuf, Failure> {
-    (1..=9999)
-        .map(|k| folder.join(format!("a3-{}-{k}.{extension}", part_of_name(scene))))
+/// Writes `bytes` to the first of the names a3-SCENE-1, a3-SCENE-2, ... with an extension that is
+/// free in the folder, and returns it.
+pub fn write_new(
+    folder: &Path,
+    scene: &str,
+    extension: &str,
+    bytes: &[u8],
+) -> Result<PathBuf, Failure> {
+    let scene = part_of_name(scene);
+    for k in 1..=MOST_NAMES {
+        let path = folder.join(format!("a3-{scene}-{k}.{extension}"));
         // A link that leads nowhere takes a name too.
-        .find(|path| fs::symlink_metadata(path).is_err())
-        .ok_or_else(|| {
-            Failure::run(format!(
-                "there are 9999 files a3-{scene}-*.{extension} already"
-            ))
-        })
+        if fs::symlink_metadata(&path).is_ok() {
+            continue;
+        }
+        let mut draft = Draft::new(&path)?;
+        draft.write_all(bytes).map_err(|e| draft.failure(&e))?;
+        // Another run may have taken the name meanwhile.
+        if draft.place_new()? {
+            return Ok(path);
+        }
+    }
+    Err(Failure::run(format!(
+        "there are {MOST_NAMES} files a3-{scene}-*.{extension} already"
+    )))
 }
 
 /// The name of a scene as a part of the name of a file: without what leads to another folder, or
