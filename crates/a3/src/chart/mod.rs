@@ -85,9 +85,12 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     let chart = picture::chart(&studies, &data, &methods, metric, timed, &options.what);
     let figure = chart
         .draw(f64::from(options.size.0), f64::from(options.size.1))
-        .map_err(|why| match complete {
-            true => Failure::usage(why),
-            false => Failure::Interrupted(format!("interrupted: {why}")),
+        .map_err(|why| {
+            if complete {
+                Failure::usage(why)
+            } else {
+                Failure::Interrupted(format!("interrupted: {why}"))
+            }
         })?;
     write_picture(&path, &figure)?;
     output::say(&format!("chart: {}\n", path.display()))?;

@@ -231,3 +231,24 @@ impl Write for Scratch {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of two runs that found the same name free, one takes it, and the other sees that.
+    #[test]
+    fn a_name_is_taken_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.png");
+        let drafts = [b"first", b"other"].map(|bytes| {
+            let mut draft = Draft::new(&path).ok().unwrap();
+            draft.write_all(bytes).unwrap();
+            draft
+        });
+        let taken = drafts.map(|draft| draft.place_new().ok().unwrap());
+        assert_eq!(taken, [true, false]);
+        assert_eq!(fs::read(&path).unwrap(), b"first");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

@@ -200,24 +200,6 @@ fn two_charts_keep_the_runs_of_both() {
     );
 }
 
-/// Runs that end at the same moment leave a picture each.
-#[test]
-fn no_run_takes_the_name_of_another() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = || command(folder.path(), &["r", "0.05", "--scene", "simple"]).spawn();
-    let children: Vec<_> = (0..4).map(|_| run().unwrap()).collect();
-    for child in children {
-        let output = child.wait_with_output().unwrap();
-        assert!(output.status.success());
-        if crate::common::gpu_is_missing(&output) {
-            return;
-        }
-    }
-    let names = contents(folder.path()).into_iter().map(|(name, _)| name);
-    let pictures = names.filter(|name| name.starts_with("a3-simple-"));
-    assert_eq!(pictures.count(), 4);
-}
-
 /// At a limit for the size of files, every format says which file and why.
 #[test]
 fn a_limit_is_named_by_every_format() {
