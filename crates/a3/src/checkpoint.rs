@@ -66,7 +66,8 @@ impl Kept {
         output::write(path, &self.bytes()?)
     }
 
-    fn bytes(&self) -> Result<Vec<u8>, Failure> {
+    /// The bytes of the file.
+    pub fn bytes(&self) -> Result<Vec<u8>, Failure> {
         let bytes = [TITLE, VERSION.as_bytes(), b"\n"].concat();
         let mut bytes = postcard::to_extend(self, bytes).map_err(Failure::run)?;
         bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
@@ -168,6 +169,13 @@ impl Keeper {
     /// A file that is written when so much real time has passed since the last time.
     pub fn new(path: &Path, every: Duration) -> Result<Self, Failure> {
         output::check(path, &[ENDING])?;
+        // Nothing else is overwritten, whatever its name is.
+        if path.is_file() && !bytes_of(path).is_ok_and(|bytes| bytes.starts_with(TITLE)) {
+            return Err(Failure::usage(format!(
+                "{}: this is no checkpoint of a3, and would be overwritten: give another name",
+                path.display()
+            )));
+        }
         Ok(Self {
             path: path.into(),
             every,

@@ -1,7 +1,5 @@
 //! `a3 compare` with `--output`: several methods side by side in a picture.
 
-use std::path::Path;
-
 use a3_render::{Gpu, Offscreen};
 
 use crate::cli::Compare;
@@ -30,7 +28,7 @@ pub fn run(options: &Compare) -> Result<(), Failure> {
     let offscreen = Offscreen::new(&gpu, options.size.unwrap_or(SIZE)).map_err(Failure::usage)?;
     session.run_to(until);
     output::say(&table(&session))?;
-    save(&gpu, &offscreen, &mut session, path)
+    output::write(path, &picture(&gpu, &offscreen, &mut session)?)
 }
 
 /// A table of the methods: what the picture says about each.
@@ -64,17 +62,16 @@ fn line(pane: &Pane) -> String {
     )
 }
 
-/// Writes a picture of the session as it is now.
-pub fn save(
+/// A picture of the session as it is now, as PNG.
+pub fn picture(
     gpu: &Gpu,
     offscreen: &Offscreen,
     session: &mut Session,
-    path: &Path,
-) -> Result<(), Failure> {
+) -> Result<Vec<u8>, Failure> {
     let size = offscreen.size();
     // Text does not shrink with the picture: it could not be read.
     let scale = painter::scale(size).max(1.0);
     let (panes, readings) = (&mut session.panes, &session.readings);
     let pixels = hud::draw(gpu, offscreen, panes, session.camera, scale, readings)?;
-    output::write(path, &output::png(&pixels, size)?)
+    output::png(&pixels, size)
 }

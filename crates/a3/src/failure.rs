@@ -2,13 +2,34 @@
 
 use std::fmt::Display;
 
+/// Exit codes, and what each says.
+pub const EXIT_CODES: [(&str, &str); 6] = [
+    (
+        "0",
+        "All that was asked for is done. Without a display, the window's job was done without one.",
+    ),
+    (
+        "1",
+        "The work failed: a run blew up, surfaces passed through one another under --check, a file could not be \
+         written, or there is no graphics adapter to draw with.",
+    ),
+    (
+        "2",
+        "The request cannot be met: something is wrong with the command line, a scene file, a mesh or the data of a \
+         chart. Nothing was done.",
+    ),
+    ("129", "SIGHUP ended the work: the terminal was closed."),
+    ("130", "SIGINT ended the work: Ctrl-C."),
+    ("143", "SIGTERM ended the work."),
+];
+
 /// The reason why a command failed, by who can help it.
 pub enum Failure {
     /// The command line asks for something impossible: exit code 2.
     Usage(String),
     /// The work was possible and failed: exit code 1.
     Run(String),
-    /// The user interrupted the work: exit code 130.
+    /// A signal interrupted the work: exit code 128 and its number.
     Interrupted(String),
 }
 

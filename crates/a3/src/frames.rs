@@ -1,9 +1,10 @@
 //! The times of frames, and the names of numbered files.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
+use crate::output;
 
 /// Most frames of a run. More are taken for a mistake.
 const MOST: f64 = 1e6;
@@ -95,6 +96,16 @@ impl Sequence {
             return Err(Failure::usage(
                 "the # of a sequence must be side by side, as in cloth-####.png",
             ));
+        }
+        let number = |name: &OsStr| -> Option<usize> {
+            let name = name.to_str()?.strip_prefix(&*self.before)?;
+            name.strip_suffix(&*self.after)?.parse().ok()
+        };
+        for read in output::files_read() {
+            let name = read.file_name().and_then(number);
+            if let Some(k) = name.filter(|k| (1..=count).contains(k)) {
+                output::refuse_read(&self.file(k - 1))?;
+            }
         }
         let needed = count.to_string().len();
         if needed > self.digits {

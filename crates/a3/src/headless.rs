@@ -14,7 +14,9 @@ const SECONDS: u32 = 10;
 
 /// Says `why` there is no window, and does its job without one.
 pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
-    eprintln!("{why}: simulating {SECONDS} seconds without a window.");
+    output::warn(&format!(
+        "{why}: simulating {SECONDS} seconds without a window."
+    ));
     let scene = session.first().scene().name.clone();
     if session.panes.len() > 1 {
         session.run_to(f64::from(SECONDS));
@@ -25,11 +27,11 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     match pollster::block_on(Gpu::headless()) {
         Ok(gpu) => {
             let offscreen = Offscreen::new(&gpu, SIZE).map_err(Failure::run)?;
-            let name = output::free_picture_name(&scene)?;
-            compare::save(&gpu, &offscreen, &mut session, name.as_ref())?;
-            output::say(&format!("picture: {name}\n"))?;
+            let picture = compare::picture(&gpu, &offscreen, &mut session)?;
+            let path = output::write_new("".as_ref(), &scene, "png", &picture)?;
+            output::say(&format!("picture: {}\n", path.display()))?;
         }
-        Err(why) => eprintln!("no picture: {why}"),
+        Err(why) => output::warn(&format!("no picture: {why}")),
     }
     Ok(())
 }

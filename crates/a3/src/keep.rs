@@ -15,10 +15,10 @@ pub fn keep(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
     let run = &session.panes[at.min(session.panes.len() - 1)].simulation;
     let origin = session.origin();
     let folder = origin.source.path.as_deref().and_then(Path::parent);
-    let path = output::free_name(folder.unwrap_or("".as_ref()), &run.scene().name, ENDING)?;
     let mut kept = Kept::new(&origin.source, origin.grid, run, None);
     kept.tuned = panel::tuned(session);
-    kept.write(&path)?;
+    let folder = folder.unwrap_or("".as_ref());
+    let path = output::write_new(folder, &run.scene().name, ENDING, &kept.bytes()?)?;
     session.kept = Some(path.clone());
     Ok(path)
 }

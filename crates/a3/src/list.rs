@@ -41,10 +41,10 @@ pub fn table(rows: &[Vec<String>]) -> String {
 /// Lists the scenes, or prints the file of one or the schema.
 pub fn scenes(options: &Scenes) -> Result<(), Failure> {
     if let Some(source) = &options.print {
-        return output::say(source.text());
+        return output::send(source.text());
     }
     if options.schema {
-        return output::say(&(Description::schema() + "\n"));
+        return output::send(&(Description::schema() + "\n"));
     }
     let heading = [
         "scene",

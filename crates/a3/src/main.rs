@@ -41,6 +41,7 @@ use cli::{Cli, Command};
 use failure::Failure;
 
 fn main() -> ExitCode {
+    interrupt::start();
     let result = match Cli::try_parse() {
         Ok(cli) => match cli.command {
             None => window::run(&cli.window),
@@ -65,10 +66,10 @@ fn main() -> ExitCode {
         Err(Failure::Usage(why)) => (why, 2),
         Err(Failure::Run(why)) => (why, 1),
         Err(Failure::Interrupted(why)) => {
-            eprintln!("{why}");
-            return ExitCode::from(interrupt::EXIT_CODE);
+            output::warn(&why);
+            return ExitCode::from(interrupt::exit_code());
         }
     };
-    eprintln!("error: {why}");
+    output::warn(&format!("error: {why}"));
     ExitCode::from(code)
 }

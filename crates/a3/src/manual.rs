@@ -8,7 +8,7 @@ use clap_complete::Shell;
 use clap_mangen::Man;
 
 use crate::cli::Cli;
-use crate::failure::Failure;
+use crate::failure::{EXIT_CODES, Failure};
 use crate::output;
 
 /// Prints a script by which the shell completes words.
@@ -35,6 +35,7 @@ pub fn run(folder: Option<&Path>) -> Result<(), Failure> {
     for command in [&command].into_iter().chain(command.get_subcommands()) {
         let (man, mut page) = (Man::new(command.clone()), vec![]);
         man.render(&mut page).map_err(Failure::run)?;
+        exit_status(&mut page);
         let page = text(page).map_err(Failure::run)?;
         output::write(&folder.join(man.get_filename()), page.as_bytes())?;
     }
@@ -71,11 +72,22 @@ fn whole(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
         // The sections of a command stand below its name.
         page.extend(text(part)?.replace(".SH ", ".SS ").bytes());
     }
+    exit_status(page);
     man.render_version_section(page)
 }
 
+/// Writes the section of the exit codes.
+fn exit_status(page: &mut Vec<u8>) {
+    page.extend(b".SH \"EXIT STATUS\"\n");
+    for (code, meaning) in EXIT_CODES {
+        // In a manual, a hyphen that is typed has a backslash.
+        let meaning = meaning.replace('-', "\\-");
+        page.extend(format!(".TP\n\\fB{code}\\fR\n{meaning}\n").bytes());
+    }
+}
+
 fn say(bytes: Vec<u8>) -> Result<(), Failure> {
-    output::say(&text(bytes).map_err(Failure::run)?)
+    output::send(&text(bytes).map_err(Failure::run)?)
 }
 
 /// The text of a page, in which the section that follows the options is called notes.

@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 use a3_core::{Error, Simulation};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::output;
+
 /// Simulated time between two calls of `frame` (s).
 const FRAME: f64 = 1.0 / 60.0;
 
@@ -106,7 +108,7 @@ impl Bar {
 
     /// Writes a warning to stderr.
     pub fn warn(&self, line: &str) {
-        self.pause(|| eprintln!("{line}"));
+        self.pause(|| output::warn(line));
     }
 
     /// Estimates the time that is left from here on.

@@ -36,11 +36,11 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     }
     let (frames, mut export) = export::begin(options, &simulation, &presentation)?;
     if frames.first > 0 && Sequence::of(&options.output).is_none() {
-        eprintln!(
+        output::warn(&format!(
             "{} begins with frame {}, the first since the checkpoint",
             options.output.display(),
             frames.first
-        );
+        ));
     }
     let every = Duration::from_secs_f64(options.every);
     let keeper = options.checkpoint.as_deref();
@@ -77,11 +77,11 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     looks.keep(&simulation)?;
     let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
     if simulation.tears() > 0 && ["pc2", "glb"].iter().any(one_mesh) {
-        eprintln!(
+        output::warn(&format!(
             "{} springs broke, but {} has one mesh for all its frames: a sequence such as torn-####.obj has the holes",
             simulation.tears(),
             options.output.display()
-        );
+        ));
     }
     verdict::warn_of_gain(&simulation);
     if let (Some(path), Some(extremes)) = (&options.summary, &looks.extremes) {

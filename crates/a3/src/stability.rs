@@ -2,7 +2,6 @@
 //! the stability regions that explain it.
 
 use std::fmt::Write;
-use std::path::PathBuf;
 
 use a3_core::stability::{
     Edge, GROWTH, Growth, Limit, Mode, Motion, Observation, RestState, largest_step,
@@ -37,7 +36,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     let methods = methods(&scene, &options.solvers)?;
     let path = match &options.output {
         Some(path) => path.clone(),
-        None => PathBuf::from(format!("a3-stability-{}.svg", scene.name)),
+        None => format!("a3-stability-{}.svg", output::part_of_name(&scene.name)).into(),
     };
     output::check(&path, &["svg", "png"])?;
     let nothing = || Failure::Interrupted("interrupted before anything was measured".into());

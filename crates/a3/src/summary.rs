@@ -119,7 +119,7 @@ pub fn write(
     };
     let text = serde_json::to_string_pretty(&summary).map_err(Failure::run)? + "\n";
     if path == Path::new("-") {
-        output::say(&text)
+        output::send(&text)
     } else {
         output::write(path, text.as_bytes())
     }

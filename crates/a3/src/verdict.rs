@@ -4,6 +4,7 @@
 use a3_core::{Cause, Control, Error, Simulation};
 
 use crate::failure::Failure;
+use crate::output;
 use crate::session::step_that_holds;
 
 /// The failure of a run, with a clause that says what is left of it.
@@ -40,9 +41,9 @@ pub fn warn_of_gain(run: &Simulation) {
             Control::Step(step) => (format!("the step of {step} s"), "shorter"),
             Control::Tolerance(tolerance) => (format!("the tolerance of {tolerance:e}"), "smaller"),
         };
-        eprintln!(
+        output::warn(&format!(
             "warning: the run gained {:.3e} J that nothing put in, {:.1} times the energy of the scene: {what} should be {better}",
             gain.energy, gain.share
-        );
+        ));
     }
 }

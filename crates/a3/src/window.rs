@@ -6,7 +6,7 @@ use crate::app::{self, End};
 use crate::cli::{Compare, WindowOptions};
 use crate::failure::Failure;
 use crate::session::Session;
-use crate::{headless, keep, setup, show};
+use crate::{headless, keep, output, setup, show};
 
 /// Opens the window on one run.
 pub fn run(options: &WindowOptions) -> Result<(), Failure> {
@@ -15,7 +15,7 @@ pub fn run(options: &WindowOptions) -> Result<(), Failure> {
         keep::take_up(&mut session, path)?;
     }
     if let Some(i) = options.springs_of {
-        print!("{}", show::list_springs_of(session.first(), i));
+        output::say(&show::list_springs_of(session.first(), i))?;
     }
     let files = if options.watch {
         options.what.scene.files()

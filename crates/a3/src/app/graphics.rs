@@ -273,9 +273,9 @@ impl Graphics {
             self.scale(),
             &readings,
         )?;
-        let name = output::free_picture_name(&session.first().scene().name)?;
-        output::write(name.as_ref(), &output::png(&pixels, size)?)?;
-        Ok(name)
+        let scene = &session.first().scene().name;
+        let path = output::write_new("".as_ref(), scene, "png", &output::png(&pixels, size)?)?;
+        Ok(path.display().to_string())
     }
 }
 

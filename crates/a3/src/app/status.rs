@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use a3_render::Tile;
 
 use super::graphics::Graphics;
+use crate::output;
 use crate::session::{Pane, Session};
 
 /// The lines of status so far.
@@ -74,7 +75,7 @@ impl Status {
         if quiet && state == self.state {
             return;
         }
-        eprintln!(
+        output::warn(&format!(
             "status {state} time={:.4} steps={} frames={} hand={} rate={:.1} factor={:.2} \
              simulating={:.2} drawing={:.2} adapter={} panes={} hands={} solvers={} step_sizes={} times={} lost={} \
              errors={}",
@@ -96,7 +97,7 @@ impl Status {
             each(&|pane| pane
                 .error
                 .map_or("-".into(), |error| format!("{error:.3e}"))),
-        );
+        ));
         self.state = state;
         self.said = Some(now);
     }

@@ -3,10 +3,12 @@
 pub mod data;
 pub mod measure;
 mod picture;
+mod record;
 pub mod style;
 mod table;
+mod text;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use a3_core::accuracy::{Horizon, Metric, Scope, horizon};
 use a3_core::{Method, Scene, integrators};
@@ -26,7 +28,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     let methods = methods(&scene, &options.solvers)?;
     let path = match &options.output {
         Some(path) => path.clone(),
-        None => PathBuf::from(format!("a3-chart-{}.svg", scene.name)),
+        None => format!("a3-chart-{}.svg", output::part_of_name(&scene.name)).into(),
     };
     output::check(&path, &["svg", "png"])?;
     let metric = metric(options.error, &scene)?;
@@ -83,7 +85,13 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     let chart = picture::chart(&studies, &data, &methods, metric, timed, &options.what);
     let figure = chart
         .draw(f64::from(options.size.0), f64::from(options.size.1))
-        .map_err(Failure::usage)?;
+        .map_err(|why| {
+            if complete {
+                Failure::usage(why)
+            } else {
+                Failure::Interrupted(format!("interrupted: {why}"))
+            }
+        })?;
     write_picture(&path, &figure)?;
     output::say(&format!("chart: {}\n", path.display()))?;
     if complete {

@@ -51,7 +51,9 @@ impl Export for Csv {
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Result<(), Failure> {
+    fn finish(mut self: Box<Self>) -> Result<(), Failure> {
+        let flushed = self.writer.flush();
+        flushed.map_err(|e| self.writer.get_ref().failure(&e))?;
         self.writer.into_inner().map_err(Failure::run)?.place()
     }
 }

@@ -2,8 +2,7 @@
 //! every other frame a morph target, and an animation goes from one to the next. The mesh stays
 //! whole when something tears.
 
-use std::fs::File;
-use std::io::{self, Seek, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use a3_core::Simulation;
@@ -14,7 +13,7 @@ use super::geometry::{Geometry, positions};
 use super::{Export, rows};
 use crate::failure::Failure;
 use crate::frames::FrameTimes;
-use crate::output::{self, Draft};
+use crate::output::{Draft, Scratch};
 
 /// Most frames. The animation has a weight for each morph target in each frame, so that its size
 /// grows with the square of their number.
@@ -45,7 +44,7 @@ pub struct Glb {
 /// The binary chunk, which is kept in a temporary file until the length of the chunk before it is
 /// known.
 struct Binary {
-    file: io::BufWriter<File>,
+    file: io::BufWriter<Scratch>,
     /// The number of bytes so far.
     length: usize,
     views: Vec<Value>,
@@ -78,7 +77,7 @@ impl Glb {
         frames: FrameTimes,
     ) -> Result<Self, Failure> {
         let draft = Draft::new(path)?;
-        let file = output::scratch(path)?;
+        let file = Scratch::new(path)?;
         Ok(Self {
             draft,
             geometry: Geometry::of(surface, simulation),
@@ -202,8 +201,7 @@ impl Glb {
         let mut text = serde_json::to_vec(&document)?;
         text.resize(text.len().next_multiple_of(4), b' ');
         binary.file.flush()?;
-        let mut data = binary.file.get_ref();
-        data.rewind()?;
+        let mut data = binary.file.get_ref().reader()?;
         draft.write_all(b"glTF")?;
         for number in [2, 28 + text.len() + binary.length, text.len()] {
             draft.write_all(&(number as u32).to_le_bytes())?;

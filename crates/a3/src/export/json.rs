@@ -82,7 +82,7 @@ impl Export for Json {
         let state = state(simulation, &velocities);
         let Some(draft) = &mut self.draft else {
             let json = serde_json::to_string(&state).map_err(Failure::run)?;
-            return output::say(&format!("{json}\n"));
+            return output::send(&format!("{json}\n"));
         };
         let before = match (self.several, self.frames) {
             (false, _) => "",

@@ -60,7 +60,8 @@ pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -
     let geometry = Geometry::of(surface, simulation);
     let positions = positions(simulation);
     writeln!(file, "# a3: t = {} s, in m, y is up", simulation.time())?;
-    writeln!(file, "o {}", simulation.scene().name)?;
+    let name = simulation.scene().name.replace(char::is_control, " ");
+    writeln!(file, "o {name}")?;
     for [x, y, z] in &positions {
         writeln!(file, "v {x} {y} {z}")?;
     }

@@ -10,7 +10,7 @@ use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use super::Film;
 use super::palette::Palette;
 use crate::failure::Failure;
-use crate::output::Draft;
+use crate::output::{Draft, not_written};
 
 /// The shortest delay that players obey (1/100 s).
 const SHORTEST: f64 = 2.0;
@@ -53,8 +53,7 @@ impl Gif {
         };
         let (across, down) = (side(width)?, side(height)?);
         let encoder = Encoder::new(Draft::new(path)?, across, down, &[]);
-        let mut encoder = encoder
-            .map_err(|e| Failure::run(format!("{}: could not be written: {e}", path.display())))?;
+        let mut encoder = encoder.map_err(|e| not_written(path, &cause(e)))?;
         encoder
             .set_repeat(Repeat::Infinite)
             .map_err(|e| failure(&encoder, e))?;
@@ -127,7 +126,9 @@ impl Film for Gif {
     }
 
     fn finish(self: Box<Self>) -> Result<(), Failure> {
-        self.encoder.into_inner().map_err(Failure::run)?.place()
+        let path = self.encoder.get_ref().path().to_owned();
+        let draft = self.encoder.into_inner();
+        draft.map_err(|e| not_written(&path, &cause(e)))?.place()
     }
 }
 
@@ -144,11 +145,15 @@ fn bounds(pixels: impl Iterator<Item = usize>, width: usize) -> (Range<usize>, R
 
 /// The failure of a write.
 fn failure(encoder: &Encoder<Draft>, error: EncodingError) -> Failure {
-    let error = match error {
+    encoder.get_ref().failure(&cause(error))
+}
+
+/// The error behind a failed write.
+fn cause(error: EncodingError) -> io::Error {
+    match error {
         EncodingError::Io(error) => error,
         error => io::Error::other(error),
-    };
-    encoder.get_ref().failure(&error)
+    }
 }
 
 #[cfg(test)]

@@ -66,9 +66,9 @@ pub fn begin(options: &Render) -> Result<Option<TimedFilm>, Failure> {
         let frames = frames(rate)?;
         let gif = gif::Gif::new(path, size, delay, options.transparent)?;
         if (rate - asked).abs() > 1e-9 {
-            eprintln!(
+            output::warn(&format!(
                 "the delays of a GIF are whole hundredths of a second, at least 2: the film has {rate:.4} frames per second, not {asked}"
-            );
+            ));
         }
         return Ok(Some((frames, Box::new(gif))));
     }

@@ -5,6 +5,8 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
+use crate::output;
+
 /// The longest scene file (bytes).
 const LONGEST: u64 = 16 << 20;
 /// The longest line of a scene file (bytes): a longer one was not written by hand.
@@ -22,6 +24,7 @@ pub fn read(path: &Path, longest: u64) -> Result<Vec<u8>, String> {
     }
     let mut bytes = vec![];
     let file = File::open(path).map_err(|e| format!("it could not be read: {e}"))?;
+    output::is_read(path);
     file.take(longest + 1)
         .read_to_end(&mut bytes)
         .map_err(|e| format!("it could not be read: {e}"))?;
@@ -60,5 +63,15 @@ pub fn beside(scene: Option<&Path>, name: &str) -> Result<PathBuf, String> {
         ));
     }
     let folder = scene.and_then(Path::parent).unwrap_or(Path::new(""));
-    Ok(folder.join(name))
+    let path = folder.join(name);
+    if let (Ok(end), Ok(folder)) = (
+        path.canonicalize(),
+        Path::new(".").join(folder).canonicalize(),
+    ) && !end.starts_with(folder)
+    {
+        return Err(format!(
+            "`{name}` leads out of the scene's folder by a link: put the file itself there"
+        ));
+    }
+    Ok(path)
 }

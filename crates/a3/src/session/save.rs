@@ -28,9 +28,8 @@ impl Session {
         let name = &run.scene().name;
         let write = || -> Result<PathBuf, Failure> {
             let text = self.scene_text(at).map_err(Failure::run)?;
-            let path = output::free_name(folder.unwrap_or("".as_ref()), name, "toml")?;
-            output::write(&path, text.as_bytes())?;
-            Ok(path)
+            let folder = folder.unwrap_or("".as_ref());
+            output::write_new(folder, name, "toml", text.as_bytes())
         };
         write()
             .map(|path| path.display().to_string())

@@ -99,11 +99,14 @@ fn a_chart_goes_on_from_its_data() {
     let mut reader = csv::Reader::from_path(&path).unwrap();
     let headers = reader.headers().unwrap().clone();
     let mut writer = csv::Writer::from_path(folder.path().join("e.csv")).unwrap();
-    writer.write_record(&headers).unwrap();
+    // Without its checksums.
+    let count = headers.len() - 1;
+    assert_eq!(&headers[count], "check");
+    writer.write_record(headers.iter().take(count)).unwrap();
     for line in reader.records() {
         let line = line.unwrap();
         let is_verlet = line.iter().any(|cell| cell == "verlet");
-        let cells = line.iter().zip(&headers).map(|(cell, name)| {
+        let cells = line.iter().zip(&headers).take(count).map(|(cell, name)| {
             if is_verlet && name == "work" {
                 "0.125"
             } else {
@@ -287,12 +290,12 @@ fn wrong_usage_is_one_line() {
         (
             vec!["chart", "--data", "bad.csv"],
             "does not hold the data of a chart",
-            1,
+            2,
         ),
         (
             vec!["chart", "--data", "bad.json"],
             "does not hold the data of a chart",
-            1,
+            2,
         ),
         (
             vec!["chart", "--output", "no/x.svg"],

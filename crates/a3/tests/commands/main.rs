@@ -6,15 +6,23 @@ mod charts;
 mod choices;
 #[path = "../common/mod.rs"]
 mod common;
+#[cfg(unix)]
+mod endings;
 mod exports;
+#[cfg(unix)]
+mod faults;
 mod films;
 #[cfg(unix)]
 mod hand_in;
 mod help;
 mod manual;
+#[cfg(unix)]
+mod outputs;
 mod pictures;
 mod resumed;
 mod scene_files;
+#[cfg(unix)]
+mod signals;
 mod states;
 mod usage;
 

@@ -159,5 +159,13 @@ fn what_does_not_fit_is_refused_by_name() {
     scene("2");
     refused(&own, "of another scene own");
     fs::write(folder.join("c.checkpoint"), "{}").unwrap();
+    let line = complaint(
+        &a3(
+            folder,
+            &[&["simulate", "--scene", "own.toml"], &keep[..]].concat(),
+        ),
+        2,
+    );
+    assert!(line.contains("would be overwritten"), "{line}");
     refused(&own, "no checkpoint of a3");
 }

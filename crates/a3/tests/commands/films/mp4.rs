@@ -66,14 +66,26 @@ fn stand_in(folder: &Path, script: &str) {
     fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
 }
 
-/// It may fail at once or when it has everything: its last line says why.
+/// It may fail at once or when it has everything: its first line says why, and the others what came
+/// of it. It may also call a part of a film a success.
 #[test]
 #[cfg(unix)]
 fn when_ffmpeg_fails_nothing_is_left_but_its_reason() {
     let (folder, programs) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    for script in [
-        "echo first >&2; echo no such codec >&2; exit 1",
-        "cat >/dev/null; echo first >&2; echo no such codec >&2; exit 1",
+    for (script, why) in [
+        (
+            "echo no such codec >&2; echo no film >&2; exit 1",
+            "no such codec",
+        ),
+        (
+            "cat >/dev/null; echo no such codec >&2; echo no film >&2; exit 1",
+            "no such codec",
+        ),
+        ("cat >/dev/null; kill -9 $$", "signal: 9 (SIGKILL)"),
+        (
+            "cat >/dev/null; for file; do :; done; printf '\\0\\0\\0\\020ftyp' >\"${file#file:}\"",
+            "the film is incomplete",
+        ),
     ] {
         stand_in(programs.path(), script);
         let path = format!("{}:/usr/bin:/bin", programs.path().display());
@@ -84,7 +96,10 @@ fn when_ffmpeg_fails_nothing_is_left_but_its_reason() {
         if gpu_is_missing(&output) {
             return;
         }
-        assert_eq!(complaint(&output, 1), "error: ffmpeg failed: no such codec");
+        assert_eq!(
+            complaint(&output, 1),
+            format!("error: film.mp4: could not be written: ffmpeg failed: {why}")
+        );
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 }

@@ -1,0 +1,172 @@
+//! Data behind a chart as text: CSV, or a JSON array, with a line for each run. The last value of a
+//! line, `check`, is the CRC-32 of all that stands before it in the file, so that the last one tells
+//! whether any byte has changed.
+
+use super::record::Record;
+
+/// Name of the checksums.
+const CHECK: &str = "check";
+/// Number of digits of a checksum.
+const DIGITS: usize = 8;
+
+/// What stands after the last checksum.
+fn end(json: bool) -> &'static str {
+    if json { "\"}\n]\n" } else { "\n" }
+}
+
+/// A checksum in hexadecimal digits.
+fn digits(sum: u32) -> String {
+    format!("{sum:0DIGITS$x}")
+}
+
+/// The text of these runs.
+pub fn write(records: &[Record], json: bool) -> Result<String, String> {
+    let mut text = String::new();
+    let (mut sum, mut summed) = (crc32fast::Hasher::new(), 0);
+    for (k, record) in records.iter().enumerate() {
+        if json {
+            let line = serde_json::to_string(record).map_err(|e| e.to_string())?;
+            let open = line.strip_suffix('}').unwrap_or(&line);
+            text += if k == 0 { "[\n" } else { "\"},\n" };
+            text.extend([open, ",\"", CHECK, "\":\""]);
+        } else {
+            let lines = csv_lines(record, k == 0)?;
+            if let Some((head, line)) = lines.split_once('\n').filter(|_| k == 0) {
+                text.extend([head, ",", CHECK, "\n", line, ","]);
+            } else {
+                text.extend(["\n", &lines, ","]);
+            }
+        }
+        sum.update(&text.as_bytes()[summed..]);
+        summed = text.len();
+        text += &digits(sum.clone().finalize());
+    }
+    Ok(text + end(json))
+}
+
+/// The line of a run in CSV, below the names of its values if they are asked for.
+fn csv_lines(record: &Record, names: bool) -> Result<String, String> {
+    let mut writer = csv::WriterBuilder::new()
+        .has_headers(names)
+        .from_writer(vec![]);
+    writer.serialize(record).map_err(|e| e.to_string())?;
+    let bytes = writer.into_inner().map_err(|e| e.to_string())?;
+    let mut lines = String::from_utf8(bytes).map_err(|e| e.to_string())?;
+    lines.truncate(lines.trim_end_matches('\n').len());
+    Ok(lines)
+}
+
+/// The runs in a text. One that has no checksums, because an older version wrote it or somebody
+/// took them out, is believed.
+pub fn read(text: &str, json: bool) -> Result<Vec<Record>, String> {
+    let mut records: Vec<Record> = if json && !text.is_empty() {
+        serde_json::from_str(text).map_err(|e| e.to_string())?
+    } else {
+        let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize();
+        rows.collect::<Result<_, _>>().map_err(|e| e.to_string())?
+    };
+    if records.is_empty() && !text.is_empty() {
+        return Err("it has no runs".into());
+    }
+    let names_checks = !json
+        && text
+            .lines()
+            .next()
+            .is_some_and(|line| line.ends_with(CHECK));
+    if names_checks || records.iter().any(|record| !record.check.is_empty()) {
+        let open = text.strip_suffix(end(json)).unwrap_or_default();
+        let begin = open.len().saturating_sub(DIGITS);
+        if !open.is_char_boundary(begin)
+            || open[begin..] != digits(crc32fast::hash(&open.as_bytes()[..begin]))
+        {
+            return Err(format!(
+                "it is damaged, or was changed: its last checksum does not fit what stands before; without `{CHECK}` \
+                 in any line it would be believed"
+            ));
+        }
+    }
+    for record in &mut records {
+        record.check.clear();
+    }
+    Ok(records)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn records() -> Vec<Record> {
+        let record = |scene: &str, setting| Record {
+            version: "0.1.0".into(),
+            scene: scene.into(),
+            solver: "rk4".into(),
+            setting,
+            error_position: 1.234_567_890_123e-5,
+            lost_at: (setting > 0.1).then_some(0.75),
+            ..Record::default()
+        };
+        vec![
+            record("cloth", 0.01),
+            record("a, \"b\"\nc", 0.2),
+            record("é", 0.1),
+        ]
+    }
+
+    #[test]
+    fn what_was_written_is_read() {
+        for json in [false, true] {
+            for count in 1..=3 {
+                let records = &records()[..count];
+                let text = write(records, json).unwrap();
+                assert_eq!(read(&text, json).as_deref(), Ok(records), "{text}");
+                let longer = write(&[records, records].concat(), json).unwrap();
+                let kept = text.strip_suffix(end(json)).unwrap();
+                assert!(longer.starts_with(kept), "lines are only added");
+            }
+            assert_eq!(read("", json), Ok(vec![]));
+        }
+    }
+
+    /// Every byte, changed to each of several others.
+    #[test]
+    fn no_changed_byte_is_believed() {
+        for json in [false, true] {
+            let text = write(&records(), json).unwrap();
+            for at in 0..text.len() {
+                for other in [1, 2, 4, 7, 0x20, 0x80, 0xff] {
+                    let mut bytes = text.clone().into_bytes();
+                    bytes[at] ^= other;
+                    // What is no text is refused where the file is read.
+                    if let Ok(changed) = String::from_utf8(bytes) {
+                        assert!(read(&changed, json).is_err(), "byte {at}: {changed}");
+                    }
+                }
+            }
+            for length in 1..text.len() {
+                // Whole lines of CSV are what was written earlier.
+                let Some(short) = text.get(..length) else {
+                    continue;
+                };
+                if let Ok(runs) = read(short, json) {
+                    assert_eq!(write(&runs, json).as_deref(), Ok(short));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lines_without_checksums_are_believed() {
+        let text = write(&records()[..1], false).unwrap();
+        let old: Vec<_> = text
+            .lines()
+            .map(|line| line.rsplit_once(',').unwrap().0)
+            .collect();
+        assert_eq!(read(&old.join("\n"), false), Ok(records()[..1].to_vec()));
+        let (head, _) = text.split_once('\n').unwrap();
+        for other in ["buy milk", "buy,milk\n", head, "a,b\n1,2\n", "\n"] {
+            assert!(read(other, false).is_err(), "{other}");
+            assert!(read(other, true).is_err(), "{other}");
+        }
+        assert!(read("[]", true).is_err());
+    }
+}

@@ -1,0 +1,165 @@
+//! Signals: a program that is asked to end does so with 128 and the signal's number, and leaves no
+//! unfinished file.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command};
+use std::time::{Duration, Instant};
+
+use crate::common::{command, text};
+
+fn kill(child: &Child, signal: &str) {
+    let id = child.id().to_string();
+    let status = Command::new("kill").args([signal, &id]).status();
+    assert!(status.unwrap().success());
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.collect()
+}
+
+/// Starts a command and waits until it has begun its file.
+fn begin(folder: &Path, words: &[&str]) -> Child {
+    let mut child = command(folder, words).spawn().unwrap();
+    let begun = Instant::now();
+    while !names(folder).iter().any(|name| name.starts_with(".a3-")) {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before");
+        assert!(begun.elapsed() < Duration::from_mins(1));
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child
+}
+
+const EXPORT: [&str; 6] = ["simulate", "v", "0.001", "--until", "5000", "--output"];
+
+#[test]
+fn every_signal_ends_a_run_with_its_own_code() {
+    let folder = tempfile::tempdir().unwrap();
+    for (signal, code) in [("-HUP", 129), ("-INT", 130), ("-TERM", 143)] {
+        for output in ["x.csv", "x.pc2", "x.glb"] {
+            let words = [&EXPORT[..], &[output, "--fps", "0.1"]].concat();
+            let child = begin(folder.path(), &words);
+            kill(&child, signal);
+            let output = child.wait_with_output().unwrap();
+            assert_eq!(output.status.code(), Some(code), "{words:?}");
+            assert!(text(&output.stderr).starts_with("interrupted: "));
+            assert_eq!(names(folder.path()), [""; 0], "{words:?}");
+        }
+    }
+}
+
+/// A film has begun its file before it starts the adapter, in whatever time that takes.
+#[test]
+fn a_film_ends_while_it_starts() {
+    let folder = tempfile::tempdir().unwrap();
+    for output in ["x.gif", "x.mp4"] {
+        if output == "x.mp4" && crate::common::is_missing("ffmpeg") {
+            continue;
+        }
+        for milliseconds in [0, 20, 60, 120] {
+            let words = [
+                "render", "--until", "1000", "--size", "320x240", "-o", output,
+            ];
+            let child = begin(folder.path(), &words);
+            std::thread::sleep(Duration::from_millis(milliseconds));
+            kill(&child, "-TERM");
+            let ended = child.wait_with_output().unwrap();
+            if crate::common::gpu_is_missing(&ended) {
+                continue;
+            }
+            assert_eq!(ended.status.code(), Some(143), "{}", text(&ended.stderr));
+            // The frames so far are kept, if there are any.
+            let _ = fs::remove_file(folder.path().join(output));
+            assert_eq!(names(folder.path()), [""; 0], "{milliseconds} ms");
+        }
+    }
+}
+
+/// A command that does not look, because it waits for a reader that never comes, ends all the same.
+#[test]
+fn a_run_that_does_not_notice_is_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let status = Command::new("mkfifo")
+        .arg(folder.path().join("x.csv"))
+        .status();
+    assert!(status.unwrap().success());
+    let words = [
+        "chart", "--scene", "simple", "--until", "0.1", "--data", "d.csv",
+    ];
+    let data = folder.path().join("d.csv");
+    let pipe = [
+        "--output",
+        "x.svg",
+        "--solvers",
+        "r",
+        "--work",
+        "evaluations",
+    ];
+    fs::rename(folder.path().join("x.csv"), folder.path().join("x.svg")).unwrap();
+    let child = command(folder.path(), &[&words[..], &pipe].concat())
+        .spawn()
+        .unwrap();
+    while !data.exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(300));
+    let begun = Instant::now();
+    kill(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
+    assert!(begun.elapsed() < Duration::from_secs(20));
+    assert!(text(&output.stderr).contains("no unfinished file was kept"));
+}
+
+/// What `kill -9` leaves behind is deleted by the next run, and only that.
+#[test]
+fn the_next_run_sweeps_what_a_killed_one_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut killed = begin(
+        folder.path(),
+        &[&EXPORT[..], &["x.csv", "--fps", "0.1"]].concat(),
+    );
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    assert_eq!(names(folder.path()).len(), 1);
+    let other = folder.path().join("other");
+    fs::create_dir(&other).unwrap();
+    let at_work = begin(&other, &[&EXPORT[..], &["y.csv", "--fps", "0.1"]].concat());
+    let name = names(&other).remove(0);
+    fs::hard_link(other.join(&name), folder.path().join(&name)).unwrap();
+    let words = [
+        "simulate", "--scene", "simple", "--until", "1", "-o", "z.json",
+    ];
+    assert!(command(folder.path(), &words).status().unwrap().success());
+    let mut left = names(folder.path());
+    left.sort();
+    assert_eq!(left, [&name, "other", "z.json"]);
+    kill(&at_work, "-KILL");
+    at_work.wait_with_output().unwrap();
+}
+
+/// `nohup` has the last word on the signal of a terminal that is closed.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_without_a_terminal_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = env!("CARGO_BIN_EXE_a3");
+    let script =
+        format!("trap '' HUP; exec '{program}' simulate v 0.001 --until 100000 -o x.csv --fps 0.1");
+    let mut child = Command::new("sh")
+        .args(["-c", &script])
+        .current_dir(folder.path())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    while names(folder.path()).is_empty() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    kill(&child, "-HUP");
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(child.try_wait().unwrap().is_none(), "it goes on");
+    kill(&child, "-TERM");
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+}
