@@ -91,7 +91,7 @@ impl Fault {
         Self {
             line: at.map(|at| line(text, at)),
             key: key.unwrap_or_default(),
-            why: explain(error.message()),
+            why: brief(&explain(error.message())),
         }
     }
 }
@@ -151,6 +151,14 @@ fn join(first: Option<String>, rest: String) -> String {
         None => rest,
         Some(first) if rest.is_empty() => first,
         Some(first) => format!("{first}.{rest}"),
+    }
+}
+
+/// The message of a reader, which may quote a whole file, in a few lines.
+pub(crate) fn brief(message: &str) -> String {
+    match message.char_indices().nth(600) {
+        Some((end, _)) => format!("{} ...", &message[..end]),
+        None => message.into(),
     }
 }
 

@@ -1,8 +1,10 @@
 //! Scenes as JSON: a list of particles and springs, with states that the motion is known to reach.
 
-use a3_scenes::{Description, Particles, Pin};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
+
+use crate::description::{Description, Particles, Pin};
+use crate::fault::{Fault, brief};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -29,11 +31,15 @@ struct Listed {
 }
 
 /// The description of the scene in a JSON text.
-pub fn parse(text: &str) -> Result<Description, String> {
+pub(crate) fn parse(text: &str) -> Result<Description, Fault> {
     let listed: Listed = serde_json::from_str(text).map_err(|e| {
         let why = e.to_string();
         let why = why.split(" at line ").next().unwrap_or_default();
-        format!("line {}: {why}", e.line())
+        let line = Some(e.line());
+        Fault {
+            line,
+            ..Fault::new("", brief(why))
+        }
     })?;
     let pin = Pin {
         particles: listed.pinned,

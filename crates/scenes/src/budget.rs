@@ -1,0 +1,80 @@
+//! Budget of a scene: what its text and its parts may take, counted before anything is reserved.
+//! Whatever a file says, it is accepted or refused within seconds and 256 MiB.
+
+use a3_core::Grid;
+
+use crate::fault::Fault;
+
+/// Memory of the parts of a scene (bytes).
+const LARGEST: usize = 192 << 20;
+
+/// Largest number of signs in a text: a reader takes up to 200 bytes for each.
+const MOST_SIGNS: usize = 1_000_000;
+
+/// Kind of part of a scene, and the memory that one takes at most (bytes), as it was measured.
+#[derive(Clone, Copy)]
+pub(crate) struct Part(&'static str, usize);
+
+pub(crate) const PARTICLES: Part = Part("particles", 360);
+/// Particles whose surfaces touch.
+pub(crate) const TOUCHING: Part = Part("particles that touch", 2200);
+pub(crate) const SPRINGS: Part = Part("springs", 160);
+/// Springs that buckle.
+pub(crate) const STRIPS: Part = Part("springs that buckle", 200);
+pub(crate) const RODS: Part = Part("rods", 400);
+pub(crate) const PINS: Part = Part("pins", 700);
+/// Particles that are looked at to find those of a place such as `top`.
+pub(crate) const LOOKED_AT: Part = Part("particles to look at for pins", 1);
+pub(crate) const TRIANGLES: Part = Part("triangles in files", 60);
+/// Triangles of obstacles.
+pub(crate) const FACES: Part = Part("triangles of obstacles", 600);
+
+/// Memory that is left for the parts of a scene.
+pub(crate) struct Budget {
+    left: usize,
+    whole: usize,
+}
+
+impl Budget {
+    /// The budget of a scene, and of that grid besides, which the command line asks for.
+    pub fn new(grid: Option<Grid>) -> Self {
+        let each = [PARTICLES, TOUCHING, STRIPS, STRIPS, PINS].map(|Part(_, price)| price);
+        let asked = grid.map_or(0, |grid| grid.particles() * each.iter().sum::<usize>());
+        let whole = LARGEST + asked;
+        Self { left: whole, whole }
+    }
+
+    /// Takes so many parts from what is left, or is a fault of that key.
+    pub fn spend(&mut self, key: &str, count: usize, part: Part) -> Result<(), Fault> {
+        let Part(name, price) = part;
+        let bytes = count.saturating_mul(price);
+        let Some(left) = self.left.checked_sub(bytes) else {
+            let [takes, left, whole] = [bytes, self.left, self.whole].map(|bytes| bytes >> 20);
+            let why = format!(
+                "the scene would have {count} {name}, which take {takes} MiB; of the {whole} MiB \
+                 that a scene may take {left} are left"
+            );
+            return Err(Fault::new(key, why));
+        };
+        self.left = left;
+        Ok(())
+    }
+}
+
+/// `Ok` if a text has no more signs than a reader takes little memory for: commas, brackets, ends
+/// of lines and the like, and points that belong to no number.
+pub(crate) fn check_text(text: &[u8]) -> Result<(), String> {
+    let is_word = |b: u8| b.is_ascii_alphanumeric() || !b.is_ascii() || b"_+- \t\r".contains(&b);
+    let is_digit = |k: usize| text.get(k).is_some_and(u8::is_ascii_digit);
+    let is_sign = |k: usize, b: u8| match b {
+        b'.' => k == 0 || !is_digit(k - 1) || !is_digit(k + 1),
+        _ => !is_word(b),
+    };
+    let signs = text.iter().enumerate().filter(|(k, b)| is_sign(*k, **b));
+    if signs.count() > MOST_SIGNS {
+        return Err(format!(
+            "it has more than {MOST_SIGNS} commas, brackets, ends of lines and other signs"
+        ));
+    }
+    Ok(())
+}
