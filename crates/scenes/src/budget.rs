@@ -8,13 +8,14 @@ use crate::fault::Fault;
 /// Memory of the parts of a scene (bytes).
 const LARGEST: usize = 192 << 20;
 
-/// Largest number of signs in a text: a reader takes up to 200 bytes for each.
-const MOST_SIGNS: usize = 1_000_000;
+/// Largest number of signs in a text: a reader takes up to 250 bytes for each.
+const MOST_SIGNS: usize = 800_000;
 
 /// Kind of part of a scene, and the memory that one takes at most (bytes), as it was measured.
 #[derive(Clone, Copy)]
 pub(crate) struct Part(&'static str, usize);
 
+pub(crate) const BODIES: Part = Part("bodies", 50_000);
 pub(crate) const PARTICLES: Part = Part("particles", 360);
 /// Particles whose surfaces touch.
 pub(crate) const TOUCHING: Part = Part("particles that touch", 2200);
@@ -62,18 +63,30 @@ impl Budget {
 }
 
 /// `Ok` if a text has no more signs than a reader takes little memory for: commas, brackets, ends
-/// of lines and the like, and points that belong to no number.
+/// of lines and the like, and gaps between words. Points that belong to no number count eightfold,
+/// because each begins a table.
 pub(crate) fn check_text(text: &[u8]) -> Result<(), String> {
-    let is_word = |b: u8| b.is_ascii_alphanumeric() || !b.is_ascii() || b"_+- \t\r".contains(&b);
-    let is_digit = |k: usize| text.get(k).is_some_and(u8::is_ascii_digit);
-    let is_sign = |k: usize, b: u8| match b {
-        b'.' => k == 0 || !is_digit(k - 1) || !is_digit(k + 1),
-        _ => !is_word(b),
-    };
-    let signs = text.iter().enumerate().filter(|(k, b)| is_sign(*k, **b));
-    if signs.count() > MOST_SIGNS {
+    let is_word = |b: u8| b.is_ascii_alphanumeric() || !b.is_ascii() || b"_+-".contains(&b);
+    let is_digit = |b: Option<&u8>| b.is_some_and(u8::is_ascii_digit);
+    let (mut signs, mut last, mut in_number) = (0, b'\n', false);
+    for (k, &b) in text.iter().enumerate() {
+        let is_next = k > 0 && text[k - 1] == last;
+        match b {
+            b' ' | b'\t' | b'\r' => continue,
+            b'.' if is_next && is_digit(Some(&last)) && is_digit(text.get(k + 1)) && !in_number => {
+                in_number = true;
+            }
+            b'.' => signs += 8,
+            _ if !is_word(b) => (signs, in_number) = (signs + 1, false),
+            _ if !is_next && is_word(last) => (signs, in_number) = (signs + 1, false),
+            _ => {}
+        }
+        last = b;
+    }
+    if signs > MOST_SIGNS {
         return Err(format!(
-            "it has more than {MOST_SIGNS} commas, brackets, ends of lines and other signs"
+            "it is too long: it has more than {MOST_SIGNS} commas, brackets, ends of lines and \
+             other signs"
         ));
     }
     Ok(())

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 use crate::description::{Description, Particles, Pin};
-use crate::fault::{Fault, brief};
+use crate::fault::Fault;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,7 +38,7 @@ pub(crate) fn parse(text: &str) -> Result<Description, Fault> {
         let line = Some(e.line());
         Fault {
             line,
-            ..Fault::new("", brief(why))
+            ..Fault::new("", why)
         }
     })?;
     let pin = Pin {

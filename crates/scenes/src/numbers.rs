@@ -126,7 +126,10 @@ impl<'a> Serializer for &'a mut Walk {
         if within(x) {
             return Ok(());
         }
-        Err(Fault::new(self.key.join("."), format!("{BOUNDS}, not {x}")))
+        Err(Fault::new(
+            self.key.join("."),
+            format!("{BOUNDS}, not {x:e}"),
+        ))
     }
 
     fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<(), Fault> {

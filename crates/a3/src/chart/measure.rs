@@ -10,7 +10,8 @@ use a3_core::stability::{Mode, largest_step, spectrum};
 use a3_core::{Control, Method, Model, Scene, Simulation};
 
 use super::check_contact;
-use super::data::{Data, Record, VERSION};
+use super::data::{Data, VERSION};
+use super::record::Record;
 use crate::cli::What;
 use crate::failure::Failure;
 use crate::interrupt;

@@ -3,6 +3,7 @@
 pub mod data;
 pub mod measure;
 mod picture;
+pub mod record;
 pub mod style;
 mod table;
 

@@ -4,8 +4,9 @@ use a3_core::Method;
 use a3_core::accuracy::{Metric, Scope};
 use a3_plot::{Curve, Measurement, Problem, WorkPrecision};
 
-use super::data::{Data, Record};
+use super::data::Data;
 use super::measure::Study;
+use super::record::Record;
 use super::{describe, style, table, unit};
 use crate::cli::What;
 

@@ -5,8 +5,9 @@ use std::fmt::Write;
 use a3_core::accuracy::Metric;
 use a3_core::{Control, Method};
 
-use super::data::{Data, Record};
+use super::data::Data;
 use super::measure::Study;
+use super::record::Record;
 use crate::list;
 
 /// Decimal digits of the errors in the table, from 1e-2 to 1e-8.

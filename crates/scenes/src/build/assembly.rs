@@ -7,7 +7,7 @@ use a3_core::elements::{Buckling, Sheet};
 use a3_core::{Constraint, Path, Spring, Vector3};
 
 use super::pins::pins;
-use crate::budget::{Budget, PARTICLES, RODS, SPRINGS, STRIPS, TOUCHING};
+use crate::budget::{BODIES, Budget, PARTICLES, RODS, SPRINGS, STRIPS, TOUCHING};
 use crate::check::{BOUNDS, within};
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
@@ -107,6 +107,7 @@ impl Assembly {
         let counts = body.counts().map_err(|fault| fault.within(key))?;
         let touching = if self.touching { counts.particles } else { 0 };
         for (count, part) in [
+            (1, BODIES),
             (counts.particles, PARTICLES),
             (touching, TOUCHING),
             (counts.springs, SPRINGS),
