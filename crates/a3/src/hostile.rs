@@ -16,13 +16,8 @@ const INPUTS: usize = 10_000;
 /// Gives mutated seeds to a reader. How many it took.
 fn feed(seeds: &[Vec<u8>], mut takes: impl FnMut(&str) -> bool) -> usize {
     let mut random = Random(1);
-    let mut inputs = (0..INPUTS).map(|_| random.mutated(seeds));
-    let mut count = 0;
-    inputs.try_for_each(|input| {
-        count += usize::from(takes(&String::from_utf8_lossy(&input)));
-        Some(())
-    });
-    count
+    let taken = (0..INPUTS).filter(|_| takes(&String::from_utf8_lossy(&random.mutated(seeds))));
+    taken.count()
 }
 
 #[test]

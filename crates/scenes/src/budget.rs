@@ -8,7 +8,9 @@ use crate::fault::Fault;
 /// Memory of the parts of a scene (bytes).
 const LARGEST: usize = 192 << 20;
 
-/// Largest number of signs in a text: a reader takes up to 250 bytes for each.
+/// Memory that a reader takes at most for a sign of a text (bytes).
+const SIGN: usize = 250;
+/// Largest number of signs in a text.
 const MOST_SIGNS: usize = 800_000;
 
 /// Kind of part of a scene, and the memory that one takes at most (bytes), as it was measured.
@@ -57,9 +59,21 @@ impl Budget {
             );
             return Err(Fault::new(key, why));
         };
+        if !is_free(bytes) {
+            let takes = bytes >> 20;
+            let why = format!("not enough memory for {count} {name}, which take {takes} MiB");
+            return Err(Fault::new(key, why));
+        }
         self.left = left;
         Ok(())
     }
+}
+
+/// Whether the system has so much memory (bytes) for this process.
+fn is_free(bytes: usize) -> bool {
+    std::hint::black_box(&mut Vec::<u8>::new())
+        .try_reserve_exact(bytes)
+        .is_ok()
 }
 
 /// `Ok` if a text has no more signs than a reader takes little memory for: commas, brackets, ends
@@ -88,6 +102,9 @@ pub(crate) fn check_text(text: &[u8]) -> Result<(), String> {
             "it is too long: it has more than {MOST_SIGNS} commas, brackets, ends of lines and \
              other signs"
         ));
+    }
+    if !is_free(signs * SIGN) {
+        return Err(format!("not enough memory to read {} bytes", text.len()));
     }
     Ok(())
 }

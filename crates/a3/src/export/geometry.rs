@@ -89,3 +89,26 @@ pub fn positions(simulation: &Simulation) -> io::Result<Vec<[f32; 3]>> {
     };
     (0..n).map(position).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use a3_core::{Model, Network, Scene, integrators};
+
+    use super::*;
+
+    /// The position of one particle, as files have it.
+    fn written(x: f64) -> io::Result<Vec<[f32; 3]>> {
+        let model = Model::Network(Box::new(Network::new(vec![1.0]).unwrap()));
+        let scene = Scene::new("far", model, vec![x, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let method = &integrators::METHODS[0];
+        let run = Simulation::new(scene, method, method.default_control).unwrap();
+        positions(&run)
+    }
+
+    #[test]
+    fn no_position_is_infinite() {
+        assert_eq!(written(3e38).unwrap(), [[3e38, 0.0, 0.0]]);
+        let why = written(4e38).unwrap_err().to_string();
+        assert!(why.contains("particle 0 at t = 0 s is too large"), "{why}");
+    }
+}
