@@ -13,7 +13,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::budget::check_text;
 use crate::fault::Fault;
-use crate::listed;
 
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
@@ -143,14 +142,6 @@ impl Description {
     pub fn parse(text: &str) -> Result<Self, Fault> {
         check_text(text.as_bytes()).map_err(|why| Fault::new("", why))?;
         toml::from_str(text).map_err(|error| Fault::of_toml(text, &error))
-    }
-
-    /// Reads a description from JSON: a list of particles and springs.
-    ///
-    /// # Errors
-    /// The text is not JSON, a key is unknown or missing, or a value is of the wrong kind.
-    pub fn parse_json(text: &str) -> Result<Self, Fault> {
-        listed::parse(text)
     }
 
     /// Writes TOML that [`parse`](Self::parse) reads as the same description.

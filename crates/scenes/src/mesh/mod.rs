@@ -52,7 +52,7 @@ impl Mesh {
         let far = |p: &Triple| p.iter().any(|x| !within(*x));
         if let Some(i) = self.positions.iter().position(far) {
             let [x, y, z] = self.positions[i];
-            return Err(format!("point {i} is at ({x}, {y}, {z}): {BOUNDS}"));
+            return Err(format!("point {i} is at ({x:e}, {y:e}, {z:e}): {BOUNDS}"));
         }
         if self.triangles.is_empty() {
             return Err("the file has no triangles".into());
