@@ -16,10 +16,7 @@ pub(super) fn motion(
 ) -> Result<(Path, Option<Turn>), Fault> {
     let turn = spun.map(turn).transpose();
     let turn = turn.map_err(|fault| fault.within("turn"))?;
-    let about = match spun.and_then(|turn| turn.about) {
-        None => None,
-        Some(about) => Some(Vector3::from(about)),
-    };
+    let about = spun.and_then(|turn| turn.about).map(Vector3::from);
     let path = match (turn.zip(about), sine, shift) {
         (_, Some(_), Some(_)) => return Err(Fault::not_both("sine", "shift")),
         (Some(_), Some(_), None) => return Err(Fault::not_both("sine", "turn.about")),
