@@ -15,6 +15,8 @@ mod failure;
 mod film;
 mod frames;
 mod headless;
+#[cfg(test)]
+mod hostile;
 mod hud;
 mod interrupt;
 mod keep;

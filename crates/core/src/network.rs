@@ -183,6 +183,31 @@ impl Network {
         Ok(())
     }
 
+    /// Leads particles along paths, as [`pin`](Self::pin) does one: the last path of each counts.
+    ///
+    /// # Errors
+    /// There is no such particle; none is pinned then.
+    pub fn pin_all(&mut self, pins: Vec<(usize, Path)>) -> Result<(), Error> {
+        pins.iter().try_for_each(|(i, _)| self.check_particle(*i))?;
+        for &(i, _) in &pins {
+            self.inverse_masses[i] = 0.0;
+        }
+        let pins = pins
+            .into_iter()
+            .map(|(particle, path)| Pin { particle, path });
+        self.pins.extend(pins);
+        self.pins.sort_by_key(|pin| pin.particle);
+        self.pins.dedup_by(|later, first| {
+            let same = later.particle == first.particle;
+            if same {
+                first.path = later.path;
+            }
+            same
+        });
+        self.strained = None;
+        Ok(())
+    }
+
     /// Lets particle i go. Does nothing if it is free.
     pub fn unpin(&mut self, i: usize) {
         if let Ok(k) = self.pins.binary_search_by_key(&i, |pin| pin.particle) {

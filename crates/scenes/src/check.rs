@@ -2,13 +2,19 @@
 
 use std::fmt::Display;
 
-use a3_core::Vector3;
-
-use crate::description::Triple;
 use crate::fault::Fault;
 
-/// Largest number that is taken for a position, a velocity, an angle or a time (m, m/s, rad, s).
+/// Largest magnitude of a number of a scene, whatever its unit: its square fits into single
+/// precision.
 const LARGEST: f64 = 1e9;
+
+/// What is said of a number that is larger.
+pub(crate) const BOUNDS: &str = "it must be a number from -1e9 to 1e9";
+
+/// Whether a number is finite and of a reasonable size.
+pub(crate) fn within(x: f64) -> bool {
+    x.abs() <= LARGEST
+}
 
 /// The result, its error as a fault of that key.
 pub(crate) fn at<T>(key: &str, result: Result<T, impl Display>) -> Result<T, Fault> {
@@ -35,32 +41,6 @@ pub(crate) fn positive(what: &str, value: f64) -> Result<(), String> {
             "{what} must be a finite number above 0, not {value}"
         ))
     }
-}
-
-/// The number of that key, if it is of a reasonable size.
-pub(crate) fn number(key: &str, x: f64) -> Result<f64, Fault> {
-    if x.abs() <= LARGEST {
-        Ok(x)
-    } else {
-        let why = format!(
-            "it must be a number from {:e} to {LARGEST:e}, not {x}",
-            -LARGEST
-        );
-        Err(Fault::new(key, why))
-    }
-}
-
-/// The vector of that key, if its components are of a reasonable size.
-pub(crate) fn vector(key: &str, triple: Triple) -> Result<Vector3<f64>, Fault> {
-    for x in triple {
-        number(key, x)?;
-    }
-    Ok(triple.into())
-}
-
-/// The vector of that key, zero if it is not given.
-pub(crate) fn vector_or_zero(key: &str, triple: Option<Triple>) -> Result<Vector3<f64>, Fault> {
-    vector(key, triple.unwrap_or_default())
 }
 
 /// The number of exactly one of two keys, and whether it is that of the first.

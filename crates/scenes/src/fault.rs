@@ -1,5 +1,6 @@
 //! Faults in the text of a scene, and where they are.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use toml::de::{DeTable, DeValue};
@@ -22,9 +23,9 @@ impl fmt::Display for Fault {
             write!(f, "line {line}: ")?;
         }
         if !self.key.is_empty() {
-            write!(f, "{}: ", self.key)?;
+            write!(f, "{}: ", brief(&self.key))?;
         }
-        f.write_str(&self.why)
+        f.write_str(&brief(&self.why))
     }
 }
 
@@ -72,11 +73,15 @@ impl Fault {
     #[must_use]
     pub fn locate(self, text: &str) -> Self {
         let offset = || {
+            // The text as a whole has no line, and may be too long to be read.
+            if self.key.is_empty() {
+                return None;
+            }
             let table = DeTable::parse(text).ok()?;
             offset_of(table.get_ref(), &self.key)
         };
         Self {
-            line: self.line.or_else(|| offset().map(|at| line(text, at))),
+            line: self.line.or_else(|| Some(line(text, offset()?))),
             ..self
         }
     }
@@ -154,6 +159,14 @@ fn join(first: Option<String>, rest: String) -> String {
     }
 }
 
+/// A message with at most a thousand characters: it may quote a whole file.
+fn brief(message: &str) -> Cow<'_, str> {
+    match message.char_indices().nth(1000) {
+        Some((end, _)) => format!("{} ...", &message[..end]).into(),
+        None => message.into(),
+    }
+}
+
 /// The TOML reader's message, rephrased.
 fn explain(message: &str) -> String {
     let message = message.lines().next().unwrap_or_default();
@@ -169,8 +182,9 @@ fn explain(message: &str) -> String {
         };
         // Two neighbouring letters in the wrong order count as one slip.
         let likeness = |name: &str| strsim::normalized_damerau_levenshtein(unknown, name);
-        let nearest = known
-            .iter()
+        // No key is so long; the time that a comparison takes grows with the length.
+        let near = known.iter().filter(|_| unknown.len() < 50);
+        let nearest = near
             .map(|name| (likeness(name), *name))
             .filter(|(likeness, _)| *likeness > 0.55)
             .max_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,12 +1,15 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+mod budget;
 mod build;
 mod builtin;
 mod check;
 mod description;
 mod fault;
+mod listed;
 mod mesh;
+mod numbers;
 mod setup;
 mod snapshot;
 mod surface;

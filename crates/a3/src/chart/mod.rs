@@ -3,7 +3,11 @@
 pub mod data;
 pub mod measure;
 mod picture;
+<<<<<<< HEAD
 mod record;
+=======
+pub mod record;
+>>>>>>> inputs
 pub mod style;
 mod table;
 mod text;

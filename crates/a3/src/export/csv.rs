@@ -4,7 +4,7 @@ use std::path::Path;
 
 use a3_core::Simulation;
 
-use super::Export;
+use super::{Export, velocities};
 use crate::failure::Failure;
 use crate::output::Draft;
 
@@ -41,7 +41,7 @@ impl Export for Csv {
         let (n, x, v) = (
             simulation.particles(),
             simulation.state(),
-            simulation.velocities(),
+            velocities(simulation)?,
         );
         for i in 0..n {
             let of = |column: &[f64]| (column[i], column[n + i], column[2 * n + i]);

@@ -1,6 +1,8 @@
 //! The geometry of a scene for other programs: a surface with normals, and lines and points of
 //! particles without one.
 
+use std::io;
+
 use a3_core::{Network, Simulation};
 use a3_scenes::Surface;
 
@@ -70,11 +72,43 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| a[k] - b[k])
 }
 
-/// The position of every particle (m), in single precision, as all files of geometry have it.
-pub fn positions(simulation: &Simulation) -> Vec<[f32; 3]> {
+/// The position of every particle (m), in single precision, as all files of geometry have it; an
+/// error if a number is too large for that.
+pub fn positions(simulation: &Simulation) -> io::Result<Vec<[f32; 3]>> {
     let n = simulation.particles();
     let x = simulation.state();
-    (0..n)
-        .map(|i| [x[i] as f32, x[n + i] as f32, x[2 * n + i] as f32])
-        .collect()
+    let position = |i| {
+        let position = [i, n + i, 2 * n + i].map(|k| x[k] as f32);
+        if position.iter().all(|x| x.is_finite()) {
+            return Ok(position);
+        }
+        Err(io::Error::other(format!(
+            "the position of particle {i} at t = {} s is too large for single precision",
+            simulation.time()
+        )))
+    };
+    (0..n).map(position).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use a3_core::{Model, Network, Scene, integrators};
+
+    use super::*;
+
+    /// The position of one particle, as files have it.
+    fn written(x: f64) -> io::Result<Vec<[f32; 3]>> {
+        let model = Model::Network(Box::new(Network::new(vec![1.0]).unwrap()));
+        let scene = Scene::new("far", model, vec![x, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let method = &integrators::METHODS[0];
+        let run = Simulation::new(scene, method, method.default_control).unwrap();
+        positions(&run)
+    }
+
+    #[test]
+    fn no_position_is_infinite() {
+        assert_eq!(written(3e38).unwrap(), [[3e38, 0.0, 0.0]]);
+        let why = written(4e38).unwrap_err().to_string();
+        assert!(why.contains("particle 0 at t = 0 s is too large"), "{why}");
+    }
 }

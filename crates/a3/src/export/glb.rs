@@ -101,7 +101,7 @@ impl Glb {
 
     /// Writes the positions and normals of a frame.
     fn write_frame(&mut self, simulation: &Simulation) -> io::Result<()> {
-        let mut x = positions(simulation);
+        let mut x = positions(simulation)?;
         let mut normals = if self.has_surface() {
             self.geometry.normals(&x)
         } else {

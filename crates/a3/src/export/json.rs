@@ -6,7 +6,7 @@ use std::path::Path;
 use a3_core::Simulation;
 use serde::{Serialize, Serializer};
 
-use super::Export;
+use super::{Export, velocities};
 use crate::failure::Failure;
 use crate::output::{self, Draft};
 
@@ -78,7 +78,7 @@ impl Json {
 
 impl Export for Json {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        let velocities = simulation.velocities();
+        let velocities = velocities(simulation)?;
         let state = state(simulation, &velocities);
         let Some(draft) = &mut self.draft else {
             let json = serde_json::to_string(&state).map_err(Failure::run)?;

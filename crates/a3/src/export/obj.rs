@@ -58,7 +58,7 @@ pub fn size(surface: &Surface, simulation: &Simulation) -> f64 {
 /// torn, and `l` and `p` of particles without a surface.
 pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io::Result<()> {
     let geometry = Geometry::of(surface, simulation);
-    let positions = positions(simulation);
+    let positions = positions(simulation)?;
     writeln!(file, "# a3: t = {} s, in m, y is up", simulation.time())?;
     let name = simulation.scene().name.replace(char::is_control, " ");
     writeln!(file, "o {name}")?;

@@ -74,7 +74,7 @@ impl Export for Pc2 {
             let surface = &self.presentation.surface;
             obj::write(&mut self.mesh, surface, simulation).map_err(|e| self.mesh.failure(&e))?;
         }
-        let written = rows(&mut self.draft, &positions(simulation));
+        let written = positions(simulation).and_then(|x| rows(&mut self.draft, &x));
         written.map_err(|e| self.draft.failure(&e))
     }
 

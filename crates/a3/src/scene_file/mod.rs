@@ -1,7 +1,6 @@
 //! Scenes by name, or from files: TOML, or the JSON of particles and springs.
 
 mod files;
-mod listed;
 mod mesh;
 mod source;
 

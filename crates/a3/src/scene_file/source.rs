@@ -8,7 +8,7 @@ use a3_core::{Grid, Method, Network, Scene, Vector3, integrators};
 use a3_scenes::{Description, Setup};
 
 use super::files::{beside, read_text};
-use super::{listed, mesh};
+use super::mesh;
 
 /// A scene, by name or in a file.
 #[derive(Clone)]
@@ -46,11 +46,11 @@ impl Source {
         };
         let text = read_text(path).map_err(|why| format!("{typed}: {why}"))?;
         let parsed = if json {
-            listed::parse(&text)
+            Description::parse_json(&text)
         } else {
-            Description::parse(&text).map_err(|fault| fault.to_string())
+            Description::parse(&text)
         };
-        let mut description = parsed.map_err(|why| place(typed, &why))?;
+        let mut description = parsed.map_err(|fault| place(typed, &fault.to_string()))?;
         if description.name.is_none() {
             let stem = path
                 .file_stem()
@@ -67,10 +67,9 @@ impl Source {
 
     /// Builds the scene, with this grid of its cloth or with its own.
     pub fn build(&self, grid: Option<Grid>) -> Result<Setup, String> {
-        let mut mesh = |name: &str| {
-            let file = beside(self.path.as_deref(), name)?;
-            mesh::read(&file)
-        };
+        // With a grid of its own, a scene is built with both.
+        let mut left = mesh::LONGEST * if grid.is_some() { 2 } else { 1 };
+        let mut mesh = |name: &str| mesh::load(&beside(self.path.as_deref(), name)?, &mut left);
         self.description.build(grid, &mut mesh).map_err(|fault| {
             let fault = fault.locate(&self.text);
             match &self.path {

@@ -11,6 +11,8 @@
 mod pool;
 mod solve;
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector3;
 
 use crate::error::{Error, positive};
@@ -194,6 +196,8 @@ pub(crate) struct Constraints {
     /// The particles that are held, each once: evaluations take time by their number, not by that
     /// of all particles.
     particles: Vec<usize>,
+    /// The place of each particle that is held among these, from 1 on.
+    places: BTreeMap<usize, usize>,
     /// For each constraint the places of its particles among these, from 1 on; 0 is a particle that
     /// nothing moves.
     ends: Vec<[usize; 2]>,
@@ -210,6 +214,7 @@ impl Default for Constraints {
         Self {
             all: vec![],
             particles: vec![],
+            places: BTreeMap::new(),
             ends: vec![],
             rows: 0,
             baumgarte_frequency: 10.0,
@@ -224,10 +229,9 @@ impl Constraints {
         let constraint = constraint.checked()?;
         let (first, second) = constraint.ends();
         let mut end = |particle| {
-            let known = self.particles.iter().position(|held| *held == particle);
-            1 + known.unwrap_or_else(|| {
+            *self.places.entry(particle).or_insert_with(|| {
                 self.particles.push(particle);
-                self.particles.len() - 1
+                self.particles.len()
             })
         };
         self.ends.push([end(first), second.map_or(0, end)]);

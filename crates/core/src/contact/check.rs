@@ -2,12 +2,21 @@
 
 use std::fmt;
 
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
+
 use super::candidates::Stretch;
 use super::closest::{PairKind, closest};
 use super::exact::crossings;
 use super::layer::{ContactLayer, Scratch};
 use super::listing::Candidate;
 use crate::error::Vertex;
+
+/// Numbers of ordered pairs of boxes that may meet at the beginning: in all, or for each box, of
+/// which a cloth has some thirty.
+const MOST_PAIRS: usize = 2_000_000;
+const PAIRS_OF_ONE: usize = 100;
 
 /// Two primitives that have a point in common, by their vertices.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,6 +62,33 @@ impl ContactLayer {
         let n = surface.particles();
         assert_eq!(x.len(), 3 * n, "x has three numbers for each particle");
         self.with_scratch(|scratch| self.crossed_with(scratch, t, x))
+    }
+
+    /// Whether more primitives are at one place at time t (s), with particles at x (m), n x 3, than
+    /// their pairs can be listed for: those whose boxes meet.
+    pub(crate) fn is_crowded(&self, t: f64, x: &[f64]) -> bool {
+        let surface = self.surface();
+        let mut places = vec![];
+        surface.place(self.obstacles(), t, x, &mut places);
+        let around = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|i| places[i as usize]);
+            let thickness = 0.5 * surface.thickest();
+            let low = a.inf(&b).inf(&c).add_scalar(-thickness);
+            let high = a.sup(&b).sup(&c).add_scalar(thickness);
+            let [low, high] = [low, high].map(|corner| Vector::from(<[f64; 3]>::from(corner)));
+            Aabb::new(low, high)
+        };
+        let corners = surface
+            .bodies
+            .corners
+            .iter()
+            .chain(&surface.obstacles.corners);
+        let boxes: Vec<_> = corners.map(around).collect();
+        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        let most = MOST_PAIRS.max(PAIRS_OF_ONE * boxes.len());
+        tree.leaf_pairs(&tree, BvhNode::intersects)
+            .nth(most)
+            .is_some()
     }
 
     fn crossed_with(&self, scratch: &mut Scratch, t: f64, x: &[f64]) -> Vec<Crossed> {

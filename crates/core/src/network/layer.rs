@@ -68,8 +68,16 @@ impl Network {
     /// `Ok` if no surfaces pass through one another at time t (s) at x (m), n x 3.
     ///
     /// # Errors
-    /// Some do: the error names the first of them.
+    /// Some do: the error names the first of them. Or so many are at one place that they cannot be
+    /// looked at one by one.
     pub fn check_apart(&self, t: f64, x: &[f64]) -> Result<(), Error> {
+        if self
+            .contact_layer()
+            .is_some_and(|layer| layer.is_crowded(t, x))
+        {
+            let why = "too many surfaces are at the same place for contact: move them apart";
+            return Err(Error::Invalid(why.into()));
+        }
         match &self.crossed(t, x)[..] {
             [] => Ok(()),
             [first] => Err(Error::Invalid(format!("{first}"))),

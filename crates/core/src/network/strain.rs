@@ -40,8 +40,11 @@ impl Network {
         let apart =
             |other: &Range<usize>| other.end <= particles.start || particles.end <= other.start;
         self.strain_limits.retain(|(other, _)| apart(other));
-        self.strain_limits
-            .extend(limit.map(|limit| (particles, limit)));
+        if let Some(limit) = limit {
+            let before = |(other, _): &(Range<usize>, f64)| other.end <= particles.start;
+            let place = self.strain_limits.partition_point(before);
+            self.strain_limits.insert(place, (particles, limit));
+        }
         self.strained = None;
         Ok(())
     }
@@ -68,11 +71,12 @@ impl Network {
             return;
         }
         let longest = |i: usize, j: usize| {
-            let mut limits = self.strain_limits.iter();
-            limits.find(|(particles, _)| particles.contains(&i) && particles.contains(&j))
+            let limits = &self.strain_limits;
+            let (particles, limit) = limits.get(limits.partition_point(|(p, _)| p.end <= i))?;
+            (particles.contains(&i) && particles.contains(&j)).then_some(limit)
         };
         let springs = self.springs().filter_map(|s| {
-            let (_, limit) = longest(s.i, s.j)?;
+            let limit = longest(s.i, s.j)?;
             let is_limited = s.kind != SpringKind::Bend && s.law.rest_length > 0.0;
             is_limited.then_some(([s.i, s.j], limit * s.law.rest_length))
         });

@@ -4,25 +4,29 @@ use std::ops::Range;
 
 use a3_core::contact::Skin;
 use a3_core::elements::{Buckling, Sheet};
-use a3_core::{Constraint, MAX_PARTICLES, Path, Spring, Vector3};
+use a3_core::{Constraint, Path, Spring, Vector3};
 
 use super::pins::pins;
+use crate::budget::{BODIES, Budget, PARTICLES, RODS, SPRINGS, STRIPS, TOUCHING};
+use crate::check::{BOUNDS, within};
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
 use crate::surface::Surface;
 
-/// Largest number of springs that belong to no grid.
-const MAX_SPRINGS: usize = 1 << 23;
-
-/// Numbers of particles and springs of a body.
+/// Numbers of the parts of a body that take memory one by one.
+#[derive(Default)]
 pub(super) struct Counts {
     pub particles: usize,
+    /// Springs that belong to no grid.
     pub springs: usize,
+    /// Springs that buckle.
+    pub strips: usize,
+    pub rods: usize,
 }
 
 /// A body that a scene is assembled from. Faults have their keys within the body.
 pub(super) trait Body {
-    /// Numbers of particles and springs, checked before memory is taken.
+    /// Numbers of its parts, checked before memory is taken.
     fn counts(&self) -> Result<Counts, Fault>;
 
     /// Adds the body's particles, springs, constraints and surface.
@@ -43,6 +47,8 @@ pub(super) trait Body {
 /// The bodies so far, put together.
 #[derive(Default)]
 pub(super) struct Assembly {
+    /// Whether surfaces touch.
+    touching: bool,
     pub masses: Vec<f64>,
     pub positions: Vec<Vector3<f64>>,
     pub velocities: Vec<Vector3<f64>>,
@@ -62,6 +68,14 @@ pub(super) struct Assembly {
 }
 
 impl Assembly {
+    /// No body yet.
+    pub fn new(touching: bool) -> Self {
+        Self {
+            touching,
+            ..Self::default()
+        }
+    }
+
     /// Adds springs between particles that are numbered from `first` on.
     pub fn add_springs(&mut self, first: usize, springs: impl IntoIterator<Item = Spring>) {
         self.springs.extend(springs.into_iter().map(|s| Spring {
@@ -89,38 +103,56 @@ impl Assembly {
     }
 
     /// Adds a body that has that key.
-    pub fn add(&mut self, key: &str, body: &dyn Body) -> Result<(), Fault> {
+    pub fn add(&mut self, key: &str, body: &dyn Body, budget: &mut Budget) -> Result<(), Fault> {
         let counts = body.counts().map_err(|fault| fault.within(key))?;
-        let particles = self.masses.len().saturating_add(counts.particles);
-        if particles > MAX_PARTICLES {
-            return Err(Fault::new(
-                key,
-                format!(
-                    "the scene would have {particles} particles; at most {MAX_PARTICLES} are allowed"
-                ),
-            ));
-        }
-        // The springs of a cloth take no memory one by one.
-        let springs = self.springs.len().saturating_add(counts.springs);
-        if springs > MAX_SPRINGS && !key.starts_with("cloth") {
-            return Err(Fault::new(
-                key,
-                format!(
-                    "the scene would have some {springs} springs; at most {MAX_SPRINGS} are allowed besides those of cloths"
-                ),
-            ));
+        let touching = if self.touching { counts.particles } else { 0 };
+        for (count, part) in [
+            (1, BODIES),
+            (counts.particles, PARTICLES),
+            (touching, TOUCHING),
+            (counts.springs, SPRINGS),
+            (counts.strips, STRIPS),
+            (counts.rods, RODS),
+        ] {
+            budget.spend(key, count, part)?;
         }
         let first = self.masses.len();
         body.add_to(self).map_err(|fault| fault.within(key))?;
+        self.check(first).map_err(|fault| fault.within(key))?;
         if let Some(limit) = body.strain_limit() {
             let particles = first..self.masses.len();
             self.strain_limits.push((key.into(), particles, limit));
         }
         let positions = &self.positions[first..];
-        let pins = pins(body.pins(), positions, |spot| body.spot(spot, positions))
-            .map_err(|fault| fault.within(key))?;
+        let pins = pins(body.pins(), positions, budget, |spot| {
+            body.spot(spot, positions)
+        })
+        .map_err(|fault| fault.within(key))?;
         self.pins
             .extend(pins.into_iter().map(|(i, path)| (first + i, path)));
         Ok(())
+    }
+
+    /// `Ok` if the particles from `first` on are where they can be, and their masses are numbers to
+    /// divide by.
+    fn check(&self, first: usize) -> Result<(), Fault> {
+        for (i, p) in self.positions[first..].iter().enumerate() {
+            if !p.iter().all(|x| within(*x)) {
+                let [x, y, z]: [f64; 3] = (*p).into();
+                let why = format!("its particle {i} would be at ({x:e}, {y:e}, {z:e}): {BOUNDS}");
+                return Err(Fault::new("", why));
+            }
+        }
+        let masses = &self.masses[first..];
+        match masses
+            .iter()
+            .position(|m| !m.is_finite() || !m.recip().is_finite())
+        {
+            Some(i) => Err(Fault::new(
+                "",
+                format!("its particle {i} would have a mass of {:e} kg", masses[i]),
+            )),
+            None => Ok(()),
+        }
     }
 }

@@ -5,7 +5,7 @@ use a3_core::{Constraint, Spring, SpringKind, SpringLaw, Vector3};
 use super::assembly::{Assembly, Body, Counts};
 use super::laws::{springs, strip};
 use super::skins::SkinSpec;
-use crate::check::{at, at_least, positive, vector, vector_or_zero};
+use crate::check::{at, at_least, positive};
 use crate::description::{Chain, Particles, Pin, Spot};
 use crate::fault::Fault;
 
@@ -23,13 +23,19 @@ impl Body for Chain {
         }
         Ok(Counts {
             particles: self.particles,
-            springs: self.particles,
+            springs: if self.rigid { 0 } else { self.particles },
+            strips: if self.buckling.is_some() {
+                self.particles
+            } else {
+                0
+            },
+            rods: if self.rigid { self.particles } else { 0 },
         })
     }
 
     fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
         let n = self.particles;
-        let (from, to) = (vector("from", self.from)?, vector("to", self.to)?);
+        let (from, to) = (Vector3::from(self.from), Vector3::from(self.to));
         at("mass", positive("it", self.mass))?;
         at("stiffness", at_least(0.0, "it", self.stiffness))?;
         at("damping", at_least(0.0, "it", self.damping))?;
@@ -42,7 +48,7 @@ impl Body for Chain {
             rest_length,
             damping: self.damping,
         };
-        let velocity = vector_or_zero("velocity", self.velocity)?;
+        let velocity = Vector3::from(self.velocity.unwrap_or_default());
         let first = assembly.masses.len();
         for i in 0..n {
             let share = i as f64 / (n - 1) as f64;
@@ -121,6 +127,7 @@ impl Body for Particles {
         Ok(Counts {
             particles: n,
             springs: self.springs.len(),
+            ..Counts::default()
         })
     }
 
@@ -141,11 +148,11 @@ impl Body for Particles {
             at(key, positive("each", *m))?;
         }
         for p in &self.positions {
-            assembly.positions.push(vector("positions", *p)?);
+            assembly.positions.push(Vector3::from(*p));
         }
         for i in 0..n {
             let velocity = self.velocities.get(i).copied();
-            let velocity = vector_or_zero("velocities", velocity)?;
+            let velocity = Vector3::from(velocity.unwrap_or_default());
             assembly.velocities.push(velocity);
         }
         let first = assembly.masses.len();

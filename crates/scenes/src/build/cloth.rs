@@ -6,7 +6,7 @@ use a3_core::{Grid, SpringKind, Vector3};
 use super::assembly::{Assembly, Body, Counts};
 use super::laws::{damping_time, strip};
 use super::skins::SkinSpec;
-use crate::check::{at, at_least, one_of, positive, vector_or_zero};
+use crate::check::{at, at_least, one_of, positive};
 use crate::description::{Cloth, Pin, Spot};
 use crate::fault::Fault;
 
@@ -45,7 +45,12 @@ impl Body for Cloth {
         let particles = self.checked_grid()?.particles();
         Ok(Counts {
             particles,
-            springs: 6 * particles,
+            strips: if self.buckling.is_some() {
+                2 * particles
+            } else {
+                0
+            },
+            ..Counts::default()
         })
     }
 
@@ -84,8 +89,8 @@ impl Body for Cloth {
         let height = down * (spacing * (rows - 1) as f64);
         let top = match (self.at, self.foot) {
             (Some(_), Some(_)) => return Err(Fault::not_both("at", "foot")),
-            (_, Some(_)) => vector_or_zero("foot", self.foot)? - height,
-            _ => vector_or_zero("at", self.at)?,
+            (_, Some(_)) => Vector3::from(self.foot.unwrap_or_default()) - height,
+            _ => Vector3::from(self.at.unwrap_or_default()),
         };
         for (key, number) in [("folds", self.folds), ("turn", self.turn)] {
             at(key, at_least(0.0, "it", number))?;
@@ -94,8 +99,8 @@ impl Body for Cloth {
         let middle = 0.5 * row[cols - 1][0];
         let out = down.cross(&right);
         let first = assembly.masses.len();
-        let velocity = vector_or_zero("velocity", self.velocity)?;
-        let sway = vector_or_zero("sway", self.sway)?;
+        let velocity = Vector3::from(self.velocity.unwrap_or_default());
+        let sway = Vector3::from(self.sway.unwrap_or_default());
         for i in 0..rows {
             let share = i as f64 / (rows - 1) as f64;
             for [along, outwards] in &row {

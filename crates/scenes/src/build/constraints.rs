@@ -2,7 +2,7 @@
 
 use a3_core::{Constraint, Network, Vector3};
 
-use crate::check::{at, key_of, vector};
+use crate::check::{at, key_of};
 use crate::description::{ConstraintSpec, Description};
 use crate::fault::Fault;
 
@@ -71,22 +71,22 @@ fn wire(particle: usize, spec: &ConstraintSpec) -> Result<Constraint, Fault> {
     Ok(match (spec.point, &spec.line, &spec.circle, &spec.sphere) {
         (Some(position), None, None, None) => Constraint::Point {
             particle,
-            position: vector("point", position)?,
+            position: Vector3::from(position),
         },
         (None, Some(line), None, None) => Constraint::Line {
             particle,
-            point: vector("line.point", line.point)?,
-            direction: vector("line.direction", line.direction)?,
+            point: Vector3::from(line.point),
+            direction: Vector3::from(line.direction),
         },
         (None, None, Some(circle), None) => Constraint::Circle {
             particle,
-            center: vector("circle.center", circle.center)?,
-            normal: vector("circle.normal", circle.normal)?,
+            center: Vector3::from(circle.center),
+            normal: Vector3::from(circle.normal),
             radius: circle.radius,
         },
         (None, None, None, Some(sphere)) => Constraint::Sphere {
             particle,
-            center: vector("sphere.center", sphere.center)?,
+            center: Vector3::from(sphere.center),
             radius: sphere.radius,
         },
         _ => {

@@ -1,9 +1,9 @@
 //! Gravity, drag, tearing and wind.
 
-use a3_core::Network;
 use a3_core::elements::{Air, Wind};
+use a3_core::{Network, Vector3};
 
-use crate::check::{at, at_least, number, vector};
+use crate::check::{at, at_least};
 use crate::description::{Description, WindSpec};
 use crate::fault::Fault;
 
@@ -13,7 +13,7 @@ const AIR: [(&str, f64); 3] = [("density", 1.2), ("drag", 1.2), ("lift", 0.6)];
 /// Sets gravity, drag, the stretch at which springs break, and breaks those that are torn.
 pub(super) fn set(description: &Description, network: &mut Network) -> Result<(), Fault> {
     if let Some(g) = description.gravity {
-        network.set_gravity(vector("gravity", g)?);
+        network.set_gravity(Vector3::from(g));
     }
     let drag = match (description.drag, description.drag_per_mass) {
         (Some(_), Some(_)) => return Err(Fault::not_both("drag", "drag_per_mass")),
@@ -45,8 +45,7 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
             "give one of the keys `force`, `force_per_mass` and `velocity`",
         ));
     };
-    let ahead = number("ahead", spec.ahead)?;
-    let mean_wind = vector(key, mean_wind)?;
+    let mean_wind = Vector3::from(mean_wind);
     let coefficients = [spec.density, spec.drag, spec.lift];
     if key != "velocity" {
         for ((key, _), given) in AIR.iter().zip(coefficients) {
@@ -62,7 +61,7 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
         } else {
             mean(network.masses())
         };
-        return Ok(Wind::new(spec.seed, mean_wind * factor).ahead(ahead));
+        return Ok(Wind::new(spec.seed, mean_wind * factor).ahead(spec.ahead));
     }
     let mut air = AIR.map(|(_, usual)| usual);
     for (((key, _), given), number) in AIR.iter().zip(coefficients).zip(&mut air) {
@@ -71,7 +70,7 @@ pub(super) fn wind(spec: &WindSpec, network: &Network) -> Result<Wind, Fault> {
     }
     let [density, drag, lift] = air;
     let air = at("", Air::new(density, drag, lift))?;
-    Ok(Wind::on_triangles(spec.seed, mean_wind, air).ahead(ahead))
+    Ok(Wind::on_triangles(spec.seed, mean_wind, air).ahead(spec.ahead))
 }
 
 fn mean(masses: &[f64]) -> f64 {

@@ -7,7 +7,7 @@ use super::assembly::{Assembly, Body, Counts};
 use super::lattice::Lattice;
 use super::laws::damping_time;
 use super::skins::SkinSpec;
-use crate::check::{at, at_least, one_of, positive, vector, vector_or_zero};
+use crate::check::{at, at_least, one_of, positive};
 use crate::description::{Jelly, Pin, Spot};
 use crate::fault::Fault;
 
@@ -26,6 +26,7 @@ impl Body for Jelly {
         Ok(Counts {
             particles,
             springs: particles.saturating_mul(16),
+            ..Counts::default()
         })
     }
 
@@ -64,9 +65,9 @@ impl Body for Jelly {
             }
         };
         let first = assembly.masses.len();
-        let rotation = Rotation3::new(vector_or_zero("rotation", self.rotation)?);
-        let center = vector("at", self.at)?;
-        let velocity = vector_or_zero("velocity", self.velocity)?;
+        let rotation = Rotation3::new(Vector3::from(self.rotation.unwrap_or_default()));
+        let center = Vector3::from(self.at);
+        let velocity = Vector3::from(self.velocity.unwrap_or_default());
         for cell in lattice.cells() {
             let from_center =
                 Vector3::from_fn(|a, _| cell[a] as f64 * spacing[a] - 0.5 * self.size[a]);

@@ -6,7 +6,7 @@ use nalgebra::Rotation3;
 use super::assembly::{Assembly, Body, Counts};
 use super::laws::damping_time;
 use super::skins::SkinSpec;
-use crate::check::{at, positive, vector_or_zero};
+use crate::check::{at, positive};
 use crate::description::{MeshCloth, Pin, Spot};
 use crate::fault::Fault;
 use crate::mesh::Mesh;
@@ -25,6 +25,7 @@ impl Body for LoadedMesh<'_> {
         Ok(Counts {
             particles: self.mesh.positions.len(),
             springs: 3 * self.mesh.triangles.len(),
+            ..Counts::default()
         })
     }
 
@@ -33,9 +34,9 @@ impl Body for LoadedMesh<'_> {
         let scale = cloth.scale.unwrap_or(1.0);
         at("scale", positive("it", scale))?;
         at("density", positive("it", cloth.density))?;
-        let rotation = Rotation3::new(vector_or_zero("rotation", cloth.rotation)?);
-        let origin = vector_or_zero("at", cloth.at)?;
-        let velocity = vector_or_zero("velocity", cloth.velocity)?;
+        let rotation = Rotation3::new(Vector3::from(cloth.rotation.unwrap_or_default()));
+        let origin = Vector3::from(cloth.at.unwrap_or_default());
+        let velocity = Vector3::from(cloth.velocity.unwrap_or_default());
         let first = assembly.masses.len();
         let scaled = mesh.scaled(scale);
         let masses: Vec<_> = scaled

@@ -19,12 +19,14 @@ mod state;
 
 use std::sync::Arc;
 
-use a3_core::{Grid, Model, Scene, Swing, integrators};
+use a3_core::{Grid, Model, Scene, Swing, Vector3, integrators};
 
-use crate::check::{at, at_least, number, positive, vector};
+use crate::budget::Budget;
+use crate::check::{at, at_least, positive};
 use crate::description::Description;
 use crate::fault::Fault;
 use crate::mesh::Mesh;
+use crate::numbers;
 use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::surface::Surface;
 use circle::Circling;
@@ -41,8 +43,9 @@ impl Description {
         grid: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Setup, Fault> {
+        numbers::check(self)?;
         let Some(grid) = grid else {
-            return self.assemble(mesh);
+            return self.assemble(None, mesh);
         };
         let Some(own) = self.cloth.first() else {
             return Err(Fault::new(
@@ -58,10 +61,10 @@ impl Description {
         let mut other = self.clone();
         other.cloth[0].grid = [grid.rows(), grid.cols()];
         let spacing = other.cloth[0].checked_spacing().map_err(in_cloth)?;
-        let mut setup = other.assemble(mesh)?;
+        let mut setup = other.assemble(Some(grid), mesh)?;
         setup.defaults.step_scale = (spacing / own_spacing).min(1.0);
         // A larger cloth is seen from farther away, in proportion.
-        if let Ok(own) = self.assemble(mesh) {
+        if let Ok(own) = self.assemble(None, mesh) {
             let (was, small) = own.scene.extent();
             let (is, large) = setup.scene.extent();
             let zoom = (large / small).max(1.0);
@@ -73,9 +76,14 @@ impl Description {
         Ok(setup)
     }
 
-    fn assemble(&self, mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>) -> Result<Setup, Fault> {
+    /// The scene; `asked` is a grid that the command line asks for, beyond the budget of a scene.
+    fn assemble(
+        &self,
+        asked: Option<Grid>,
+        mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
+    ) -> Result<Setup, Fault> {
         let (model, mut state, surface, touch) = if let Some(circle) = &self.circle {
-            let start = vector("circle.start", circle.start)?;
+            let start = Vector3::from(circle.start);
             let model = Model::FirstOrder(Arc::new(Circling));
             (model, start.as_slice().to_vec(), Surface::default(), None)
         } else {
@@ -84,7 +92,7 @@ impl Description {
                 state,
                 surface,
                 touch,
-            } = network::build(self, mesh)?;
+            } = network::build(self, &mut Budget::new(asked), mesh)?;
             (Model::Network(Box::new(network)), state, surface, touch)
         };
         if self.circle.is_some() && network::bodies(self) > 0 {
@@ -113,8 +121,8 @@ impl Description {
         }
         if let Some(swing) = &self.swing {
             scene.swing = Some(Swing {
-                amplitude: vector("swing.amplitude", swing.amplitude)?,
-                rate: number("swing.rate", swing.rate)?,
+                amplitude: Vector3::from(swing.amplitude),
+                rate: swing.rate,
             });
         }
         if let (Model::Network(network), Some(wind)) = (&mut scene.model, &self.wind) {
@@ -135,8 +143,8 @@ impl Description {
         let Some(camera) = &self.camera else {
             return Ok(Viewpoint::of(scene));
         };
-        let eye = vector("camera.eye", camera.eye)?;
-        let target = vector("camera.target", camera.target)?;
+        let eye = Vector3::from(camera.eye);
+        let target = Vector3::from(camera.target);
         if eye == target {
             return Err(Fault::new("camera.eye", "it must not be at the target"));
         }

@@ -2,7 +2,7 @@
 
 use a3_core::{Path, Turn, Vector3};
 
-use crate::check::{number, one_of, vector};
+use crate::check::one_of;
 use crate::description;
 use crate::description::{Shift, Sine};
 use crate::fault::Fault;
@@ -16,10 +16,7 @@ pub(super) fn motion(
 ) -> Result<(Path, Option<Turn>), Fault> {
     let turn = spun.map(turn).transpose();
     let turn = turn.map_err(|fault| fault.within("turn"))?;
-    let about = match spun.and_then(|turn| turn.about) {
-        None => None,
-        Some(about) => Some(vector("turn.about", about)?),
-    };
+    let about = spun.and_then(|turn| turn.about).map(Vector3::from);
     let path = match (turn.zip(about), sine, shift) {
         (_, Some(_), Some(_)) => return Err(Fault::not_both("sine", "shift")),
         (Some(_), Some(_), None) => return Err(Fault::not_both("sine", "turn.about")),
@@ -41,11 +38,11 @@ pub(super) fn motion(
         (None, Some(sine), None) => Path::Sine {
             center: match sine.center {
                 None => from,
-                Some(center) => vector("sine.center", center)?,
+                Some(center) => Vector3::from(center),
             },
-            amplitude: vector("sine.amplitude", sine.amplitude)?,
-            rate: number("sine.rate", sine.rate)?,
-            phase: number("sine.phase", sine.phase)?,
+            amplitude: Vector3::from(sine.amplitude),
+            rate: sine.rate,
+            phase: sine.phase,
         },
         (None, None, Some(shift)) => {
             let (by, [start, end]) = way(shift)?;
@@ -62,11 +59,9 @@ pub(super) fn motion(
 
 /// Displacement of a shift (m), and the times between which it happens (s).
 fn way(shift: &Shift) -> Result<(Vector3<f64>, [f64; 2]), Fault> {
-    let by = vector("shift.by", shift.by)?;
-    let start = number("shift.start", shift.start)?;
-    let end = number("shift.end", shift.end)?;
-    later("shift.end", start, end)?;
-    Ok((by, [start, end]))
+    let by = Vector3::from(shift.by);
+    later("shift.end", shift.start, shift.end)?;
+    Ok((by, [shift.start, shift.end]))
 }
 
 fn later(key: &str, start: f64, end: f64) -> Result<(), Fault> {
@@ -78,21 +73,21 @@ fn later(key: &str, start: f64, end: f64) -> Result<(), Fault> {
 }
 
 fn turn(turn: &description::Turn) -> Result<Turn, Fault> {
-    let axis = vector("axis", turn.axis)?;
+    let axis = Vector3::from(turn.axis);
     let Some(axis) = axis.try_normalize(0.0) else {
         let why = "it must be a direction, not [0, 0, 0]";
         return Err(Fault::new("axis", why));
     };
-    let start = number("start", turn.start)?;
+    let start = turn.start;
     if let Some(end) = turn.end {
-        later("end", start, number("end", end)?)?;
+        later("end", start, end)?;
     }
     let rate = match (
         one_of(("rate", turn.rate), ("angle", turn.angle))?,
         turn.end,
     ) {
-        ((true, rate), _) => number("rate", rate)?,
-        ((false, angle), Some(end)) => number("angle", angle)? / (end - start),
+        ((true, rate), _) => rate,
+        ((false, angle), Some(end)) => angle / (end - start),
         ((false, _), None) => {
             let why = "with an `angle`, it is needed: the time at which the turn ends (s)";
             return Err(Fault::new("end", why));

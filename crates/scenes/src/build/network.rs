@@ -4,14 +4,18 @@ use std::sync::Arc;
 
 use a3_core::{Network, Touch, Vector3};
 
-use super::assembly::{Assembly, Body};
+use super::assembly::Assembly;
 use super::mesh_cloth::LoadedMesh;
 use super::{constraints, forces, laws, obstacles, pins, state};
+use crate::budget::{Budget, SPRINGS, TRIANGLES};
 use crate::check::{at, key_of};
 use crate::description::Description;
 use crate::fault::Fault;
 use crate::mesh::Mesh;
 use crate::surface::Surface;
+
+/// Largest number of bodies, as of obstacles of a kind: some work grows with their square.
+const MAX_BODIES: usize = 1000;
 
 /// A network with the state it starts from, and what of it is drawn as a surface.
 pub(super) struct NetworkParts {
@@ -34,10 +38,12 @@ pub(super) fn bodies(description: &Description) -> usize {
 /// Builds everything but the circle. `mesh` reads a file of triangles.
 pub(super) fn build(
     description: &Description,
+    budget: &mut Budget,
     mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
 ) -> Result<NetworkParts, Fault> {
-    let mut assembly = assembled(description, mesh)?;
+    let mut assembly = assembled(description, budget, mesh)?;
     let n = assembly.masses.len();
+    budget.spend("springs", description.springs.len(), SPRINGS)?;
     assembly
         .springs
         .extend(laws::springs(&description.springs, n)?);
@@ -45,7 +51,7 @@ pub(super) fn build(
     let given = given.filter(|positions| positions.len() == n);
     let given = given.map(|all| all.iter().map(|p| Vector3::from(*p)).collect::<Vec<_>>());
     let positions = given.as_ref().unwrap_or(&assembly.positions);
-    let more = pins::pins(&description.pin, positions, |_| None)?;
+    let more = pins::pins(&description.pin, positions, budget, |_| None)?;
     assembly.pins.extend(more);
     let state = state::of(&assembly.positions, &assembly.velocities);
     let mut network = at("", Network::new(assembly.masses))?;
@@ -65,15 +71,13 @@ pub(super) fn build(
     let triangles = assembly.surface.triangles.iter();
     let triangles = triangles.map(|t| t.map(|i| i as usize));
     at("", network.set_triangles(triangles))?;
-    for (i, path) in assembly.pins {
-        at("", network.pin(i, path))?;
-    }
+    at("", network.pin_all(assembly.pins))?;
     forces::set(description, &mut network)?;
     for (key, particles, limit) in assembly.strain_limits {
         let limited = network.set_strain_limit(particles, Some(limit));
         at("strain_limit", limited).map_err(|fault| fault.within(&key))?;
     }
-    obstacles::add(description, &mut network, mesh)?;
+    obstacles::add(description, &mut network, budget, mesh)?;
     let touch = Touch {
         skins: assembly.skins,
         edges: assembly.edges,
@@ -99,38 +103,46 @@ pub(super) fn build(
 /// All bodies, in the order in which their particles are numbered.
 fn assembled(
     description: &Description,
+    budget: &mut Budget,
     mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
 ) -> Result<Assembly, Fault> {
-    if bodies(description) == 0 {
+    let count = bodies(description);
+    if count > MAX_BODIES {
+        let why = format!("the scene has {count} bodies; at most {MAX_BODIES} are allowed");
+        return Err(Fault::new("", why));
+    }
+    if count == 0 {
         return Err(Fault::new(
             "",
             "the scene is empty: it needs at least one of cloth, jelly, mesh, chain, particles, circle",
         ));
     }
-    let mut assembly = Assembly::default();
-    let mut add = |kind: &str, bodies: &[&dyn Body]| {
-        let mut all = bodies.iter().enumerate();
-        all.try_for_each(|(k, body)| assembly.add(&key_of(kind, k, bodies.len()), *body))
-    };
+    let touching = description.self_collision || obstacles::is_one_thick(description);
+    let mut assembly = Assembly::new(touching);
     let Description {
         cloth,
         jelly,
         chain,
         ..
     } = description;
-    add("cloth", &cloth.iter().map(|b| b as _).collect::<Vec<_>>())?;
-    add("jelly", &jelly.iter().map(|b| b as _).collect::<Vec<_>>())?;
-    let meshes = description.mesh.iter().enumerate().map(|(k, cloth)| {
+    for (k, body) in cloth.iter().enumerate() {
+        assembly.add(&key_of("cloth", k, cloth.len()), body, budget)?;
+    }
+    for (k, body) in jelly.iter().enumerate() {
+        assembly.add(&key_of("jelly", k, jelly.len()), body, budget)?;
+    }
+    for (k, cloth) in description.mesh.iter().enumerate() {
         let key = key_of("mesh", k, description.mesh.len());
         let mesh = at("file", mesh(&cloth.file)).map_err(|fault| fault.within(&key))?;
+        budget.spend(&key, mesh.triangles.len(), TRIANGLES)?;
         let mesh = mesh.welded();
-        Ok(LoadedMesh { cloth, mesh })
-    });
-    let meshes = meshes.collect::<Result<Vec<_>, Fault>>()?;
-    add("mesh", &meshes.iter().map(|b| b as _).collect::<Vec<_>>())?;
-    add("chain", &chain.iter().map(|b| b as _).collect::<Vec<_>>())?;
+        assembly.add(&key, &LoadedMesh { cloth, mesh }, budget)?;
+    }
+    for (k, body) in chain.iter().enumerate() {
+        assembly.add(&key_of("chain", k, chain.len()), body, budget)?;
+    }
     if let Some(body) = &description.particles {
-        add("particles", &[body])?;
+        assembly.add("particles", body, budget)?;
     }
     Ok(assembly)
 }

@@ -6,7 +6,8 @@ use a3_core::contact::{ClosedMesh, Obstacle, Shape};
 use a3_core::{Network, Path, Vector3, rotation};
 
 use super::motion::motion;
-use crate::check::{at, at_least, key_of, number, positive, vector, vector_or_zero};
+use crate::budget::{Budget, FACES, TRIANGLES};
+use crate::check::{at, at_least, key_of, positive};
 use crate::description::{
     BoxSpec, CapsuleSpec, Description, Floor, FloorSpec, ObstacleSpec, SphereSpec,
 };
@@ -36,6 +37,7 @@ pub(super) fn is_one_thick(description: &Description) -> bool {
 pub(super) fn add(
     description: &Description,
     network: &mut Network,
+    budget: &mut Budget,
     mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
 ) -> Result<(), Fault> {
     each("sphere", &description.sphere, |spec| {
@@ -48,7 +50,7 @@ pub(super) fn add(
         at("radius", network.add_obstacle(capsule(spec)?))
     })?;
     each("obstacle", &description.obstacle, |spec| {
-        at("file", network.add_obstacle(solid(spec, mesh)?))
+        at("file", network.add_obstacle(solid(spec, budget, mesh)?))
     })?;
     match &description.floor {
         None => Ok(()),
@@ -76,7 +78,7 @@ fn each<T>(
 fn sphere(spec: &SphereSpec) -> Result<Obstacle, Fault> {
     let radius = spec.radius;
     at("radius", positive("it", radius))?;
-    let center = vector("center", spec.center)?;
+    let center = Vector3::from(spec.center);
     let (path, turn) = motion(
         spec.sine.as_ref(),
         spec.shift.as_ref(),
@@ -93,15 +95,15 @@ fn sphere(spec: &SphereSpec) -> Result<Obstacle, Fault> {
 }
 
 fn cuboid(spec: &BoxSpec) -> Result<Obstacle, Fault> {
-    let center = vector("center", spec.center)?;
+    let center = Vector3::from(spec.center);
     let (path, turn) = motion(
         spec.sine.as_ref(),
         spec.shift.as_ref(),
         spec.turn.as_ref(),
         center,
     )?;
-    let size = vector("size", spec.size)?;
-    let rotation = vector_or_zero("rotation", spec.rotation)?;
+    let size = Vector3::from(spec.size);
+    let rotation = Vector3::from(spec.rotation.unwrap_or_default());
     for edge in spec.size {
         at("size", positive("each edge", edge))?;
     }
@@ -115,7 +117,7 @@ fn cuboid(spec: &BoxSpec) -> Result<Obstacle, Fault> {
 }
 
 fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
-    let (from, to) = (vector("from", spec.from)?, vector("to", spec.to)?);
+    let (from, to) = (Vector3::from(spec.from), Vector3::from(spec.to));
     let (path, turn) = motion(
         spec.sine.as_ref(),
         spec.shift.as_ref(),
@@ -137,18 +139,22 @@ fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
 /// The solid within the triangles of a file, whose equal points are made one.
 fn solid(
     spec: &ObstacleSpec,
+    budget: &mut Budget,
     mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
 ) -> Result<Obstacle, Fault> {
     let (path, turn) = motion(
         spec.sine.as_ref(),
         spec.shift.as_ref(),
         spec.turn.as_ref(),
-        vector_or_zero("at", spec.at)?,
+        Vector3::from(spec.at.unwrap_or_default()),
     )?;
     let scale = spec.scale.unwrap_or(1.0);
     at("scale", positive("it", scale))?;
-    let rotation = rotation(vector_or_zero("rotation", spec.rotation)?);
-    let mesh = at("file", mesh(&spec.file))?.welded();
+    let rotation = rotation(Vector3::from(spec.rotation.unwrap_or_default()));
+    let mesh = at("file", mesh(&spec.file))?;
+    budget.spend("file", mesh.triangles.len(), TRIANGLES)?;
+    let mesh = mesh.welded();
+    budget.spend("file", mesh.triangles.len(), FACES)?;
     let points = mesh.positions.iter();
     let points = points.map(|p| rotation * (Vector3::from(*p) * scale));
     let mesh = at("file", ClosedMesh::new(points.collect(), mesh.triangles))?;
@@ -163,12 +169,12 @@ fn solid(
 
 fn floor(spec: &Floor) -> Result<Obstacle, Fault> {
     let (height, mu, thick) = match *spec {
-        Floor::Height(height) => (number("floor", height)?, 0.0, None),
+        Floor::Height(height) => (height, 0.0, None),
         Floor::Table(FloorSpec {
             height,
             friction,
             thickness,
-        }) => (number("floor.height", height)?, friction, thickness),
+        }) => (height, friction, thickness),
     };
     Ok(Obstacle {
         shape: Shape::Floor,

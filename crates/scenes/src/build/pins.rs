@@ -3,6 +3,7 @@
 use a3_core::{Path, Vector3};
 
 use super::motion::motion;
+use crate::budget::{Budget, LOOKED_AT, PINS};
 use crate::check::key_of;
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
@@ -11,11 +12,12 @@ use crate::fault::Fault;
 pub(super) fn pins(
     pins: &[Pin],
     positions: &[Vector3<f64>],
+    budget: &mut Budget,
     spot: impl Fn(Spot) -> Option<Vec<usize>>,
 ) -> Result<Vec<(usize, Path)>, Fault> {
     let mut all = vec![];
     for (k, pin) in pins.iter().enumerate() {
-        let pinned = pinned(pin, positions, &spot);
+        let pinned = pinned(pin, positions, budget, &spot);
         let pinned = pinned.map_err(|fault| fault.within(&key_of("pin", k, pins.len())))?;
         all.extend(pinned);
     }
@@ -25,13 +27,16 @@ pub(super) fn pins(
 fn pinned(
     pin: &Pin,
     positions: &[Vector3<f64>],
+    budget: &mut Budget,
     spot: impl Fn(Spot) -> Option<Vec<usize>>,
 ) -> Result<Vec<(usize, Path)>, Fault> {
     let mut particles = pin.particles.clone();
+    budget.spend("particles", particles.len(), PINS)?;
     if let Some(i) = particles.iter().find(|i| **i >= positions.len()) {
         return Err(Fault::no_particle("particles", *i, positions.len()));
     }
     for at in &pin.at {
+        budget.spend("at", positions.len(), LOOKED_AT)?;
         let Some(there) = spot(*at) else {
             return Err(Fault::new(
                 "at",
@@ -39,6 +44,7 @@ fn pinned(
                  bottom, left, right; a mesh top, bottom; a chain first, last; others are pinned by `particles`",
             ));
         };
+        budget.spend("at", there.len(), PINS)?;
         particles.extend(there);
     }
     if particles.is_empty() {

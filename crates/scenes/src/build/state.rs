@@ -2,7 +2,6 @@
 
 use a3_core::Vector3;
 
-use crate::check::vector;
 use crate::description::State;
 use crate::fault::Fault;
 
@@ -30,7 +29,6 @@ pub(super) fn write(given: &State, particles: usize, state: &mut [f64]) -> Resul
             return Err(Fault::new(key, why));
         }
         for (i, row) in rows.iter().enumerate() {
-            let row = vector(key, *row)?;
             for axis in 0..3 {
                 out[axis * particles + i] = row[axis];
             }

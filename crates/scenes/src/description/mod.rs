@@ -11,6 +11,7 @@ mod obstacles;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::budget::check_text;
 use crate::fault::Fault;
 
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
@@ -136,8 +137,10 @@ impl Description {
     /// Reads a description from TOML.
     ///
     /// # Errors
-    /// The text is not TOML, a key is unknown or missing, or a value is of the wrong kind.
+    /// The text is not TOML or too long, a key is unknown or missing, or a value is of the wrong
+    /// kind.
     pub fn parse(text: &str) -> Result<Self, Fault> {
+        check_text(text.as_bytes()).map_err(|why| Fault::new("", why))?;
         toml::from_str(text).map_err(|error| Fault::of_toml(text, &error))
     }
 

@@ -75,7 +75,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
     for output in ["x.json", "x.csv", "x.pc2", "x.glb"] {
         let line = run(&[&[output], &several[..]].concat());
         assert!(
-            line.contains("blew up at step") && line.ends_with("nothing was written"),
+            line.contains("blew up at step") && line.contains("nothing was written; a step of "),
             "{line}"
         );
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{output}");
@@ -84,7 +84,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
     let count = fs::read_dir(folder.path()).unwrap().count();
     assert!((2..200).contains(&count), "{count}");
     assert!(
-        line.ends_with(&format!("x-###.obj has the first {count} of 201 frames")),
+        line.contains(&format!("x-###.obj has the first {count} of 201 frames")),
         "{line}"
     );
     for entry in fs::read_dir(folder.path()).unwrap() {

@@ -72,13 +72,13 @@ fn a_film_that_blows_up_keeps_what_was_before() {
     assert!((2..200).contains(&film.len()), "{}", film.len());
     assert!(line.contains("blew up at step"), "{line}");
     let kept = format!("x.gif has the first {} of 201 frames", film.len());
-    assert!(line.ends_with(&kept), "{line}");
+    assert!(line.contains(&kept), "{line}");
     // One that does so before it begins leaves nothing.
     let line = complaint(
         &a3(folder.path(), &words(&["--output", "y.gif", "--from", "7"])),
         1,
     );
-    assert!(line.ends_with("nothing was filmed"), "{line}");
+    assert!(line.contains("nothing was filmed; a step of "), "{line}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 

@@ -1,10 +1,20 @@
 //! Meshes of triangles, and the springs of a cloth that has their shape.
 
+mod accessor;
+mod gltf;
+mod obj;
+
 use std::collections::BTreeMap;
 
 use a3_core::{Error, Spring, SpringKind, SpringLaw, Vector3};
 
+use crate::check::{BOUNDS, within};
 use crate::description::Triple;
+
+/// Largest number of points in a file.
+const MAX_POINTS: usize = 1 << 20;
+/// Largest number of triangles in a file.
+const MAX_TRIANGLES: usize = 2 * MAX_POINTS;
 
 /// Mesh of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +26,40 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// The triangles of all objects in a Wavefront OBJ file.
+    ///
+    /// # Errors
+    /// A point or a face is wrong, there is no triangle, or there are too many.
+    pub fn from_obj(bytes: &[u8]) -> Result<Self, String> {
+        obj::read(bytes)?.checked()
+    }
+
+    /// The triangles of the first scene of a glTF file, or of the scene that it names; `file` reads
+    /// another file that it names.
+    ///
+    /// # Errors
+    /// The file is no glTF 2.0 or needs an extension of it, there is no triangle, or there are too
+    /// many.
+    pub fn from_gltf(
+        bytes: &[u8],
+        file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, String> {
+        gltf::read(bytes, file)?.checked()
+    }
+
+    /// The mesh, if it has triangles, and its points are where they can be.
+    fn checked(self) -> Result<Self, String> {
+        let far = |p: &Triple| p.iter().any(|x| !within(*x));
+        if let Some(i) = self.positions.iter().position(far) {
+            let [x, y, z] = self.positions[i];
+            return Err(format!("point {i} is at ({x:e}, {y:e}, {z:e}): {BOUNDS}"));
+        }
+        if self.triangles.is_empty() {
+            return Err("the file has no triangles".into());
+        }
+        Ok(self)
+    }
+
     /// The mesh with points at equal positions made one, since files have such points where normals
     /// or textures change. Triangles with two equal corners and points without triangles are left
     /// out.

@@ -1,0 +1,63 @@
+//! Command lines and data that nobody would write: each is taken or refused, without a panic.
+
+#[path = "../../scenes/tests/hostile/mutation.rs"]
+mod mutation;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+
+use crate::chart::record::read;
+use crate::cli::{Cli, explain};
+use mutation::{Random, seeds};
+
+/// Number of inputs of each kind.
+const INPUTS: usize = 10_000;
+
+/// Gives mutated seeds to a reader. How many it took.
+fn feed(seeds: &[Vec<u8>], mut takes: impl FnMut(&str) -> bool) -> usize {
+    let mut random = Random(1);
+    let taken = (0..INPUTS).filter(|_| takes(&String::from_utf8_lossy(&random.mutated(seeds))));
+    taken.count()
+}
+
+#[test]
+fn command_lines_are_taken_or_refused() {
+    let lines = seeds("command").concat();
+    let lines: Vec<_> = lines.split(|b| *b == b'\n').map(<[u8]>::to_vec).collect();
+    let taken = feed(&lines, |line| {
+        let words = std::iter::once("a3").chain(line.split_ascii_whitespace());
+        let Err(error) = Cli::try_parse_from(words) else {
+            return true;
+        };
+        if !matches!(
+            error.kind(),
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+        ) {
+            let why = explain(&error).unwrap_err().message();
+            assert!(!why.is_empty() && !why.contains('\n'), "{line}: {why}");
+        }
+        false
+    });
+    assert!(taken > INPUTS / 25, "{taken}");
+}
+
+#[test]
+fn data_of_charts_are_taken_or_refused() {
+    let [csv, json] = &seeds("data")[..] else {
+        panic!("other seeds")
+    };
+    for (seed, is_json) in [(csv, false), (json, true)] {
+        let taken = feed(std::slice::from_ref(seed), |text| {
+            let Ok(records) = read(text, is_json) else {
+                return false;
+            };
+            // Runs are compared with one another.
+            let same = records
+                .iter()
+                .filter(|r| r.same_run(&records[0]) && !r.is_held());
+            assert!(same.count() <= records.len());
+            true
+        });
+        assert!(taken > INPUTS / 25, "{taken}");
+    }
+}

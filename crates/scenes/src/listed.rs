@@ -1,0 +1,74 @@
+//! Scenes as JSON: a list of particles and springs, with states that the motion is known to reach.
+
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+use crate::description::{Description, Particles, Pin};
+use crate::fault::Fault;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Listed {
+    name: Option<String>,
+    note: Option<String>,
+    #[serde(rename = "units")]
+    _units: Option<String>,
+    gravity: Option<[f64; 3]>,
+    drag: Option<f64>,
+    mass: Vec<f64>,
+    #[serde(default)]
+    pinned: Vec<usize>,
+    positions: Vec<[f64; 3]>,
+    #[serde(default)]
+    velocities: Vec<[f64; 3]>,
+    #[serde(default)]
+    springs: Vec<(usize, usize, f64, f64, f64)>,
+    /// Results of other programs, which a run does not need.
+    #[serde(rename = "error_bound")]
+    _error_bound: Option<f64>,
+    #[serde(rename = "states")]
+    _states: Option<IgnoredAny>,
+}
+
+impl Description {
+    /// Reads a description from JSON: a list of particles and springs.
+    ///
+    /// # Errors
+    /// The text is not JSON, a key is unknown or missing, or a value is of the wrong kind.
+    pub fn parse_json(text: &str) -> Result<Self, Fault> {
+        let listed: Listed = serde_json::from_str(text).map_err(|e| {
+            let why = e.to_string();
+            let why = why.split(" at line ").next().unwrap_or_default();
+            let line = Some(e.line());
+            Fault {
+                line,
+                ..Fault::new("", why)
+            }
+        })?;
+        let pin = Pin {
+            particles: listed.pinned,
+            ..Pin::default()
+        };
+        Ok(Self {
+            name: listed.name,
+            summary: listed.note,
+            gravity: listed.gravity,
+            drag: listed.drag,
+            particles: Some(Particles {
+                positions: listed.positions,
+                velocities: listed.velocities,
+                mass: None,
+                masses: listed.mass,
+                springs: listed.springs,
+                thickness: None,
+                friction: 0.0,
+                pin: if pin.particles.is_empty() {
+                    vec![]
+                } else {
+                    vec![pin]
+                },
+            }),
+            ..Self::default()
+        })
+    }
+}

@@ -1,0 +1,216 @@
+//! Files that nobody would write: each is taken or refused, without a panic and within the budget.
+
+mod memory;
+mod mutation;
+
+use a3_scenes::{Description, Mesh, SCENES, Setup};
+
+use memory::taken;
+use mutation::{Random, seeds};
+
+/// Number of inputs of each kind.
+const INPUTS: usize = 10_000;
+
+/// Most memory at once, and in all (bytes).
+const MOST: [usize; 2] = [256 << 20, 1 << 30];
+
+/// Gives mutated seeds to a reader, and shows that it takes little memory. How many inputs it took.
+fn feed(seeds: &[Vec<u8>], mut takes: impl FnMut(&[u8]) -> bool) -> usize {
+    let mut random = Random(1);
+    let mut count = 0;
+    for k in 0..INPUTS {
+        let input = random.mutated(seeds);
+        let memory = taken(|| count += usize::from(takes(&input)));
+        let shown = String::from_utf8_lossy(&input);
+        assert!(
+            memory < MOST && memory[1] < MOST[1],
+            "input {k} takes {memory:?} bytes:\n{shown}"
+        );
+    }
+    count
+}
+
+/// Refuses the files of others, but for those of the seeds.
+fn no_file(name: &str) -> Result<Vec<u8>, String> {
+    Err(format!("{name}: there is no such file"))
+}
+
+fn mesh(name: &str) -> Result<Mesh, String> {
+    let [solid, square] = &seeds("obj")[..] else {
+        panic!("other seeds")
+    };
+    match name {
+        "solid.obj" => Mesh::from_obj(solid),
+        "square.obj" => Mesh::from_obj(square),
+        other => no_file(other).map(|_| Mesh::default()),
+    }
+}
+
+/// Whether a scene can be built, all of whose numbers are finite then.
+fn is_scene(description: &Description, text: &str) -> bool {
+    let built = description.build(None, &mut mesh);
+    let Ok(Setup { scene, .. }) = built.map_err(|fault| said(&fault.locate(text).to_string()))
+    else {
+        return false;
+    };
+    let mut numbers = scene.state.clone();
+    if let Some(network) = scene.model.network() {
+        numbers.extend(network.masses());
+        let laws = network.springs().map(|s| s.law);
+        numbers.extend(laws.flat_map(|law| [law.stiffness, law.rest_length, law.damping]));
+        let points = network
+            .obstacles()
+            .iter()
+            .map(|obstacle| obstacle.path.at(1.0).position);
+        numbers.extend(points.flat_map(|p| [p.x, p.y, p.z]));
+        numbers.extend(network.pins().flat_map(|(_, path)| {
+            let place = path.at(1.0).position;
+            [place.x, place.y, place.z]
+        }));
+    }
+    assert!(numbers.iter().all(|x| x.is_finite()), "{text}");
+    true
+}
+
+/// An error is a line or a few, not a file.
+fn said(why: &str) {
+    assert!(!why.is_empty() && why.len() < 5000, "{why}");
+}
+
+#[test]
+fn scenes_are_taken_or_refused() {
+    let mut texts = seeds("scene");
+    let small = SCENES.iter().filter(|entry| entry.text.len() < 2000);
+    texts.extend(small.map(|entry| entry.text.into()));
+    let taken = feed(&texts, |bytes| {
+        let Ok(text) = str::from_utf8(bytes) else {
+            return false;
+        };
+        match Description::parse(text) {
+            Ok(description) => is_scene(&description, text),
+            Err(fault) => {
+                said(&fault.to_string());
+                false
+            }
+        }
+    });
+    assert!(taken > INPUTS / 25, "{taken}");
+}
+
+#[test]
+fn lists_of_particles_are_taken_or_refused() {
+    let taken = feed(&seeds("list"), |bytes| {
+        let Ok(text) = str::from_utf8(bytes) else {
+            return false;
+        };
+        let parsed = Description::parse_json(text).map_err(|fault| said(&fault.to_string()));
+        parsed.is_ok_and(|description| is_scene(&description, ""))
+    });
+    assert!(taken > INPUTS / 25, "{taken}");
+}
+
+#[test]
+fn obj_files_are_taken_or_refused() {
+    let taken = feed(&seeds("obj"), |bytes| is_mesh(Mesh::from_obj(bytes)));
+    assert!(taken > INPUTS / 25, "{taken}");
+}
+
+#[test]
+fn gltf_files_are_taken_or_refused() {
+    let buffer = vec![0; 60];
+    let taken = feed(&seeds("gltf"), |bytes| {
+        is_mesh(Mesh::from_gltf(bytes, &mut |name| match name {
+            "square.bin" => Ok(buffer.clone()),
+            other => no_file(other),
+        }))
+    });
+    assert!(taken > INPUTS / 25, "{taken}");
+}
+
+/// Whether there is a mesh, which is complete then.
+fn is_mesh(mesh: Result<Mesh, String>) -> bool {
+    let Ok(mesh) = mesh.map_err(|why| said(&why)) else {
+        return false;
+    };
+    let count = mesh.positions.len();
+    assert!(
+        mesh.triangles
+            .iter()
+            .flatten()
+            .all(|i| (*i as usize) < count)
+    );
+    assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
+    true
+}
+
+/// The reason why an input is refused, which is found with little memory.
+fn refused(expected: &str, answer: impl FnOnce() -> Result<(), String>) {
+    let mut why = String::new();
+    let memory = taken(|| why = answer().unwrap_err());
+    assert!(
+        why.contains(expected) && why.len() < 5000,
+        "{expected}: {why}"
+    );
+    assert!(memory[0] < MOST[0], "{expected}: {memory:?}");
+}
+
+/// Inputs of a few hundred bytes that would take for ever, or gigabytes.
+#[test]
+fn what_is_too_much_is_refused() {
+    let seed = |folder: &str, name: &str| {
+        let path = format!(
+            "{}/../../fuzz/seeds/{folder}/{name}",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        std::fs::read(path).unwrap()
+    };
+    for (name, expected) in [("g_dag", "two parents"), ("g_sparse", "more than")] {
+        let bytes = seed("gltf", &format!("{name}.gltf"));
+        refused(expected, || {
+            Mesh::from_gltf(&bytes, &mut no_file).map(|_| ())
+        });
+    }
+    let text = |name: &str| String::from_utf8(seed("scene", name)).unwrap();
+    let pinned = |text: &str, count: usize| format!("{CHAIN}pin = [{}]", text.repeat(count));
+    for (scene, expected) in [
+        (text("pinbomb.toml"), "1440 MiB"),
+        (text("folds.toml"), "cloth.folds: it must be"),
+        (pinned("{ particles = [0] }, ", 140_000), "it is too long"),
+        (pinned("{ at = [\"first\"] }, ", 110_000), "it is too long"),
+        (CHAIN.repeat(1001), "1001 bodies"),
+        (format!("{}b = 1", "a.".repeat(200_000)), "it is too long"),
+        (format!("{} = 1", "0.".repeat(200_000)), "it is too long"),
+        ("a ".repeat(1_000_000), "it is too long"),
+        (format!("{} = 1", "a".repeat(1_000_000)), "there is no key"),
+    ] {
+        refused(expected, || {
+            let built = Description::parse(&scene).and_then(|d| d.build(None, &mut mesh));
+            built
+                .map(|_| ())
+                .map_err(|fault| fault.locate(&scene).to_string())
+        });
+    }
+}
+
+/// Work that is linear in a scene: pins in descending order, and rods one after another.
+#[test]
+fn what_is_large_is_taken() {
+    let numbers: Vec<_> = (0..50_000).rev().map(|i| i.to_string()).collect();
+    let long = CHAIN.replace("particles = 2", "particles = 100000");
+    let pins = format!("{long}pin = [{{ particles = [{}] }}]", numbers.join(","));
+    for text in [pins, format!("{long}rigid = true")] {
+        let begun = std::time::Instant::now();
+        let memory = taken(|| assert!(is_scene(&Description::parse(&text).unwrap(), &text)));
+        assert!(memory < MOST, "{memory:?}");
+        assert!(begun.elapsed().as_secs() < 10);
+    }
+}
+
+const CHAIN: &str = "
+[[chain]]
+particles = 2
+from = [0, 0, 0]
+to = [1, 0, 0]
+mass = 1
+stiffness = 1
+";

@@ -1,0 +1,10 @@
+//! Data of charts, as JSON or CSV by the first byte.
+#![no_main]
+
+#[allow(dead_code, missing_docs)]
+#[path = "../../crates/a3/src/chart/record.rs"]
+mod record;
+
+libfuzzer_sys::fuzz_target!(|text: &str| {
+    let _ = record::read(text, text.starts_with(['[', '{']));
+});

@@ -1,0 +1,8 @@
+//! Meshes in glTF, whose files beside them all have 60 bytes.
+#![no_main]
+
+use a3_scenes::Mesh;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let _ = Mesh::from_gltf(bytes, &mut |_| Ok(vec![0; 60])).map(|mesh| mesh.welded());
+});
