@@ -6,7 +6,7 @@ mod mutation;
 use clap::Parser;
 use clap::error::ErrorKind;
 
-use crate::chart::record::read;
+use crate::chart::text::read;
 use crate::cli::{Cli, explain};
 use mutation::{Random, seeds};
 

@@ -4,12 +4,8 @@ use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-<<<<<<< HEAD
 use super::record::Record;
 use super::text;
-=======
-use super::record::{self, Record};
->>>>>>> inputs
 use crate::failure::Failure;
 use crate::output;
 
@@ -52,7 +48,6 @@ impl Data {
         if !there.is_file() || there.len() > LARGEST_FILE {
             return Err(wrong(&"it is not an ordinary file, or it is too large"));
         }
-<<<<<<< HEAD
         let text = fs::read_to_string(path).map_err(|e| wrong(&e))?;
         if text == self.seen {
             return Ok(());
@@ -65,11 +60,6 @@ impl Data {
         }
         self.seen = text;
         Ok(())
-=======
-        let text = fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
-        data.records = record::read(&text, output::ends_in(path, "json")).map_err(wrong)?;
-        Ok(data)
->>>>>>> inputs
     }
 
     /// The run of the same scene, method, setting and version, if there is one; if `timed`, only

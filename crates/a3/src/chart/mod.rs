@@ -3,14 +3,10 @@
 pub mod data;
 pub mod measure;
 mod picture;
-<<<<<<< HEAD
 mod record;
-=======
-pub mod record;
->>>>>>> inputs
 pub mod style;
 mod table;
-mod text;
+pub mod text;
 
 use std::path::Path;
 

@@ -1,8 +1,4 @@
-<<<<<<< HEAD
 //! A run of a chart: what was asked for, its errors and its work.
-=======
-//! Runs behind a chart, as they are read and written.
->>>>>>> inputs
 
 use a3_core::accuracy::{Errors, Metric};
 use serde::{Deserialize, Serialize};
@@ -86,12 +82,9 @@ pub struct Record {
     pub iterations: u64,
     pub factorizations: u64,
     pub rejections: u64,
-<<<<<<< HEAD
     /// Checksum of the file up to here, as it was read.
     #[serde(default, skip_serializing)]
     pub check: String,
-=======
->>>>>>> inputs
 }
 
 impl Record {
@@ -112,11 +105,7 @@ impl Record {
 
     /// Whether the guard of surfaces held the run.
     pub fn is_held(&self) -> bool {
-<<<<<<< HEAD
         self.guard_impulses + self.guard_cuts > 0
-=======
-        self.guard_impulses > 0 || self.guard_cuts > 0
->>>>>>> inputs
     }
 
     /// The error of the run.
@@ -157,16 +146,3 @@ impl Record {
         }
     }
 }
-<<<<<<< HEAD
-=======
-
-/// The runs in a text, which is JSON or CSV.
-pub fn read(text: &str, is_json: bool) -> Result<Vec<Record>, String> {
-    if is_json {
-        return serde_json::from_str(text).map_err(|e| e.to_string());
-    }
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let records = reader.deserialize().collect::<Result<_, _>>();
-    records.map_err(|e: csv::Error| e.to_string())
-}
->>>>>>> inputs
