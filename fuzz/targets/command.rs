@@ -10,7 +10,7 @@ mod cli;
 mod failure;
 #[path = "../../crates/a3/src/interrupt.rs"]
 mod interrupt;
-#[path = "../../crates/a3/src/output.rs"]
+#[path = "../../crates/a3/src/output/mod.rs"]
 mod output;
 #[path = "../../crates/a3/src/scene_file/mod.rs"]
 mod scene_file;

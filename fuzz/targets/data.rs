@@ -4,7 +4,10 @@
 #[allow(dead_code, missing_docs)]
 #[path = "../../crates/a3/src/chart/record.rs"]
 mod record;
+#[allow(dead_code, missing_docs)]
+#[path = "../../crates/a3/src/chart/text.rs"]
+mod text;
 
 libfuzzer_sys::fuzz_target!(|text: &str| {
-    let _ = record::read(text, text.starts_with(['[', '{']));
+    let _ = text::read(text, text.starts_with(['[', '{']));
 });
