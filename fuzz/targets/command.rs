@@ -1,6 +1,6 @@
 //! Command lines. Commands are read, with the scenes that they name, and not run.
 #![no_main]
-#![allow(dead_code, missing_docs)]
+#![allow(dead_code, missing_docs, unused_imports)]
 
 #[path = "../../crates/a3/src/bounds.rs"]
 mod bounds;

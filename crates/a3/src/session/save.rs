@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::output;
 
 /// The most particles of a scene file that can be read again.
-const MOST: usize = 100_000;
+const MOST: usize = 60_000;
 
 impl Session {
     /// Writes the run of pane `at` under the first free name, beside the file of its scene if there
