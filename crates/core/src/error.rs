@@ -82,6 +82,10 @@ pub enum Cause {
     Gained {
         /// The energy (J).
         energy: f64,
+        /// Index of the fastest particle.
+        particle: usize,
+        /// Speed of that particle (m/s).
+        speed: f64,
     },
     /// Particle whose position, velocity or acceleration is not finite.
     NotFinite {
@@ -150,9 +154,14 @@ impl fmt::Display for BlowUp {
             Cause::Away { particle, distance } => {
                 write!(f, "particle {particle} is {distance:.0} m away")
             }
-            Cause::Gained { energy } => {
-                write!(f, "it gained {energy:.3e} J that nothing put in")
-            }
+            Cause::Gained {
+                energy,
+                particle,
+                speed,
+            } => write!(
+                f,
+                "it gained {energy:.3e} J that nothing put in, and particle {particle} moves at {speed:.0} m/s"
+            ),
             Cause::NotFinite { particle } => {
                 write!(
                     f,

@@ -34,10 +34,23 @@ fn begin(folder: &Path, words: &[&str]) -> Child {
 
 const EXPORT: [&str; 6] = ["simulate", "v", "0.001", "--until", "5000", "--output"];
 
+/// Whether this test was started by `nohup`, which the program respects.
+fn hangups_are_ignored() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.is_some_and(|mask| {
+        mask.trim()
+            .ends_with(['1', '3', '5', '7', '9', 'b', 'd', 'f'])
+    })
+}
+
 #[test]
 fn every_signal_ends_a_run_with_its_own_code() {
     let folder = tempfile::tempdir().unwrap();
     for (signal, code) in [("-HUP", 129), ("-INT", 130), ("-TERM", 143)] {
+        if signal == "-HUP" && hangups_are_ignored() {
+            continue;
+        }
         for output in ["x.csv", "x.pc2", "x.glb"] {
             let words = [&EXPORT[..], &[output, "--fps", "0.1"]].concat();
             let child = begin(folder.path(), &words);

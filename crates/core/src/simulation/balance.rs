@@ -157,7 +157,14 @@ impl Watch {
                 share,
             });
         }
-        (share > LOST).then_some(Cause::Gained { energy: gain })
+        (share > LOST).then(|| {
+            let (particle, speed) = fastest_particle(y, network.particles());
+            Cause::Gained {
+                energy: gain,
+                particle,
+                speed,
+            }
+        })
     }
 }
 
@@ -183,6 +190,21 @@ fn fastest(obstacle: &Obstacle, t: f64, radius: f64) -> f64 {
     let pose = obstacle.at(t);
     let spin = pose.orientation.map_or(0.0, |turned| turned.spin.norm());
     pose.place.velocity.norm() + spin * 2.0 * radius
+}
+
+/// The fastest of n particles, and its speed (m/s).
+fn fastest_particle(y: &[f64], n: usize) -> (usize, f64) {
+    let v = &y[y.len() / 2..];
+    let speed = |i: usize| {
+        (0..3)
+            .map(|axis| v[axis * n + i].powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let speeds = (0..n).map(|i| (i, speed(i)));
+    speeds
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .unwrap_or_default()
 }
 
 /// Whether something may work on a network, beside obstacles that particles meet.

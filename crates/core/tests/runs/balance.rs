@@ -30,7 +30,7 @@ fn energy_from_nowhere_is_noticed() {
     let Err(Error::BlowUp(lost)) = end else {
         panic!("it went on");
     };
-    assert!(matches!(lost.cause, Cause::Gained { energy } if energy > 1e4));
+    assert!(matches!(lost.cause, Cause::Gained { energy, particle: 1, .. } if energy > 1e4));
     assert!(lost.to_string().contains("J that nothing put in"), "{lost}");
 }
 
