@@ -9,7 +9,7 @@ use a3_core::{Method, Simulation};
 use a3_scenes::Description;
 
 /// Steps of a run, and of one with `--test`.
-const STEPS: [u64; 2] = [10_000_000, 20_000];
+const STEPS: [u64; 2] = [10_000_000, 2_000];
 
 /// Most by which memory may grow after the first tenth of a run (bytes).
 const GROWTH: usize = 1 << 20;
