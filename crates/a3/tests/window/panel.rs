@@ -53,20 +53,20 @@ fn keeping() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["r", "0.01", "--paused"]);
-    app.press(".");
-    app.expect("steps", "1");
+    let app = App::open(&display, folder.path(), &["r", "0.01"]);
+    app.press_for("s", "swing", "true");
     app.press("k");
     let file = folder.path().join("a3-cloth-1.checkpoint");
     until("a checkpoint", || file.exists().then_some(()));
-    app.press(".");
-    app.expect("steps", "2");
-    app.press_for("l", "steps", "1");
+    app.press_for("s", "swing", "false");
+    app.press_for("plus", "step", "0.012");
+    app.press_for("l", "swing", "true");
+    app.expect("step", "0.01");
     app.press("Escape");
     assert!(app.exit().success());
-    let again = ["--resume", "a3-cloth-1.checkpoint", "--paused"];
+    let again = ["--resume", "a3-cloth-1.checkpoint"];
     let app = App::open(&display, folder.path(), &again);
-    for (key, value) in [("solver", "rk4"), ("step", "0.01"), ("steps", "1")] {
+    for (key, value) in [("solver", "rk4"), ("step", "0.01"), ("swing", "true")] {
         assert_eq!(app.get(key), value);
     }
     app.press("Escape");
