@@ -60,6 +60,8 @@ pub struct Balance {
     work: f64,
     /// Power at the last look (W).
     power: f64,
+    /// Share of the last look's gain.
+    share: f64,
     /// Largest gain.
     most: Option<Gain>,
 }
@@ -100,6 +102,11 @@ impl Watch {
         (self.balance, self.disturbed) = (balance, false);
     }
 
+    /// Whether the run had gained little when it was last looked at.
+    pub fn is_sound(&self) -> bool {
+        self.balance.share < NOTED
+    }
+
     /// Forgets what the run gained: it goes on by other steps.
     pub fn start_over(&mut self) {
         (self.balance.most, self.disturbed) = (None, true);
@@ -112,6 +119,7 @@ impl Watch {
             let balance = &mut self.balance;
             balance.begin += energy - balance.energy;
             (balance.time, balance.energy, balance.power) = (t, energy, 0.0);
+            balance.share = 0.0;
         }
     }
 
@@ -151,6 +159,7 @@ impl Watch {
         (balance.time, balance.energy, balance.power) = (t, energy.total(), power);
         let gain = balance.energy - balance.begin - balance.work;
         let share = gain / (balance.own + balance.fall + balance.work);
+        balance.share = share;
         if gain > 0.0 && balance.most.is_none_or(|most| share > most.share) {
             balance.most = Some(Gain {
                 energy: gain,

@@ -30,7 +30,7 @@ impl Simulation {
         if let Model::Network(network) = &self.model {
             self.watch.forgive(network, self.time(), &self.y);
         }
-        if self.beyond(GOOD, &self.y).is_none() {
+        if self.watch.is_sound() && self.beyond(GOOD, &self.y).is_none() {
             self.keep_good();
         }
         Ok(())

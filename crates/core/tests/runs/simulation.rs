@@ -101,7 +101,10 @@ fn a_lost_run_shows_its_last_good_state_until_it_is_reset() {
         }
     };
     assert_eq!(run.blow_up(), Some(blow_up));
-    assert!(matches!(blow_up.cause, Cause::Away { particle, .. } if particle < 225));
+    assert!(matches!(
+        blow_up.cause,
+        Cause::Gained { particle, .. } | Cause::Away { particle, .. } if particle < 225
+    ));
     assert!(blow_up.time > run.time() && blow_up.time <= run.time() + 2.0);
     let (middle, radius) = run.extent();
     assert!((0..225).all(|i| (run.position(i) - middle).norm() <= 3.0 * radius));
