@@ -1,6 +1,6 @@
 //! Data behind a chart as text: CSV, or a JSON array, with a line for each run. The last value of a
-//! line, `check`, is the CRC-32 of all that stands before it in the file, so that the last one tells
-//! whether any byte has changed.
+//! line, `check`, is the CRC-32 of all that stands before it in the file, so that the last one
+//! tells whether any byte has changed.
 
 use super::record::Record;
 

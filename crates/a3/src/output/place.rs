@@ -43,8 +43,9 @@ pub fn there(place: &Path) -> io::Result<Option<Metadata>> {
     }
 }
 
-/// Lock on the folder of a file, for as long as the value exists: what is read there can be replaced
-/// before another process that locks it too reads it. `None` where the system has no such locks.
+/// Lock on the folder of a file, for as long as the value exists: what is read there can be
+/// replaced before another process that locks it too reads it. `None` where the system has no such
+/// locks.
 pub fn lock(path: &Path) -> Option<File> {
     let folder = File::open(folder(&resolve(path).ok()?)).ok()?;
     folder.lock().is_ok().then_some(folder)
