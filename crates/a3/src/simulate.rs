@@ -195,7 +195,7 @@ fn check(simulation: &Simulation, wanted: bool) -> Result<(), String> {
         return Ok(());
     };
     let state = simulation.state();
-    let apart = network.check_apart(simulation.time(), &state[..state.len() / 2]);
+    let apart = network.check_apart(simulation.time(), network.halves(state).0);
     apart.map_err(|why| format!("at t = {:.4} s {why}", simulation.time()))
 }
 

@@ -63,6 +63,7 @@ mod linear;
 mod network;
 mod path;
 mod random;
+pub mod rigid;
 mod rows;
 mod scene;
 mod serial;
@@ -91,7 +92,7 @@ pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, Simulation};
 pub use spring::{Spring, SpringKind, SpringLaw};
 pub use system::{
     AxialCoupling, BlockCoupling, Compliant, Coupling, Linearized, Matrix, Mechanics,
-    ParticleSystem, Splitting,
+    ParticleSystem, Rigid, Splitting,
 };
 
 /// Example of the README, compiled as a documentation test.

@@ -1,5 +1,6 @@
 //! Particles, pins, constraints, and only those forces that a scene asks for.
 
+mod bodies;
 mod compliant;
 mod constrained;
 mod layer;
@@ -21,6 +22,7 @@ use crate::elements::{Airflow, Drag, Element, Gravity, Sheet, Wind};
 use crate::energy::Energy;
 use crate::error::{Error, at_least, positive};
 use crate::path::Path;
+use crate::rigid::Body;
 
 pub use layer::Touch;
 
@@ -59,6 +61,9 @@ pub struct Network {
     obstacles: Vec<Obstacle>,
     /// What can touch, if surfaces do.
     touch: Option<Touch>,
+    /// Rigid bodies, and scratch for their evaluations.
+    bodies: Vec<Body>,
+    scratch: bodies::Scratch,
 }
 
 impl Network {
@@ -93,6 +98,8 @@ impl Network {
             masses,
             obstacles: vec![],
             touch: None,
+            bodies: vec![],
+            scratch: bodies::Scratch::default(),
         })
     }
 
@@ -102,7 +109,7 @@ impl Network {
         self.masses.len()
     }
 
-    /// Mass of each particle (kg), of pinned ones too.
+    /// Mass of each particle (kg), of pinned ones too; 0 for a point of a rigid body.
     #[must_use]
     pub fn masses(&self) -> &[f64] {
         &self.masses
@@ -169,9 +176,10 @@ impl Network {
     /// Leads particle i along `path` from now on, whether it was pinned before or not.
     ///
     /// # Errors
-    /// There is no such particle.
+    /// There is no such particle, or a rigid body carries it.
     pub fn pin(&mut self, i: usize, path: Path) -> Result<(), Error> {
         self.check_particle(i)?;
+        self.check_led(i)?;
         match self.pins.binary_search_by_key(&i, |pin| pin.particle) {
             Ok(k) => self.pins[k].path = path,
             Err(k) => {
@@ -186,9 +194,12 @@ impl Network {
     /// Leads particles along paths, as [`pin`](Self::pin) does one: the last path of each counts.
     ///
     /// # Errors
-    /// There is no such particle; none is pinned then.
+    /// There is no such particle, or a rigid body carries it; none is pinned then.
     pub fn pin_all(&mut self, pins: Vec<(usize, Path)>) -> Result<(), Error> {
-        pins.iter().try_for_each(|(i, _)| self.check_particle(*i))?;
+        for (i, _) in &pins {
+            self.check_particle(*i)?;
+            self.check_led(*i)?;
+        }
         for &(i, _) in &pins {
             self.inverse_masses[i] = 0.0;
         }
@@ -238,7 +249,7 @@ impl Network {
     /// Whether particle i is pinned.
     #[must_use]
     pub fn is_pinned(&self, i: usize) -> bool {
-        self.inverse_masses[i] == 0.0
+        self.inverse_masses[i] == 0.0 && !self.is_carried(i)
     }
 
     /// Takes the place of all elements of a kind.

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use crate::elements::{Sheet, Wind};
 use crate::grid::Grid;
 use crate::network::{Network, Touch};
-use crate::system::{ParticleSystem, hold_pins};
+use crate::system::ParticleSystem;
 
 /// First-order system, shared among runs.
 pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
@@ -84,7 +84,7 @@ impl Scene {
     #[must_use]
     pub fn new(name: impl Into<String>, model: Model, mut state: Vec<f64>) -> Self {
         if state.len() == model.system().dim() {
-            hold_pins(model.system(), 0.0, &mut state);
+            model.system().hold(0.0, &mut state);
         }
         Self {
             name: name.into(),

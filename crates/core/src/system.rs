@@ -1,9 +1,9 @@
 //! What an integrator sees: flat arrays of which only the length changes. Beside the one small
 //! trait that a system must implement there are views that it may offer, each for some methods:
-//! [`Splitting`], [`Linearized`], [`Compliant`] and [`Rows`].
+//! [`Splitting`], [`Linearized`], [`Compliant`], [`Rigid`] and [`Rows`].
 
 use crate::path::Place;
-use crate::rows::Rows;
+use crate::rows::{Rows, Terms};
 use crate::spring::SpringLaw;
 
 /// A first-order system y' = f(t, y).
@@ -26,6 +26,15 @@ pub trait ParticleSystem {
     fn mechanics(&self) -> Option<&dyn Mechanics> {
         None
     }
+
+    /// View of a system with rigid bodies, which have more in their state than positions and
+    /// velocities.
+    fn rigid(&self) -> Option<&dyn Rigid> {
+        None
+    }
+
+    /// Puts what is led at time t (s) to its place in the state y.
+    fn hold(&self, _t: f64, _y: &mut [f64]) {}
 }
 
 /// M x'' = F(t, x, v). Its state is y = [x | v], and it is a [`ParticleSystem`] through that.
@@ -50,6 +59,12 @@ pub trait Mechanics {
 
     /// View for methods that step row by row. Without it, they step by whole arrays.
     fn rows(&self) -> Option<&dyn Rows> {
+        None
+    }
+
+    /// View of rigid bodies, if there are any: the state is then longer than [x | v], and the
+    /// system is no longer M x'' = F to a method.
+    fn rigid(&self) -> Option<&dyn Rigid> {
         None
     }
 
@@ -85,6 +100,29 @@ pub trait Splitting {
     /// [`kick_forces`](Self::kick_forces) leave out. Pinned particles arrive at their places at t +
     /// h.
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]);
+}
+
+/// A system whose state y = [x | v | z] holds more than positions and velocities: the rotations and
+/// the angular momenta of rigid bodies.
+pub trait Rigid {
+    /// Length of the state.
+    fn length(&self) -> usize;
+
+    /// Writes y' = f(t, y) to `dydt`.
+    fn rates(&self, t: f64, y: &[f64], dydt: &mut [f64]);
+
+    /// Writes the rates of velocities and angular momenta by the forces of these terms to `rates`,
+    /// and 0 for all the rest of y.
+    fn kick(&self, t: f64, terms: Terms, y: &[f64], rates: &mut [f64]);
+
+    /// Whether the forces of a kick depend on velocities.
+    fn kick_reads_velocity(&self) -> bool;
+
+    /// Moves y from t (s) on by h (s) as it moves by itself, without the forces of a kick.
+    fn drift(&self, t: f64, h: f64, terms: Terms, y: &mut [f64]);
+
+    /// Puts pins and what bodies carry to their places at time t (s).
+    fn place(&self, t: f64, y: &mut [f64]);
 }
 
 /// The forces of a system to first order, for methods that solve with them.
@@ -242,21 +280,16 @@ pub(crate) fn place_pins<M: Mechanics + ?Sized>(system: &M, t: f64, x: &mut [f64
     });
 }
 
-/// Puts pins in their places at time t (s).
-pub(crate) fn hold_pins(system: &dyn ParticleSystem, t: f64, y: &mut [f64]) {
-    if let Some(mechanics) = system.mechanics() {
-        let (x, v) = y.split_at_mut(y.len() / 2);
-        place_pins(mechanics, t, x, v);
-    }
-}
-
 /// A mechanical system as a first-order one: x' = v, v' = F/m; a pin follows its path.
 impl<M: Mechanics> ParticleSystem for M {
     fn dim(&self) -> usize {
-        6 * self.inverse_masses().len()
+        Mechanics::rigid(self).map_or(6 * self.inverse_masses().len(), Rigid::length)
     }
 
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
+        if let Some(rigid) = Mechanics::rigid(self) {
+            return rigid.rates(t, y, dydt);
+        }
         let n = self.inverse_masses().len();
         let (x, v) = y.split_at(3 * n);
         let (dx, dv) = dydt.split_at_mut(3 * n);
@@ -275,6 +308,20 @@ impl<M: Mechanics> ParticleSystem for M {
     }
 
     fn mechanics(&self) -> Option<&dyn Mechanics> {
-        Some(self)
+        Mechanics::rigid(self)
+            .is_none()
+            .then_some(self as &dyn Mechanics)
+    }
+
+    fn rigid(&self) -> Option<&dyn Rigid> {
+        Mechanics::rigid(self)
+    }
+
+    fn hold(&self, t: f64, y: &mut [f64]) {
+        if let Some(rigid) = Mechanics::rigid(self) {
+            return rigid.place(t, y);
+        }
+        let (x, v) = y.split_at_mut(y.len() / 2);
+        place_pins(self, t, x, v);
     }
 }

@@ -47,7 +47,7 @@ impl Session {
             let mut changed = network.clone();
             change(&mut changed);
             let state = run.state();
-            changed.check_apart(run.time(), &state[..state.len() / 2])
+            changed.check_apart(run.time(), changed.halves(state).0)
         };
         let runs = self.panes.iter().map(|pane| &pane.simulation);
         let reference = self.reference.as_ref().map(ReferenceRun::any);

@@ -49,7 +49,7 @@ impl Snapshot {
                 ..Self::default()
             };
         };
-        let (positions, velocities) = y.split_at(y.len() / 2);
+        let (positions, velocities) = network.halves(y);
         let inverse_masses = network.inverse_masses();
         let momentum = Vector3::from_fn(|axis, _| {
             let n = inverse_masses.len();
@@ -60,7 +60,7 @@ impl Snapshot {
         let penetration = network.contact_layer();
         let penetration = penetration.map_or(0.0, |layer| layer.penetration(t, positions));
         Self {
-            energy: network.energy_at(t, positions, velocities).total(),
+            energy: network.energy_of(t, y).total(),
             momentum,
             penetration,
             impact: Impact::at_start(t),

@@ -4,7 +4,6 @@ use super::hermite::weights;
 use super::{Frames, GoOn};
 use crate::error::{BlowUp, Error};
 use crate::simulation::Simulation;
-use crate::system::hold_pins;
 
 /// Share of a step by which its end may miss a frame and yet count as the frame.
 const CLOSE: f64 = 1e-9;
@@ -198,7 +197,7 @@ fn interpolate(simulation: &Simulation, ends: &[End], time: f64, state: &mut [f6
     if system.mechanics().is_some() {
         combine(0..dim / 2, 3);
         combine(dim / 2..dim, 2);
-        hold_pins(system, time, state);
+        system.hold(time, state);
     } else {
         combine(0..dim, 2);
     }

@@ -46,7 +46,7 @@ impl ContactLayer {
         y1: &mut [f64],
     ) -> Result<Guarded, Squeezed> {
         let surface = self.surface();
-        let half = y1.len() / 2;
+        let half = 3 * surface.particles();
         let Scratch {
             candidates,
             motion,
@@ -59,9 +59,9 @@ impl ContactLayer {
         for (end, start) in motion.moves.iter_mut().zip(&motion.x0) {
             *end -= start;
         }
-        surface.speeds(self.obstacles(), t + h, &y1[half..], &mut motion.v);
+        surface.speeds(self.obstacles(), t + h, &y1[half..2 * half], &mut motion.v);
         if surface.is_rough() {
-            surface.speeds(self.obstacles(), t, &y0[half..], &mut motion.v0);
+            surface.speeds(self.obstacles(), t, &y0[half..2 * half], &mut motion.v0);
         }
         motion.inverse_masses.clear();
         motion.inverse_masses.extend_from_slice(inverse_masses);
@@ -82,7 +82,7 @@ impl ContactLayer {
             }
         }
         if changed {
-            write_back(motion, y0, y1);
+            write_back(motion, surface.particles(), y0, y1);
         }
         Ok(guarded)
     }
@@ -116,9 +116,8 @@ fn push_apart(
     false
 }
 
-/// Writes what was changed to y1 = [x | v].
-fn write_back(motion: &Motion, y0: &[f64], y1: &mut [f64]) {
-    let n = y0.len() / 6;
+/// Writes what was changed of n particles to y1 = [x | v].
+fn write_back(motion: &Motion, n: usize, y0: &[f64], y1: &mut [f64]) {
     let (x, v) = y1.split_at_mut(3 * n);
     for i in 0..n {
         if motion.inverse_masses[i] == 0.0 {

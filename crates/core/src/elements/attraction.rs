@@ -10,6 +10,8 @@ use crate::path::Path;
 pub struct Attraction {
     /// The particle.
     pub particle: usize,
+    /// Mass m (kg): that of the particle, or of the rigid body that carries it.
+    pub mass: f64,
     /// Path of the point.
     pub path: Path,
     /// Natural frequency w (1/s).
@@ -18,11 +20,11 @@ pub struct Attraction {
 
 impl Attraction {
     /// Adds -m (w2 d + 2 w d').
-    fn add(&self, mass: f64, d: [f64; 3], rate: [f64; 3], f: &mut [f64]) {
+    fn add(&self, d: [f64; 3], rate: [f64; 3], f: &mut [f64]) {
         let (n, w) = (f.len() / 3, self.frequency);
         for axis in 0..3 {
             let pull = w * w * d[axis] + 2.0 * w * rate[axis];
-            f[axis * n + self.particle] -= mass * pull;
+            f[axis * n + self.particle] -= self.mass * pull;
         }
     }
 
@@ -45,11 +47,11 @@ impl Force for Attraction {
         let (place, x, v) = (self.path.at(at.t), self.row(at.x), self.row(at.v));
         let away = std::array::from_fn(|axis| x[axis] - place.position[axis]);
         let rate = std::array::from_fn(|axis| v[axis] - place.velocity[axis]);
-        self.add(at.masses[self.particle], away, rate, f);
+        self.add(away, rate, f);
     }
 
-    fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
-        self.add(at.masses[self.particle], self.row(dx), self.row(dv), df);
+    fn add_differential(&self, _: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
+        self.add(self.row(dx), self.row(dv), df);
     }
 
     fn reads_velocity(&self) -> bool {

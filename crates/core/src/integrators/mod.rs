@@ -107,7 +107,16 @@ impl Method {
     /// not depend on the velocity, and others act; it is implicit, and the system has constraints;
     /// or it solves spring by spring, and the system does not list its springs.
     pub fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
+        let splits = !self.positions_only && !self.needs_springs;
         match system.mechanics() {
+            None if system.rigid().is_some() && self.needs_mechanics && splits => Ok(()),
+            None if system.rigid().is_some() && self.needs_mechanics => {
+                Err(Error::Invalid(format!(
+                    "{} does not support rigid bodies, whose rotation is no x'' = F / m: use \
+                     another solver",
+                    self.title
+                )))
+            }
             None if self.needs_mechanics => Err(Error::NeedsMechanics { method: self.name }),
             Some(mechanics) if self.implicit && holds_constraints(mechanics) => {
                 Err(Error::Invalid(format!(

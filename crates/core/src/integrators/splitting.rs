@@ -9,7 +9,7 @@ use super::sweep::Sweeper;
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
 use crate::rows::{Stage, Terms};
-use crate::system::{Mechanics, ParticleSystem, Splitting, divide_by_masses, place_pins};
+use crate::system::{Mechanics, ParticleSystem, Rigid, Splitting, divide_by_masses, place_pins};
 
 /// Largest number of stages of a sweep through several kicks: with more, the rows no longer fit in
 /// the cache.
@@ -39,7 +39,7 @@ pub(super) struct SplittingMethod {
     /// Scratch for systems of rows; `None` for others.
     sweeper: Option<Sweeper>,
     /// Scratch for other systems: v at the beginning of the kick, the sum over its stages, and the
-    /// accelerations.
+    /// accelerations; with rigid bodies, of the whole state.
     v: Vec<f64>,
     sum: Vec<f64>,
     a: Vec<f64>,
@@ -59,7 +59,11 @@ impl Plan {
         sweeper: Option<Sweeper>,
     ) -> Box<dyn Integrator> {
         let dim = system.dim();
-        let length = if sweeper.is_some() { 0 } else { dim / 2 };
+        let length = match system.rigid() {
+            Some(_) => dim,
+            None if sweeper.is_some() => 0,
+            None => dim / 2,
+        };
         Box::new(SplittingMethod {
             plan: self,
             dim,
@@ -96,9 +100,6 @@ impl Integrator for SplittingMethod {
     ) -> Result<Work, Error> {
         check_dim(self.dim, y)?;
         let plan = self.plan;
-        let mechanics = system
-            .mechanics()
-            .ok_or(Error::NeedsMechanics { method: plan.name })?;
         if plan.damped.is_none() && reads_velocity(system) {
             return Err(Error::ReadsVelocity { method: plan.name });
         }
@@ -126,7 +127,11 @@ impl Integrator for SplittingMethod {
                     sweeper.step(system, lead.take(), stages, y);
                 }
             }
-            _ => self.plain(mechanics, lead, y),
+            _ => match (system.rigid(), system.mechanics()) {
+                (Some(rigid), _) => self.rigid(rigid, lead, y),
+                (None, Some(mechanics)) => self.plain(mechanics, lead, y),
+                (None, None) => return Err(Error::NeedsMechanics { method: plan.name }),
+            },
         }
         Ok(Work::of(self.stages.len() as u64))
     }
@@ -164,10 +169,39 @@ impl SplittingMethod {
             drift(mechanics, terms, stage.t, stage.drift, x, v);
         }
     }
+
+    /// Does the same where rigid bodies are: kicks change velocities and angular momenta, and
+    /// drifts turn bodies freely.
+    fn rigid(&mut self, system: &dyn Rigid, (t, lead): (f64, f64), y: &mut [f64]) {
+        let terms = self.plan.terms;
+        let drift = |t: f64, h: f64, y: &mut [f64]| {
+            if h != 0.0 {
+                system.drift(t, h, terms, y);
+            }
+        };
+        drift(t, lead, y);
+        for stage in &self.stages {
+            if stage.first {
+                self.v.copy_from_slice(y);
+            }
+            system.kick(stage.t, terms, y, &mut self.a);
+            Arch::new().dispatch(Combine {
+                stage,
+                y: &self.v,
+                sum: &mut self.sum,
+                next: y,
+                k: &self.a,
+            });
+            drift(stage.t, stage.drift, y);
+        }
+    }
 }
 
 /// Whether kicks depend on v, or the system does not say.
 fn reads_velocity(system: &dyn ParticleSystem) -> bool {
+    if let Some(rigid) = system.rigid() {
+        return rigid.kick_reads_velocity();
+    }
     let splitting = system.mechanics().and_then(Mechanics::splitting);
     splitting.is_none_or(Splitting::kick_reads_velocity)
 }

@@ -12,11 +12,20 @@ impl Network {
     /// Adds a constraint, which is held by forces: a state that breaks it is drawn back to it.
     ///
     /// # Errors
-    /// There is no such particle, both ends of a rod are the same, or a number makes no sense.
+    /// There is no such particle, or it is a point of a rigid body; both ends of a rod are the
+    /// same; or a number makes no sense.
     pub fn add_constraint(&mut self, constraint: Constraint) -> Result<(), Error> {
         let (first, second) = constraint.ends();
         self.check_particle(first)?;
         self.check_particle(second.unwrap_or(first))?;
+        for i in [first, second.unwrap_or(first)] {
+            if self.is_carried(i) {
+                return Err(Error::Invalid(format!(
+                    "a constraint cannot hold particle {i}, a point of a rigid body: join the \
+                     body by a spring, or hold its centre"
+                )));
+            }
+        }
         self.constraints.add(constraint)
     }
 
@@ -40,6 +49,7 @@ impl Network {
         self.let_go();
         let attraction = Attraction {
             particle,
+            mass: self.mass_behind(particle),
             path,
             frequency,
         };

@@ -12,7 +12,8 @@ use crate::elements::{Element, Finish, Flow, Sheet, flow_each};
 use crate::path::Place;
 use crate::rows::{Patch, Registers, Rows, Stage, SweepScratch, Terms};
 use crate::system::{
-    Compliant, Coupling, Linearized, Matrix, Mechanics, Splitting, divide_by_masses, place_pins,
+    Compliant, Coupling, Linearized, Matrix, Mechanics, Rigid, Splitting, divide_by_masses,
+    place_pins,
 };
 
 impl Network {
@@ -28,7 +29,7 @@ impl Network {
     }
 
     /// Gravity and drag together.
-    fn carried(&self) -> Carried {
+    pub(super) fn carried(&self) -> Carried {
         let all = self.elements.iter().filter_map(|e| e.force().carried());
         all.fold(Carried::default(), |a, b| Carried {
             gravity: a.gravity + b.gravity,
@@ -38,7 +39,7 @@ impl Network {
 
     /// Whether drifts carry gravity and drag: not with constraints, which hold against all forces
     /// together.
-    fn drifts_carry(&self, terms: Terms) -> bool {
+    pub(super) fn drifts_carry(&self, terms: Terms) -> bool {
         terms == Terms::KickForces && !self.is_constrained()
     }
 
@@ -65,7 +66,7 @@ impl Network {
     }
 
     /// Sets f to the finished sum of all forces that no drift carries.
-    fn evaluate(&self, at: &At, f: &mut [f64], finish: &Finish) {
+    pub(super) fn evaluate(&self, at: &At, f: &mut [f64], finish: &Finish) {
         let is_other = |e: &&Element| e.force().carried().is_none();
         self.sum(self.elements.iter().filter(is_other), at, f, finish);
     }
@@ -196,6 +197,10 @@ impl Mechanics for Network {
         let sweeps =
             self.single.is_empty() && self.elements.iter().all(in_rows) && !self.is_constrained();
         sweeps.then_some(self as &dyn Rows)
+    }
+
+    fn rigid(&self) -> Option<&dyn Rigid> {
+        (!self.bodies().is_empty()).then_some(self as &dyn Rigid)
     }
 
     fn splitting(&self) -> Option<&dyn Splitting> {

@@ -167,7 +167,7 @@ impl Watch {
             });
         }
         (share > LOST).then(|| {
-            let (particle, speed) = fastest_particle(y, network.particles());
+            let (particle, speed) = fastest_particle(network.halves(y).1);
             Cause::Gained {
                 energy: gain,
                 particle,
@@ -201,9 +201,9 @@ fn fastest(obstacle: &Obstacle, t: f64, radius: f64) -> f64 {
     pose.place.velocity.norm() + spin * 2.0 * radius
 }
 
-/// The fastest of n particles, and its speed (m/s).
-fn fastest_particle(y: &[f64], n: usize) -> (usize, f64) {
-    let v = &y[y.len() / 2..];
+/// The fastest of particles with velocities v, n x 3, and its speed (m/s).
+fn fastest_particle(v: &[f64]) -> (usize, f64) {
+    let n = v.len() / 3;
     let speed = |i: usize| {
         (0..3)
             .map(|axis| v[axis * n + i].powi(2))
@@ -233,9 +233,9 @@ fn is_driven(network: &Network) -> bool {
 /// Energy of y at time t (s), without that of the motion of pins, which is given and may begin at
 /// once.
 fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
-    let (x, v) = y.split_at(y.len() / 2);
+    let (_, v) = network.halves(y);
     let (n, masses) = (network.particles(), network.masses());
-    let mut energy = network.energy_at(t, x, v);
+    let mut energy = network.energy_of(t, y);
     for (i, _) in network.pins() {
         let squared: f64 = (0..3).map(|axis| v[axis * n + i].powi(2)).sum();
         energy.kinetic -= 0.5 * masses[i] * squared;

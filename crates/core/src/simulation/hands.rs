@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::network::Network;
 use crate::path::Path;
 use crate::scene::{Model, Swing};
-use crate::system::place_pins;
+use crate::system::ParticleSystem;
 
 /// Time in which a pulled particle gets to where it is pulled (s) ...
 const PULL_TIME: f64 = 1.0 / 30.0;
@@ -36,10 +36,13 @@ const ROD: (f64, f64) = (0.95, 1.05);
 
 impl Grabbed {
     /// Whether a spring attracts the particle: a pin would tear constraints that hold it too, and
-    /// would not stop where surfaces that touch leave it no room.
+    /// would not stop where surfaces that touch leave it no room; and a point of a rigid body
+    /// cannot be led by itself.
     fn is_attracted(&self, network: &Network) -> bool {
         let touches = network.contact_layer().is_some();
-        touches || !self.was_pinned && network.is_held(self.particle)
+        touches
+            || network.is_carried(self.particle)
+            || !self.was_pinned && network.is_held(self.particle)
     }
 
     /// Attracts the particle to its path, if it is not led as a pin.
@@ -47,7 +50,7 @@ impl Grabbed {
         if self.is_attracted(network) {
             let own = network.springs_of(self.particle);
             let stiffness: f64 = own.map(|s| s.law.stiffness).sum();
-            let own = (stiffness / network.masses()[self.particle]).sqrt();
+            let own = (stiffness / network.mass_behind(self.particle)).sqrt();
             let free = !network.is_held(self.particle);
             let least = 1.0 / PULL_TIME;
             let frequency = if free {
@@ -101,7 +104,7 @@ impl Simulation {
         self.swing_phase += if on { -turn } else { turn };
         self.swinging = on;
         self.look_again();
-        let (held, time, half) = (self.grabbed(), self.time(), self.y.len() / 2);
+        let (held, time) = (self.grabbed(), self.time());
         let (from_now_on, phase) = (on.then_some(swing), self.swing_phase);
         if let Model::Network(network) = &mut self.model {
             network.lead_pins(|i, path| {
@@ -111,8 +114,7 @@ impl Simulation {
                     leave(path.at(time).position, from_now_on, phase, time)
                 }
             });
-            let (x, v) = self.y.split_at_mut(half);
-            place_pins(network.as_ref(), time, x, v);
+            network.hold(time, &mut self.y);
         }
     }
 
@@ -258,12 +260,13 @@ impl Simulation {
     /// a scene without masses.
     ///
     /// # Errors
-    /// There is no such particle.
+    /// There is no such particle, or a rigid body carries it.
     pub fn toggle_pin(&mut self, i: usize) -> Result<bool, Error> {
         let Some(network) = self.model.network() else {
             return Ok(false);
         };
         network.check_particle(i)?;
+        network.check_led(i)?;
         let pinned = network.is_pinned(i);
         if let Some(grabbed) = self.grabbed.as_mut().filter(|held| held.particle == i) {
             grabbed.was_pinned = !grabbed.was_pinned;

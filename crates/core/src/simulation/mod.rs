@@ -74,13 +74,13 @@ impl Simulation {
                 found: length,
             });
         }
-        if dim == 0 || dim % 3 != 0 {
+        if dim == 0 || dim % 3 != 0 && model.network().is_none() {
             return Err(Error::Invalid(format!(
                 "the state of a scene must be n x 3 numbers, not {dim}"
             )));
         }
         if let Some(network) = model.network().filter(|n| n.contact_layer().is_some()) {
-            let apart = network.check_apart(0.0, &scene.state[..dim / 2]);
+            let apart = network.check_apart(0.0, network.halves(&scene.state).0);
             apart.map_err(|e| Error::Invalid(format!("surfaces cannot begin crossed: {e}")))?;
         }
         let y = scene.state.clone();

@@ -75,7 +75,8 @@ impl Simulation {
         self.guarded
     }
 
-    /// The state y: of a network [x | v], in m and m/s.
+    /// The state y: of a network [x | v], in m and m/s, and after these
+    /// the rotation of each rigid body.
     #[must_use]
     pub fn state(&self) -> &[f64] {
         &self.y
@@ -105,8 +106,8 @@ impl Simulation {
     /// from f.
     #[must_use]
     pub fn velocities(&self) -> Vec<f64> {
-        if self.model.network().is_some() {
-            return self.y[self.y.len() / 2..].to_vec();
+        if let Some(network) = self.model.network() {
+            return network.halves(&self.y).1.to_vec();
         }
         let mut v = vec![0.0; self.y.len()];
         self.model.system().eval_f(self.time(), &self.y, &mut v);
@@ -116,9 +117,8 @@ impl Simulation {
     /// The energy (J), if the scene has forces.
     #[must_use]
     pub fn energy(&self) -> Option<Energy> {
-        let (x, v) = self.y.split_at(self.y.len() / 2);
         let network = self.model.network();
-        network.map(|network| network.energy_at(self.time(), x, v))
+        network.map(|network| network.energy_of(self.time(), &self.y))
     }
 
     /// Height of the lowest particle (m).

@@ -8,7 +8,7 @@ use crate::control::Control;
 use crate::error::{Cause, Error};
 use crate::network::Network;
 use crate::scene::Model;
-use crate::system::{Mechanics, hold_pins};
+use crate::system::{Mechanics, ParticleSystem};
 
 /// Largest depth, as a share of the scene's radius, to which a step of an adaptive method may take
 /// a particle into an obstacle: a state between the ends of the step is shown as it is, and must
@@ -151,7 +151,7 @@ impl Simulation {
             let limit_of_strain = self.model.network().and_then(Network::strained);
             let excess = limit_of_strain.map_or(0.0, |limit| {
                 self.contact.remember(end);
-                limit.excess(&end[..end.len() / 2])
+                limit.excess(&end[..3 * self.model.particles()])
             });
             let taken = match adaptive.advance(system, begin, end) {
                 Ok(taken) => taken,
@@ -222,7 +222,7 @@ impl Simulation {
                 self.y.copy_from_slice(end);
             } else {
                 self.work += adaptive.interpolate(system, time, &mut self.y);
-                hold_pins(system, time, &mut self.y);
+                system.hold(time, &mut self.y);
                 let (begin, y0) = (adaptive.last().t, self.contact.y0());
                 if let Some(network) = self.model.network()
                     && let Some(layer) = network.contact_layer()
@@ -249,7 +249,7 @@ impl Simulation {
     /// Breaks what is stretched too far in the state shown.
     fn tear(&mut self) {
         if let Model::Network(network) = &mut self.model
-            && network.tear(&self.y[..self.y.len() / 2]) > 0
+            && network.tear(network.halves(&self.y).0) > 0
         {
             self.look_again();
             self.refit();
@@ -297,7 +297,7 @@ fn settle(
 ) -> Result<Settled, Cause> {
     let mut settled = Settled::default();
     let Some(network) = model.network() else {
-        hold_pins(model.system(), t + h, y1);
+        model.system().hold(t + h, y1);
         return Ok(settled);
     };
     let inverse_masses = network.inverse_masses();
@@ -306,10 +306,10 @@ fn settle(
     }
     let Some(layer) = network.contact_layer() else {
         settled.met = contact.resolve(network.obstacles(), inverse_masses, (t, h), y1);
-        hold_pins(network, t + h, y1);
+        network.hold(t + h, y1);
         return Ok(settled);
     };
-    hold_pins(network, t + h, y1);
+    network.hold(t + h, y1);
     // A state that is lost is found to be so afterwards.
     if y1.iter().all(|y| y.is_finite()) {
         let guarded = contact.guard(layer, inverse_masses, (t, h), y1);

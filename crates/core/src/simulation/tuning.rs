@@ -60,7 +60,7 @@ impl Simulation {
         if on {
             let mut touching = network.clone();
             let_touch(&mut touching, &self.scene, true)?;
-            let apart = touching.check_apart(self.time(), &self.y[..self.y.len() / 2]);
+            let apart = touching.check_apart(self.time(), touching.halves(&self.y).0);
             apart.map_err(|e| {
                 Error::Invalid(format!("surfaces that cross cannot begin to touch: {e}"))
             })?;

@@ -10,6 +10,7 @@ mod elements;
 mod forces;
 mod friction;
 mod networks;
+mod rigid;
 mod solids;
 mod sweeps;
 mod tearing;

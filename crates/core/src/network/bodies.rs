@@ -1,0 +1,369 @@
+//! Rigid bodies of a network: its state is then [x | v | q, L of each body].
+
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+use nalgebra::Vector3;
+
+use super::Network;
+use crate::elements::Finish;
+use crate::elements::force::Carried;
+use crate::energy::Energy;
+use crate::error::Error;
+use crate::path::Pose;
+use crate::rigid::{Body, Moving, ROTATION, Rotation};
+use crate::rows::Terms;
+use crate::system::{Mechanics, Rigid, Splitting, place_pins};
+
+/// Positions, velocities and forces of one evaluation, n x 3 each. It is no part of the value of
+/// what owns it.
+#[derive(Debug, Default)]
+pub(super) struct Scratch(Mutex<[Vec<f64>; 3]>);
+
+impl Clone for Scratch {
+    fn clone(&self) -> Self {
+        let own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        Self(Mutex::new(own.clone()))
+    }
+}
+
+impl Scratch {
+    fn reserve(&mut self, n: usize) {
+        let own = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
+        *own = [(); 3].map(|()| vec![0.0; 3 * n]);
+    }
+
+    /// Lends the scratch; evaluations that run meanwhile bring their own.
+    fn lend<T>(&self, n: usize, run: impl FnOnce(&mut [Vec<f64>; 3]) -> T) -> T {
+        match self.0.try_lock() {
+            Ok(mut scratch) => run(&mut scratch),
+            Err(_) => run(&mut [(); 3].map(|()| vec![0.0; 3 * n])),
+        }
+    }
+}
+
+/// Force (N) and torque about the centre (N m) on a body.
+#[derive(Clone, Copy, Default)]
+struct Wrench {
+    force: Vector3<f64>,
+    torque: Vector3<f64>,
+}
+
+impl Network {
+    /// Makes a rigid body of a particle, its centre of mass, and of particles that it carries from
+    /// now on: their masses become 0. The state gets seven numbers more, which
+    /// [`Rotation`] writes.
+    ///
+    /// # Errors
+    /// A particle does not exist, belongs to another body already, is pinned, held by a constraint
+    /// or in a sheet.
+    pub fn add_body(&mut self, body: Body) -> Result<(), Error> {
+        self.check_particle(body.center)?;
+        if body.points.end > self.particles() {
+            self.check_particle(body.points.end - 1)?;
+        }
+        for i in body.points.clone() {
+            let in_sheet = self.sheets().any(|sheet| sheet.particles().contains(&i));
+            if i == body.center || self.body_of(i).is_some() || in_sheet || self.is_held(i) {
+                return Err(Error::Invalid(format!(
+                    "particle {i} cannot be a point of a body: it is a centre, in a sheet, held, \
+                     or a point already"
+                )));
+            }
+            self.check_led(i)?;
+        }
+        if self.body_of(body.center).is_some() {
+            return Err(Error::Invalid(format!(
+                "particle {} cannot be the centre of two bodies",
+                body.center
+            )));
+        }
+        for i in body.points.clone() {
+            (self.masses[i], self.inverse_masses[i]) = (0.0, 0.0);
+        }
+        self.uniform_inverse_mass = None;
+        self.bodies.push(body);
+        self.scratch.reserve(self.particles());
+        Ok(())
+    }
+
+    /// The rigid bodies, in the order in which they were added.
+    #[must_use]
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// The body to which particle i belongs, as its centre or as a point.
+    #[must_use]
+    pub fn body_of(&self, i: usize) -> Option<usize> {
+        let mut bodies = self.bodies.iter();
+        bodies.position(|body| body.center == i || body.points.contains(&i))
+    }
+
+    /// Whether particle i is a point that a body carries.
+    #[must_use]
+    pub fn is_carried(&self, i: usize) -> bool {
+        self.masses[i] == 0.0
+    }
+
+    /// Mass (kg) that moves with particle i: its own, or that of the body that carries it.
+    pub(crate) fn mass_behind(&self, i: usize) -> f64 {
+        let body = self.body_of(i).filter(|_| self.is_carried(i));
+        self.masses[body.map_or(i, |k| self.bodies[k].center)]
+    }
+
+    /// `Ok` if particle i can be led along a path by itself.
+    pub(crate) fn check_led(&self, i: usize) -> Result<(), Error> {
+        match self.is_carried(i).then(|| self.body_of(i)).flatten() {
+            None => Ok(()),
+            Some(k) => Err(Error::Invalid(format!(
+                "particle {i} cannot be pinned by itself: it is a point of a rigid body, whose \
+                 centre is particle {}",
+                self.bodies[k].center
+            ))),
+        }
+    }
+
+    /// Numbers of the rotation of body k in a state.
+    fn numbers(&self, k: usize) -> Range<usize> {
+        let first = 6 * self.particles() + ROTATION * k;
+        first..first + ROTATION
+    }
+
+    /// Rotation of body k in the state y.
+    #[must_use]
+    pub fn rotation(&self, k: usize, y: &[f64]) -> Rotation {
+        Rotation::read(&y[self.numbers(k)])
+    }
+
+    /// Writes the rotation of body k to the state y. Its points follow at the next step.
+    pub fn set_rotation(&self, k: usize, rotation: &Rotation, y: &mut [f64]) {
+        rotation.write(&mut y[self.numbers(k)]);
+    }
+
+    /// Place and orientation of body k in the state y.
+    #[must_use]
+    pub fn pose(&self, k: usize, y: &[f64]) -> Pose {
+        let (x, v) = self.halves(y);
+        self.bodies[k].pose(&self.rotation(k, y), x, v)
+    }
+
+    /// Positions and velocities, n x 3 each, of a state.
+    #[must_use]
+    pub fn halves<'a>(&self, y: &'a [f64]) -> (&'a [f64], &'a [f64]) {
+        let n = 3 * self.particles();
+        (&y[..n], &y[n..2 * n])
+    }
+
+    /// Energy of the state y at time t (s), that of rotations included.
+    #[must_use]
+    pub fn energy_of(&self, t: f64, y: &[f64]) -> Energy {
+        let (x, v) = self.halves(y);
+        let mut energy = self.energy_at(t, x, v);
+        for (k, body) in self.bodies.iter().enumerate() {
+            energy.kinetic += body.energy(&self.rotation(k, y));
+        }
+        energy
+    }
+
+    /// Each body with its rotation and how it moves in the state y.
+    fn each<'a>(
+        &'a self,
+        y: &'a [f64],
+    ) -> impl Iterator<Item = (usize, &'a Body, Rotation, Moving)> {
+        self.bodies.iter().enumerate().map(|(k, body)| {
+            let rotation = self.rotation(k, y);
+            (k, body, rotation, body.moving(&rotation))
+        })
+    }
+
+    /// Puts the points of bodies, whose rotations are in y, to their places in x and v.
+    fn place_points(&self, y: &[f64], x: &mut [f64], v: &mut [f64]) {
+        let n = self.particles();
+        for (_, body, _, moving) in self.each(y) {
+            for (i, anchor) in body.points.clone().zip(&body.anchors) {
+                let arm = moving.rotation * anchor;
+                let along = moving.spin.cross(&arm);
+                for axis in 0..3 {
+                    x[axis * n + i] = x[axis * n + body.center] + arm[axis];
+                    v[axis * n + i] = v[axis * n + body.center] + along[axis];
+                }
+            }
+        }
+    }
+
+    /// Evaluates forces (N), n x 3, in the state y at time t (s) with all points in their places,
+    /// and uses them with these positions and velocities.
+    fn with_forces<T>(
+        &self,
+        t: f64,
+        terms: Terms,
+        y: &[f64],
+        run: impl FnOnce(&[f64], &[f64], &[f64]) -> T,
+    ) -> T {
+        self.scratch.lend(self.particles(), |[x, v, f]| {
+            let (own_x, own_v) = self.halves(y);
+            x.copy_from_slice(own_x);
+            v.copy_from_slice(own_v);
+            self.place_points(y, x, v);
+            self.evaluate(&self.at(t, x, v), f, &Finish::default());
+            if !self.drifts_carry(terms) {
+                let Carried { gravity, drag } = self.carried();
+                let n = self.particles();
+                for (k, (f, v)) in f.iter_mut().zip(&*v).enumerate() {
+                    let mass = self.masses[k % n];
+                    *f += mass * gravity[k / n] - if mass > 0.0 { drag * v } else { 0.0 };
+                }
+                self.hold(t, x, v, f);
+            }
+            run(x, v, f)
+        })
+    }
+
+    /// Force and torque on a body at x, of the forces f on its particles. Drag acts on a rotation
+    /// as it does on the motion of the centre: at the rate c / m.
+    fn wrench(
+        &self,
+        body: &Body,
+        rotation: &Rotation,
+        terms: Terms,
+        x: &[f64],
+        f: &[f64],
+    ) -> Wrench {
+        let row = |a: &[f64], i: usize| {
+            let n = a.len() / 3;
+            Vector3::new(a[i], a[n + i], a[2 * n + i])
+        };
+        let center = row(x, body.center);
+        let mut wrench = Wrench {
+            force: row(f, body.center),
+            torque: Vector3::zeros(),
+        };
+        for i in body.points.clone() {
+            let force = row(f, i);
+            wrench.force += force;
+            wrench.torque += (row(x, i) - center).cross(&force);
+        }
+        if !self.drifts_carry(terms) {
+            wrench.torque -= rotation.momentum * self.decay(body);
+        }
+        wrench
+    }
+
+    /// Rate (1/s) at which drag takes from the motion of a body.
+    fn decay(&self, body: &Body) -> f64 {
+        self.carried().drag / self.masses[body.center]
+    }
+
+    /// Writes accelerations (m/s2) of particles that no body carries to a, n x 3.
+    fn accelerate(&self, f: &[f64], a: &mut [f64]) {
+        let n = self.particles();
+        for (k, (a, f)) in a.iter_mut().zip(f).enumerate() {
+            *a = self.inverse_masses[k % n] * f;
+        }
+    }
+}
+
+impl Rigid for Network {
+    fn length(&self) -> usize {
+        6 * self.particles() + ROTATION * self.bodies.len()
+    }
+
+    fn rates(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
+        let n = self.particles();
+        self.with_forces(t, Terms::AllForces, y, |x, v, f| {
+            let (halves, tail) = dydt.split_at_mut(6 * n);
+            let (dx, dv) = halves.split_at_mut(3 * n);
+            dx.copy_from_slice(v);
+            self.accelerate(f, dv);
+            Mechanics::pins(self, t, &mut |i, place| {
+                for axis in 0..3 {
+                    dx[axis * n + i] = place.velocity[axis];
+                    dv[axis * n + i] = place.acceleration[axis];
+                }
+            });
+            for ((_, body, rotation, moving), tail) in
+                self.each(y).zip(tail.chunks_exact_mut(ROTATION))
+            {
+                let wrench = self.wrench(body, &rotation, Terms::AllForces, x, f);
+                let (c, w) = (body.center, self.inverse_masses[body.center]);
+                for axis in 0..3 {
+                    if w > 0.0 {
+                        dv[axis * n + c] = w * wrench.force[axis];
+                    }
+                }
+                let rate = Rotation {
+                    q: moving.rate(rotation.q),
+                    momentum: wrench.torque,
+                };
+                rate.write(tail);
+                let turning = moving.angular_acceleration(&body.inertia, wrench.torque);
+                for (i, anchor) in body.points.clone().zip(&body.anchors) {
+                    let arm = moving.rotation * anchor;
+                    let along = moving.spin.cross(&arm);
+                    let change = turning.cross(&arm) + moving.spin.cross(&along);
+                    for axis in 0..3 {
+                        dx[axis * n + i] = dx[axis * n + c] + along[axis];
+                        dv[axis * n + i] = dv[axis * n + c] + change[axis];
+                    }
+                }
+            }
+        });
+    }
+
+    fn kick(&self, t: f64, terms: Terms, y: &[f64], rates: &mut [f64]) {
+        let n = self.particles();
+        self.with_forces(t, terms, y, |x, _, f| {
+            rates.fill(0.0);
+            self.accelerate(f, &mut rates[3 * n..6 * n]);
+            for (k, body, rotation, _) in self.each(y) {
+                let wrench = self.wrench(body, &rotation, terms, x, f);
+                let w = self.inverse_masses[body.center];
+                for axis in 0..3 {
+                    rates[(3 + axis) * n + body.center] = w * wrench.force[axis];
+                }
+                let momentum = self.numbers(k).end - 3..self.numbers(k).end;
+                rates[momentum].copy_from_slice(wrench.torque.as_slice());
+            }
+        });
+    }
+
+    fn kick_reads_velocity(&self) -> bool {
+        Splitting::kick_reads_velocity(self)
+    }
+
+    fn drift(&self, t: f64, h: f64, terms: Terms, y: &mut [f64]) {
+        let n = self.particles();
+        let (halves, tail) = y.split_at_mut(6 * n);
+        let (x, v) = halves.split_at_mut(3 * n);
+        let carries = self.drifts_carry(terms);
+        if carries {
+            Splitting::drift(self, t, h, x, v);
+        } else {
+            for (x, v) in x.iter_mut().zip(v) {
+                *x += h * *v;
+            }
+        }
+        for (body, tail) in self.bodies.iter().zip(tail.chunks_exact_mut(ROTATION)) {
+            let mut rotation = Rotation::read(tail);
+            let decay = if carries { self.decay(body) } else { 0.0 };
+            body.fly(&mut rotation, decay, h);
+            rotation.write(tail);
+        }
+        self.place(t + h, y);
+    }
+
+    fn place(&self, t: f64, y: &mut [f64]) {
+        let n = self.particles();
+        let (x, rest) = y.split_at_mut(3 * n);
+        let (v, _) = rest.split_at_mut(3 * n);
+        place_pins(self, t, x, v);
+        self.scratch.lend(n, |[px, pv, _]| {
+            px.copy_from_slice(&y[..3 * n]);
+            pv.copy_from_slice(&y[3 * n..6 * n]);
+            self.place_points(y, px, pv);
+            y[..3 * n].copy_from_slice(px);
+            y[3 * n..6 * n].copy_from_slice(pv);
+        });
+    }
+}

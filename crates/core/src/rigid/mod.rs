@@ -1,0 +1,226 @@
+//! Rigid bodies: a centre of mass that is a particle of a network, a rotation, and an angular
+//! momentum (Baraff, *An Introduction to Physically Based Modeling: Rigid Body Simulation*, 1997).
+//!
+//! A body's state is the position x and the velocity v of its centre, the quaternion q that turns
+//! its principal axes into the world, and its angular momentum L (kg m2/s) in the world:
+//!
+//! ```text
+//! x' = v,   m v' = F,   q' = w q / 2,   L' = T,   with w = R I^-1 RT L and R = R(q / |q|).
+//! ```
+//!
+//! Rotations read q / |q| only, so nothing projects q, and the order of a method holds. Without a
+//! torque, L keeps its bits. The body carries particles that have no mass, its *points*: what acts
+//! on them acts on the body.
+
+mod flight;
+mod mass;
+
+use std::ops::Range;
+
+use nalgebra::{Matrix3, Quaternion, Vector3};
+
+use crate::contact::Shape;
+use crate::error::{Error, positive};
+use crate::path::{Orientation, Place, Pose};
+
+pub use mass::MassProperties;
+
+/// Number of numbers in the state of a body beside those of its centre: q and L.
+pub const ROTATION: usize = 7;
+
+/// Rigid body of a network.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Particle that is its centre of mass, and has its mass.
+    pub center: usize,
+    /// Particles that it carries, which have no mass.
+    pub points: Range<usize>,
+    /// Places of these particles, seen from the centre along the principal axes (m).
+    pub anchors: Vec<Vector3<f64>>,
+    /// Principal moments of inertia (kg m2).
+    pub inertia: Vector3<f64>,
+    /// Shape, seen from the centre along the principal axes.
+    pub shape: Shape,
+}
+
+/// Rotation and angular momentum of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotation {
+    /// Quaternion from the principal axes to the world, of any length but 0.
+    pub q: Quaternion<f64>,
+    /// Angular momentum in the world (kg m2/s).
+    pub momentum: Vector3<f64>,
+}
+
+impl Rotation {
+    /// Rotation about a vector by its length (rad), at rest.
+    #[must_use]
+    pub fn about(vector: Vector3<f64>) -> Self {
+        Self {
+            q: turn(vector),
+            momentum: Vector3::zeros(),
+        }
+    }
+
+    /// Rotation from the numbers of a state: w, x, y and z of q, then L.
+    #[must_use]
+    pub fn read(numbers: &[f64]) -> Self {
+        let [w, x, y, z, lx, ly, lz] = *numbers else {
+            unreachable!("a rotation is seven numbers")
+        };
+        Self {
+            q: Quaternion::new(w, x, y, z),
+            momentum: Vector3::new(lx, ly, lz),
+        }
+    }
+
+    /// Writes the numbers of a state.
+    pub fn write(&self, numbers: &mut [f64]) {
+        let Self { q, momentum: l } = self;
+        numbers.copy_from_slice(&[q.w, q.i, q.j, q.k, l.x, l.y, l.z]);
+    }
+
+    /// Rotation matrix R(q / |q|), from the principal axes to the world.
+    #[must_use]
+    pub fn matrix(&self) -> Matrix3<f64> {
+        let Quaternion { coords: c } = self.q;
+        let (x, y, z, w) = (c.x, c.y, c.z, c.w);
+        let s = 2.0 / (w * w + x * x + y * y + z * z);
+        Matrix3::new(
+            1.0 - s * (y * y + z * z),
+            s * (x * y - w * z),
+            s * (x * z + w * y),
+            s * (x * y + w * z),
+            1.0 - s * (x * x + z * z),
+            s * (y * z - w * x),
+            s * (x * z - w * y),
+            s * (y * z + w * x),
+            1.0 - s * (x * x + y * y),
+        )
+    }
+}
+
+/// Quaternion of a rotation about a vector by its length (rad).
+fn turn(vector: Vector3<f64>) -> Quaternion<f64> {
+    let angle = vector.norm();
+    if angle == 0.0 {
+        return Quaternion::identity();
+    }
+    let (sin, cos) = libm::sincos(0.5 * angle);
+    Quaternion::from_parts(cos, vector * (sin / angle))
+}
+
+/// Body as it moves: its rotation matrix and angular velocity (rad/s).
+#[derive(Clone, Copy)]
+pub(crate) struct Moving {
+    pub rotation: Matrix3<f64>,
+    pub spin: Vector3<f64>,
+    momentum: Vector3<f64>,
+}
+
+impl Body {
+    /// Body of that shape, whose centre of mass and principal axes are where those of the shape
+    /// are, with as many points as `anchors` has.
+    ///
+    /// # Errors
+    /// The moments of inertia (kg m2) are none that a body can have: each is a finite number above
+    /// 0, and none is larger than the sum of the other two.
+    pub fn new(
+        center: usize,
+        points: Range<usize>,
+        anchors: Vec<Vector3<f64>>,
+        inertia: Vector3<f64>,
+        shape: Shape,
+    ) -> Result<Self, Error> {
+        let body = Self {
+            center,
+            points,
+            anchors,
+            inertia,
+            shape,
+        };
+        body.check()?;
+        Ok(body)
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let inertia = &self.inertia;
+        inertia
+            .iter()
+            .try_for_each(|i| positive("a moment of inertia", *i))?;
+        let largest = inertia.max();
+        if largest > (inertia.sum() - largest) * (1.0 + 1e-9) {
+            return Err(Error::Invalid(format!(
+                "no body has the moments of inertia {}, {} and {}: none may be larger than the \
+                 sum of the other two",
+                inertia.x, inertia.y, inertia.z
+            )));
+        }
+        if self.anchors.len() != self.points.len() {
+            return Err(Error::Dimension {
+                expected: self.points.len(),
+                found: self.anchors.len(),
+            });
+        }
+        self.shape.check()
+    }
+
+    /// The body as it moves.
+    pub(crate) fn moving(&self, rotation: &Rotation) -> Moving {
+        let (matrix, momentum) = (rotation.matrix(), rotation.momentum);
+        Moving {
+            rotation: matrix,
+            spin: matrix * matrix.tr_mul(&momentum).component_div(&self.inertia),
+            momentum,
+        }
+    }
+
+    /// Energy of the rotation (J).
+    #[must_use]
+    pub fn energy(&self, rotation: &Rotation) -> f64 {
+        0.5 * rotation.momentum.dot(&self.moving(rotation).spin)
+    }
+
+    /// Angular momentum (kg m2/s) at which the body turns with that angular velocity (rad/s).
+    #[must_use]
+    pub fn momentum(&self, q: Quaternion<f64>, spin: Vector3<f64>) -> Vector3<f64> {
+        let momentum = Vector3::zeros();
+        let matrix = Rotation { q, momentum }.matrix();
+        matrix * matrix.tr_mul(&spin).component_mul(&self.inertia)
+    }
+
+    /// Place and orientation of a body whose centre is at x and moves with v, both n x 3.
+    #[must_use]
+    pub fn pose(&self, rotation: &Rotation, x: &[f64], v: &[f64]) -> Pose {
+        let Moving { rotation, spin, .. } = self.moving(rotation);
+        let row = |a: &[f64]| {
+            let n = a.len() / 3;
+            Vector3::new(a[self.center], a[n + self.center], a[2 * n + self.center])
+        };
+        Pose {
+            place: Place {
+                position: row(x),
+                velocity: row(v),
+                acceleration: Vector3::zeros(),
+            },
+            orientation: Some(Orientation { rotation, spin }),
+        }
+    }
+}
+
+impl Moving {
+    /// Rate of the quaternion, w q / 2.
+    pub fn rate(&self, q: Quaternion<f64>) -> Quaternion<f64> {
+        Quaternion::from_imag(self.spin) * q * 0.5
+    }
+
+    /// Angular acceleration (rad/s2) under a torque (N m).
+    pub fn angular_acceleration(
+        &self,
+        inertia: &Vector3<f64>,
+        torque: Vector3<f64>,
+    ) -> Vector3<f64> {
+        let change = torque - self.spin.cross(&self.momentum);
+        self.rotation * self.rotation.tr_mul(&change).component_div(inertia)
+    }
+}
