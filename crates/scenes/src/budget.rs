@@ -22,6 +22,8 @@ pub(crate) const PARTICLES: Part = Part("particles", 360);
 /// Particles whose surfaces touch.
 pub(crate) const TOUCHING: Part = Part("particles that touch", 2200);
 pub(crate) const SPRINGS: Part = Part("springs", 160);
+/// Parts of rigid bodies.
+pub(crate) const PARTS: Part = Part("parts of rigid bodies", 20_000);
 /// Springs that buckle.
 pub(crate) const STRIPS: Part = Part("springs that buckle", 200);
 pub(crate) const RODS: Part = Part("rods", 400);

@@ -88,9 +88,17 @@ impl Description {
                 .collect()
         };
         let mut parts = now.y.chunks_exact(3 * n);
+        let rotations = || {
+            let network = model.network().into_iter();
+            network.flat_map(|network| {
+                (0..network.bodies().len()).map(|k| network.rotation(k, &now.y))
+            })
+        };
         self.state = Some(State {
             positions: parts.next().map(rows).unwrap_or_default(),
             velocities: parts.next().map(rows).unwrap_or_default(),
+            orientations: rotations().map(|r| [r.q.w, r.q.i, r.q.j, r.q.k]).collect(),
+            angular_momenta: rotations().map(|r| r.momentum.into()).collect(),
         });
         let Some(network) = model.network() else {
             return;
@@ -206,6 +214,7 @@ impl Description {
     /// Pins of each body.
     fn body_pins(&mut self) -> impl Iterator<Item = &mut Vec<Pin>> {
         let cloths = self.cloth.iter_mut().map(|body| &mut body.pin);
+        let rigid = self.body.iter_mut().map(|body| &mut body.pin);
         let jellies = self.jelly.iter_mut().map(|body| &mut body.pin);
         let meshes = self.mesh.iter_mut().map(|body| &mut body.pin);
         let chains = self.chain.iter_mut().map(|body| &mut body.pin);
@@ -215,6 +224,7 @@ impl Description {
             .chain(meshes)
             .chain(chains)
             .chain(particles)
+            .chain(rigid)
     }
 }
 

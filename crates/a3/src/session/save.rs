@@ -1,9 +1,9 @@
 //! A run as it is now, written as a scene file.
 
-use std::fmt::Write;
+use std::fmt::{Debug, Write};
 use std::path::{Path, PathBuf};
 
-use a3_scenes::{Camera, Description, State};
+use a3_scenes::{Camera, Description};
 
 use super::origin::Origin;
 use super::state::Session;
@@ -48,21 +48,13 @@ impl Session {
             env!("CARGO_PKG_VERSION"),
             description.to_toml()?,
         );
-        let State {
-            positions,
-            velocities,
-        } = state.unwrap_or(State {
-            positions: vec![],
-            velocities: vec![],
-        });
+        let state = state.unwrap_or_default();
         text += "\n[state]\n";
-        for (key, rows) in [("positions", positions), ("velocities", velocities)] {
-            // Writing to a string does not fail. Numbers get as many digits as they need.
-            let _ = writeln!(text, "{key} = [");
-            for row in rows {
-                let _ = writeln!(text, "  {row:?},");
-            }
-            text += "]\n";
+        write_rows(&mut text, "positions", &state.positions);
+        write_rows(&mut text, "velocities", &state.velocities);
+        if !state.orientations.is_empty() {
+            write_rows(&mut text, "orientations", &state.orientations);
+            write_rows(&mut text, "angular_momenta", &state.angular_momenta);
         }
         Ok(text)
     }
@@ -85,6 +77,16 @@ impl Session {
         });
         description
     }
+}
+
+/// Writes a list of rows of numbers, with as many digits as they need.
+fn write_rows(text: &mut String, key: &str, rows: &[impl Debug]) {
+    // Writing to a string does not fail.
+    let _ = writeln!(text, "{key} = [");
+    for row in rows {
+        let _ = writeln!(text, "  {row:?},");
+    }
+    *text += "]\n";
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The look of a run: from particles, springs and obstacles to balls, lines and triangles.
 
+mod bodies;
 mod coil;
 mod colours;
 mod obstacles;

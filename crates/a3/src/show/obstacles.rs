@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use a3_core::contact::{ClosedMesh, Obstacle, Shape};
-use a3_core::{Network, Vector3};
+use a3_core::{Network, Pose, Vector3};
 use a3_render::{Ball, Line, STEEL_LOOK, Solid};
 
 use super::colours::{INK, STEEL};
@@ -29,53 +29,68 @@ pub fn draw(
     solids: &mut Vec<Solid>,
 ) -> Option<f32> {
     let mut floor = None;
-    let share = drawn_radius(network);
-    let inside = |radius: f64| share * radius as f32;
     for obstacle in network.obstacles() {
         let pose = obstacle.at(time);
-        let place = pose.place.position;
-        match &obstacle.shape {
-            &Shape::Sphere { radius } => balls.push(Ball {
-                center: to_f32(place),
-                radius: inside(radius),
-                color: STEEL,
-            }),
-            &Shape::Box { half_extents, axes } => {
-                let least = half_extents.min();
-                let gap = if share < 1.0 { 0.02 * least } else { 0.0 };
-                let round = 0.06 * least;
-                solids.push(Solid {
-                    center: to_f32(place),
-                    radius: round as f32,
-                    axes: [0, 1, 2]
-                        .map(|k| axis(pose.outwards(axes[k]), half_extents[k] - gap - round)),
-                    color: STEEL,
-                });
-            }
-            &Shape::Capsule {
-                ends: [a, b],
-                radius,
-            } => {
-                let along = pose.outwards(b - a);
-                let side = perpendicular(along);
-                let y = along.try_normalize(0.0).unwrap_or(Vector3::y());
-                solids.push(Solid {
-                    center: to_f32(pose.of(0.5 * (a + b)).position),
-                    radius: inside(radius),
-                    axes: [
-                        axis(side, 0.0),
-                        axis(y, 0.5 * along.norm()),
-                        axis(side.cross(&y), 0.0),
-                    ],
-                    color: STEEL,
-                });
-            }
-            // Meshes are triangles of the picture.
-            Shape::Mesh(_) => {}
-            Shape::Floor => floor = Some(place.y as f32),
+        if obstacle.shape == Shape::Floor {
+            floor = Some(pose.place.position.y as f32);
+        } else {
+            let share = drawn_radius(network);
+            draw_shape(&obstacle.shape, &pose, share, STEEL, balls, solids);
         }
     }
     floor
+}
+
+/// Draws a shape at a place, round ones with that share of their radius. Meshes are triangles of
+/// the picture.
+pub fn draw_shape(
+    shape: &Shape,
+    pose: &Pose,
+    share: f32,
+    color: [f32; 4],
+    balls: &mut Vec<Ball>,
+    solids: &mut Vec<Solid>,
+) {
+    let place = pose.place.position;
+    let inside = |radius: f64| share * radius as f32;
+    match shape {
+        &Shape::Sphere { radius } => balls.push(Ball {
+            center: to_f32(place),
+            radius: inside(radius),
+            color,
+        }),
+        &Shape::Box { half_extents, axes } => {
+            let least = half_extents.min();
+            let gap = if share < 1.0 { 0.02 * least } else { 0.0 };
+            let round = 0.06 * least;
+            solids.push(Solid {
+                center: to_f32(place),
+                radius: round as f32,
+                axes: [0, 1, 2]
+                    .map(|k| axis(pose.outwards(axes[k]), half_extents[k] - gap - round)),
+                color,
+            });
+        }
+        &Shape::Capsule {
+            ends: [a, b],
+            radius,
+        } => {
+            let along = pose.outwards(b - a);
+            let side = perpendicular(along);
+            let y = along.try_normalize(0.0).unwrap_or(Vector3::y());
+            solids.push(Solid {
+                center: to_f32(pose.of(0.5 * (a + b)).position),
+                radius: inside(radius),
+                axes: [
+                    axis(side, 0.0),
+                    axis(y, 0.5 * along.norm()),
+                    axis(side.cross(&y), 0.0),
+                ],
+                color,
+            });
+        }
+        Shape::Mesh(_) | Shape::Floor => {}
+    }
 }
 
 /// Obstacles that are meshes.
@@ -106,7 +121,6 @@ pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
 /// Three great circles through the poles of each sphere that turns, where they are at `time` (s);
 /// none where surfaces touch, because they would show through what lies on the sphere.
 pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
-    const CORNERS: usize = 48;
     let share = f64::from(drawn_radius(network));
     let turning = network.obstacles().iter().filter_map(move |obstacle| {
         match (&obstacle.shape, obstacle.turn) {
@@ -116,18 +130,22 @@ pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
             _ => None,
         }
     });
-    turning.flat_map(move |(radius, axis, pose)| {
-        let radius = share * radius * 1.002;
-        let side = perpendicular(axis);
-        (0..3).flat_map(move |circle| {
-            let (sin, cos) = (TAU / 6.0 * f64::from(circle)).sin_cos();
-            let across = side * cos + axis.cross(&side) * sin;
-            let corner = move |k: usize| {
-                let (sin, cos) = (TAU / CORNERS as f64 * k as f64).sin_cos();
-                to_f32(pose.of((axis * cos + across * sin) * radius).position)
-            };
-            (0..CORNERS).map(move |k| Line::new(corner(k), corner(k + 1), 1.6, INK))
-        })
+    turning.flat_map(move |(radius, axis, pose)| great_circles(share * radius, axis, pose))
+}
+
+/// Three great circles through the poles of a sphere.
+pub fn great_circles(radius: f64, axis: Vector3<f64>, pose: Pose) -> impl Iterator<Item = Line> {
+    const CORNERS: usize = 48;
+    let radius = radius * 1.002;
+    let side = perpendicular(axis);
+    (0..3).flat_map(move |circle| {
+        let (sin, cos) = (TAU / 6.0 * f64::from(circle)).sin_cos();
+        let across = side * cos + axis.cross(&side) * sin;
+        let corner = move |k: usize| {
+            let (sin, cos) = (TAU / CORNERS as f64 * k as f64).sin_cos();
+            to_f32(pose.of((axis * cos + across * sin) * radius).position)
+        };
+        (0..CORNERS).map(move |k| Line::new(corner(k), corner(k + 1), 1.6, INK))
     })
 }
 

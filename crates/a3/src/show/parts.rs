@@ -7,7 +7,7 @@ use a3_core::{Network, Simulation, Spring, SpringKind};
 use a3_render::{STEEL_LOOK, Topology};
 use a3_scenes::{Presentation, Surface};
 
-use super::obstacles;
+use super::{bodies, obstacles};
 
 /// Parts that change only with the scene or when something tears.
 #[derive(Default)]
@@ -19,6 +19,8 @@ pub struct Parts {
     looks: Vec<f32>,
     /// Springs that are drawn one by one.
     loose: Vec<Spring>,
+    /// Particles that are drawn one by one.
+    single: Vec<usize>,
 }
 
 impl Parts {
@@ -35,11 +37,20 @@ impl Parts {
         (self.presentation, self.tears) = (presentation.clone(), tears);
         let springs = springs(simulation);
         self.loose = springs.filter(|s| body(surface, s).is_none()).collect();
+        let network = simulation.model().network();
+        let is_rigid = |i: &usize| network.is_some_and(|n| n.body_of(*i).is_some());
+        let uncovered = surface.particles()..simulation.particles();
+        self.single = uncovered.filter(|i| !is_rigid(i)).collect();
     }
 
     /// Springs of particles without a surface, and springs between bodies.
     pub fn loose(&self) -> &[Spring] {
         &self.loose
+    }
+
+    /// Particles without a surface that belong to no rigid body.
+    pub fn single(&self) -> &[usize] {
+        &self.single
     }
 
     /// Gives each particle of a body its look.
@@ -103,6 +114,13 @@ pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
             .collect(),
     };
     let network = simulation.model().network();
+    for (mesh, first) in network.into_iter().flat_map(bodies::meshes) {
+        let of = |i: &u32| first as u32 + i;
+        let triangles = mesh.triangles().iter().map(|t| t.each_ref().map(of));
+        topology.triangles.extend(triangles);
+        let edges = mesh.edges().iter().map(|e| e.each_ref().map(of));
+        topology.wires.extend(edges);
+    }
     for (mesh, _) in network.into_iter().flat_map(obstacles::meshes) {
         let first = topology.points as u32;
         let triangles = mesh.triangles().iter();

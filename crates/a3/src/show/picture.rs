@@ -12,7 +12,7 @@ use super::parts::{self, Parts};
 use super::springs::springs_of;
 use super::trail::Trail;
 use super::vectors::to_f32;
-use super::{obstacles, view, wires};
+use super::{bodies, obstacles, view, wires};
 
 /// The most springs or particles without a surface that are drawn as coils and balls. More of them
 /// are drawn as lines and small balls: a coil is 170 lines.
@@ -138,6 +138,8 @@ impl Show {
             self.floor = obstacles::draw(network, time, &mut self.balls, &mut self.solids);
             obstacles::add_points(network, time, &mut self.points);
             self.lines.extend(obstacles::meridians(network, time));
+            let (balls, solids) = (&mut self.balls, &mut self.solids);
+            bodies::draw(network, simulation.state(), balls, solids, &mut self.lines);
         }
         if let Some(i) = self.springs_of {
             self.draw_springs_of(simulation, i);
@@ -188,12 +190,7 @@ impl Show {
                 self.ball(i, 0.032, INK);
             }
         }
-        let many = self
-            .parts
-            .loose()
-            .len()
-            .max(simulation.particles() - covered)
-            > MANY;
+        let many = self.parts.loose().len().max(self.parts.single().len()) > MANY;
         for spring in self.parts.loose() {
             let ends = [spring.i, spring.j];
             if many {
@@ -214,7 +211,7 @@ impl Show {
             let at = |i: usize| [points[i][0], points[i][1], points[i][2]];
             self.lines.extend(wires::lines(network, at, STEEL));
         }
-        for i in covered..simulation.particles() {
+        for i in self.parts.single().to_vec() {
             let pinned = network.is_some_and(|n| n.is_pinned(i)) && simulation.grabbed() != Some(i);
             let (radius, color) = match (pinned, many) {
                 (true, false) => (0.045, INK),

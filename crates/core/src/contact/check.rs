@@ -105,7 +105,8 @@ impl ContactLayer {
         let name = |points: &[u32]| points.iter().map(|i| surface.vertex(*i)).collect();
         let counts = |edge: &[u32; 2], triangle: &[u32; 3]| {
             let [a, b] = [edge[0], triangle[0]].map(|i| (i as usize) < n);
-            a && b && surface.touches_itself || a != b
+            let apart = !surface.is_one_solid(edge[0], triangle[0]);
+            a && b && surface.touches_itself && apart || a != b
         };
         let exact = crossings(x, &places[n..], &triangles, &edges).into_iter();
         let exact = exact
@@ -128,7 +129,7 @@ impl ContactLayer {
                 surface.law(pair.kind, &pair.points).radius,
             );
             match pair.kind {
-                PairKind::VertexFloor => offset.y < 0.0,
+                PairKind::VertexFloor => offset.y < radius,
                 _ => radius > 0.0 && offset.norm() < radius,
             }
         };

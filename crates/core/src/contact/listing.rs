@@ -190,7 +190,10 @@ impl Way<'_> {
         let reach = self.course.reach + self.surface.thickest();
         let squared = reach * reach;
         let [(first, first_tree), (second, second_tree)] = sides;
-        if first_tree.items[s].apart(&second_tree.items[t]) >= squared {
+        let [a, b] = [first.corners[s][0], second.corners[t][0]];
+        if first_tree.items[s].apart(&second_tree.items[t]) >= squared
+            || self.surface.is_one_solid(a, b)
+        {
             return;
         }
         for ([(a, at), (b, bt)], [k, l]) in [(sides, [s, t]), ([sides[1], sides[0]], [t, s])] {

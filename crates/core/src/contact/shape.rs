@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::closed_mesh::ClosedMesh;
 use crate::error::{Error, finite, positive};
@@ -62,6 +62,29 @@ impl Shape {
         let shape = Self::Box { half_extents, axes };
         shape.check()?;
         Ok(shape)
+    }
+
+    /// The shape turned by a rotation matrix about its place.
+    ///
+    /// # Errors
+    /// Rounding leaves a mesh no volume.
+    pub fn turned(&self, by: &Matrix3<f64>) -> Result<Self, Error> {
+        Ok(match self {
+            Self::Box { half_extents, axes } => Self::Box {
+                half_extents: *half_extents,
+                axes: axes.map(|axis| by * axis),
+            },
+            Self::Capsule { ends, radius } => Self::Capsule {
+                ends: ends.map(|end| by * end),
+                radius: *radius,
+            },
+            Self::Mesh(mesh) => {
+                let points = mesh.points().iter().map(|point| by * point);
+                let turned = ClosedMesh::new(points.collect(), mesh.triangles().to_vec())?;
+                Self::Mesh(Arc::new(turned))
+            }
+            Self::Sphere { .. } | Self::Floor => self.clone(),
+        })
     }
 
     /// Name as in scene files.

@@ -10,6 +10,7 @@ use super::obstacle::Obstacle;
 use super::shape::Shape;
 use crate::error::{Error, Vertex, at_least};
 use crate::path::Place;
+use crate::rigid::Body;
 
 /// Least gap that is kept between two surfaces, as a share of their thickness.
 const KEPT: f64 = 1e-3;
@@ -44,7 +45,7 @@ impl Skin {
 pub(super) struct Law {
     /// Their skin.
     pub skin: Skin,
-    /// Sum of the radii of obstacles, which counts as solid (m).
+    /// Sum of the radii of round obstacles and bodies, which count as solid (m).
     pub radius: f64,
 }
 
@@ -158,6 +159,8 @@ pub struct Surface {
     particles: usize,
     skins: Vec<Skin>,
     radii: Vec<f64>,
+    /// The rigid body of each particle, counted from 1, or 0 for none; empty without bodies.
+    solids: Vec<u32>,
     /// Points of each obstacle, as seen from its place before it turned (m).
     anchors: Vec<Vec<Vector3<f64>>>,
     pub(super) bodies: Items,
@@ -171,13 +174,14 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Surface of particles with these skins, of which some are corners of triangles or ends of
-    /// edges, and of obstacles. An edge with equal ends is a point.
+    /// Surface of particles with these skins, of which some are corners of triangles, ends of edges
+    /// or points of rigid bodies, and of obstacles. An edge with equal ends is a point.
     #[must_use]
     pub fn new(
         skins: &[Skin],
         triangles: &[[u32; 3]],
         edges: &[[u32; 2]],
+        bodies: &[Body],
         obstacles: &[Obstacle],
         touches_itself: bool,
     ) -> Self {
@@ -185,14 +189,31 @@ impl Surface {
             particles: skins.len(),
             skins: skins.to_vec(),
             radii: vec![0.0; skins.len()],
-            bodies: Items::new(
-                triangles.iter().copied(),
-                edges.iter().copied(),
-                &Items::default(),
-            ),
             touches_itself,
             ..Self::default()
         };
+        if !bodies.is_empty() {
+            surface.solids = vec![0; skins.len()];
+        }
+        let (mut faces, mut sides) = (triangles.to_vec(), edges.to_vec());
+        for (k, body) in bodies.iter().enumerate() {
+            let mut first = body.points().start as u32;
+            for part in body.parts() {
+                let simplices = part.shape.simplices();
+                let points = simplices.points.len() as u32;
+                for i in first..first + points {
+                    surface.radii[i as usize] = simplices.radius;
+                    surface.solids[i as usize] = k as u32 + 1;
+                }
+                if let Shape::Sphere { .. } = part.shape {
+                    sides.push([first; 2]);
+                }
+                faces.extend(simplices.triangles.iter().map(|t| t.map(|i| first + i)));
+                sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
+                first += points;
+            }
+        }
+        surface.bodies = Items::new(faces, sides, &Items::default());
         let (mut faces, mut sides) = (vec![], vec![]);
         for obstacle in obstacles {
             let first = surface.skins.len() as u32;
@@ -276,6 +297,18 @@ impl Surface {
         self.skins.iter().any(|skin| skin.damping > 0.0)
     }
 
+    /// The rigid body to which a vertex belongs.
+    pub(super) fn solid(&self, vertex: u32) -> Option<usize> {
+        let solid = self.solids.get(vertex as usize).copied().unwrap_or(0);
+        (solid > 0).then(|| solid as usize - 1)
+    }
+
+    /// Whether two vertices belong to the same rigid body, whose parts do not touch one another.
+    pub(super) fn is_one_solid(&self, a: u32, b: u32) -> bool {
+        let solid = self.solid(a);
+        solid.is_some() && solid == self.solid(b)
+    }
+
     /// Largest thickness (m).
     pub(crate) fn thickest(&self) -> f64 {
         self.thickest
@@ -291,7 +324,7 @@ impl Surface {
         2.0 * KEPT * self.thickest - self.thinnest
     }
 
-    /// Radius of a vertex (m): 0 but for those of round obstacles.
+    /// Radius of a vertex (m): 0 but for those of round obstacles and bodies.
     pub(super) fn radius(&self, vertex: u32) -> f64 {
         self.radii[vertex as usize]
     }

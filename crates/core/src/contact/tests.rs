@@ -103,7 +103,7 @@ fn lists_are_complete_and_in_order() {
     let distinct = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
     let triangles: Vec<_> = triangles.into_iter().filter(distinct).collect();
     let obstacles = obstacles();
-    let surface = Surface::new(&skins, &triangles, &[], &obstacles, true);
+    let surface = Surface::new(&skins, &triangles, &[], &[], &obstacles, true);
     let mut start = vec![];
     surface.place(&obstacles, 0.0, &[0.0; 180], &mut start);
     let mut vector = |size: f64| Vector3::from_fn(|_, _| random.between(-size, size));
@@ -165,7 +165,7 @@ fn lists_are_complete_and_in_order() {
 #[test]
 fn no_bit_depends_on_the_list() {
     let triangles: Vec<[u32; 3]> = (0..20).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-    let surface = Surface::new(&[skin(0.2); 60], &triangles, &[], &obstacles(), true);
+    let surface = Surface::new(&[skin(0.2); 60], &triangles, &[], &[], &obstacles(), true);
     let mut random = SplitMix(7);
     let start: Vec<f64> = (0..180).map(|_| random.between(-0.8, 0.8)).collect();
     let v: Vec<f64> = (0..180).map(|_| random.between(-2.0, 2.0)).collect();

@@ -58,13 +58,13 @@ impl Network {
     /// A particle does not exist, belongs to another body already, is pinned, held by a constraint
     /// or in a sheet.
     pub fn add_body(&mut self, body: Body) -> Result<(), Error> {
-        self.check_particle(body.center)?;
-        if body.points.end > self.particles() {
-            self.check_particle(body.points.end - 1)?;
+        self.check_particle(body.center())?;
+        if body.points().end > self.particles() {
+            self.check_particle(body.points().end - 1)?;
         }
-        for i in body.points.clone() {
+        for i in body.points() {
             let in_sheet = self.sheets().any(|sheet| sheet.particles().contains(&i));
-            if i == body.center || self.body_of(i).is_some() || in_sheet || self.is_held(i) {
+            if i == body.center() || self.body_of(i).is_some() || in_sheet || self.is_held(i) {
                 return Err(Error::Invalid(format!(
                     "particle {i} cannot be a point of a body: it is a centre, in a sheet, held, \
                      or a point already"
@@ -72,17 +72,18 @@ impl Network {
             }
             self.check_led(i)?;
         }
-        if self.body_of(body.center).is_some() {
+        if self.body_of(body.center()).is_some() {
             return Err(Error::Invalid(format!(
                 "particle {} cannot be the centre of two bodies",
-                body.center
+                body.center()
             )));
         }
-        for i in body.points.clone() {
+        for i in body.points() {
             (self.masses[i], self.inverse_masses[i]) = (0.0, 0.0);
         }
         self.uniform_inverse_mass = None;
         self.bodies.push(body);
+        self.renew_contact();
         self.scratch.reserve(self.particles());
         Ok(())
     }
@@ -97,7 +98,7 @@ impl Network {
     #[must_use]
     pub fn body_of(&self, i: usize) -> Option<usize> {
         let mut bodies = self.bodies.iter();
-        bodies.position(|body| body.center == i || body.points.contains(&i))
+        bodies.position(|body| body.center() == i || body.points().contains(&i))
     }
 
     /// Whether particle i is a point that a body carries.
@@ -109,7 +110,7 @@ impl Network {
     /// Mass (kg) that moves with particle i: its own, or that of the body that carries it.
     pub(crate) fn mass_behind(&self, i: usize) -> f64 {
         let body = self.body_of(i).filter(|_| self.is_carried(i));
-        self.masses[body.map_or(i, |k| self.bodies[k].center)]
+        self.masses[body.map_or(i, |k| self.bodies[k].center())]
     }
 
     /// `Ok` if particle i can be led along a path by itself.
@@ -119,7 +120,7 @@ impl Network {
             Some(k) => Err(Error::Invalid(format!(
                 "particle {i} cannot be pinned by itself: it is a point of a rigid body, whose \
                  centre is particle {}",
-                self.bodies[k].center
+                self.bodies[k].center()
             ))),
         }
     }
@@ -181,12 +182,12 @@ impl Network {
     fn place_points(&self, y: &[f64], x: &mut [f64], v: &mut [f64]) {
         let n = self.particles();
         for (_, body, _, moving) in self.each(y) {
-            for (i, anchor) in body.points.clone().zip(&body.anchors) {
+            for (i, anchor) in body.anchors() {
                 let arm = moving.rotation * anchor;
                 let along = moving.spin.cross(&arm);
                 for axis in 0..3 {
-                    x[axis * n + i] = x[axis * n + body.center] + arm[axis];
-                    v[axis * n + i] = v[axis * n + body.center] + along[axis];
+                    x[axis * n + i] = x[axis * n + body.center()] + arm[axis];
+                    v[axis * n + i] = v[axis * n + body.center()] + along[axis];
                 }
             }
         }
@@ -234,12 +235,12 @@ impl Network {
             let n = a.len() / 3;
             Vector3::new(a[i], a[n + i], a[2 * n + i])
         };
-        let center = row(x, body.center);
+        let center = row(x, body.center());
         let mut wrench = Wrench {
-            force: row(f, body.center),
+            force: row(f, body.center()),
             torque: Vector3::zeros(),
         };
-        for i in body.points.clone() {
+        for i in body.points() {
             let force = row(f, i);
             wrench.force += force;
             wrench.torque += (row(x, i) - center).cross(&force);
@@ -252,7 +253,7 @@ impl Network {
 
     /// Rate (1/s) at which drag takes from the motion of a body.
     fn decay(&self, body: &Body) -> f64 {
-        self.carried().drag / self.masses[body.center]
+        self.carried().drag / self.masses[body.center()]
     }
 
     /// Writes accelerations (m/s2) of particles that no body carries to a, n x 3.
@@ -286,7 +287,7 @@ impl Rigid for Network {
                 self.each(y).zip(tail.chunks_exact_mut(ROTATION))
             {
                 let wrench = self.wrench(body, &rotation, Terms::AllForces, x, f);
-                let (c, w) = (body.center, self.inverse_masses[body.center]);
+                let (c, w) = (body.center(), self.inverse_masses[body.center()]);
                 for axis in 0..3 {
                     if w > 0.0 {
                         dv[axis * n + c] = w * wrench.force[axis];
@@ -297,8 +298,8 @@ impl Rigid for Network {
                     momentum: wrench.torque,
                 };
                 rate.write(tail);
-                let turning = moving.angular_acceleration(&body.inertia, wrench.torque);
-                for (i, anchor) in body.points.clone().zip(&body.anchors) {
+                let turning = moving.angular_acceleration(&body.inertia(), wrench.torque);
+                for (i, anchor) in body.anchors() {
                     let arm = moving.rotation * anchor;
                     let along = moving.spin.cross(&arm);
                     let change = turning.cross(&arm) + moving.spin.cross(&along);
@@ -318,9 +319,9 @@ impl Rigid for Network {
             self.accelerate(f, &mut rates[3 * n..6 * n]);
             for (k, body, rotation, _) in self.each(y) {
                 let wrench = self.wrench(body, &rotation, terms, x, f);
-                let w = self.inverse_masses[body.center];
+                let w = self.inverse_masses[body.center()];
                 for axis in 0..3 {
-                    rates[(3 + axis) * n + body.center] = w * wrench.force[axis];
+                    rates[(3 + axis) * n + body.center()] = w * wrench.force[axis];
                 }
                 let momentum = self.numbers(k).end - 3..self.numbers(k).end;
                 rates[momentum].copy_from_slice(wrench.torque.as_slice());

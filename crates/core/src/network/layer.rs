@@ -61,7 +61,14 @@ impl Network {
             return layer.crossed(t, x);
         }
         let skins = vec![Skin::default(); self.particles()];
-        let surface = Surface::new(&skins, &self.triangles, &[], &self.obstacles, true);
+        let surface = Surface::new(
+            &skins,
+            &self.triangles,
+            &[],
+            &self.bodies,
+            &self.obstacles,
+            true,
+        );
         ContactLayer::new(surface, self.obstacles.clone()).crossed(t, x)
     }
 
@@ -106,6 +113,7 @@ impl Network {
                 &touch.skins,
                 &self.triangles,
                 &edges,
+                &self.bodies,
                 &self.obstacles,
                 touch.bodies,
             );

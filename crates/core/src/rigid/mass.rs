@@ -1,5 +1,7 @@
 //! Mass properties of solid shapes of uniform density.
 
+use std::ops::AddAssign;
+
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 use crate::contact::Shape;
@@ -10,7 +12,7 @@ use crate::error::{Error, positive};
 const ALIGNED: f64 = 1e-12;
 
 /// Mass, centre and moments of inertia of a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MassProperties {
     /// Mass (kg).
     pub mass: f64,
@@ -60,6 +62,13 @@ impl MassProperties {
         Ok(own)
     }
 
+    /// Properties of the same body at another place (m).
+    #[must_use]
+    pub fn moved(mut self, by: Vector3<f64>) -> Self {
+        self.center += by;
+        self
+    }
+
     /// Principal moments of inertia (kg m2), and the rotation matrix from the principal axes.
     #[must_use]
     pub fn principal(&self) -> (Vector3<f64>, Matrix3<f64>) {
@@ -76,6 +85,21 @@ impl MassProperties {
             axes.column_mut(2).neg_mut();
         }
         (eigenvalues, axes)
+    }
+}
+
+/// What two bodies are together.
+impl AddAssign for MassProperties {
+    fn add_assign(&mut self, other: Self) {
+        let mass = self.mass + other.mass;
+        if mass > 0.0 {
+            let apart = other.center - self.center;
+            let reduced = self.mass * other.mass / mass;
+            let across = Matrix3::identity() * apart.norm_squared() - apart * apart.transpose();
+            self.inertia += other.inertia + across * reduced;
+            self.center += apart * (other.mass / mass);
+            self.mass = mass;
+        }
     }
 }
 

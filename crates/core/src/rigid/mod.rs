@@ -25,22 +25,30 @@ use crate::path::{Orientation, Place, Pose};
 
 pub use mass::MassProperties;
 
+/// Share of a moment of inertia that rounding may add.
+const ROUNDING: f64 = 1e-9;
+
 /// Number of numbers in the state of a body beside those of its centre: q and L.
 pub const ROTATION: usize = 7;
+
+/// Part of a body, seen from its centre along the principal axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Shape.
+    pub shape: Shape,
+    /// Its place (m).
+    pub at: Vector3<f64>,
+}
 
 /// Rigid body of a network.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Particle that is its centre of mass, and has its mass.
-    pub center: usize,
-    /// Particles that it carries, which have no mass.
-    pub points: Range<usize>,
-    /// Places of these particles, seen from the centre along the principal axes (m).
-    pub anchors: Vec<Vector3<f64>>,
-    /// Principal moments of inertia (kg m2).
-    pub inertia: Vector3<f64>,
-    /// Shape, seen from the centre along the principal axes.
-    pub shape: Shape,
+    center: usize,
+    points: Range<usize>,
+    /// Places of the points, seen from the centre along the principal axes (m).
+    anchors: Vec<Vector3<f64>>,
+    inertia: Vector3<f64>,
+    parts: Vec<Part>,
 }
 
 /// Rotation and angular momentum of a body.
@@ -119,50 +127,77 @@ pub(crate) struct Moving {
 }
 
 impl Body {
-    /// Body of that shape, whose centre of mass and principal axes are where those of the shape
-    /// are, with as many points as `anchors` has.
+    /// Body with these principal moments of inertia (kg m2), whose centre of mass is the particle
+    /// `center`. It carries as many particles, from number `first` on, as its parts have
+    /// [points](Shape::simplices).
     ///
     /// # Errors
-    /// The moments of inertia (kg m2) are none that a body can have: each is a finite number above
-    /// 0, and none is larger than the sum of the other two.
+    /// It has no parts or one that is a floor; or no body can have these moments: each is a finite
+    /// number above 0, and none is larger than the sum of the other two.
     pub fn new(
         center: usize,
-        points: Range<usize>,
-        anchors: Vec<Vector3<f64>>,
+        first: usize,
         inertia: Vector3<f64>,
-        shape: Shape,
+        parts: Vec<Part>,
     ) -> Result<Self, Error> {
-        let body = Self {
-            center,
-            points,
-            anchors,
-            inertia,
-            shape,
-        };
-        body.check()?;
-        Ok(body)
-    }
-
-    fn check(&self) -> Result<(), Error> {
-        let inertia = &self.inertia;
-        inertia
-            .iter()
-            .try_for_each(|i| positive("a moment of inertia", *i))?;
+        for moment in &inertia {
+            positive("a moment of inertia", *moment)?;
+        }
         let largest = inertia.max();
-        if largest > (inertia.sum() - largest) * (1.0 + 1e-9) {
+        if largest > (inertia.sum() - largest) * (1.0 + ROUNDING) {
             return Err(Error::Invalid(format!(
                 "no body has the moments of inertia {}, {} and {}: none may be larger than the \
                  sum of the other two",
                 inertia.x, inertia.y, inertia.z
             )));
         }
-        if self.anchors.len() != self.points.len() {
-            return Err(Error::Dimension {
-                expected: self.points.len(),
-                found: self.anchors.len(),
-            });
+        let mut anchors = vec![];
+        for part in &parts {
+            part.shape.check()?;
+            let points = part.shape.simplices().points;
+            anchors.extend(points.into_iter().map(|point| part.at + point));
         }
-        self.shape.check()
+        if anchors.is_empty() {
+            return Err(Error::Invalid(
+                "a body needs a part that is no floor".into(),
+            ));
+        }
+        Ok(Self {
+            center,
+            points: first..first + anchors.len(),
+            anchors,
+            inertia,
+            parts,
+        })
+    }
+
+    /// Particle that is its centre of mass, and has its mass.
+    #[must_use]
+    pub fn center(&self) -> usize {
+        self.center
+    }
+
+    /// Particles that it carries, which have no mass: the points of its parts.
+    #[must_use]
+    pub fn points(&self) -> Range<usize> {
+        self.points.clone()
+    }
+
+    /// The points with their places, seen from the centre along the principal axes (m).
+    pub(crate) fn anchors(&self) -> impl Iterator<Item = (usize, &Vector3<f64>)> {
+        self.points.clone().zip(&self.anchors)
+    }
+
+    /// Principal moments of inertia (kg m2).
+    #[must_use]
+    pub fn inertia(&self) -> Vector3<f64> {
+        self.inertia
+    }
+
+    /// Parts.
+    #[must_use]
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
     }
 
     /// The body as it moves.

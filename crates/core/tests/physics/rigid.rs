@@ -2,7 +2,7 @@
 
 use a3_core::contact::Shape;
 use a3_core::integrators::{self, METHODS};
-use a3_core::rigid::{Body, MassProperties, Rotation};
+use a3_core::rigid::{Body, MassProperties, Part, Rotation};
 use a3_core::{Control, Model, Network, ParticleSystem, Scene, Simulation, Vector3};
 
 /// Principal moments of a T-handle, of which the middle one is that of its spin.
@@ -13,8 +13,8 @@ fn body(inertia: Vector3<f64>, spin: Vector3<f64>, velocity: Vector3<f64>) -> Sc
     let half_extents = Vector3::new(0.3, 0.2, 0.1);
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let shape = Shape::Box { half_extents, axes };
-    let anchors = shape.simplices().points;
-    let body = Body::new(0, 1..9, anchors, inertia, shape).unwrap();
+    let at = Vector3::zeros();
+    let body = Body::new(0, 1, inertia, vec![Part { shape, at }]).unwrap();
     let mut network = Network::new(vec![2.0; 9]).unwrap();
     network.add_body(body).unwrap();
     let mut state = vec![0.0; network.dim()];
@@ -209,8 +209,11 @@ fn masses_are_exact() {
 
 #[test]
 fn bodies_that_cannot_be_are_refused() {
-    let shape = Shape::Sphere { radius: 0.1 };
-    let refused = |inertia| Body::new(0, 1..1, vec![], inertia, shape.clone()).unwrap_err();
+    let part = Part {
+        shape: Shape::Sphere { radius: 0.1 },
+        at: Vector3::zeros(),
+    };
+    let refused = |inertia| Body::new(0, 1, inertia, vec![part.clone()]).unwrap_err();
     let error = format!("{}", refused(Vector3::new(1.0, 1.0, 2.1)));
     assert!(error.contains("sum of the other two"), "{error}");
     refused(Vector3::new(0.0, 1.0, 1.0));

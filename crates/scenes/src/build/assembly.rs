@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use a3_core::contact::Skin;
 use a3_core::elements::{Buckling, Sheet};
+use a3_core::rigid::{self, Rotation};
 use a3_core::{Constraint, Path, Spring, Vector3};
 
 use super::pins::pins;
-use crate::budget::{BODIES, Budget, PARTICLES, RODS, SPRINGS, STRIPS, TOUCHING};
+use crate::budget::{BODIES, Budget, PARTICLES, PARTS, RODS, SPRINGS, STRIPS, TOUCHING};
 use crate::check::{BOUNDS, within};
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
@@ -22,6 +23,8 @@ pub(super) struct Counts {
     /// Springs that buckle.
     pub strips: usize,
     pub rods: usize,
+    /// Parts of a rigid body.
+    pub parts: usize,
 }
 
 /// A body that a scene is assembled from. Faults have their keys within the body.
@@ -58,6 +61,8 @@ pub(super) struct Assembly {
     pub springs: Vec<Spring>,
     pub strips: Vec<Buckling>,
     pub rods: Vec<Constraint>,
+    /// Rigid bodies, and how they turn.
+    pub rigid: Vec<(rigid::Body, Rotation)>,
     /// Skin of each particle, where surfaces touch.
     pub skins: Vec<Skin>,
     /// Edges and, with equal ends, points that are in no triangle.
@@ -113,6 +118,7 @@ impl Assembly {
             (counts.springs, SPRINGS),
             (counts.strips, STRIPS),
             (counts.rods, RODS),
+            (counts.parts, PARTS),
         ] {
             budget.spend(key, count, part)?;
         }

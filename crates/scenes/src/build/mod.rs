@@ -14,6 +14,7 @@ mod motion;
 mod network;
 mod obstacles;
 mod pins;
+mod rigid;
 mod skins;
 mod state;
 

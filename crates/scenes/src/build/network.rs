@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use a3_core::rigid::ROTATION;
 use a3_core::{Network, Touch, Vector3};
 
 use super::assembly::Assembly;
 use super::mesh_cloth::LoadedMesh;
+use super::rigid::LoadedBody;
 use super::{constraints, forces, laws, obstacles, pins, state};
 use crate::budget::{Budget, SPRINGS, TRIANGLES};
 use crate::check::{at, key_of};
@@ -33,6 +35,7 @@ pub(super) fn bodies(description: &Description) -> usize {
         + description.mesh.len()
         + description.chain.len()
         + usize::from(description.particles.is_some())
+        + description.body.len()
 }
 
 /// Builds everything but the circle. `mesh` reads a file of triangles.
@@ -53,7 +56,7 @@ pub(super) fn build(
     let positions = given.as_ref().unwrap_or(&assembly.positions);
     let more = pins::pins(&description.pin, positions, budget, |_| None)?;
     assembly.pins.extend(more);
-    let state = state::of(&assembly.positions, &assembly.velocities);
+    let mut state = state::of(&assembly.positions, &assembly.velocities);
     let mut network = at("", Network::new(assembly.masses))?;
     for sheet in assembly.sheets {
         at("", network.add(sheet))?;
@@ -63,6 +66,12 @@ pub(super) fn build(
         let added = network.add_buckling(strip);
         let added = added.map_err(|e| format!("bend spring {k}, counted from 0: {e}"));
         at("buckling", added)?;
+    }
+    for (body, rotation) in assembly.rigid {
+        at("body", network.add_body(body))?;
+        let first = state.len();
+        state.resize(first + ROTATION, 0.0);
+        rotation.write(&mut state[first..]);
     }
     for rod in assembly.rods {
         at("", network.add_constraint(rod))?;
@@ -83,21 +92,27 @@ pub(super) fn build(
         edges: assembly.edges,
         bodies: true,
     };
-    if description.self_collision || obstacles::is_one_thick(description) {
+    if touches(description) {
         let touch = Touch {
-            bodies: description.self_collision,
+            bodies: description.self_collision || !description.body.is_empty(),
             ..touch.clone()
         };
         at("self_collision", network.set_touch(Some(touch)))?;
     }
     let has_edges = touch.edges.iter().any(|[i, j]| i != j);
-    let has_surface = has_edges || !network.triangles().is_empty();
+    let has_surface = has_edges || !network.triangles().is_empty() || !network.bodies().is_empty();
     Ok(NetworkParts {
         network,
         state,
         surface: assembly.surface,
         touch: has_surface.then(|| Arc::new(touch)),
     })
+}
+
+/// Whether surfaces touch: rigid bodies always do.
+fn touches(description: &Description) -> bool {
+    let asked = description.self_collision || obstacles::is_one_thick(description);
+    asked || !description.body.is_empty()
 }
 
 /// All bodies, in the order in which their particles are numbered.
@@ -114,11 +129,10 @@ fn assembled(
     if count == 0 {
         return Err(Fault::new(
             "",
-            "the scene is empty: it needs at least one of cloth, jelly, mesh, chain, particles, circle",
+            "the scene is empty: it needs at least one of cloth, jelly, mesh, chain, particles, body, circle",
         ));
     }
-    let touching = description.self_collision || obstacles::is_one_thick(description);
-    let mut assembly = Assembly::new(touching);
+    let mut assembly = Assembly::new(touches(description));
     let Description {
         cloth,
         jelly,
@@ -143,6 +157,12 @@ fn assembled(
     }
     if let Some(body) = &description.particles {
         assembly.add("particles", body, budget)?;
+    }
+    for (k, body) in description.body.iter().enumerate() {
+        let key = key_of("body", k, description.body.len());
+        let loaded = LoadedBody::load(body, budget, mesh);
+        let loaded = loaded.map_err(|fault| fault.within(&key))?;
+        assembly.add(&key, &loaded, budget)?;
     }
     Ok(assembly)
 }

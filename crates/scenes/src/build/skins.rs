@@ -15,6 +15,10 @@ const WITHSTOOD: f64 = 100.0;
 /// Damping of contact over that of a spring of the same stiffness.
 const DAMPING: f64 = 4.0;
 
+/// Damping of the contact of rigid bodies: the speed that a body gains over its thickness, at the
+/// acceleration that contact withstands, over that at which damping counts fully.
+const RIGID_DAMPING: f64 = 16.0;
+
 /// What a body says of its skin, and what it is made of.
 pub(super) struct SkinSpec {
     pub thickness: Option<f64>,
@@ -73,4 +77,20 @@ impl SkinSpec {
         }
         at("friction", at_least(0.0, "it", self.friction))
     }
+}
+
+/// Skin of the points of a rigid body of that mass (kg).
+pub(super) fn rigid_skin(mass: f64, thickness: f64, friction: f64) -> Result<Skin, Fault> {
+    let spec = SkinSpec {
+        thickness: Some(thickness),
+        friction,
+        stiffness: 0.0,
+        time: 0.0,
+    };
+    spec.check()?;
+    Ok(Skin {
+        // Close to the critical damping of a body that rests on the skin by its own weight.
+        damping: RIGID_DAMPING / (WITHSTOOD * thickness).sqrt(),
+        ..spec.skin(mass, thickness)
+    })
 }

@@ -7,6 +7,7 @@ mod floor;
 mod forces;
 mod motion;
 mod obstacles;
+mod rigid;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -20,12 +21,13 @@ pub use floor::{Floor, FloorSpec};
 pub use forces::{BucklingSpec, SpringSpec, SwingSpec, WindSpec};
 pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
+pub use rigid::{PartSpec, RigidBody};
 
 /// A scene: bodies, what acts on them, how it is run and where it is seen from. Units are m, kg, s,
 /// N and rad.
 ///
 /// Particles are numbered through all bodies: those of cloths come first, then those of jellies,
-/// meshes, chains and single particles.
+/// meshes, chains, single particles, and rigid bodies.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Description {
@@ -79,6 +81,9 @@ pub struct Description {
     pub chain: Vec<Chain>,
     /// Single particles.
     pub particles: Option<Particles>,
+    /// Rigid bodies.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub body: Vec<RigidBody>,
     /// Springs between any particles: [i, j, stiffness (N/m), rest length (m), damping (N s/m)].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,
@@ -122,8 +127,8 @@ pub struct Camera {
     pub target: Triple,
 }
 
-/// State of all particles, one row for each of them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// State of all particles, one row for each of them, and of all rigid bodies.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct State {
     /// Positions (m).
@@ -131,6 +136,13 @@ pub struct State {
     /// Velocities (m/s); if not given, all particles are at rest.
     #[serde(default)]
     pub velocities: Vec<Triple>,
+    /// Orientations of rigid bodies: quaternions w, x, y, z from their principal axes. If not
+    /// given, those of the bodies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub orientations: Vec<[f64; 4]>,
+    /// Angular momenta of rigid bodies (kg m2/s).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub angular_momenta: Vec<Triple>,
 }
 
 impl Description {
