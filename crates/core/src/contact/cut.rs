@@ -33,6 +33,16 @@ pub(super) struct Cuts {
 }
 
 impl Cuts {
+    /// Forgets the cuts of another step.
+    pub fn forget(&mut self) {
+        self.shares.clear();
+    }
+
+    /// Share of its displacement that is left to a vertex.
+    pub fn share(&self, vertex: usize) -> f64 {
+        self.shares.get(vertex).copied().unwrap_or(1.0)
+    }
+
     /// Shortens displacements so that no pair comes too near. Returns the number of vertices that
     /// are cut, and the sum of the magnitudes of the momentum that they lose (N s). Displacements
     /// that leave no room stay as they are.
@@ -42,7 +52,7 @@ impl Cuts {
         candidates: &mut Candidates,
         motion: &mut Motion,
     ) -> Result<(usize, f64), Squeezed> {
-        self.before.clone_from(&motion.moves);
+        self.before.clone_from(&motion.moves.points);
         self.shares.clear();
         self.shares.resize(motion.moves.len(), 1.0);
         let mut held = BTreeSet::new();
@@ -59,25 +69,37 @@ impl Cuts {
                 }
             }
             if let Err(squeezed) = squeezed {
-                motion.moves.clone_from(&self.before);
+                motion.moves.points.clone_from(&self.before);
+                self.forget();
                 motion.cover(surface, candidates);
                 return Err(squeezed);
             }
             if !new {
                 break;
             }
-            let all = motion.moves.iter_mut().zip(&self.before).zip(&self.shares);
+            // A rigid body goes as far as its vertex that goes the least far.
+            for solid in &motion.solids {
+                let all = solid.points.clone().chain([solid.center]);
+                let least = all.clone().map(|i| self.shares[i]).fold(1.0, f64::min);
+                all.for_each(|i| self.shares[i] = least);
+            }
+            let moves = motion.moves.points.iter_mut();
+            let all = moves.zip(&self.before).zip(&self.shares);
             for ((moved, before), share) in all {
                 *moved = before * *share;
             }
         }
         let (mut vertices, mut lost) = (0, 0.0);
         for (i, share) in self.shares.iter().enumerate() {
-            if *share < 1.0 {
+            // Of a rigid body, the centre counts.
+            if *share < 1.0 && motion.inverse_masses[i] > 0.0 {
                 vertices += 1;
                 lost += motion.v[i].norm() * (1.0 - share) / motion.inverse_masses[i];
                 motion.v[i] *= *share;
             }
+        }
+        for (k, solid) in motion.solids.iter().enumerate() {
+            motion.v.turns[k] *= self.shares[solid.center];
         }
         Ok((vertices, lost))
     }
@@ -91,7 +113,7 @@ impl Cuts {
     ) -> Result<(), Squeezed> {
         let x = pair.of(&motion.x0);
         let moves = pair.of(&self.before);
-        let inverse_masses = pair.of(&motion.inverse_masses);
+        let led = pair.points.map(|i| motion.is_led(surface, i));
         let first = pair.kind.first();
         // The points that count: a floor has one.
         let last = if pair.kind == PairKind::VertexFloor {
@@ -108,8 +130,8 @@ impl Cuts {
             let towards = if k < first { -moves[k] } else { moves[k] };
             towards.dot(&normal).max(0.0)
         };
-        let most = |range: std::ops::Range<usize>, led: bool| {
-            let counted = range.filter(|k| !led || inverse_masses[*k] == 0.0);
+        let most = |range: std::ops::Range<usize>, only_led: bool| {
+            let counted = range.filter(|k| !only_led || led[*k]);
             counted.map(approach).fold(0.0, f64::max)
         };
         let [first_led, second_led] = [most(0..first, true), most(first..last, true)];
@@ -118,7 +140,7 @@ impl Cuts {
         let free = room - first_led - second_led;
         if free < 0.0 {
             let vertices = [0..first, first..last].map(|mut side| {
-                let k = side.clone().find(|k| inverse_masses[*k] == 0.0);
+                let k = side.clone().find(|k| led[*k]);
                 surface.vertex(pair.points[k.or(side.next()).unwrap_or(0)])
             });
             return Err(Squeezed { vertices });
@@ -132,7 +154,7 @@ impl Cuts {
         let second_end = foot + second_led + free * share;
         let first_end = second_end + kept;
         for k in 0..last {
-            if inverse_masses[k] == 0.0 {
+            if led[k] {
                 continue;
             }
             let (at, by) = (x[k].dot(&normal), moves[k].dot(&normal));

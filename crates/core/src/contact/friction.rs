@@ -1,12 +1,13 @@
 //! Contacts of pairs as the guard changes them: impulses along the normal, and Coulomb friction.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::candidates::Candidates;
-use super::closest::weighted;
+use super::closest::{PairKind, weighted};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::repulsion::Pair;
+use super::solids::{Arm, Field, Solid};
 use super::surface::Surface;
 
 /// Passes of friction between surfaces that the contact force keeps apart.
@@ -15,67 +16,182 @@ const FRICTION_PASSES: usize = 4;
 /// Share of the most that friction takes of a velocity below which a slip counts as none.
 const STUCK: f64 = 1e-9;
 
+/// What impulses move.
+#[derive(Clone, Copy)]
+pub(super) struct Masses<'a> {
+    /// Inverse mass of each vertex (1/kg).
+    pub inverse: &'a [f64],
+    /// Rigid bodies.
+    pub solids: &'a [Solid],
+}
+
 /// Direction of a pair's contact: the weights of its closest points, the normal from the second
 /// primitive to the first, and the sum of the weighted inverse masses (1/kg).
 pub(super) struct Contact {
     points: [u32; 4],
     weights: [f64; 4],
     normal: Vector3<f64>,
+    /// The change of their relative velocity along the normal by an impulse along it (1/kg).
     pub inverse_mass: f64,
+    rigid: Option<RigidContact>,
+}
+
+/// Contact of which a side is a rigid body, whose mobility depends on the direction.
+struct RigidContact {
+    arms: [Option<Arm>; 2],
+    /// Change of the relative velocity of the closest points by an impulse (1/kg), and the inverse.
+    mobility: Matrix3<f64>,
+    inverse: Matrix3<f64>,
 }
 
 impl Contact {
-    pub fn new(points: [u32; 4], weights: [f64; 4], normal: Vector3<f64>, motion: &Motion) -> Self {
+    pub fn new(
+        surface: &Surface,
+        candidate: &Candidate,
+        weights: [f64; 4],
+        normal: Vector3<f64>,
+        motion: &Motion,
+    ) -> Self {
+        let points = candidate.points;
         let inverse_masses = points.map(|i| motion.inverse_masses[i as usize]);
         let terms = weights.iter().zip(inverse_masses).map(|(w, m)| w * w * m);
-        Self {
+        let mut contact = Self {
             points,
             weights,
             normal,
             inverse_mass: terms.sum(),
+            rigid: None,
+        };
+        if !motion.solids.is_empty() {
+            contact.find_arms(surface, candidate.kind, motion);
         }
+        contact
+    }
+
+    fn find_arms(&mut self, surface: &Surface, kind: PairKind, motion: &Motion) {
+        let first = kind.first();
+        let side = |from: usize, to: usize, sign: f64| {
+            let side = (&self.points[from..to], &self.weights[from..to]);
+            Solid::arm(surface, motion, side, self.normal, sign)
+        };
+        let last = if kind == PairKind::VertexFloor { 2 } else { 4 };
+        let arms = [side(0, first, 1.0), side(first, last, -1.0)];
+        if arms.iter().all(Option::is_none) {
+            return;
+        }
+        let mut mobility = Matrix3::identity() * self.inverse_mass;
+        for arm in arms.iter().flatten() {
+            mobility += motion.solids[arm.solid].mobility(arm);
+        }
+        self.inverse_mass = self.normal.dot(&(mobility * self.normal));
+        // What cannot move along the normal gets no impulse.
+        let inverse = mobility.try_inverse().unwrap_or_default();
+        self.rigid = Some(RigidContact {
+            arms,
+            mobility,
+            inverse,
+        });
     }
 
     /// The relative vector of the closest points.
-    fn relative(&self, all: &[Vector3<f64>]) -> Vector3<f64> {
-        weighted(&self.weights, &self.points.map(|i| all[i as usize]))
+    fn relative(&self, field: &Field) -> Vector3<f64> {
+        let relative = weighted(&self.weights, &self.points.map(|i| field[i as usize]));
+        let arms = self
+            .rigid
+            .iter()
+            .flat_map(|rigid| rigid.arms.iter().flatten());
+        arms.fold(relative, |relative, arm| relative + arm.roll(field))
     }
 
     /// The part across the normal of the relative vector of the closest points.
-    fn slip(&self, all: &[Vector3<f64>]) -> Vector3<f64> {
-        let relative = self.relative(all);
+    fn slip(&self, field: &Field) -> Vector3<f64> {
+        let relative = self.relative(field);
         relative - self.normal * relative.dot(&self.normal)
     }
 
-    /// Changes the relative vector of the closest points by `change`.
-    fn apply(&self, change: Vector3<f64>, inverse_masses: &[f64], all: &mut [Vector3<f64>]) {
-        let by = change / self.inverse_mass;
+    /// The change of the relative velocity along a direction by an impulse along it (1/kg).
+    fn mobility(&self, direction: Vector3<f64>) -> f64 {
+        let squared = direction.norm_squared();
+        match &self.rigid {
+            Some(rigid) if squared > 0.0 => direction.dot(&(rigid.mobility * direction)) / squared,
+            _ => self.inverse_mass,
+        }
+    }
+
+    /// Changes the relative vector of the closest points by `change`, along it.
+    fn apply(&self, change: Vector3<f64>, masses: Masses, field: &mut Field) {
+        self.push(change / self.mobility(change), masses, field);
+    }
+
+    /// Gives the first primitive an impulse (N s), and the opposite to the second.
+    fn push(&self, impulse: Vector3<f64>, masses: Masses, field: &mut Field) {
         for (i, weight) in self.points.iter().zip(self.weights) {
             let i = *i as usize;
-            if inverse_masses[i] > 0.0 && weight != 0.0 {
-                all[i] += by * (weight * inverse_masses[i]);
+            if masses.inverse[i] > 0.0 && weight != 0.0 {
+                field[i] += impulse * (weight * masses.inverse[i]);
             }
+        }
+        for arm in self
+            .rigid
+            .iter()
+            .flat_map(|rigid| rigid.arms.iter().flatten())
+        {
+            masses.solids[arm.solid].push(arm, impulse, field);
         }
     }
 
     /// Whether the closest points do not approach.
-    pub fn parts(&self, all: &[Vector3<f64>]) -> bool {
-        self.relative(all).dot(&self.normal) >= 0.0
+    pub fn parts(&self, field: &Field) -> bool {
+        self.relative(field).dot(&self.normal) >= 0.0
     }
 
     /// Stops an approach, and by friction at most mu times as much of a slip. Returns the impulse's
-    /// magnitude over the effective mass, 0 if there was no approach.
-    pub fn stop(&self, friction: f64, inverse_masses: &[f64], all: &mut [Vector3<f64>]) -> f64 {
-        let relative = self.relative(all);
+    /// magnitude (N s), 0 if there was no approach.
+    pub fn stop(&self, friction: f64, masses: Masses, field: &mut Field) -> f64 {
+        let relative = self.relative(field);
         let approach = -relative.dot(&self.normal);
         if approach <= 0.0 {
             return 0.0;
         }
+        if let Some(rigid) = &self.rigid {
+            let impulse = self.rigid_impulse(rigid, friction, relative);
+            self.push(impulse, masses, field);
+            return impulse.norm();
+        }
         let slip = relative + self.normal * approach;
         let held = hold(slip, friction * approach);
         let change = self.normal * approach - held;
-        self.apply(change, inverse_masses, all);
-        change.norm()
+        self.apply(change, masses, field);
+        change.norm() / self.inverse_mass
+    }
+
+    /// The impulse that stops the approach and the slip, or, where that takes more friction than
+    /// there is, the approach alone (Guendelman, Bridson, Fedkiw, *Nonconvex rigid bodies with
+    /// stacking*, 2003).
+    fn rigid_impulse(
+        &self,
+        rigid: &RigidContact,
+        friction: f64,
+        relative: Vector3<f64>,
+    ) -> Vector3<f64> {
+        let normal = self.normal;
+        let sticking = -(rigid.inverse * relative);
+        let pressed = sticking.dot(&normal);
+        let across = sticking - normal * pressed;
+        if pressed > 0.0 && across.norm() <= friction * pressed {
+            return sticking;
+        }
+        let slip = relative - normal * relative.dot(&normal);
+        let along = slip.try_normalize(0.0).unwrap_or_default();
+        let direction = normal - along * friction;
+        let stopped = normal.dot(&(rigid.mobility * direction));
+        // Where friction would make the bodies approach, there is none.
+        let direction = if stopped > 0.1 * self.inverse_mass {
+            direction
+        } else {
+            normal
+        };
+        direction * (-relative.dot(&normal) / normal.dot(&(rigid.mobility * direction)))
     }
 }
 
@@ -114,7 +230,7 @@ pub(super) fn rub(
             v: candidate.of(&motion.v),
         };
         let (force, weights, normal) = pair.force()?;
-        let contact = Contact::new(candidate.points, weights, normal, motion);
+        let contact = Contact::new(surface, candidate, weights, normal, motion);
         (contact.inverse_mass > 0.0).then_some((contact, law.skin.friction * force * h))
     };
     let mut pressed = vec![];
@@ -135,8 +251,13 @@ fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded
         v0,
         v,
         inverse_masses,
+        solids,
         ..
     } = motion;
+    let masses = Masses {
+        inverse: inverse_masses,
+        solids,
+    };
     // Displacement per change of velocity in the step: half of it for most methods, all of it for
     // implicit Euler.
     let delay = |contact: &Contact| {
@@ -154,18 +275,19 @@ fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded
     for _ in 0..FRICTION_PASSES {
         for (((contact, most), used), delay) in pressed.iter().zip(&mut used).zip(&delays) {
             let slip = contact.slip(v);
-            let left = (most - *used).max(0.0) * contact.inverse_mass;
+            let mobility = contact.mobility(slip);
+            let left = (most - *used).max(0.0) * mobility;
             let taken = hold(slip, left);
-            contact.apply(-taken, inverse_masses, v);
-            *used += taken.norm() / contact.inverse_mass;
-            let limit = most * contact.inverse_mass;
+            contact.apply(-taken, masses, v);
+            *used += taken.norm() / mobility;
+            let limit = most * mobility;
             let displaced = contact.slip(moves);
             let back = if (slip - taken).norm() <= STUCK * limit {
                 hold(displaced, limit * h)
             } else {
                 taken * *delay
             };
-            contact.apply(-back, inverse_masses, moves);
+            contact.apply(-back, masses, moves);
         }
     }
     guarded.impulse += used.iter().sum::<f64>();

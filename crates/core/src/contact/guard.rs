@@ -9,10 +9,11 @@
 use super::candidates::Candidates;
 use super::closest::{Closest, closest};
 use super::cut::Squeezed;
-use super::friction::{Contact, rub};
+use super::friction::{Contact, Masses, rub};
 use super::layer::{ContactLayer, Scratch};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
+use super::solids::Solid;
 use super::surface::Surface;
 
 /// Passes of impulses before what is left is cut.
@@ -55,21 +56,38 @@ impl ContactLayer {
         } = scratch;
         motion.times = [t, t + h];
         surface.place(self.obstacles(), t, &y0[..half], &mut motion.x0);
-        surface.place(self.obstacles(), t + h, &y1[..half], &mut motion.moves);
-        for (end, start) in motion.moves.iter_mut().zip(&motion.x0) {
+        surface.place(
+            self.obstacles(),
+            t + h,
+            &y1[..half],
+            &mut motion.moves.points,
+        );
+        for (end, start) in motion.moves.points.iter_mut().zip(&motion.x0) {
             *end -= start;
         }
-        surface.speeds(self.obstacles(), t + h, &y1[half..2 * half], &mut motion.v);
+        surface.speeds(
+            self.obstacles(),
+            t + h,
+            &y1[half..2 * half],
+            &mut motion.v.points,
+        );
         if surface.is_rough() {
-            surface.speeds(self.obstacles(), t, &y0[half..2 * half], &mut motion.v0);
+            surface.speeds(
+                self.obstacles(),
+                t,
+                &y0[half..2 * half],
+                &mut motion.v0.points,
+            );
         }
         motion.inverse_masses.clear();
         motion.inverse_masses.extend_from_slice(inverse_masses);
         motion.inverse_masses.resize(motion.x0.len(), 0.0);
+        Solid::read(surface, y0, y1, motion);
         let mut guarded = Guarded::default();
         motion.cover(surface, candidates);
         let mut changed = rub(surface, h, candidates, motion, &mut guarded);
         let mut rounds = 0;
+        cuts.forget();
         while !push_apart(surface, h, candidates, motion, &mut guarded, &mut changed) {
             match cuts.cut(surface, candidates, motion) {
                 Ok(cut) => {
@@ -83,6 +101,9 @@ impl ContactLayer {
         }
         if changed {
             write_back(motion, surface.particles(), y0, y1);
+            for (k, solid) in motion.solids.iter().enumerate() {
+                solid.write_back(k, cuts.share(solid.center), motion, y1);
+            }
         }
         Ok(guarded)
     }
@@ -165,7 +186,7 @@ fn push(
     guarded: &mut Guarded,
     moved: &mut [bool],
 ) {
-    let mut touch = contact_at(candidate, time, motion);
+    let mut touch = contact_at(surface, candidate, time, motion);
     if touch
         .as_ref()
         .is_some_and(|contact| contact.parts(&motion.moves))
@@ -173,7 +194,7 @@ fn push(
         let Some(next) = motion.impact_after(surface, candidate, time) else {
             return;
         };
-        touch = contact_at(candidate, next, motion);
+        touch = contact_at(surface, candidate, next, motion);
     }
     let contact =
         touch.filter(|contact| contact.inverse_mass > 0.0 && !contact.parts(&motion.moves));
@@ -188,23 +209,36 @@ fn push(
         moves,
         v,
         inverse_masses,
+        solids,
         ..
     } = motion;
-    let by_move = contact.stop(friction, inverse_masses, moves);
-    let by_speed = contact.stop(friction, inverse_masses, v);
+    let masses = Masses {
+        inverse: inverse_masses,
+        solids,
+    };
+    let by_move = contact.stop(friction, masses, moves);
+    let by_speed = contact.stop(friction, masses, v);
     guarded.impulses += 1;
-    guarded.impulse += by_speed.max(by_move / h) / contact.inverse_mass;
+    guarded.impulse += by_speed.max(by_move / h);
     for i in candidate.points {
         moved[i as usize] |= inverse_masses[i as usize] > 0.0;
+        if let Some(k) = surface.solid(i) {
+            moved[solids[k].points.clone()].fill(true);
+        }
     }
 }
 
 /// Contact of a pair at a share of the step, unless its closest points are at one place then.
-fn contact_at(candidate: &Candidate, time: f64, motion: &Motion) -> Option<Contact> {
+fn contact_at(
+    surface: &Surface,
+    candidate: &Candidate,
+    time: f64,
+    motion: &Motion,
+) -> Option<Contact> {
     let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
     let at = std::array::from_fn(|k| x0[k] + moves[k] * time);
     let Closest { weights, offset } = closest(candidate.kind, &at);
     let distance = offset.norm();
     let normal = offset / distance;
-    (distance > 0.0).then(|| Contact::new(candidate.points, weights, normal, motion))
+    (distance > 0.0).then(|| Contact::new(surface, candidate, weights, normal, motion))
 }

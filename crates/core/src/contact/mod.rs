@@ -29,6 +29,7 @@ mod obstacle;
 mod repulsion;
 mod resolve;
 mod shape;
+mod solids;
 mod strain;
 mod surface;
 #[cfg(test)]

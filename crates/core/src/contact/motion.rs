@@ -9,6 +9,7 @@ use super::advance::time_of_impact;
 use super::candidates::{Candidates, Stretch};
 use super::closest::{PairKind, closest};
 use super::listing::Candidate;
+use super::solids::{Field, Solid};
 use super::surface::Surface;
 
 /// What the guard did in a step.
@@ -55,14 +56,16 @@ pub(super) struct Motion {
     pub times: [f64; 2],
     /// Positions at its beginning (m).
     pub x0: Vec<Vector3<f64>>,
-    /// Displacements (m).
-    pub moves: Vec<Vector3<f64>>,
-    /// Velocities at its beginning (m/s), where friction acts.
-    pub v0: Vec<Vector3<f64>>,
-    /// Velocities at its end (m/s).
-    pub v: Vec<Vector3<f64>>,
-    /// Inverse masses (1/kg): 0 for vertices that are led.
+    /// Displacements.
+    pub moves: Field,
+    /// Velocities at its beginning, where friction acts.
+    pub v0: Field,
+    /// Velocities at its end.
+    pub v: Field,
+    /// Inverse masses (1/kg): 0 for vertices that are led or belong to rigid bodies.
     pub inverse_masses: Vec<f64>,
+    /// Rigid bodies.
+    pub solids: Vec<Solid>,
     ends: Vec<Vector3<f64>>,
 }
 
@@ -70,7 +73,11 @@ impl Motion {
     /// Makes sure that `candidates` has every pair that may touch.
     pub fn cover(&mut self, surface: &Surface, candidates: &mut Candidates) {
         self.ends.clear();
-        let ends = self.x0.iter().zip(&self.moves).map(|(x, move_)| x + move_);
+        let ends = self
+            .x0
+            .iter()
+            .zip(&self.moves.points)
+            .map(|(x, move_)| x + move_);
         self.ends.extend(ends);
         let stretch = Stretch {
             times: self.times,
@@ -78,6 +85,14 @@ impl Motion {
             speeds: None,
         };
         candidates.cover(surface, &stretch);
+    }
+
+    /// Whether vertex i of a surface has its way whatever it meets.
+    pub fn is_led(&self, surface: &Surface, i: u32) -> bool {
+        match surface.solid(i) {
+            Some(k) => self.solids[k].is_led(),
+            None => self.inverse_masses[i as usize] == 0.0,
+        }
     }
 
     /// Share of the step at which a pair comes too near, if it does.

@@ -161,6 +161,8 @@ pub struct Surface {
     radii: Vec<f64>,
     /// The rigid body of each particle, counted from 1, or 0 for none; empty without bodies.
     solids: Vec<u32>,
+    /// Rigid bodies.
+    rigid: Vec<Body>,
     /// Points of each obstacle, as seen from its place before it turned (m).
     anchors: Vec<Vec<Vector3<f64>>>,
     pub(super) bodies: Items,
@@ -190,6 +192,7 @@ impl Surface {
             skins: skins.to_vec(),
             radii: vec![0.0; skins.len()],
             touches_itself,
+            rigid: bodies.to_vec(),
             ..Self::default()
         };
         if !bodies.is_empty() {
@@ -295,6 +298,11 @@ impl Surface {
     /// Whether damping acts anywhere.
     pub(super) fn is_damped(&self) -> bool {
         self.skins.iter().any(|skin| skin.damping > 0.0)
+    }
+
+    /// The rigid bodies.
+    pub(super) fn rigid(&self) -> &[Body] {
+        &self.rigid
     }
 
     /// The rigid body to which a vertex belongs.

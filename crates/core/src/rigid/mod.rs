@@ -109,13 +109,26 @@ impl Rotation {
 }
 
 /// Quaternion of a rotation about a vector by its length (rad).
-fn turn(vector: Vector3<f64>) -> Quaternion<f64> {
+pub(crate) fn turn(vector: Vector3<f64>) -> Quaternion<f64> {
     let angle = vector.norm();
     if angle == 0.0 {
         return Quaternion::identity();
     }
     let (sin, cos) = libm::sincos(0.5 * angle);
     Quaternion::from_parts(cos, vector * (sin / angle))
+}
+
+/// Rotation vector (rad), of at most half a turn, from one orientation to another.
+pub(crate) fn rotation_vector(to: Quaternion<f64>, from: Quaternion<f64>) -> Vector3<f64> {
+    let by = to * from.conjugate();
+    let along = by.imag();
+    let length = along.norm();
+    if length == 0.0 {
+        return Vector3::zeros();
+    }
+    // The nearer of the two ways round.
+    let angle = 2.0 * libm::atan2(length * by.w.signum(), by.w.abs());
+    along * (angle / length)
 }
 
 /// Body as it moves: its rotation matrix and angular velocity (rad/s).

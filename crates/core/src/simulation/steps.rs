@@ -232,6 +232,7 @@ impl Simulation {
                     // itself has ended the run.
                     let way = (begin, time - begin);
                     let _ = layer.guard(network.inverse_masses(), way, y0, &mut self.y);
+                    network.hold(time, &mut self.y);
                 }
             }
             self.since = time;
@@ -314,6 +315,9 @@ fn settle(
     if y1.iter().all(|y| y.is_finite()) {
         let guarded = contact.guard(layer, inverse_masses, (t, h), y1);
         settled.met = guarded.map_err(|Squeezed { vertices }| Cause::Squeezed { vertices })?;
+        if !network.bodies().is_empty() {
+            network.hold(t + h, y1);
+        }
     }
     Ok(settled)
 }

@@ -1,0 +1,172 @@
+//! Rigid bodies in a step, as the guard moves them: their mobilities, and what impulses do to them.
+
+use std::ops::{Deref, DerefMut, Range};
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::motion::Motion;
+use super::surface::Surface;
+use crate::rigid::{ROTATION, Rotation, rotation_vector, turn};
+
+/// A vector for each vertex, and one for each rigid body: displacements (m) and rotation vectors
+/// (rad), or velocities (m/s) and angular velocities (rad/s).
+#[derive(Clone, Debug, Default)]
+pub(super) struct Field {
+    pub points: Vec<Vector3<f64>>,
+    pub turns: Vec<Vector3<f64>>,
+}
+
+impl Deref for Field {
+    type Target = Vec<Vector3<f64>>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.points
+    }
+}
+
+impl DerefMut for Field {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.points
+    }
+}
+
+/// Rigid body at the end of a step.
+#[derive(Clone, Debug)]
+pub(super) struct Solid {
+    pub center: usize,
+    pub points: Range<usize>,
+    /// Inverse mass (1/kg): 0 if its centre is pinned.
+    inverse_mass: f64,
+    /// Inertia and its inverse in the world (kg m2).
+    inertia: Matrix3<f64>,
+    inverse_inertia: Matrix3<f64>,
+    /// Points as seen from the centre (m).
+    arms: Vec<Vector3<f64>>,
+    /// Orientation and angular momentum at both ends of the step.
+    ends: [Rotation; 2],
+    /// Rotation vector of the step (rad) and angular velocity at its end (rad/s) before the guard.
+    unguarded: [Vector3<f64>; 2],
+}
+
+/// Side of a contact that is a rigid body.
+#[derive(Clone, Copy)]
+pub(super) struct Arm {
+    pub solid: usize,
+    /// Point of contact as seen from the centre (m).
+    lever: Vector3<f64>,
+    /// The point of contact as seen from the closest point of the body's simplices (m): not 0 on
+    /// round bodies.
+    round: Vector3<f64>,
+    /// 1 for the first primitive of a pair, -1 for the second.
+    sign: f64,
+}
+
+impl Solid {
+    /// The bodies of a surface in a step from y0 to y1, whose displacements and velocities, which
+    /// are those of the vertices already, get the turns of the bodies.
+    pub fn read(surface: &Surface, y0: &[f64], y1: &[f64], motion: &mut Motion) {
+        let n = surface.particles();
+        for field in [&mut motion.moves, &mut motion.v, &mut motion.v0] {
+            field.turns.clear();
+        }
+        motion.solids.clear();
+        for (k, body) in surface.rigid().iter().enumerate() {
+            let tail = 6 * n + ROTATION * k..6 * n + ROTATION * (k + 1);
+            let ends = [&y0[tail.clone()], &y1[tail]].map(Rotation::read);
+            let [before, after] = ends.map(|rotation| body.moving(&rotation));
+            let matrix = after.rotation;
+            let along = |moments: Vector3<f64>| {
+                matrix * Matrix3::from_diagonal(&moments) * matrix.transpose()
+            };
+            let way = rotation_vector(ends[1].q, ends[0].q);
+            motion.moves.turns.push(way);
+            motion.v0.turns.push(before.spin);
+            motion.v.turns.push(after.spin);
+            motion.solids.push(Self {
+                center: body.center(),
+                points: body.points(),
+                inverse_mass: motion.inverse_masses[body.center()],
+                inertia: along(body.inertia()),
+                inverse_inertia: along(body.inertia().map(f64::recip)),
+                arms: body.anchors().map(|(_, anchor)| matrix * anchor).collect(),
+                ends,
+                unguarded: [way, after.spin],
+            });
+        }
+    }
+
+    /// The arm of a point of contact on the body of a vertex, at the closest point of its simplices
+    /// as seen from the vertices with these weights.
+    pub fn arm(
+        surface: &Surface,
+        motion: &Motion,
+        side: (&[u32], &[f64]),
+        normal: Vector3<f64>,
+        sign: f64,
+    ) -> Option<Arm> {
+        let (points, weights) = side;
+        let solid = surface.solid(points[0])?;
+        let own = &motion.solids[solid];
+        let mut lever = Vector3::zeros();
+        for (i, weight) in points.iter().zip(weights) {
+            lever += own.arms[*i as usize - own.points.start] * (weight * sign);
+        }
+        let round = normal * (-sign * surface.radius(points[0]));
+        Some(Arm {
+            solid,
+            lever: lever + round,
+            round,
+            sign,
+        })
+    }
+
+    /// Whether the body has its way whatever it meets: its centre is pinned.
+    pub fn is_led(&self) -> bool {
+        self.inverse_mass == 0.0
+    }
+
+    /// Change of the velocity of a point at the end of a lever (m) by an impulse there: a matrix
+    /// (1/kg).
+    pub fn mobility(&self, arm: &Arm) -> Matrix3<f64> {
+        let cross = arm.lever.cross_matrix();
+        Matrix3::identity() * self.inverse_mass - cross * self.inverse_inertia * cross
+    }
+
+    /// Changes the body's motion by an impulse (N s) at an arm.
+    pub fn push(&self, arm: &Arm, impulse: Vector3<f64>, field: &mut Field) {
+        let along = impulse * (arm.sign * self.inverse_mass);
+        let turned = self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
+        field.turns[arm.solid] += turned;
+        field.points[self.center] += along;
+        for (i, lever) in self.points.clone().zip(&self.arms) {
+            field.points[i] += along + turned.cross(lever);
+        }
+    }
+
+    /// Writes what was changed of body k to y1: of its displacement and its turn only that share of
+    /// the step.
+    pub fn write_back(&self, k: usize, share: f64, motion: &Motion, y1: &mut [f64]) {
+        let rotations = y1.len() - ROTATION * motion.solids.len();
+        let own = rotations + ROTATION * k..rotations + ROTATION * (k + 1);
+        let [way, spin] = self.unguarded;
+        let (turned, turning) = (motion.moves.turns[k], motion.v.turns[k]);
+        let [start, mut end] = self.ends;
+        if share < 1.0 {
+            end.q = turn(turned * share) * start.q;
+        } else if turned != way {
+            end.q = turn(turned - way) * end.q;
+        }
+        if turning != spin {
+            end.momentum += self.inertia * (turning - spin);
+        }
+        end.write(&mut y1[own]);
+    }
+}
+
+impl Arm {
+    /// The part of the velocity of the point of contact that its round body's turn has beyond that
+    /// of the closest point of its simplices.
+    pub fn roll(&self, field: &Field) -> Vector3<f64> {
+        field.turns[self.solid].cross(&self.round) * self.sign
+    }
+}
