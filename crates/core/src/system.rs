@@ -121,6 +121,10 @@ pub trait Rigid {
     /// Moves y from t (s) on by h (s) as it moves by itself, without the forces of a kick.
     fn drift(&self, t: f64, h: f64, terms: Terms, y: &mut [f64]);
 
+    /// Whether number k of the state belongs to what bodies carry: no f reads it, and
+    /// [`place`](Self::place) writes it.
+    fn is_carried(&self, k: usize) -> bool;
+
     /// Puts pins and what bodies carry to their places at time t (s).
     fn place(&self, t: f64, y: &mut [f64]);
 }

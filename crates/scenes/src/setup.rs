@@ -73,16 +73,25 @@ impl Default for Defaults {
 
 impl Defaults {
     /// The step or tolerance of a method on this scene: the scene's own, or else the method's
-    /// default. A step that is scaled has two digits, as one would type it.
+    /// default. Where the scene's own step is shorter than the default of its solver, the steps of
+    /// others are shorter in proportion. A step that is scaled has two digits, as one would type
+    /// it.
     #[must_use]
     pub fn control_of(&self, method: &Method) -> Control {
         let own = self.control.filter(|_| {
             self.solver
                 .is_some_and(|solver| std::ptr::eq(solver, method))
         });
+        let scale = self.step_scale
+            * match (own, self.control, self.solver.map(|s| s.default_control)) {
+                (None, Some(Control::Step(own)), Some(Control::Step(usual))) => {
+                    (own / usual).min(1.0)
+                }
+                _ => 1.0,
+            };
         match own.unwrap_or(method.default_control) {
-            Control::Step(step) if self.step_scale != 1.0 => {
-                let step = step * self.step_scale;
+            Control::Step(step) if scale != 1.0 => {
+                let step = step * scale;
                 Control::Step(format!("{step:.1e}").parse().unwrap_or(step))
             }
             control => control,

@@ -6,6 +6,7 @@ use std::io;
 use a3_core::{Network, Simulation};
 use a3_scenes::Surface;
 
+use super::tessellation;
 use crate::show::whole_triangles;
 
 /// The connections between particles, which stay the same from frame to frame until something
@@ -17,8 +18,12 @@ pub struct Geometry {
     pub covered: usize,
     /// The ends of springs of particles without a surface.
     pub lines: Vec<[u32; 2]>,
-    /// The particles without a surface.
+    /// The particles without a surface that belong to no rigid body.
     pub points: Vec<u32>,
+    /// The number of particles, after which the points of rigid bodies come.
+    pub particles: usize,
+    /// The number of all vertices.
+    pub vertices: usize,
 }
 
 impl Geometry {
@@ -27,18 +32,36 @@ impl Geometry {
         let covered = surface.particles();
         let network = simulation.model().network();
         let springs = network.into_iter().flat_map(Network::springs);
+        let particles = simulation.particles();
+        let is_rigid = |i: usize| network.is_some_and(|n| n.body_of(i).is_some());
+        let rigid = network.map_or_else(Vec::new, |n| tessellation::triangles(n, particles as u32));
         Self {
+            particles,
+            vertices: vertices(simulation),
             lines: springs
                 .filter(|spring| spring.i.max(spring.j) >= covered)
                 .map(|spring| [spring.i as u32, spring.j as u32])
                 .collect(),
-            points: (covered as u32..simulation.particles() as u32).collect(),
-            triangles: whole_triangles(simulation).collect(),
+            points: (covered..particles)
+                .filter(|i| !is_rigid(*i))
+                .map(|i| i as u32)
+                .collect(),
+            triangles: whole_triangles(simulation).chain(rigid).collect(),
             covered,
         }
     }
 
-    /// The unit normal at each particle: the direction of the sum, over its triangles, of the cross
+    /// The number of a vertex among those with a normal in a file: particles with a surface, and
+    /// points of rigid bodies.
+    pub fn normal_of(&self, vertex: u32) -> u32 {
+        if (vertex as usize) < self.covered {
+            vertex
+        } else {
+            vertex - (self.particles - self.covered) as u32
+        }
+    }
+
+    /// The unit normal at each vertex: the direction of the sum, over its triangles, of the cross
     /// product of two sides, so that triangles are weighted by area. A particle without a surface
     /// has a normal that points upwards.
     pub fn normals(&self, positions: &[[f32; 3]]) -> Vec<[f32; 3]> {
@@ -72,8 +95,14 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| a[k] - b[k])
 }
 
-/// The position of every particle (m), in single precision, as all files of geometry have it; an
-/// error if a number is too large for that.
+/// The number of vertices: of particles, and of points of rigid bodies.
+pub fn vertices(simulation: &Simulation) -> usize {
+    let network = simulation.model().network();
+    simulation.particles() + network.map_or(0, tessellation::count)
+}
+
+/// The position of every particle, and then of every point of a rigid body (m), in single
+/// precision, as all files of geometry have it; an error if a number is too large for that.
 pub fn positions(simulation: &Simulation) -> io::Result<Vec<[f32; 3]>> {
     let n = simulation.particles();
     let x = simulation.state();
@@ -87,7 +116,16 @@ pub fn positions(simulation: &Simulation) -> io::Result<Vec<[f32; 3]>> {
             simulation.time()
         )))
     };
-    (0..n).map(position).collect()
+    let mut all = (0..n).map(position).collect::<io::Result<Vec<_>>>()?;
+    if let Some(network) = simulation.model().network() {
+        let rigid = tessellation::points(network, simulation.state());
+        all.extend(
+            rigid
+                .iter()
+                .map(|point| [point.x, point.y, point.z].map(|x| x as f32)),
+        );
+    }
+    Ok(all)
 }
 
 #[cfg(test)]

@@ -53,8 +53,9 @@ struct Binary {
 
 /// Size of the binary chunk (bytes).
 pub fn size(surface: &Surface, simulation: &Simulation, frames: FrameTimes) -> f64 {
-    let (n, count) = (simulation.particles() as f64, frames.count as f64);
-    24.0 * n * count + 12.0 * surface.triangles.len() as f64 + 4.0 * count * count
+    let geometry = Geometry::of(surface, simulation);
+    let (n, count) = (geometry.vertices as f64, frames.count as f64);
+    24.0 * n * count + 12.0 * geometry.triangles.len() as f64 + 4.0 * count * count
 }
 
 /// Refuses too many frames.

@@ -6,6 +6,7 @@ mod glb;
 mod json;
 mod obj;
 mod pc2;
+mod tessellation;
 
 use std::io::{self, Write};
 use std::path::Path;

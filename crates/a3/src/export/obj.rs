@@ -1,4 +1,5 @@
-//! Wavefront OBJ, a file for each frame. The vertices are the particles, in their order.
+//! Wavefront OBJ, a file for each frame. The vertices are the particles, in their order,
+//! and after them the points of rigid bodies.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -49,12 +50,13 @@ impl Export for Obj {
 /// Approximate size of a file (bytes).
 pub fn size(surface: &Surface, simulation: &Simulation) -> f64 {
     let geometry = Geometry::of(surface, simulation);
-    let (vertices, normals) = (simulation.particles(), geometry.covered);
+    let rigid = geometry.vertices - geometry.particles;
+    let (vertices, normals) = (geometry.vertices, geometry.covered + rigid);
     let (faces, lines) = (geometry.triangles.len(), geometry.lines.len());
     36.0 * vertices as f64 + 37.0 * normals as f64 + 42.0 * faces as f64 + 16.0 * lines as f64
 }
 
-/// Writes the current state: `v` of all particles, `vn` and `f` of surfaces as far as they are not
+/// Writes the current state: `v` of all vertices, `vn` and `f` of surfaces as far as they are not
 /// torn, and `l` and `p` of particles without a surface.
 pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io::Result<()> {
     let geometry = Geometry::of(surface, simulation);
@@ -65,12 +67,14 @@ pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -
     for [x, y, z] in &positions {
         writeln!(file, "v {x} {y} {z}")?;
     }
-    for [x, y, z] in &geometry.normals(&positions)[..geometry.covered] {
+    let normals = geometry.normals(&positions);
+    let rigid = &normals[geometry.particles..];
+    for [x, y, z] in normals[..geometry.covered].iter().chain(rigid) {
         writeln!(file, "vn {x} {y} {z}")?;
     }
     for triangle in &geometry.triangles {
-        let [a, b, c] = triangle.map(|i| i + 1);
-        writeln!(file, "f {a}//{a} {b}//{b} {c}//{c}")?;
+        let [[a, m], [b, n], [c, o]] = triangle.map(|i| [i + 1, geometry.normal_of(i) + 1]);
+        writeln!(file, "f {a}//{m} {b}//{n} {c}//{o}")?;
     }
     for [a, b] in &geometry.lines {
         writeln!(file, "l {} {}", a + 1, b + 1)?;

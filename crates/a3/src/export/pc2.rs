@@ -14,7 +14,7 @@ use a3_core::Simulation;
 use a3_scenes::Presentation;
 
 use super::Export;
-use super::geometry::positions;
+use super::geometry::{positions, vertices};
 use super::{obj, rows};
 use crate::failure::Failure;
 use crate::frames::FrameTimes;
@@ -33,7 +33,7 @@ pub struct Pc2 {
 
 /// Size of the file (bytes).
 pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
-    32.0 + 12.0 * simulation.particles() as f64 * frames.count as f64
+    32.0 + 12.0 * vertices(simulation) as f64 * frames.count as f64
 }
 
 impl Pc2 {
@@ -47,7 +47,7 @@ impl Pc2 {
         let mesh = path.with_extension("obj");
         output::check(&mesh, &["obj"])?;
         let mut draft = Draft::new(path)?;
-        header(&mut draft, simulation.particles(), frames.count).map_err(|e| draft.failure(&e))?;
+        header(&mut draft, vertices(simulation), frames.count).map_err(|e| draft.failure(&e))?;
         Ok(Self {
             draft,
             mesh: Draft::new(&mesh)?,

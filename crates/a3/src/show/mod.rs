@@ -12,6 +12,7 @@ mod vectors;
 mod view;
 mod wires;
 
+pub use bodies::parts as body_parts;
 pub use obstacles::drawn_radius;
 pub use parts::whole_triangles;
 pub use picture::Show;

@@ -13,6 +13,9 @@ use super::surface::Surface;
 /// Passes of friction between surfaces that the contact force keeps apart.
 const FRICTION_PASSES: usize = 4;
 
+/// Passes where there are rigid bodies, each of which may rest on many points.
+const RIGID_PASSES: usize = 20;
+
 /// Share of the most that friction takes of a velocity below which a slip counts as none.
 const STUCK: f64 = 1e-9;
 
@@ -271,24 +274,31 @@ fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded
         }
     };
     let delays: Vec<f64> = pressed.iter().map(|(contact, _)| delay(contact)).collect();
-    let mut used = vec![0.0; pressed.len()];
-    for _ in 0..FRICTION_PASSES {
-        for (((contact, most), used), delay) in pressed.iter().zip(&mut used).zip(&delays) {
+    // Impulse of friction of each contact so far: a later pass may take of it again.
+    let mut all = vec![Vector3::zeros(); pressed.len()];
+    let passes = if solids.is_empty() {
+        FRICTION_PASSES
+    } else {
+        RIGID_PASSES
+    };
+    for _ in 0..passes {
+        for (((contact, most), impulse), delay) in pressed.iter().zip(&mut all).zip(&delays) {
             let slip = contact.slip(v);
             let mobility = contact.mobility(slip);
-            let left = (most - *used).max(0.0) * mobility;
-            let taken = hold(slip, left);
-            contact.apply(-taken, masses, v);
-            *used += taken.norm() / mobility;
+            let held = hold(*impulse - slip / mobility, *most);
+            let change = held - *impulse;
+            contact.push(change, masses, v);
+            *impulse = held;
             let limit = most * mobility;
+            let left = slip + change * mobility;
             let displaced = contact.slip(moves);
-            let back = if (slip - taken).norm() <= STUCK * limit {
-                hold(displaced, limit * h)
+            let forth = if left.norm() <= STUCK * limit {
+                -hold(displaced, limit * h)
             } else {
-                taken * *delay
+                change * (mobility * *delay)
             };
-            contact.apply(-back, masses, moves);
+            contact.apply(forth, masses, moves);
         }
     }
-    guarded.impulse += used.iter().sum::<f64>();
+    guarded.impulse += all.iter().map(Vector3::norm).sum::<f64>();
 }

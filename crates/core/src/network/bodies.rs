@@ -354,6 +354,11 @@ impl Rigid for Network {
         self.place(t + h, y);
     }
 
+    fn is_carried(&self, k: usize) -> bool {
+        let n = self.particles();
+        k < 6 * n && Self::is_carried(self, k % n)
+    }
+
     fn place(&self, t: f64, y: &mut [f64]) {
         let n = self.particles();
         let (x, rest) = y.split_at_mut(3 * n);

@@ -29,8 +29,9 @@ fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
         let Model::Network(mut network) = scene.model else {
             return None;
         };
-        // The forces of constraints have no differential; only implicit methods would need it.
-        if !network.constraints().is_empty() {
+        // The forces of constraints and on rigid bodies have no differential; only implicit methods
+        // would need it.
+        if !network.constraints().is_empty() || !network.bodies().is_empty() {
             return None;
         }
         network.set_wind(scene.wind);

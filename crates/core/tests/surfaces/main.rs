@@ -13,6 +13,7 @@ mod implicit;
 mod led;
 mod pairs;
 mod resting;
+mod rigid;
 mod scenes;
 mod slope;
 

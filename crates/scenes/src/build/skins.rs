@@ -17,7 +17,7 @@ const DAMPING: f64 = 4.0;
 
 /// Damping of the contact of rigid bodies: the speed that a body gains over its thickness, at the
 /// acceleration that contact withstands, over that at which damping counts fully.
-const RIGID_DAMPING: f64 = 16.0;
+const RIGID_DAMPING: f64 = 1.5;
 
 /// What a body says of its skin, and what it is made of.
 pub(super) struct SkinSpec {
@@ -89,8 +89,8 @@ pub(super) fn rigid_skin(mass: f64, thickness: f64, friction: f64) -> Result<Ski
     };
     spec.check()?;
     Ok(Skin {
-        // Close to the critical damping of a body that rests on the skin by its own weight.
         damping: RIGID_DAMPING / (WITHSTOOD * thickness).sqrt(),
-        ..spec.skin(mass, thickness)
+        // A face rests on several points.
+        ..spec.skin(0.25 * mass, thickness)
     })
 }

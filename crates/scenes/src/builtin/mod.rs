@@ -54,6 +54,9 @@ pub static SCENES: &[SceneEntry] = &[
     entry!("flag"),
     entry!("jelly"),
     entry!("t-handle"),
+    entry!("boxes"),
+    entry!("dominoes"),
+    entry!("ball-on-cloth"),
 ];
 
 /// The scene of this name.

@@ -1,4 +1,4 @@
-//! Implicit stages of a small system without masses, by Newton's method with the Jacobian J from
+//! Implicit stages of a small system without masses, or of rigid bodies, by Newton's method with the Jacobian J from
 //! central differences.
 
 use super::{CLOSE, MOST, Newton, norm};
@@ -6,16 +6,30 @@ use crate::error::Error;
 use crate::integrators::{Work, check_dim};
 use crate::system::ParticleSystem;
 
-/// Largest dimension; the Jacobian of a larger system takes too long.
+/// Largest number of unknowns; the Jacobian of a larger system takes too long.
 pub(super) const LARGEST: usize = 1024;
 
-/// Solver of the implicit stages of a small system, with its scratch.
+/// The numbers of the state that the equations are solved for: all, but for those of what rigid
+/// bodies carry, which no f reads.
+pub(super) fn unknowns(system: &dyn ParticleSystem) -> Vec<usize> {
+    let all = 0..system.dim();
+    match system.rigid() {
+        Some(rigid) => all.filter(|k| !rigid.is_carried(*k)).collect(),
+        None => all.collect(),
+    }
+}
+
+/// Solver of the implicit stages of a small system, with its scratch. What rigid bodies carry
+/// stays as it is.
 pub(super) struct Dense {
     dim: usize,
+    unknowns: Vec<usize>,
     /// Matrix 1 - a J, row by row, or its factors L and U in place.
     matrix: Vec<f64>,
     /// Row that was exchanged with each row in turn.
     pivots: Vec<usize>,
+    /// Change of the unknowns, and of the whole state.
+    solution: Vec<f64>,
     change: Vec<f64>,
     at: Vec<f64>,
     above: Vec<f64>,
@@ -23,16 +37,21 @@ pub(super) struct Dense {
 }
 
 impl Dense {
-    pub fn new(dim: usize) -> Self {
-        let room = if dim <= LARGEST { dim } else { 0 };
+    pub fn new(system: &dyn ParticleSystem) -> Self {
+        let (dim, unknowns) = (system.dim(), unknowns(system));
+        // A system that is too large is refused.
+        let room = Some(unknowns.len()).filter(|count| *count <= LARGEST);
+        let room = room.unwrap_or(0);
         Self {
             dim,
+            unknowns,
             matrix: vec![0.0; room * room],
             pivots: vec![0; room],
-            change: vec![0.0; room],
-            at: vec![0.0; room],
-            above: vec![0.0; room],
-            below: vec![0.0; room],
+            solution: vec![0.0; room],
+            change: vec![0.0; dim],
+            at: vec![0.0; dim],
+            above: vec![0.0; dim],
+            below: vec![0.0; dim],
         }
     }
 
@@ -76,8 +95,9 @@ impl Dense {
 
     /// Writes 1 - a J at y into the matrix.
     fn form(&mut self, system: &dyn ParticleSystem, t: f64, a: f64, y: &[f64]) -> Work {
-        let dim = self.dim;
+        let count = self.unknowns.len();
         let Self {
+            unknowns,
             matrix,
             at,
             above,
@@ -85,25 +105,25 @@ impl Dense {
             ..
         } = self;
         at.copy_from_slice(y);
-        for j in 0..dim {
+        for (column, &j) in unknowns.iter().enumerate() {
             let h = 1e-6 * y[j].abs().max(1.0);
             at[j] = y[j] + h;
             system.eval_f(t, at, above);
             at[j] = y[j] - h;
             system.eval_f(t, at, below);
             at[j] = y[j];
-            for i in 0..dim {
+            for (row, &i) in unknowns.iter().enumerate() {
                 let slope = (above[i] - below[i]) / (2.0 * h);
-                matrix[i * dim + j] = f64::from(i == j) - a * slope;
+                matrix[row * count + column] = f64::from(i == j) - a * slope;
             }
         }
-        Work::of(2 * dim as u64)
+        Work::of(2 * count as u64)
     }
 
     /// Factorises the matrix by Gaussian elimination with partial pivoting. Returns false if it is
     /// singular or not finite.
     fn factorise(&mut self) -> bool {
-        let (n, matrix) = (self.dim, &mut self.matrix);
+        let (n, matrix) = (self.unknowns.len(), &mut self.matrix);
         for k in 0..n {
             let size = |i: usize, matrix: &[f64]| matrix[i * n + k].abs();
             let pivot = (k..n)
@@ -136,10 +156,10 @@ impl Dense {
         base: &[f64],
         y: &mut [f64],
     ) -> Work {
-        let (n, matrix, change) = (self.dim, &self.matrix, &mut self.change);
+        let (n, matrix, change) = (self.unknowns.len(), &self.matrix, &mut self.solution);
         system.eval_f(t, y, &mut self.above);
-        for i in 0..n {
-            change[i] = base[i] + a * self.above[i] - y[i];
+        for (change, &i) in change.iter_mut().zip(&self.unknowns) {
+            *change = base[i] + a * self.above[i] - y[i];
         }
         for (k, pivot) in self.pivots.iter().enumerate() {
             change.swap(k, *pivot);
@@ -153,7 +173,10 @@ impl Dense {
             let rest: f64 = (k + 1..n).map(|j| matrix[k * n + j] * change[j]).sum();
             change[k] = (change[k] - rest) / matrix[k * n + k];
         }
-        super::super::add_scaled(y, 1.0, change);
+        for (change, &i) in change.iter().zip(&self.unknowns) {
+            self.change[i] = *change;
+        }
+        super::super::add_scaled(y, 1.0, &self.change);
         Work {
             solves: 1,
             ..Work::of(1)

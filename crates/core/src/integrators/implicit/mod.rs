@@ -56,12 +56,12 @@ const FORCING: f64 = 1e-5;
 /// The system has no forces and masses, and is too large for the Jacobian of its f.
 pub(super) fn check(system: &dyn ParticleSystem) -> Result<(), Error> {
     let linearized = system.mechanics().and_then(Mechanics::linearized);
-    if linearized.is_none() && system.dim() > dense::LARGEST {
+    let count = linearized.map_or_else(|| dense::unknowns(system).len(), |_| 0);
+    if count > dense::LARGEST {
         return Err(Error::Invalid(format!(
-            "implicit methods serve systems without masses up to a state of {} numbers, and this \
-             has {}: use an explicit one",
+            "implicit methods serve rigid bodies and systems without masses up to a state of {} \
+             numbers, and this has {count}: use an explicit one",
             dense::LARGEST,
-            system.dim()
         )));
     }
     Ok(())
@@ -88,7 +88,7 @@ impl StageSolver {
     fn new(system: &dyn ParticleSystem) -> Self {
         match system.mechanics().and_then(Mechanics::linearized) {
             Some(linearized) => Self::Mechanical(Box::new(Mechanical::new(linearized))),
-            None => Self::Dense(Dense::new(system.dim())),
+            None => Self::Dense(Dense::new(system)),
         }
     }
 
