@@ -52,6 +52,14 @@ pub struct Adaptive {
     first: [Vec<f64>; 3],
 }
 
+/// Whether two states are the same but for what rigid bodies carry, which follows from the rest.
+fn is_same(system: &dyn ParticleSystem, a: &[f64], b: &[f64]) -> bool {
+    match system.rigid() {
+        None => a == b,
+        Some(rigid) => (0..a.len()).all(|k| a[k] == b[k] || rigid.is_carried(k)),
+    }
+}
+
 impl Adaptive {
     pub(super) fn new(trial: Box<dyn Trial>, tolerance: Tolerance) -> Self {
         let first = [(); 3].map(|()| vec![0.0; trial.dim()]);
@@ -127,7 +135,7 @@ impl Adaptive {
         self.trial.check(system)?;
         let mut work = Work::default();
         // What contact put right after the last step has another derivative.
-        if self.goes_on && self.trial.end() == &*y {
+        if self.goes_on && is_same(system, self.trial.end(), y) {
             self.trial.go_on();
         } else {
             work += self.trial.begin(system, t, y);
