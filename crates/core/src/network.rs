@@ -2,6 +2,7 @@
 
 mod compliant;
 mod constrained;
+mod fluid;
 mod layer;
 mod mechanics;
 mod obstacles;

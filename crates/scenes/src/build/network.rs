@@ -1,12 +1,13 @@
 //! The network of a description: bodies, pins, constraints, forces and obstacles.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use a3_core::{Network, Touch, Vector3};
 
 use super::assembly::Assembly;
 use super::mesh_cloth::LoadedMesh;
-use super::{constraints, forces, laws, obstacles, pins, state};
+use super::{constraints, fluid, forces, laws, obstacles, pins, state};
 use crate::budget::{Budget, SPRINGS, TRIANGLES};
 use crate::check::{at, key_of};
 use crate::description::Description;
@@ -22,6 +23,8 @@ pub(super) struct NetworkParts {
     pub network: Network,
     pub state: Vec<f64>,
     pub surface: Surface,
+    /// Particles of the walls of each tank.
+    pub tanks: Vec<Range<usize>>,
     /// What can touch, if there is any surface.
     pub touch: Option<Arc<Touch>>,
 }
@@ -33,6 +36,7 @@ pub(super) fn bodies(description: &Description) -> usize {
         + description.mesh.len()
         + description.chain.len()
         + usize::from(description.particles.is_some())
+        + description.fluid.len()
 }
 
 /// Builds everything but the circle. `mesh` reads a file of triangles.
@@ -67,6 +71,7 @@ pub(super) fn build(
     for rod in assembly.rods {
         at("", network.add_constraint(rod))?;
     }
+    fluid::add(assembly.fluid, &mut network, &state[..3 * n])?;
     constraints::add(description, &mut network, &state)?;
     let triangles = assembly.surface.triangles.iter();
     let triangles = triangles.map(|t| t.map(|i| i as usize));
@@ -96,6 +101,7 @@ pub(super) fn build(
         network,
         state,
         surface: assembly.surface,
+        tanks: assembly.tanks,
         touch: has_surface.then(|| Arc::new(touch)),
     })
 }
@@ -114,7 +120,7 @@ fn assembled(
     if count == 0 {
         return Err(Fault::new(
             "",
-            "the scene is empty: it needs at least one of cloth, jelly, mesh, chain, particles, circle",
+            "the scene is empty: it needs at least one of cloth, jelly, mesh, chain, particles, fluid, circle",
         ));
     }
     let touching = description.self_collision || obstacles::is_one_thick(description);
@@ -143,6 +149,9 @@ fn assembled(
     }
     if let Some(body) = &description.particles {
         assembly.add("particles", body, budget)?;
+    }
+    for (k, body) in description.fluid.iter().enumerate() {
+        assembly.add(&key_of("fluid", k, description.fluid.len()), body, budget)?;
     }
     Ok(assembly)
 }

@@ -53,6 +53,8 @@ pub static SCENES: &[SceneEntry] = &[
     entry!("double-pendulum"),
     entry!("flag"),
     entry!("jelly"),
+    entry!("drop"),
+    entry!("dam-break"),
 ];
 
 /// The scene of this name.

@@ -4,6 +4,7 @@
 mod bodies;
 mod constraints;
 mod floor;
+mod fluid;
 mod forces;
 mod motion;
 mod obstacles;
@@ -17,6 +18,7 @@ use crate::fault::Fault;
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
 pub use floor::{Floor, FloorSpec};
+pub use fluid::{Fluid, FluidShape, Tank};
 pub use forces::{BucklingSpec, SpringSpec, SwingSpec, WindSpec};
 pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
@@ -25,7 +27,7 @@ pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
 /// N and rad.
 ///
 /// Particles are numbered through all bodies: those of cloths come first, then those of jellies,
-/// meshes, chains and single particles.
+/// meshes, chains and single particles, and last those of fluids, each followed by its tank's walls.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Description {
@@ -79,6 +81,9 @@ pub struct Description {
     pub chain: Vec<Chain>,
     /// Single particles.
     pub particles: Option<Particles>,
+    /// Fluids, which are all of the same liquid.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fluid: Vec<Fluid>,
     /// Springs between any particles: [i, j, stiffness (N/m), rest length (m), damping (N s/m)].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,

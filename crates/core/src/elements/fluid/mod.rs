@@ -1,8 +1,14 @@
-//! Fluid as smoothed particles. The density at a particle is the sum of the kernel over its
-//! neighbours, rho_i = m sum W(x_i - x_j), and the energy U = m sum e(rho_i), e' = p / rho^2. The
-//! pressure forces are its exact gradient, F_i = -m^2 sum (p_i / rho_i^2 + p_j / rho_j^2) grad W, so
-//! that a symplectic method keeps the energy. Viscosity acts along the line between two particles,
-//! m^2 k (v_ij . x_ij) / (r^2 + (reach / 20)^2) grad W, and keeps momentum and angular momentum.
+//! Fluid as smoothed particles. The density at a particle is the sum of the kernel over it and its
+//! neighbours, and the energy is that of Tait's equation at these densities. The pressure forces
+//! are its exact gradient, so that a symplectic method keeps the energy. Viscosity acts along the
+//! line between two particles, in proportion to the rate at which they approach, and keeps momentum
+//! and angular momentum. With `d = x_i - x_j`, `r = |d|` and `v = v_i - v_j`:
+//!
+//! ```text
+//! rho_i = m sum W(r)         U = m sum e(rho_i)         e'(rho) = p / rho^2
+//! F_i = -m^2 sum (p_i / rho_i^2 + p_j / rho_j^2 - k (v . d) / (r^2 + s^2)) grad W
+//! ```
+//!
 //! After Monaghan, *Smoothed particle hydrodynamics*, 2005. Walls are particles that are pinned.
 
 mod kernel;
@@ -67,8 +73,9 @@ impl Fluid {
     pub fn new(law: FluidLaw, mut particles: Vec<u32>) -> Result<Self, Error> {
         law.check()?;
         particles.sort_unstable();
-        if let Some(pair) = particles.windows(2).find(|pair| pair[0] == pair[1]) {
-            let why = format!("particle {} is named twice in a fluid", pair[0]);
+        let twice = particles.windows(2).find(|pair| pair[0] == pair[1]);
+        if let Some([i, ..]) = twice {
+            let why = format!("particle {i} is named twice in a fluid");
             return Err(Error::Invalid(why));
         }
         Ok(Self {
@@ -89,6 +96,12 @@ impl Fluid {
     #[must_use]
     pub fn particles(&self) -> &[u32] {
         &self.particles
+    }
+
+    /// Whether particle i is in it.
+    #[must_use]
+    pub fn contains(&self, i: usize) -> bool {
+        self.particles.binary_search(&(i as u32)).is_ok()
     }
 
     /// Density (kg/m3) at each particle at x (m), n x 3.
