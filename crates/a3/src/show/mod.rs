@@ -2,6 +2,7 @@
 
 mod coil;
 mod colours;
+mod liquid;
 mod obstacles;
 mod parts;
 mod picture;
@@ -11,6 +12,7 @@ mod vectors;
 mod view;
 mod wires;
 
+pub use liquid::Liquid;
 pub use obstacles::drawn_radius;
 pub use parts::whole_triangles;
 pub use picture::Show;

@@ -13,7 +13,7 @@ use crate::fault::Fault;
 
 /// Layers of particles of a wall: with three, the particles at the inner side of a wall have all
 /// their neighbours.
-const LAYERS: i64 = 3;
+pub const LAYERS: u32 = 3;
 
 /// Least distance of two particles of a fluid at the beginning over the spacing: nearer ones would
 /// fly apart.
@@ -170,7 +170,9 @@ impl Fluid {
 impl Body for Fluid {
     fn counts(&self) -> Result<Counts, Fault> {
         let (fluid, tank) = self.places()?;
-        let walls = tank.map_or(0, |tank| tank.count(LAYERS).saturating_sub(tank.count(0)));
+        let walls = tank.map_or(0, |tank| {
+            tank.count(LAYERS.into()).saturating_sub(tank.count(0))
+        });
         Ok(Counts {
             particles: fluid.count(0).saturating_add(walls),
             smoothed: fluid.count(0).saturating_add(walls),
@@ -199,7 +201,7 @@ impl Body for Fluid {
             }
         }
         let free = assembly.positions.len();
-        for (place, inside) in tank.iter().flat_map(|tank| tank.all(LAYERS)) {
+        for (place, inside) in tank.iter().flat_map(|tank| tank.all(LAYERS.into())) {
             if !inside {
                 let i = assembly.positions.len();
                 assembly.pins.push((i, Path::Still(place)));

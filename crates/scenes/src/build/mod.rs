@@ -31,6 +31,7 @@ use crate::numbers;
 use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::surface::Surface;
 use circle::Circling;
+pub use fluid::LAYERS;
 use network::NetworkParts;
 
 impl Description {
