@@ -17,7 +17,7 @@ pub struct Geometry {
     pub covered: usize,
     /// The ends of springs of particles without a surface.
     pub lines: Vec<[u32; 2]>,
-    /// The particles without a surface.
+    /// The particles without a surface, but for those of a tank's walls.
     pub points: Vec<u32>,
 }
 
@@ -32,7 +32,10 @@ impl Geometry {
                 .filter(|spring| spring.i.max(spring.j) >= covered)
                 .map(|spring| [spring.i as u32, spring.j as u32])
                 .collect(),
-            points: (covered as u32..simulation.particles() as u32).collect(),
+            points: (covered..simulation.particles())
+                .filter(|i| !network.is_some_and(|network| network.is_wall(*i)))
+                .map(|i| i as u32)
+                .collect(),
             triangles: whole_triangles(simulation).collect(),
             covered,
         }

@@ -250,3 +250,42 @@ strain_limit = 1.5
     let said = said(&tearing);
     assert!(said.contains("never break at 1.25 times"), "{said}");
 }
+
+/// A fluid has its particles in the middle of the cells of its box, and walls on the same lattice
+/// around the sides and the bottom of its tank.
+#[test]
+fn fluids_stand_in_tanks() {
+    let setup = set_up(
+        "[[fluid]]
+        size = [0.4, 0.2, 0.2]
+        spacing = 0.1
+        at = [0.2, 0.1, 0.1]
+        density = 500
+        sound = 10
+        velocity = [1, 0, 0]
+        strain = [0, 2, 0]
+        tank = { size = [0.5, 0.3, 0.2], at = [0.25, 0.15, 0.1] }",
+    )
+    .unwrap();
+    let scene = setup.scene;
+    let network = scene.model.network().unwrap();
+    let walls = 11 * 6 * 8 - 5 * 3 * 2;
+    assert_eq!(network.particles(), 16 + walls);
+    assert_eq!(setup.presentation.tanks, [16..16 + walls]);
+    assert_eq!(network.pins().count(), walls);
+    assert!(network.is_wall(16) && !network.is_wall(0));
+    assert!(network.masses().iter().all(|m| (m - 0.5).abs() < 1e-12));
+    let n = network.particles();
+    let first: Vec<f64> = (0..6).map(|k| scene.state[k * n]).collect();
+    let expected = [0.05, 0.05, 0.05, 1.0, -0.1, 0.0];
+    for (number, expected) in first.iter().zip(expected) {
+        assert!((number - expected).abs() < 1e-12, "{first:?}");
+    }
+    let fluid = network.fluid().unwrap();
+    let x = &scene.state[..3 * n];
+    let (_, nearest) = fluid.nearest_pair(x).unwrap();
+    assert!((nearest - 0.1).abs() < 1e-12);
+    // A particle that has all its neighbours has the density at rest.
+    let inside = fluid.densities(x)[0];
+    assert!(inside < 500.0 && inside > 400.0, "{inside}");
+}

@@ -34,7 +34,18 @@ impl FluidLaw {
         positive("the spacing of a fluid", self.spacing)?;
         positive("the density of a fluid", self.density)?;
         positive("the speed of sound of a fluid", self.sound)?;
-        at_least(0.0, "the viscosity of a fluid", self.viscosity)
+        at_least(0.0, "the viscosity of a fluid", self.viscosity)?;
+        // The largest numbers of the forces on a particle, and its mass.
+        let pushes = self.sound * self.sound / self.density + self.viscous_factor();
+        let largest = pushes * self.kernel().bend(0.0) * self.mass();
+        if largest.is_finite() && self.mass().recip().is_finite() {
+            return Ok(());
+        }
+        Err(Error::Invalid(format!(
+            "a fluid of such small particles cannot be computed: its spacing is {} m and its \
+             density {} kg/m3",
+            self.spacing, self.density
+        )))
     }
 
     /// Mass of each particle (kg): that of a cell of the lattice at rest.
