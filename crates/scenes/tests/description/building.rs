@@ -271,7 +271,7 @@ fn fluids_stand_in_tanks() {
     let network = scene.model.network().unwrap();
     let walls = 11 * 6 * 8 - 5 * 3 * 2;
     assert_eq!(network.particles(), 16 + walls);
-    assert_eq!(setup.presentation.tanks, [16..16 + walls]);
+    assert_eq!(setup.presentation.tanks, vec![16..16 + walls; 1]);
     assert_eq!(network.pins().count(), walls);
     assert!(network.is_wall(16) && !network.is_wall(0));
     assert!(network.masses().iter().all(|m| (m - 0.5).abs() < 1e-12));
