@@ -351,7 +351,7 @@ tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }
         (
             "spacing = 0.125",
             "spacing = 1e-5",
-            "line 1: fluid: the scene would have 20000000000 particles",
+            "line 1: fluid: the scene would have 20002700018 particles",
         ),
         (
             "[4, 2.5, 0]",
