@@ -7,7 +7,8 @@ use std::ops::AddAssign;
 pub struct Energy {
     /// Kinetic energy, m v2 / 2 (J).
     pub kinetic: f64,
-    /// Elastic energy, k (L - r)2 / 2 of a spring, and that of bent arcs (J).
+    /// Elastic energy, k (L - r)2 / 2 of a spring, and that of bent arcs and of compressed fluid
+    /// (J).
     pub elastic: f64,
     /// Energy of surfaces that are nearer than their thickness (J).
     pub contact: f64,

@@ -132,7 +132,7 @@ impl fmt::Display for Vertex {
 
 /// What a method says that serves no velocities in forces.
 const SERVES_POSITIONS: &str = "forces must not depend on the velocity, except by drag: with wind, \
-    air, damped springs or constraints, take another explicit solver";
+    air, damped springs, viscous fluids or constraints, take another explicit solver";
 
 /// Says that an implicit method did not solve the equations of a step.
 fn not_solved(residual: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -3,6 +3,7 @@
 mod bodies;
 mod compliant;
 mod constrained;
+mod fluid;
 mod layer;
 mod mechanics;
 mod obstacles;

@@ -147,6 +147,12 @@ pub trait Linearized: Mechanics {
     /// the matrix of an implicit step is then positive definite.
     fn couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
 
+    /// Whether [`couplings`](Self::couplings) are all couplings. If not, implicit methods refuse the
+    /// system.
+    fn lists_all_couplings(&self) -> bool {
+        true
+    }
+
     /// Writes to `out` the product with p of the diagonal of the matrix and of as many couplings as
     /// the system multiplies faster than one by one, which are the first [`Coupling::Axial`] ones;
     /// their number. With 0, the default, nothing is written, and all couplings are multiplied one

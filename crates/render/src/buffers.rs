@@ -14,9 +14,10 @@ pub(crate) struct Shape {
     pub(crate) indices: u32,
 }
 
-/// A vertex buffer of instances, which grows as needed.
+/// A buffer of instances, vertices or triangles, which grows as needed.
 pub(crate) struct Instances {
     label: &'static str,
+    usage: BufferUsages,
     pub(crate) buffer: wgpu::Buffer,
 }
 
@@ -44,10 +45,11 @@ impl Shape {
 }
 
 impl Instances {
-    pub(crate) fn new(device: &wgpu::Device, label: &'static str) -> Self {
+    pub(crate) fn new(device: &wgpu::Device, label: &'static str, usage: BufferUsages) -> Self {
         Self {
             label,
-            buffer: buffer(device, label, BufferUsages::VERTEX, 4096),
+            usage,
+            buffer: buffer(device, label, usage, 4096),
         }
     }
 
@@ -56,7 +58,7 @@ impl Instances {
         let bytes: &[u8] = bytemuck::cast_slice(instances);
         if bytes.len() as u64 > self.buffer.size() {
             let size = bytes.len().next_power_of_two();
-            self.buffer = buffer(&gpu.device, self.label, BufferUsages::VERTEX, size);
+            self.buffer = buffer(&gpu.device, self.label, self.usage, size);
         }
         gpu.queue.write_buffer(&self.buffer, 0, bytes);
     }

@@ -20,7 +20,7 @@ mod view;
 pub use camera::Camera;
 pub use gpu::{Gpu, GpuError};
 pub use offscreen::{OFFSCREEN_FORMAT, Offscreen};
-pub use picture::{Ball, LOOKS, Line, Picture, STEEL_LOOK, Solid, Style, Tile, Topology};
+pub use picture::{Ball, LOOKS, Line, Liquid, Picture, STEEL_LOOK, Solid, Style, Tile, Topology};
 pub use renderer::Renderer;
 pub use targets::Targets;
 

@@ -88,6 +88,15 @@ impl Line {
     }
 }
 
+/// Surface of a liquid, whose triangles are other ones in each frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Liquid<'a> {
+    /// Position (m) and unit normal of each vertex.
+    pub corners: &'a [[[f32; 3]; 2]],
+    /// Corners of each triangle.
+    pub triangles: &'a [[u32; 3]],
+}
+
 /// All that is drawn in one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
@@ -106,6 +115,8 @@ pub struct Picture<'a> {
     pub solids: &'a [Solid],
     /// Lines, such as trails and highlighted springs.
     pub lines: &'a [Line],
+    /// Surface of a liquid, which is drawn in both styles.
+    pub liquid: Liquid<'a>,
     /// Height of the floor (m), if there is one.
     pub floor: Option<f32>,
     /// Whether floor, shadows and background are left out, so that the picture can be laid over

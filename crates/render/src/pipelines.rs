@@ -16,9 +16,11 @@ pub(crate) struct Pipelines {
     pub(crate) mesh_shadow: wgpu::RenderPipeline,
     pub(crate) ball_shadow: wgpu::RenderPipeline,
     pub(crate) solid_shadow: wgpu::RenderPipeline,
+    pub(crate) liquid_shadow: wgpu::RenderPipeline,
     pub(crate) mesh: wgpu::RenderPipeline,
     pub(crate) ball: wgpu::RenderPipeline,
     pub(crate) solid: wgpu::RenderPipeline,
+    pub(crate) liquid: wgpu::RenderPipeline,
     pub(crate) wire: wgpu::RenderPipeline,
     pub(crate) line: wgpu::RenderPipeline,
 }
@@ -139,6 +141,11 @@ impl Pipelines {
             stream(VertexStepMode::Vertex, &corner, size_of::<[[f32; 3]; 2]>()),
             stream(VertexStepMode::Instance, &solid, size_of::<Solid>()),
         ];
+        let liquid = [stream(
+            VertexStepMode::Vertex,
+            &corner,
+            size_of::<[[f32; 3]; 2]>(),
+        )];
         let wires = [stream(
             VertexStepMode::Instance,
             &ends,
@@ -155,9 +162,11 @@ impl Pipelines {
             mesh_shadow: pipeline("mesh_shadow", "shadow", list, Layer::Shadow, &[]),
             ball_shadow: pipeline("ball_shadow", "shadow", list, Layer::Shadow, &balls),
             solid_shadow: pipeline("solid_shadow", "shadow", list, Layer::Shadow, &solids),
+            liquid_shadow: pipeline("liquid_shadow", "shadow", list, Layer::Shadow, &liquid),
             mesh: pipeline("mesh", "mesh", list, Layer::Solid, &[]),
             ball: pipeline("ball", "ball", list, Layer::Solid, &balls),
             solid: pipeline("solid", "ball", list, Layer::Solid, &solids),
+            liquid: pipeline("liquid", "liquid", list, Layer::Solid, &liquid),
             wire: pipeline("wire", "line", strip, Layer::Over, &wires),
             line: pipeline("line", "line", strip, Layer::Over, &lines),
         }

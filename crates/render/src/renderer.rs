@@ -108,6 +108,10 @@ impl Renderer {
             pass.set_pipeline(&p.mesh);
             mesh.draw(pass);
         }
+        if frame.liquid > 0 {
+            pass.set_pipeline(&p.liquid);
+            view.draw_liquid(pass);
+        }
         pass.set_pipeline(&p.ball);
         self.draw_balls(pass, view);
         pass.set_pipeline(&p.solid);
@@ -125,6 +129,10 @@ impl Renderer {
             if frame.mesh {
                 pass.set_pipeline(&p.mesh_shadow);
                 mesh.draw(pass);
+            }
+            if frame.liquid > 0 {
+                pass.set_pipeline(&p.liquid_shadow);
+                view.draw_liquid(pass);
             }
             pass.set_pipeline(&p.ball_shadow);
             self.draw_balls(pass, view);
@@ -173,7 +181,7 @@ mod tests {
     use std::io::Write;
 
     use super::*;
-    use crate::{Camera, OFFSCREEN_FORMAT, Offscreen, Style};
+    use crate::{Camera, Liquid, OFFSCREEN_FORMAT, Offscreen, Style};
 
     /// The pixels by rows of a ridge of two slopes of different sizes, drawn with these shaders.
     fn ridge(gpu: &Gpu, source: &str) -> Vec<u8> {
@@ -200,6 +208,7 @@ mod tests {
             balls: &[],
             solids: &[],
             lines: &[],
+            liquid: Liquid::default(),
             floor: None,
             transparent: false,
         };

@@ -25,6 +25,7 @@ struct Globals {
 
 const PAPER = vec3(0.86, 0.855, 0.835);
 const SHADE = vec3(0.56, 0.60, 0.655);
+const WATER = vec3(0.02, 0.24, 0.46);
 const INK = vec3(0.035, 0.05, 0.09);
 
 // The colours of surfaces by their look, outside and inside: cloth in red, teal, amber and violet,
@@ -177,6 +178,26 @@ fn jelly(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
     if in.look == 8u { return vec4(lit(color, n, in.world, 0.5, 0.25), 1.0); }
     if in.look >= 4u { return vec4(jelly(color, n, in.world), 1.0); }
     return vec4(lit(color, n, in.world, 0.07, 0.35), 1.0);
+}
+
+// ---- Liquid: a surface with its own normals.
+
+@vertex fn liquid_vertex(@location(0) p: vec3<f32>, @location(1) normal: vec3<f32>) -> Ball {
+    var out: Ball;
+    out.world = p;
+    out.clip = globals.view_proj * vec4(p, 1.0);
+    out.normal = normal;
+    out.color = WATER;
+    return out;
+}
+
+@vertex fn liquid_shadow_vertex(@location(0) p: vec3<f32>, @location(1) normal: vec3<f32>) -> Shadow {
+    return shadow(p);
+}
+
+@fragment fn liquid_fragment(in: Ball) -> @location(0) vec4<f32> {
+    let n = in.normal / max(length(in.normal), 1e-20);
+    return vec4(jelly(in.color, n, in.world), 1.0);
 }
 
 // ---- Balls: particles, pins and spherical obstacles.

@@ -36,6 +36,8 @@ pub(crate) struct View {
     pub(crate) balls: Instances,
     pub(crate) solids: Instances,
     pub(crate) lines: Instances,
+    /// Vertices and triangles of a liquid.
+    pub(crate) liquid: [Instances; 2],
     pub(crate) mesh: Mesh,
     pub(crate) frame: Frame,
 }
@@ -56,6 +58,8 @@ pub(crate) struct Frame {
     pub(crate) solids: u32,
     /// The number of lines.
     pub(crate) lines: u32,
+    /// The number of corners of all triangles of a liquid.
+    pub(crate) liquid: u32,
 }
 
 impl View {
@@ -82,9 +86,13 @@ impl View {
                 layout,
                 entries: &entries,
             }),
-            balls: Instances::new(device, "balls"),
-            solids: Instances::new(device, "solids"),
-            lines: Instances::new(device, "lines"),
+            balls: Instances::new(device, "balls", BufferUsages::VERTEX),
+            solids: Instances::new(device, "solids", BufferUsages::VERTEX),
+            lines: Instances::new(device, "lines", BufferUsages::VERTEX),
+            liquid: [
+                Instances::new(device, "liquid", BufferUsages::VERTEX),
+                Instances::new(device, "liquid's triangles", BufferUsages::INDEX),
+            ],
             frame: Frame::default(),
             mesh: mesh.clone(),
             globals,
@@ -101,6 +109,9 @@ impl View {
         self.balls.write(gpu, &balls);
         self.solids.write(gpu, picture.solids);
         self.lines.write(gpu, picture.lines);
+        let [corners, triangles] = &mut self.liquid;
+        corners.write(gpu, picture.liquid.corners);
+        triangles.write(gpu, picture.liquid.triangles);
         let globals = globals(picture, tile);
         let below = |radius: f32| balls.partition_point(|ball| ball.radius < radius) as u32;
         queue.write_buffer(&self.globals, 0, bytemuck::bytes_of(&globals));
@@ -116,7 +127,18 @@ impl View {
             balls: [below(LARGER[0]), below(LARGER[1]), balls.len() as u32],
             solids: picture.solids.len() as u32,
             lines: picture.lines.len() as u32,
+            liquid: 3 * picture.liquid.triangles.len() as u32,
         };
+    }
+}
+
+impl View {
+    /// Draws the triangles of a liquid with the pipeline that is set.
+    pub(crate) fn draw_liquid(&self, pass: &mut wgpu::RenderPass) {
+        let [corners, triangles] = &self.liquid;
+        pass.set_vertex_buffer(0, corners.buffer.slice(..));
+        pass.set_index_buffer(triangles.buffer.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.frame.liquid, 0, 0..1);
     }
 }
 

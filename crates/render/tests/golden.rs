@@ -127,6 +127,44 @@ fn lines_are_as_wide_as_asked_for() {
     }
 }
 
+/// A liquid is drawn in both styles, lit by its own normals, and no longer once it is gone.
+#[test]
+fn a_liquid_is_lit_by_its_normals() {
+    let Some(gpu) = gpu() else { return };
+    let mut sheet = Sheet::new();
+    sheet.topology = a3_render::Topology::default();
+    sheet.points.clear();
+    sheet.balls.clear();
+    sheet.lines.clear();
+    sheet.camera = a3_render::Camera::look_at([0.0, 0.0, 4.0], [0.0; 3]);
+    let samples = gpu.samples(OFFSCREEN_FORMAT);
+    let mut renderer = Renderer::new(&gpu, OFFSCREEN_FORMAT, samples, &sheet.topology);
+    let offscreen = Offscreen::new(&gpu, SIZE).unwrap();
+    let mut middle = |style, normal: Option<[f32; 3]>| {
+        let places = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
+        let corners = places.map(|place| [place, normal.unwrap_or_default()]);
+        let picture = a3_render::Picture {
+            floor: None,
+            liquid: a3_render::Liquid {
+                corners: &corners,
+                triangles: if normal.is_some() { &[[0, 1, 2]] } else { &[] },
+            },
+            ..sheet.picture(style)
+        };
+        let pixels = offscreen.render(&gpu, &mut renderer, &picture).unwrap();
+        let at = 4 * (SIZE.1 / 2 * SIZE.0 + SIZE.0 / 2) as usize;
+        [0, 1, 2].map(|k| i32::from(pixels[at + k]))
+    };
+    let paper = middle(Style::Shaded, None);
+    for style in [Style::Shaded, Style::Wireframe] {
+        let front = middle(style, Some([0.0, 0.0, 1.0]));
+        assert!(front[2] > front[0] + 40, "{front:?} is not blue");
+        let up = middle(style, Some([-0.62, 0.78, 0.0]));
+        assert!(up != front, "{up:?}");
+        assert_eq!(middle(style, None), paper);
+    }
+}
+
 /// Several pictures in one target are each what they are alone, and stay in their places.
 #[test]
 fn pictures_side_by_side() {

@@ -26,6 +26,8 @@ pub(crate) const SPRINGS: Part = Part("springs", 160);
 pub(crate) const PARTS: Part = Part("parts of rigid bodies", 20_000);
 /// Springs that buckle.
 pub(crate) const STRIPS: Part = Part("springs that buckle", 200);
+/// Particles of fluid, with the lists of their neighbours.
+pub(crate) const SMOOTHED: Part = Part("particles of fluid", 700);
 pub(crate) const RODS: Part = Part("rods", 400);
 pub(crate) const PINS: Part = Part("pins", 700);
 /// Particles that are looked at to find those of a place such as `top`.

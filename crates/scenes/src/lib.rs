@@ -14,6 +14,7 @@ mod setup;
 mod snapshot;
 mod surface;
 
+pub use build::LAYERS as TANK_LAYERS;
 pub use builtin::{SCENES, SceneEntry, find};
 pub use description::*;
 pub use fault::Fault;

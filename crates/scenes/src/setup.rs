@@ -1,5 +1,6 @@
 //! Setups: scenes with how they are shown, and how they are run unless one says otherwise.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use a3_core::{Control, Method, Scene, Vector3};
@@ -24,6 +25,8 @@ pub struct Presentation {
     pub viewpoint: Viewpoint,
     /// Surface of the bodies that have one.
     pub surface: Surface,
+    /// Particles of the walls of each tank of fluid, which are shown by the edges of the tank.
+    pub tanks: Vec<Range<usize>>,
     /// Number of the particle whose path is drawn.
     pub trail: Option<usize>,
 }

@@ -11,7 +11,8 @@ use crate::description::{
 };
 
 impl Description {
-    /// Multiplies the stiffness and the damping of the springs of every body by these factors.
+    /// Multiplies the stiffness and the damping of the springs of every body by these factors, and
+    /// likewise those of fluids: the square of the speed of sound, and the viscosity.
     pub fn scale_springs(&mut self, stiffness: f64, damping: f64) {
         // Factors of damping over stiffness, and of damping over the critical one, which grows with
         // the root of the stiffness.
@@ -58,6 +59,10 @@ impl Description {
         }
         if let Some(particles) = &mut self.particles {
             scale_list(&mut particles.springs);
+        }
+        for fluid in &mut self.fluid {
+            fluid.sound *= stiffness.sqrt();
+            fluid.viscosity *= damping;
         }
         scale_list(&mut self.springs);
     }

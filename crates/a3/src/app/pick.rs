@@ -75,7 +75,7 @@ pub fn pick(
             .iter()
             .enumerate()
             .filter_map(near)
-            .filter(|(_, gap)| *gap < reach)
+            .filter(|(i, gap)| *gap < reach && !network.is_wall(*i))
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .and_then(|(i, _)| Some((i, places[i]?.1)))
     };

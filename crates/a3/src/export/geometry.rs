@@ -18,7 +18,7 @@ pub struct Geometry {
     pub covered: usize,
     /// The ends of springs of particles without a surface.
     pub lines: Vec<[u32; 2]>,
-    /// The particles without a surface that belong to no rigid body.
+    /// The particles without a surface, but for those of rigid bodies and of a tank's walls.
     pub points: Vec<u32>,
     /// The number of particles, after which the points of rigid bodies come.
     pub particles: usize,
@@ -43,7 +43,7 @@ impl Geometry {
                 .map(|spring| [spring.i as u32, spring.j as u32])
                 .collect(),
             points: (covered..particles)
-                .filter(|i| !is_rigid(*i))
+                .filter(|i| !is_rigid(*i) && !network.is_some_and(|n| n.is_wall(*i)))
                 .map(|i| i as u32)
                 .collect(),
             triangles: whole_triangles(simulation).chain(rigid).collect(),

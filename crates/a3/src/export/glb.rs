@@ -1,6 +1,7 @@
 //! glTF 2.0 in one binary file (Khronos, *glTF 2.0 Specification*). The first frame is a mesh,
 //! every other frame a morph target, and an animation goes from one to the next. The mesh stays
-//! whole when something tears.
+//! whole when something tears. The surface of a fluid has other triangles in each frame: it is a
+//! mesh for each, of which the animation shows one after another at its full size.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -14,6 +15,7 @@ use super::{Export, rows};
 use crate::failure::Failure;
 use crate::frames::FrameTimes;
 use crate::output::{Draft, Scratch};
+use crate::show::Liquid;
 
 /// Most frames. The animation has a weight for each morph target in each frame, so that its size
 /// grows with the square of their number.
@@ -39,6 +41,8 @@ pub struct Glb {
     first: Option<[Vec<[f32; 3]>; 2]>,
     /// The accessors of each frame: positions or displacements, and normals if there is a surface.
     attributes: Vec<Value>,
+    /// The surface of the fluid in each frame, or null.
+    liquids: Vec<Value>,
 }
 
 /// The binary chunk, which is kept in a temporary file until the length of the chunk before it is
@@ -55,7 +59,9 @@ struct Binary {
 pub fn size(surface: &Surface, simulation: &Simulation, frames: FrameTimes) -> f64 {
     let geometry = Geometry::of(surface, simulation);
     let (n, count) = (geometry.vertices as f64, frames.count as f64);
-    24.0 * n * count + 12.0 * geometry.triangles.len() as f64 + 4.0 * count * count
+    let Liquid { corners, triangles } = Liquid::of(simulation);
+    let liquid = 24.0 * corners.len() as f64 + 12.0 * triangles.len() as f64;
+    (24.0 * n + liquid) * count + 12.0 * geometry.triangles.len() as f64 + 4.0 * count * count
 }
 
 /// Refuses too many frames.
@@ -92,6 +98,7 @@ impl Glb {
             },
             first: None,
             attributes: vec![],
+            liquids: vec![],
         })
     }
 
@@ -119,6 +126,8 @@ impl Glb {
             attributes["NORMAL"] = self.binary.vectors(&normals, false)?.into();
         }
         self.attributes.push(attributes);
+        let liquid = self.binary.liquid(&Liquid::of(simulation))?;
+        self.liquids.push(liquid);
         Ok(())
     }
 
@@ -170,11 +179,67 @@ impl Glb {
         let output = self
             .binary
             .scalars((0..times.len()).flat_map(row), times.len() * targets)?;
-        Ok(json!([{
-            "name": "simulation",
-            "samplers": [{ "input": input, "output": output, "interpolation": "LINEAR" }],
-            "channels": [{ "sampler": 0, "target": { "node": 0, "path": "weights" } }],
-        }]))
+        let mut samplers =
+            vec![json!({ "input": input, "output": output, "interpolation": "LINEAR" })];
+        let mut channels =
+            vec![json!({ "sampler": 0, "target": { "node": 0, "path": "weights" } })];
+        let shown = (0..times.len()).filter(|k| !self.liquids[*k].is_null());
+        for (node, k) in (1..).zip(shown) {
+            // The size is 0 at first, 1 in this frame, and 0 from the next one on.
+            let mut keys = vec![(times[k], 1.0)];
+            if k > 0 {
+                keys.insert(0, (times[0], 0.0));
+            }
+            keys.extend(times.get(k + 1).map(|time| (*time, 0.0)));
+            let input = keys.iter().map(|(time, _)| *time);
+            let input = self.binary.scalars(input, keys.len())?;
+            self.binary.accessors[input]["min"] = json!([keys[0].0]);
+            self.binary.accessors[input]["max"] = json!([keys[keys.len() - 1].0]);
+            let output = self.binary.sizes(keys.iter().map(|(_, size)| *size))?;
+            channels.push(json!({
+                "sampler": samplers.len(), "target": { "node": node, "path": "scale" }
+            }));
+            samplers.push(json!({ "input": input, "output": output, "interpolation": "STEP" }));
+        }
+        Ok(json!([{ "name": "simulation", "samplers": samplers, "channels": channels }]))
+    }
+
+    /// Adds a mesh and a node for the surface of the fluid in each frame.
+    fn add_liquids(&self, document: &mut Value) {
+        let (mut nodes, mut meshes, mut roots) = (vec![], vec![], vec![]);
+        for (k, liquid) in self
+            .liquids
+            .iter()
+            .enumerate()
+            .filter(|(_, l)| !l.is_null())
+        {
+            roots.push(json!(nodes.len() + 1));
+            let (name, size) = (format!("liquid {k}"), u8::from(k == 0));
+            nodes.push(
+                json!({ "name": name, "mesh": meshes.len() + 1, "scale": [size, size, size] }),
+            );
+            meshes.push(json!({ "name": name, "primitives": [liquid] }));
+        }
+        if nodes.is_empty() {
+            return;
+        }
+        let water = json!({
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [0.02, 0.24, 0.46, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.2,
+            },
+        });
+        for (key, more) in [
+            ("nodes", nodes),
+            ("meshes", meshes),
+            ("materials", vec![water]),
+        ] {
+            if let Some(list) = document[key].as_array_mut() {
+                list.extend(more);
+            }
+        }
+        if let Some(all) = document["scenes"][0]["nodes"].as_array_mut() {
+            all.extend(roots);
+        }
     }
 
     /// Writes the whole file.
@@ -192,6 +257,7 @@ impl Glb {
                 "doubleSided": true,
             }],
         });
+        self.add_liquids(&mut document);
         if self.frames.count > 1 {
             document["animations"] = self.animation()?;
         }
@@ -242,8 +308,23 @@ impl Binary {
         self.accessors.len() - 1
     }
 
-    /// Writes vectors, and returns the number of their accessor. That of positions must have a
-    /// range.
+    /// Writes the surface of a fluid, and returns its primitive, or null where it is empty.
+    fn liquid(&mut self, liquid: &Liquid) -> io::Result<Value> {
+        if liquid.triangles.is_empty() {
+            return Ok(Value::Null);
+        }
+        let part = |k: usize| -> Vec<_> { liquid.corners.iter().map(|corner| corner[k]).collect() };
+        let positions = self.vectors(&part(0), true)?;
+        let normals = self.vectors(&part(1), false)?;
+        let indices = self.indices(liquid.triangles.as_flattened())?;
+        Ok(json!({
+            "mode": TRIANGLES, "material": 1, "indices": indices,
+            "attributes": { "POSITION": positions, "NORMAL": normals },
+        }))
+    }
+
+    /// Writes vectors of vertices, and returns the number of their accessor. That of positions must
+    /// have a range.
     fn vectors(&mut self, vectors: &[[f32; 3]], with_range: bool) -> io::Result<usize> {
         rows(&mut self.file, vectors)?;
         let mut accessor = json!({ "componentType": F32, "type": "VEC3", "count": vectors.len() });
@@ -264,6 +345,14 @@ impl Binary {
         }
         let accessor = json!({ "componentType": U32, "type": "SCALAR", "count": indices.len() });
         Ok(self.accessor(4 * indices.len(), Some(INDICES), accessor))
+    }
+
+    /// Writes sizes, the same along each axis, and returns the number of their accessor.
+    fn sizes(&mut self, sizes: impl Iterator<Item = f32>) -> io::Result<usize> {
+        let sizes: Vec<_> = sizes.map(|size| [size; 3]).collect();
+        rows(&mut self.file, &sizes)?;
+        let accessor = json!({ "componentType": F32, "type": "VEC3", "count": sizes.len() });
+        Ok(self.accessor(12 * sizes.len(), None, accessor))
     }
 
     /// Writes `count` scalars, and returns the number of their accessor.

@@ -13,6 +13,7 @@ use super::geometry::{Geometry, positions};
 use crate::failure::Failure;
 use crate::frames::Sequence;
 use crate::output;
+use crate::show::Liquid;
 
 /// OBJ files in the making.
 pub struct Obj {
@@ -53,11 +54,18 @@ pub fn size(surface: &Surface, simulation: &Simulation) -> f64 {
     let rigid = geometry.vertices - geometry.particles;
     let (vertices, normals) = (geometry.vertices, geometry.covered + rigid);
     let (faces, lines) = (geometry.triangles.len(), geometry.lines.len());
+    let liquid = Liquid::of(simulation);
+    let (vertices, normals) = (
+        vertices + liquid.corners.len(),
+        normals + liquid.corners.len(),
+    );
+    let faces = faces + liquid.triangles.len();
     36.0 * vertices as f64 + 37.0 * normals as f64 + 42.0 * faces as f64 + 16.0 * lines as f64
 }
 
 /// Writes the current state: `v` of all vertices, `vn` and `f` of surfaces as far as they are not
-/// torn, and `l` and `p` of particles without a surface.
+/// torn, and `l` and `p` of particles without a surface. The surface of a fluid is an object of its
+/// own, with vertices after all others.
 pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io::Result<()> {
     let geometry = Geometry::of(surface, simulation);
     let positions = positions(simulation)?;
@@ -81,6 +89,28 @@ pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -
     }
     for i in &geometry.points {
         writeln!(file, "p {}", i + 1)?;
+    }
+    let liquid = Liquid::of(simulation);
+    if liquid.triangles.is_empty() {
+        return Ok(());
+    }
+    writeln!(file, "o liquid")?;
+    for [[x, y, z], _] in &liquid.corners {
+        writeln!(file, "v {x} {y} {z}")?;
+    }
+    for [_, [x, y, z]] in &liquid.corners {
+        writeln!(file, "vn {x} {y} {z}")?;
+    }
+    for triangle in &liquid.triangles {
+        let [a, b, c] = triangle.map(|i| {
+            let i = i as usize + 1;
+            format!(
+                "{}//{}",
+                positions.len() + i,
+                geometry.covered + rigid.len() + i
+            )
+        });
+        writeln!(file, "f {a} {b} {c}")?;
     }
     Ok(())
 }

@@ -6,6 +6,7 @@ pub const RED: [f32; 4] = [0.62, 0.045, 0.06, 1.0];
 pub const AMBER: [f32; 4] = [0.95, 0.42, 0.02, 1.0];
 pub const TEAL: [f32; 4] = [0.0, 0.33, 0.36, 1.0];
 pub const ALARM: [f32; 4] = [0.75, 0.02, 0.02, 1.0];
+pub const BLUE: [f32; 4] = [0.02, 0.24, 0.46, 1.0];
 pub const VIOLET: [f32; 4] = [0.30, 0.10, 0.55, 1.0];
 /// Colours of rigid bodies, one after another.
 pub const BODIES: [[f32; 4]; 4] = [

@@ -3,6 +3,7 @@
 mod bodies;
 mod coil;
 mod colours;
+mod liquid;
 mod obstacles;
 mod parts;
 mod picture;
@@ -13,6 +14,7 @@ mod view;
 mod wires;
 
 pub use bodies::parts as body_parts;
+pub use liquid::Liquid;
 pub use obstacles::drawn_radius;
 pub use parts::whole_triangles;
 pub use picture::Show;

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use a3_core::{Network, Simulation, SpringKind, Vector3};
 use a3_render::{Ball, Camera, Line, Picture, Solid, Style, Topology};
-use a3_scenes::Presentation;
+use a3_scenes::{Presentation, TANK_LAYERS};
 
 use super::coil::coil;
-use super::colours::{ALARM, AMBER, INK, RED, STEEL, TEAL, VIOLET};
+use super::colours::{ALARM, AMBER, BLUE, INK, RED, STEEL, TEAL, VIOLET};
+use super::liquid::Liquid;
 use super::parts::{self, Parts};
 use super::springs::springs_of;
 use super::trail::Trail;
@@ -40,6 +41,7 @@ pub struct Show {
     balls: Vec<Ball>,
     solids: Vec<Solid>,
     lines: Vec<Line>,
+    liquid: Liquid,
     floor: Option<f32>,
 }
 
@@ -66,6 +68,7 @@ impl Show {
             balls: vec![],
             solids: vec![],
             lines: vec![],
+            liquid: Liquid::default(),
             floor: None,
         }
     }
@@ -83,8 +86,10 @@ impl Show {
     }
 
     /// Whether the scene has a surface.
-    pub fn has_surface(&self) -> bool {
-        !self.presentation.surface.triangles.is_empty()
+    pub fn has_surface(&self, simulation: &Simulation) -> bool {
+        let network = simulation.model().network();
+        let flows = network.is_some_and(|network| network.fluid().is_some());
+        flows || !self.presentation.surface.triangles.is_empty()
     }
 
     /// Triangles and wires, which stay the same from frame to frame until something tears.
@@ -133,6 +138,11 @@ impl Show {
             self.lines.extend(self.trail.lines(simulation.time(), TEAL));
         }
         self.draw_parts(simulation);
+        self.draw_tanks(simulation);
+        self.liquid = match self.style {
+            Style::Shaded => Liquid::of(simulation),
+            Style::Wireframe => Liquid::default(),
+        };
         if let Some(network) = simulation.model().network() {
             let time = simulation.time();
             self.floor = obstacles::draw(network, time, &mut self.balls, &mut self.solids);
@@ -160,6 +170,10 @@ impl Show {
             balls: &self.balls,
             solids: &self.solids,
             lines: &self.lines,
+            liquid: a3_render::Liquid {
+                corners: &self.liquid.corners,
+                triangles: &self.liquid.triangles,
+            },
             floor: self.floor,
             transparent: self.transparent,
         }
@@ -211,7 +225,12 @@ impl Show {
             let at = |i: usize| [points[i][0], points[i][1], points[i][2]];
             self.lines.extend(wires::lines(network, at, STEEL));
         }
+        let fluid = network.and_then(Network::fluid);
         for i in self.parts.single().to_vec() {
+            if fluid.is_some_and(|fluid| fluid.contains(i)) {
+                self.draw_drop(simulation, i);
+                continue;
+            }
             let pinned = network.is_some_and(|n| n.is_pinned(i)) && simulation.grabbed() != Some(i);
             let (radius, color) = match (pinned, many) {
                 (true, false) => (0.045, INK),
@@ -220,6 +239,54 @@ impl Show {
                 (false, true) => (0.028, RED),
             };
             self.ball(i, radius, color);
+        }
+    }
+
+    /// Draws a particle of fluid as a small ball among wires, where no surface is drawn.
+    fn draw_drop(&mut self, simulation: &Simulation, i: usize) {
+        let fluid = simulation.model().network().and_then(Network::fluid);
+        let in_wall = self.presentation.tanks.iter().any(|tank| tank.contains(&i));
+        if let (Some(fluid), Style::Wireframe, false) = (fluid, self.style, in_wall) {
+            self.ball(i, 0.3 * fluid.law().spacing as f32, BLUE);
+        }
+    }
+
+    /// Draws the edges of the space inside each tank, which is open at the top.
+    fn draw_tanks(&mut self, simulation: &Simulation) {
+        let fluid = simulation.model().network().and_then(Network::fluid);
+        let Some(spacing) = fluid.map(|fluid| fluid.law().spacing as f32) else {
+            return;
+        };
+        for tank in &self.presentation.tanks {
+            let points = self.points[tank.clone()]
+                .iter()
+                .map(|[x, y, z, _]| [*x, *y, *z]);
+            let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+            for point in points {
+                for axis in 0..3 {
+                    low[axis] = low[axis].min(point[axis]);
+                    high[axis] = high[axis].max(point[axis]);
+                }
+            }
+            // The walls are as thick as their layers; in two dimensions they have no sides in z.
+            let wall = (TANK_LAYERS as f32 - 0.5) * spacing;
+            for axis in 0..3 {
+                let flat = high[axis] - low[axis] < wall;
+                low[axis] += if flat { -0.5 * spacing } else { wall };
+                high[axis] += match axis {
+                    1 => 0.5 * spacing,
+                    _ if flat => 0.5 * spacing,
+                    _ => -wall,
+                };
+            }
+            let corner =
+                |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 1 { high[a] } else { low[a] });
+            for axis in 0..3 {
+                for from in (0..8).filter(|k| k >> axis & 1 == 0) {
+                    let ends = [from, from | 1 << axis].map(corner);
+                    self.lines.push(Line::new(ends[0], ends[1], 1.6, STEEL));
+                }
+            }
         }
     }
 

@@ -4,6 +4,7 @@ use super::airflow::Airflow;
 use super::attraction::Attraction;
 use super::buckling::BucklingSprings;
 use super::drag::Drag;
+use super::fluid::Fluid;
 use super::force::Force;
 use super::gravity::Gravity;
 use super::sheet::Sheet;
@@ -64,6 +65,8 @@ elements! {
     Springs,
     /// Bend springs that buckle.
     BucklingSprings,
+    /// Fluid of smoothed particles.
+    Fluid,
     /// Uniform gravity.
     Gravity,
     /// Viscous drag.
@@ -87,6 +90,14 @@ impl Element {
         };
         let of_sheet = self.sheet().into_iter().flat_map(Sheet::springs);
         of_sheet.chain(single.iter().copied())
+    }
+
+    /// The fluid, if it is one.
+    pub(crate) fn fluid(&self) -> Option<&Fluid> {
+        match self {
+            Self::Fluid(fluid) => Some(fluid),
+            _ => None,
+        }
     }
 
     /// The contact of surfaces, if it is that.

@@ -31,7 +31,7 @@ mod xpbd;
 
 use crate::control::Control;
 use crate::error::{Error, positive};
-use crate::system::{Mechanics, ParticleSystem};
+use crate::system::{Linearized, Mechanics, ParticleSystem};
 use trial::Trial;
 
 pub use crate::work::Work;
@@ -104,8 +104,9 @@ impl Method {
     ///
     /// # Errors
     /// The method needs forces and masses, and the system has none; it serves only forces that do
-    /// not depend on the velocity, and others act; it is implicit, and the system has constraints;
-    /// or it solves spring by spring, and the system does not list its springs.
+    /// not depend on the velocity, and others act; it is implicit, and the system has constraints
+    /// or does not list all its couplings; or it solves spring by spring, and the system does not
+    /// list its springs.
     pub fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
         let splits = !self.positions_only && !self.needs_springs;
         match system.mechanics() {
@@ -124,10 +125,17 @@ impl Method {
                     self.title
                 )))
             }
+            Some(mechanics) if self.implicit && !lists_all_couplings(mechanics) => {
+                Err(Error::Invalid(format!(
+                    "{} does not support fluids, each of whose particles acts on its neighbours' \
+                     neighbours: use an explicit solver",
+                    self.title
+                )))
+            }
             Some(mechanics) if self.needs_springs && mechanics.compliant().is_none() => {
                 Err(Error::Invalid(format!(
                     "{} solves spring by spring, but here are forces between particles that are \
-                     no linear springs: use the solver implicit",
+                     no linear springs: use another solver",
                     self.title
                 )))
             }
@@ -201,6 +209,12 @@ impl PartialEq for Method {
 fn holds_constraints(mechanics: &dyn Mechanics) -> bool {
     let linearized = mechanics.linearized();
     linearized.is_some_and(|linearized| linearized.baumgarte_frequency().is_some())
+}
+
+/// Whether the system lists all couplings of its particles, which implicit methods solve with.
+fn lists_all_couplings(mechanics: &dyn Mechanics) -> bool {
+    let linearized = mechanics.linearized();
+    linearized.is_none_or(Linearized::lists_all_couplings)
 }
 
 /// Table of all methods.

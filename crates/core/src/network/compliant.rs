@@ -9,7 +9,8 @@ impl Network {
     /// Whether springs of one stiffness and damping each are all that couples particles.
     pub(super) fn is_compliant(&self) -> bool {
         let buckles = |e: &Element| matches!(e, Element::BucklingSprings(_)) && !e.is_empty();
-        !self.is_constrained() && !self.elements.iter().any(buckles)
+        let flows = self.fluid().is_some();
+        !self.is_constrained() && !flows && !self.elements.iter().any(buckles)
     }
 }
 

@@ -74,7 +74,7 @@ impl Network {
     /// Sets f to the finished sum of some elements: first those that are no sheets, in their order;
     /// on top of these each sheet, which finishes its own particles, so that nothing passes through
     /// memory twice.
-    fn sum<'a>(
+    pub(super) fn sum<'a>(
         &'a self,
         elements: impl Iterator<Item = &'a Element> + Clone,
         at: &At,
@@ -110,12 +110,6 @@ impl Network {
         for particles in &self.single {
             finish.apply(particles, v, f);
         }
-    }
-
-    /// Writes the forces (N) of all springs to f, in the state (x, v).
-    pub fn spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
-        let springs = self.elements.iter().filter(|e| e.is_elastic());
-        self.sum(springs, &self.at(0.0, x, v), f, &Finish::default());
     }
 
     /// Moves particles by what a drift carries. Pins are put in their places afterwards.
@@ -277,6 +271,10 @@ impl Linearized for Network {
             self.finish_single(p, out, &finish);
         }
         count
+    }
+
+    fn lists_all_couplings(&self) -> bool {
+        self.fluid().is_none()
     }
 
     fn reach(&self) -> f64 {

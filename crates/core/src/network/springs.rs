@@ -2,7 +2,7 @@
 
 use super::Network;
 use crate::elements::force::{check_ends, distance};
-use crate::elements::{Buckling, BucklingSprings, Element, Springs};
+use crate::elements::{Buckling, BucklingSprings, Element, Finish, Springs};
 use crate::error::{Error, at_least, positive};
 use crate::spring::{Spring, SpringKind};
 
@@ -102,7 +102,8 @@ impl Network {
         self.scale_springs(factor, factor.sqrt())
     }
 
-    /// Makes every spring so many times as stiff, and so many times as damped.
+    /// Makes every spring so many times as stiff, and so many times as damped, and likewise the
+    /// fluid: the square of its speed of sound, and its viscosity.
     ///
     /// # Errors
     /// The factor of the stiffness is not a finite number above 0, or that of the damping not one
@@ -116,7 +117,7 @@ impl Network {
         Ok(())
     }
 
-    /// Takes over the springs of another network of the same particles. Those that have broken here
+    /// Takes over the springs and the fluid of another network of the same particles. Those that have broken here
     /// stay broken.
     ///
     /// # Errors
@@ -128,12 +129,19 @@ impl Network {
                 "the springs of a network of {others} particles do not fit one of {n}"
             )));
         }
-        self.replace(Element::is_elastic, None);
-        for element in other.elements.iter().filter(|e| e.is_elastic()) {
+        let is_tuned = |e: &Element| e.is_elastic() || e.fluid().is_some();
+        self.replace(is_tuned, None);
+        for element in other.elements.iter().filter(|e| is_tuned(e)) {
             self.insert(element.clone());
         }
         self.remove_torn();
         Ok(())
+    }
+
+    /// Writes the forces (N) of all springs to f, in the state (x, v).
+    pub fn spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
+        let springs = self.elements.iter().filter(|e| e.is_elastic());
+        self.sum(springs, &self.at(0.0, x, v), f, &Finish::default());
     }
 
     /// Length over rest length of the structural spring that is stretched most; 1 if there is none.

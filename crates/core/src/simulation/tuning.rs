@@ -107,7 +107,8 @@ impl Simulation {
         }
         if let Some(network) = self.network_mut() {
             let pins: Vec<_> = network.pins().map(|(i, _)| i).collect();
-            for i in pins.into_iter().filter(|i| Some(*i) != held) {
+            // The last ones first: whichever is removed, few are moved up.
+            for i in pins.into_iter().rev().filter(|i| Some(*i) != held) {
                 network.unpin(i);
             }
         }

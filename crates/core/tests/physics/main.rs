@@ -7,6 +7,7 @@ mod buckling;
 mod constraints;
 mod contact;
 mod elements;
+mod fluid;
 mod forces;
 mod friction;
 mod networks;

@@ -101,7 +101,8 @@ fn default_controls_hold_everywhere() {
             let (heavy, slow) = (["flag", "jelly"], ["boxes", "dominoes", "ball-on-cloth"]);
             let end = match entry.name {
                 name if heavy.contains(&name) => 2.0,
-                name if slow.contains(&name) => 0.2,
+                name if slow.contains(&name) => 0.02,
+                "drop" | "dam-break" => 0.4,
                 _ => 10.0,
             };
             run.advance_to(end)

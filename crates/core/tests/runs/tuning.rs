@@ -155,7 +155,11 @@ fn pins_are_freed_and_hold_again_where_they_are() {
 fn a_run_goes_on_from_its_description() {
     for entry in a3_scenes::SCENES {
         let (stiffness, damping, gusts) = (1.7, 0.6, 1.3);
-        let mut run = start(entry.build(None).unwrap().scene, "rk4", 0.005);
+        let scene = entry.build(None).unwrap().scene;
+        // Sound limits the steps of fluids, and small differences grow soon where they splash.
+        let flows = scene.model.network().is_some_and(|n| n.fluid().is_some());
+        let (step, later) = if flows { (0.001, 0.05) } else { (0.005, 0.5) };
+        let mut run = start(scene, "rk4", step);
         run.adjust(|network| {
             network.scale_springs(stiffness, damping).unwrap();
             network.set_gravity(Vector3::new(0.1, -7.0, 0.0));
@@ -189,7 +193,7 @@ fn a_run_goes_on_from_its_description() {
         let read = Description::parse(&text).unwrap();
         assert_eq!(read, description, "{}", entry.name);
         let scene = read.build(None, &mut |_| Err("none".into())).unwrap().scene;
-        let mut again = start(scene, "rk4", 0.005);
+        let mut again = start(scene, "rk4", step);
 
         assert_eq!(again.state(), run.state(), "{}", entry.name);
         let close = |what: &str, a: &[f64], b: &[f64], tolerance: f64| {
@@ -202,8 +206,8 @@ fn a_run_goes_on_from_its_description() {
             }
         };
         close("forces", &forces(&run), &forces(&again), 1e-12);
-        run.advance_to(1.5).unwrap();
-        again.advance_to(0.5).unwrap();
+        run.advance_to(1.0 + later).unwrap();
+        again.advance_to(later).unwrap();
         close("the state later", run.state(), again.state(), 1e-8);
     }
 }

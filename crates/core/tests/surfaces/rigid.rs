@@ -82,7 +82,6 @@ fn a_box_sticks_or_slides() {
     let before = center(&stuck, 0)[0];
     stuck.advance_to(2.0).unwrap();
     let moved = (center(&stuck, 0)[0] - before).norm();
-    let moved = (center(&stuck, 0)[0] - before).norm();
     assert!(moved < 1e-6, "{moved}");
 }
 

@@ -90,6 +90,7 @@ impl Sheet {
             balls: &self.balls,
             solids: &[],
             lines: &self.lines,
+            liquid: a3_render::Liquid::default(),
             floor: Some(0.0),
             transparent: false,
         }

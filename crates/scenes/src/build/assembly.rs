@@ -3,12 +3,14 @@
 use std::ops::Range;
 
 use a3_core::contact::Skin;
-use a3_core::elements::{Buckling, Sheet};
+use a3_core::elements::{Buckling, FluidLaw, Sheet};
 use a3_core::rigid::{self, Rotation};
 use a3_core::{Constraint, Path, Spring, Vector3};
 
 use super::pins::pins;
-use crate::budget::{BODIES, Budget, PARTICLES, PARTS, RODS, SPRINGS, STRIPS, TOUCHING};
+use crate::budget::{
+    BODIES, Budget, PARTICLES, PARTS, PINS, RODS, SMOOTHED, SPRINGS, STRIPS, TOUCHING,
+};
 use crate::check::{BOUNDS, within};
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
@@ -25,6 +27,9 @@ pub(super) struct Counts {
     pub rods: usize,
     /// Parts of a rigid body.
     pub parts: usize,
+    /// Particles of fluid, and those of them that are walls.
+    pub smoothed: usize,
+    pub walls: usize,
 }
 
 /// A body that a scene is assembled from. Faults have their keys within the body.
@@ -70,6 +75,10 @@ pub(super) struct Assembly {
     pub pins: Vec<(usize, Path)>,
     /// Keys and particles of the bodies whose strain is limited, and the limits.
     pub strain_limits: Vec<(String, Range<usize>, f64)>,
+    /// Law of the fluid, and the particles of each body of it.
+    pub fluid: Option<(FluidLaw, Vec<Range<usize>>)>,
+    /// Particles of the walls of each tank.
+    pub tanks: Vec<Range<usize>>,
 }
 
 impl Assembly {
@@ -119,6 +128,8 @@ impl Assembly {
             (counts.strips, STRIPS),
             (counts.rods, RODS),
             (counts.parts, PARTS),
+            (counts.smoothed, SMOOTHED),
+            (counts.walls, PINS),
         ] {
             budget.spend(key, count, part)?;
         }

@@ -5,6 +5,7 @@ mod chain;
 mod circle;
 mod cloth;
 mod constraints;
+mod fluid;
 mod forces;
 mod jelly;
 mod lattice;
@@ -31,6 +32,7 @@ use crate::numbers;
 use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::surface::Surface;
 use circle::Circling;
+pub use fluid::LAYERS;
 use network::NetworkParts;
 
 impl Description {
@@ -83,18 +85,21 @@ impl Description {
         asked: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Setup, Fault> {
-        let (model, mut state, surface, touch) = if let Some(circle) = &self.circle {
+        let (model, mut state, surface, tanks, touch) = if let Some(circle) = &self.circle {
             let start = Vector3::from(circle.start);
             let model = Model::FirstOrder(Arc::new(Circling));
-            (model, start.as_slice().to_vec(), Surface::default(), None)
+            let start = start.as_slice().to_vec();
+            (model, start, Surface::default(), vec![], None)
         } else {
             let NetworkParts {
                 network,
                 state,
                 surface,
+                tanks,
                 touch,
             } = network::build(self, &mut Budget::new(asked), mesh)?;
-            (Model::Network(Box::new(network)), state, surface, touch)
+            let model = Model::Network(Box::new(network));
+            (model, state, surface, tanks, touch)
         };
         if self.circle.is_some() && network::bodies(self) > 0 {
             return Err(Fault::new(
@@ -114,6 +119,7 @@ impl Description {
         let presentation = Presentation {
             viewpoint: self.viewpoint(&scene)?,
             surface,
+            tanks,
             trail: self.trail,
         };
         if let Some(reach) = self.reach {
@@ -177,7 +183,7 @@ impl Description {
             solver,
             control: own.map(|(solver, step)| solver.control(step)),
             duration: self.duration,
-            ..Defaults::default()
+            step_scale: fluid::step_scale(&self.fluid),
         })
     }
 }

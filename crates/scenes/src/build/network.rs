@@ -1,5 +1,6 @@
 //! The network of a description: bodies, pins, constraints, forces and obstacles.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use a3_core::rigid::ROTATION;
@@ -8,7 +9,7 @@ use a3_core::{Network, Touch, Vector3};
 use super::assembly::Assembly;
 use super::mesh_cloth::LoadedMesh;
 use super::rigid::LoadedBody;
-use super::{constraints, forces, laws, obstacles, pins, state};
+use super::{constraints, fluid, forces, laws, obstacles, pins, state};
 use crate::budget::{Budget, SPRINGS, TRIANGLES};
 use crate::check::{at, key_of};
 use crate::description::Description;
@@ -24,6 +25,8 @@ pub(super) struct NetworkParts {
     pub network: Network,
     pub state: Vec<f64>,
     pub surface: Surface,
+    /// Particles of the walls of each tank.
+    pub tanks: Vec<Range<usize>>,
     /// What can touch, if there is any surface.
     pub touch: Option<Arc<Touch>>,
 }
@@ -36,6 +39,7 @@ pub(super) fn bodies(description: &Description) -> usize {
         + description.chain.len()
         + usize::from(description.particles.is_some())
         + description.body.len()
+        + description.fluid.len()
 }
 
 /// Builds everything but the circle. `mesh` reads a file of triangles.
@@ -76,6 +80,7 @@ pub(super) fn build(
     for rod in assembly.rods {
         at("", network.add_constraint(rod))?;
     }
+    fluid::add(assembly.fluid, &mut network, &state[..3 * n])?;
     constraints::add(description, &mut network, &state)?;
     let triangles = assembly.surface.triangles.iter();
     let triangles = triangles.map(|t| t.map(|i| i as usize));
@@ -105,6 +110,7 @@ pub(super) fn build(
         network,
         state,
         surface: assembly.surface,
+        tanks: assembly.tanks,
         touch: has_surface.then(|| Arc::new(touch)),
     })
 }
@@ -129,7 +135,7 @@ fn assembled(
     if count == 0 {
         return Err(Fault::new(
             "",
-            "the scene is empty: it needs at least one of cloth, jelly, mesh, chain, particles, body, circle",
+            "the scene is empty: it needs at least one of cloth, jelly, mesh, chain, particles, body, fluid, circle",
         ));
     }
     let mut assembly = Assembly::new(touches(description));
@@ -163,6 +169,9 @@ fn assembled(
         let loaded = LoadedBody::load(body, budget, mesh);
         let loaded = loaded.map_err(|fault| fault.within(&key))?;
         assembly.add(&key, &loaded, budget)?;
+    }
+    for (k, body) in description.fluid.iter().enumerate() {
+        assembly.add(&key_of("fluid", k, description.fluid.len()), body, budget)?;
     }
     Ok(assembly)
 }

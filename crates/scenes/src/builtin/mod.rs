@@ -57,6 +57,8 @@ pub static SCENES: &[SceneEntry] = &[
     entry!("boxes"),
     entry!("dominoes"),
     entry!("ball-on-cloth"),
+    entry!("drop"),
+    entry!("dam-break"),
 ];
 
 /// The scene of this name.

@@ -4,6 +4,7 @@
 mod bodies;
 mod constraints;
 mod floor;
+mod fluid;
 mod forces;
 mod motion;
 mod obstacles;
@@ -18,6 +19,7 @@ use crate::fault::Fault;
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
 pub use floor::{Floor, FloorSpec};
+pub use fluid::{Fluid, FluidShape, Tank};
 pub use forces::{BucklingSpec, SpringSpec, SwingSpec, WindSpec};
 pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
 pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
@@ -27,7 +29,8 @@ pub use rigid::{PartSpec, RigidBody};
 /// N and rad.
 ///
 /// Particles are numbered through all bodies: those of cloths come first, then those of jellies,
-/// meshes, chains, single particles, and rigid bodies.
+/// meshes, chains, single particles and rigid bodies, and last those of fluids, each followed by its
+/// tank's walls.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Description {
@@ -84,6 +87,9 @@ pub struct Description {
     /// Rigid bodies.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub body: Vec<RigidBody>,
+    /// Fluids, which are all of the same liquid.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fluid: Vec<Fluid>,
     /// Springs between any particles: [i, j, stiffness (N/m), rest length (m), damping (N s/m)].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub springs: Vec<SpringSpec>,

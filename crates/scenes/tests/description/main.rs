@@ -3,6 +3,7 @@
 
 mod building;
 mod faults;
+mod fluids;
 
 use a3_core::{Grid, Scene};
 use a3_scenes::{Description, Fault, Mesh, Setup, find};

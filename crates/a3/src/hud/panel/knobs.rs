@@ -188,7 +188,9 @@ pub static KNOBS: &[Knob] = &[
     knob(
         "wires",
         |session, _| {
-            let drawn = session.panes[0].show.has_surface();
+            let drawn = session.panes[0]
+                .show
+                .has_surface(&session.panes[0].simulation);
             let wires = session.panes[0].show.style == Style::Wireframe;
             drawn.then(|| switch(wires, false))
         },

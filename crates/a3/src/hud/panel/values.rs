@@ -84,7 +84,10 @@ fn factor(value: f64, scale: DialScale) -> Dial {
 }
 
 pub fn stiffness(session: &Session, _: usize) -> Option<Dial> {
-    own(session)?.springs().next()?;
+    let own = own(session)?;
+    if own.fluid().is_none() {
+        own.springs().next()?;
+    }
     let scale = DialScale::Log {
         from: 0.1,
         to: 10.0,
@@ -93,7 +96,10 @@ pub fn stiffness(session: &Session, _: usize) -> Option<Dial> {
 }
 
 pub fn damping(session: &Session, _: usize) -> Option<Dial> {
-    own(session)?.springs().find(|s| s.law.damping > 0.0)?;
+    let own = own(session)?;
+    if own.fluid().is_none_or(|fluid| fluid.law().viscosity == 0.0) {
+        own.springs().find(|s| s.law.damping > 0.0)?;
+    }
     let scale = DialScale::Linear {
         from: 0.0,
         to: 5.0,

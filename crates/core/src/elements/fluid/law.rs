@@ -1,0 +1,148 @@
+//! The law of a fluid: Tait's equation of state, by which its pressure grows steeply with its
+//! density, and its viscosity.
+
+use super::kernel::Kernel;
+use crate::error::{Error, at_least, positive};
+
+/// Law of a weakly compressible fluid. With s = rho / rho0, its pressure is
+/// p = rho0 c^2 / 7 (s^7 - 1), and none where it is less dense than at rest, as at its surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FluidLaw {
+    /// Number of dimensions, 2 or 3. In two, the fluid is a sheet across z, 1 m deep.
+    pub dimensions: u8,
+    /// Distance of neighbouring particles at rest (m).
+    pub spacing: f64,
+    /// Density at rest rho0 (kg/m3).
+    pub density: f64,
+    /// Speed of sound c (m/s).
+    pub sound: f64,
+    /// Kinematic viscosity (m2/s).
+    pub viscosity: f64,
+}
+
+impl FluidLaw {
+    /// `Ok` if a fluid can have this law.
+    ///
+    /// # Errors
+    /// The dimensions are not 2 or 3; the spacing, the density or the speed of sound is not a
+    /// finite number above 0, or the viscosity not one of at least 0.
+    pub fn check(&self) -> Result<(), Error> {
+        if !matches!(self.dimensions, 2 | 3) {
+            let why = format!("a fluid has 2 or 3 dimensions, not {}", self.dimensions);
+            return Err(Error::Invalid(why));
+        }
+        positive("the spacing of a fluid", self.spacing)?;
+        positive("the density of a fluid", self.density)?;
+        positive("the speed of sound of a fluid", self.sound)?;
+        at_least(0.0, "the viscosity of a fluid", self.viscosity)?;
+        // The largest numbers of the forces on a particle, and its mass.
+        let pushes = self.sound * self.sound / self.density + self.viscous_factor();
+        let largest = pushes * self.kernel().bend(0.0) * self.mass();
+        if largest.is_finite() && self.mass().recip().is_finite() {
+            return Ok(());
+        }
+        Err(Error::Invalid(format!(
+            "a fluid of such small particles cannot be computed: its spacing is {} m and its \
+             density {} kg/m3",
+            self.spacing, self.density
+        )))
+    }
+
+    /// Mass of each particle (kg): that of a cell of the lattice at rest.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.density * self.spacing.powi(i32::from(self.dimensions))
+    }
+
+    /// Kernel of the fluid.
+    pub(super) fn kernel(&self) -> Kernel {
+        Kernel::new(self.dimensions, self.spacing)
+    }
+
+    /// Factor of the viscous force (m^5/(kg s)): 2 (dimensions + 2) nu / rho0, so that the force
+    /// tends to that of the viscosity (Monaghan, *Smoothed particle hydrodynamics*, 2005).
+    pub(super) fn viscous_factor(&self) -> f64 {
+        2.0 * f64::from(self.dimensions + 2) * self.viscosity / self.density
+    }
+
+    /// rho0 c^2 / 7 (Pa).
+    fn modulus(&self) -> f64 {
+        self.density * self.sound * self.sound / 7.0
+    }
+
+    /// Pressure (Pa) at a density (kg/m3).
+    pub(super) fn pressure(&self, density: f64) -> f64 {
+        let s = density / self.density;
+        let more = (s - 1.0).max(0.0);
+        self.modulus() * more * horner(s, [1.0; 7])
+    }
+
+    /// p / rho^2 (m^5/(kg s^2)) at a density (kg/m3).
+    #[inline]
+    pub(super) fn push(&self, density: f64) -> f64 {
+        self.pressure(density) / (density * density)
+    }
+
+    /// The derivative of [`push`](Self::push) with respect to the density.
+    #[inline]
+    pub(super) fn push_slope(&self, density: f64) -> f64 {
+        if density <= self.density {
+            return 0.0;
+        }
+        let s = density / self.density;
+        let square = s * s;
+        let slope = self.sound * self.sound * (square * square * square);
+        (slope - 2.0 * self.pressure(density) / density) / (density * density)
+    }
+
+    /// Energy of each kilogram (J/kg) at a density (kg/m3), the integral of p / rho^2: with
+    /// d = s - 1, c^2 / 42 d^2 / s (6 + 5 s + 4 s^2 + 3 s^3 + 2 s^4 + s^5).
+    pub(super) fn energy(&self, density: f64) -> f64 {
+        let s = density / self.density;
+        let more = (s - 1.0).max(0.0);
+        let series = horner(s, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        self.sound * self.sound / 42.0 * (more * more) / s * series
+    }
+}
+
+/// The polynomial with these coefficients, that of the highest power first.
+#[inline]
+fn horner<const N: usize>(s: f64, coefficients: [f64; N]) -> f64 {
+    coefficients.iter().fold(0.0, |sum, c| sum * s + c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    const WATER: FluidLaw = FluidLaw {
+        dimensions: 2,
+        spacing: 0.05,
+        density: 1000.0,
+        sound: 30.0,
+        viscosity: 0.0,
+    };
+
+    #[test]
+    fn the_pressure_is_that_of_tait() {
+        for s in [0.5_f64, 1.0, 1.001, 1.1] {
+            let expected = 1000.0 * 900.0 / 7.0 * (s.powi(7) - 1.0).max(0.0);
+            assert_relative_eq!(WATER.pressure(1000.0 * s), expected, max_relative = 1e-12);
+        }
+        assert_eq!(WATER.push(700.0), 0.0);
+        assert_eq!(WATER.energy(700.0), 0.0);
+    }
+
+    #[test]
+    fn the_energy_is_the_integral_and_the_slope_the_derivative_of_the_push() {
+        for density in [1003.0, 1100.0, 1500.0] {
+            let e = 1e-3;
+            let difference = |f: &dyn Fn(f64) -> f64| (f(density + e) - f(density - e)) / (2.0 * e);
+            let push = difference(&|d| WATER.energy(d));
+            assert_relative_eq!(WATER.push(density), push, max_relative = 1e-6);
+            let slope = difference(&|d| WATER.push(d));
+            assert_relative_eq!(WATER.push_slope(density), slope, max_relative = 1e-6);
+        }
+    }
+}

@@ -1,0 +1,377 @@
+//! Fluid as smoothed particles. The density at a particle is the sum of the kernel over it and its
+//! neighbours, and the energy is that of Tait's equation at these densities. The pressure forces
+//! are its exact gradient, so that a symplectic method keeps the energy. Viscosity acts along the
+//! line between two particles, in proportion to the rate at which they approach, and keeps momentum
+//! and angular momentum. With `d = x_i - x_j`, `r = |d|` and `v = v_i - v_j`:
+//!
+//! ```text
+//! rho_i = m sum W(r)         U = m sum e(rho_i)         e'(rho) = p / rho^2
+//! F_i = -m^2 sum (p_i / rho_i^2 + p_j / rho_j^2 - k (v . d) / (r^2 + s^2)) grad W
+//! ```
+//!
+//! After Monaghan, *Smoothed particle hydrodynamics*, 2005. Walls are particles that are pinned.
+
+mod kernel;
+mod law;
+mod neighbours;
+
+use std::sync::{Mutex, PoisonError};
+
+use super::force::{At, Cost, Force, check_particle};
+use crate::energy::Energy;
+use crate::error::Error;
+use crate::threads::threads;
+use kernel::Kernel;
+use neighbours::{Neighbours, Triple};
+
+pub use law::FluidLaw;
+
+/// Work on a particle of fluid over that on one of a sheet: threads pay sooner.
+const WEIGHT: usize = 16;
+/// Softening of the viscous force over the reach of the kernel: a tenth of its half (Monaghan).
+const SOFTENING: f64 = 0.05;
+
+/// Fluid of one law, made of some of the particles of a network, pinned ones among them.
+#[derive(Debug)]
+pub struct Fluid {
+    law: FluidLaw,
+    kernel: Kernel,
+    particles: Vec<u32>,
+    /// Scratch that is no part of the value: neighbours, and what is summed over them.
+    scratch: Mutex<Scratch>,
+}
+
+#[derive(Debug, Default)]
+struct Scratch {
+    neighbours: Neighbours,
+    x: Vec<Triple>,
+    v: Vec<Triple>,
+    dx: Vec<Triple>,
+    dv: Vec<Triple>,
+    densities: Vec<f64>,
+    /// p / rho^2 of each particle, or its change.
+    pushes: Vec<f64>,
+    changes: Vec<f64>,
+    out: Vec<Triple>,
+}
+
+impl Clone for Fluid {
+    fn clone(&self) -> Self {
+        Self {
+            particles: self.particles.clone(),
+            scratch: Mutex::default(),
+            ..*self
+        }
+    }
+}
+
+impl Fluid {
+    /// Fluid of a law in particles of these numbers, each of [its mass](FluidLaw::mass).
+    ///
+    /// # Errors
+    /// The law makes no sense, or a particle is named twice.
+    pub fn new(law: FluidLaw, mut particles: Vec<u32>) -> Result<Self, Error> {
+        law.check()?;
+        particles.sort_unstable();
+        let twice = particles.windows(2).find(|pair| pair[0] == pair[1]);
+        if let Some([i, ..]) = twice {
+            let why = format!("particle {i} is named twice in a fluid");
+            return Err(Error::Invalid(why));
+        }
+        Ok(Self {
+            kernel: law.kernel(),
+            law,
+            particles,
+            scratch: Mutex::default(),
+        })
+    }
+
+    /// Law of the fluid.
+    #[must_use]
+    pub fn law(&self) -> &FluidLaw {
+        &self.law
+    }
+
+    /// Numbers of its particles, in order.
+    #[must_use]
+    pub fn particles(&self) -> &[u32] {
+        &self.particles
+    }
+
+    /// Whether particle i is in it.
+    #[must_use]
+    pub fn contains(&self, i: usize) -> bool {
+        self.particles.binary_search(&(i as u32)).is_ok()
+    }
+
+    /// Density (kg/m3) at each particle at x (m), n x 3.
+    #[must_use]
+    pub fn densities(&self, x: &[f64]) -> Vec<f64> {
+        self.with_scratch(|scratch| {
+            self.weigh(x, scratch);
+            scratch.densities.clone()
+        })
+    }
+
+    /// Pressure (Pa) at each particle at x (m), n x 3.
+    #[must_use]
+    pub fn pressures(&self, x: &[f64]) -> Vec<f64> {
+        let densities = self.densities(x);
+        densities
+            .into_iter()
+            .map(|d| self.law.pressure(d))
+            .collect()
+    }
+
+    /// The particle nearest to another one and their distance (m), for the pair that is the
+    /// nearest of all, if two are within the kernel's reach at x (m), n x 3.
+    #[must_use]
+    pub fn nearest_pair(&self, x: &[f64]) -> Option<([u32; 2], f64)> {
+        self.with_scratch(|scratch| {
+            self.place(x, &mut scratch.x);
+            let x = &scratch.x;
+            scratch
+                .neighbours
+                .cover(x, self.kernel.reach, self.is_shared());
+            let mut nearest = vec![(f64::INFINITY, 0); x.len()];
+            scratch
+                .neighbours
+                .map(&mut nearest, self.is_shared(), |i, near| {
+                    let of = |j: &u32| (neighbours::squared_distance(&x[i], &x[*j as usize]), *j);
+                    let smaller = |a: (f64, u32), b: (f64, u32)| if b.0 < a.0 { b } else { a };
+                    near.iter().map(of).fold((f64::INFINITY, 0), smaller)
+                });
+            let (i, (square, j)) = nearest
+                .into_iter()
+                .enumerate()
+                .min_by(|(_, (a, _)), (_, (b, _))| a.total_cmp(b))?;
+            let pair = [i, j as usize].map(|i| self.particles[i]);
+            square.is_finite().then(|| (pair, square.sqrt()))
+        })
+    }
+
+    /// Lends the scratch. Nothing is locked meanwhile: who asks for it then gets a new one.
+    fn with_scratch<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
+        let lock = || self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut scratch = std::mem::take(&mut *lock());
+        let result = work(&mut scratch);
+        *lock() = scratch;
+        result
+    }
+
+    /// Whether threads share the work.
+    fn is_shared(&self) -> bool {
+        threads(WEIGHT * self.particles.len()) > 1
+    }
+
+    /// Copies the rows of the fluid's particles from an n x 3 matrix. In two dimensions z is 0.
+    fn place(&self, from: &[f64], to: &mut Vec<Triple>) {
+        let n = from.len() / 3;
+        let depth = if self.law.dimensions == 3 { 1.0 } else { 0.0 };
+        to.clear();
+        to.extend(self.particles.iter().map(|i| {
+            let i = *i as usize;
+            [from[i], from[n + i], depth * from[2 * n + i]]
+        }));
+    }
+
+    /// Adds the rows of the fluid's particles to an n x 3 matrix.
+    fn add(&self, rows: &[Triple], to: &mut [f64]) {
+        let n = to.len() / 3;
+        for (i, row) in self.particles.iter().zip(rows) {
+            for (axis, part) in row.iter().enumerate() {
+                to[axis * n + *i as usize] += part;
+            }
+        }
+    }
+
+    /// Finds the neighbours at x (m), n x 3, and the densities.
+    fn weigh(&self, x: &[f64], scratch: &mut Scratch) {
+        let Scratch {
+            neighbours,
+            x: places,
+            densities,
+            ..
+        } = scratch;
+        self.place(x, places);
+        let (kernel, mass, shared) = (self.kernel, self.law.mass(), self.is_shared());
+        neighbours.cover(places, kernel.reach, shared);
+        densities.resize(places.len(), 0.0);
+        neighbours.map(densities, shared, |i, near| {
+            let mut sum = kernel.value(0.0);
+            each(kernel, places, i, near, |_, _, r| sum += kernel.value(r));
+            mass * sum
+        });
+    }
+}
+
+/// Visits the particles within the reach of particle i: the number of each, the vector from it, and
+/// the distance (m).
+#[inline]
+fn each(
+    kernel: Kernel,
+    x: &[Triple],
+    i: usize,
+    near: &[u32],
+    mut visit: impl FnMut(usize, Triple, f64),
+) {
+    let (here, most) = (x[i], kernel.reach * kernel.reach);
+    for j in near {
+        let j = *j as usize;
+        let d = minus(here, x[j]);
+        let square = dot(d, d);
+        if square < most {
+            visit(j, d, square.sqrt());
+        }
+    }
+}
+
+#[inline]
+fn minus(a: Triple, b: Triple) -> Triple {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline]
+fn dot(a: Triple, b: Triple) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline]
+fn add_scaled(to: &mut Triple, s: f64, d: Triple) {
+    for (to, d) in to.iter_mut().zip(d) {
+        *to += s * d;
+    }
+}
+
+impl Force for Fluid {
+    fn name(&self) -> &'static str {
+        "fluid"
+    }
+
+    fn check(&self, particles: usize) -> Result<(), Error> {
+        let mut all = self.particles.iter();
+        all.try_for_each(|i| check_particle(*i as usize, particles))
+    }
+
+    fn add_forces(&self, at: &At, f: &mut [f64]) {
+        self.with_scratch(|scratch| {
+            self.weigh(at.x, scratch);
+            let Scratch {
+                neighbours,
+                x,
+                v,
+                densities,
+                pushes,
+                out,
+                ..
+            } = scratch;
+            self.place(at.v, v);
+            pushes.clear();
+            pushes.extend(densities.iter().map(|density| self.law.push(*density)));
+            let (kernel, square) = (self.kernel, self.law.mass().powi(2));
+            let viscous = self.law.viscous_factor();
+            let soft = (SOFTENING * kernel.reach).powi(2);
+            out.resize(x.len(), [0.0; 3]);
+            neighbours.map(out, self.is_shared(), |i, near| {
+                let mut sum = [0.0; 3];
+                each(kernel, x, i, near, |j, d, r| {
+                    let mut push = pushes[i] + pushes[j];
+                    if viscous > 0.0 {
+                        push -= viscous * dot(minus(v[i], v[j]), d) / (r * r + soft);
+                    }
+                    if push != 0.0 {
+                        add_scaled(&mut sum, -square * push * kernel.slope(r), d);
+                    }
+                });
+                sum
+            });
+            self.add(out, f);
+        });
+    }
+
+    /// With s the factor of d = `x_i` - `x_j` in the force of a pair, dF = ds d + s dd.
+    fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
+        self.with_scratch(|scratch| {
+            self.weigh(at.x, scratch);
+            let Scratch {
+                neighbours,
+                x,
+                v,
+                dx: dplaces,
+                dv: dspeeds,
+                densities,
+                pushes,
+                changes,
+                out,
+            } = scratch;
+            for (from, to) in [(at.v, &mut *v), (dx, &mut *dplaces), (dv, &mut *dspeeds)] {
+                self.place(from, to);
+            }
+            pushes.clear();
+            pushes.extend(densities.iter().map(|density| self.law.push(*density)));
+            let (kernel, mass, shared) = (self.kernel, self.law.mass(), self.is_shared());
+            changes.resize(x.len(), 0.0);
+            neighbours.map(changes, shared, |i, near| {
+                let mut sum = 0.0;
+                each(kernel, x, i, near, |j, d, r| {
+                    sum += kernel.slope(r) * dot(d, minus(dplaces[i], dplaces[j]));
+                });
+                self.law.push_slope(densities[i]) * mass * sum
+            });
+            let square = mass * mass;
+            let viscous = self.law.viscous_factor();
+            let soft = (SOFTENING * kernel.reach).powi(2);
+            out.resize(x.len(), [0.0; 3]);
+            neighbours.map(out, shared, |i, near| {
+                let mut sum = [0.0; 3];
+                each(kernel, x, i, near, |j, d, r| {
+                    let dd = minus(dplaces[i], dplaces[j]);
+                    // The change of r, which is none where two particles are at the same place.
+                    let dr = if r > 0.0 { dot(d, dd) / r } else { 0.0 };
+                    let (mut push, mut dpush) = (pushes[i] + pushes[j], changes[i] + changes[j]);
+                    if viscous > 0.0 {
+                        let w = minus(v[i], v[j]);
+                        let dw = minus(dspeeds[i], dspeeds[j]);
+                        let room = r * r + soft;
+                        let rate = dot(w, d) / room;
+                        push -= viscous * rate;
+                        dpush -= viscous * (dot(dw, d) + dot(w, dd) - 2.0 * rate * r * dr) / room;
+                    }
+                    let slope = kernel.slope(r);
+                    let change = dpush * slope + push * kernel.bend(r) * dr;
+                    add_scaled(&mut sum, -square * change, d);
+                    add_scaled(&mut sum, -square * push * slope, dd);
+                });
+                sum
+            });
+            self.add(out, df);
+        });
+    }
+
+    fn energy(&self, at: &At) -> Energy {
+        let densities = self.densities(at.x);
+        let sum: f64 = densities.iter().map(|d| self.law.energy(*d)).sum();
+        Energy {
+            elastic: self.law.mass() * sum,
+            ..Energy::default()
+        }
+    }
+
+    fn reads_velocity(&self) -> bool {
+        self.law.viscosity > 0.0
+    }
+
+    fn cost(&self) -> Cost {
+        let particles = self.particles.len() as f64;
+        Cost {
+            couplings: particles,
+            price: particles,
+        }
+    }
+
+    /// The stiffness is that of the volume, rho0 c^2.
+    fn scale(&mut self, stiffness: f64, damping: f64) {
+        self.law.sound *= stiffness.sqrt();
+        self.law.viscosity *= damping;
+    }
+}

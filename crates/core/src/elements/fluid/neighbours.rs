@@ -1,0 +1,311 @@
+//! Neighbours of the particles of a fluid: from a grid of cells, kept in lists while nothing has
+//! moved far. A list is in the order of the particles' numbers and holds every particle that is
+//! near enough, so that no sum depends on when it was made or who made it.
+
+use rayon::prelude::*;
+
+/// Distance (in reaches) by which lists reach farther than is asked for: they hold until a particle
+/// has moved by half of it.
+const SKIN: f64 = 0.12;
+/// Share of that distance that a particle may move: a little less than half, for rounding.
+const MOVED: f64 = 0.499;
+/// Number of particles whose lists are made together.
+const CHUNK: usize = 256;
+/// Largest mean number of neighbours of a chunk that are listed: where particles are crowded
+/// together more, they are looked up in the grid each time.
+const MOST: usize = 400;
+/// Cells beyond this number from the origin hold no particles: one so far away has no neighbours.
+const FAR: f64 = 1e12;
+
+/// A position or a velocity.
+pub(super) type Triple = [f64; 3];
+
+/// Lists of the particles that are near each other.
+#[derive(Debug, Default)]
+pub(super) struct Neighbours {
+    /// Distance up to which lists reach (m).
+    reach: f64,
+    /// Positions at which the lists were made (m).
+    at: Vec<Triple>,
+    cells: Cells,
+    lists: Vec<List>,
+}
+
+/// Neighbours of the particles of a chunk.
+#[derive(Debug, Default)]
+struct List {
+    /// End of the neighbours of each particle.
+    ends: Vec<u32>,
+    all: Vec<u32>,
+    /// Whether there are too many to be listed.
+    crowded: bool,
+}
+
+impl Neighbours {
+    /// Makes sure that all pairs of particles at x less than `reach` (m) apart are found.
+    pub fn cover(&mut self, x: &[Triple], reach: f64, parallel: bool) {
+        let most = (MOVED * SKIN * reach).powi(2);
+        let listed = (1.0 + SKIN) * reach;
+        let still = |(x, at): (&Triple, &Triple)| squared_distance(x, at) <= most;
+        if self.reach == listed && self.at.len() == x.len() && x.iter().zip(&self.at).all(still) {
+            return;
+        }
+        self.reach = listed;
+        self.at.clear();
+        self.at.extend_from_slice(x);
+        self.cells.fill(x, listed);
+        self.lists
+            .resize_with(x.len().div_ceil(CHUNK), List::default);
+        let (at, cells) = (&self.at, &self.cells);
+        let make = |(k, list): (usize, &mut List)| list.fill(k * CHUNK, at, cells);
+        if parallel {
+            self.lists.par_iter_mut().enumerate().for_each(make);
+        } else {
+            self.lists.iter_mut().enumerate().for_each(make);
+        }
+    }
+
+    /// Writes what `find` makes of each particle and those near it, which are in the order of their
+    /// numbers and may be a little farther away than was asked for.
+    pub fn map<R: Send>(
+        &self,
+        out: &mut [R],
+        parallel: bool,
+        find: impl Fn(usize, &[u32]) -> R + Sync,
+    ) {
+        let chunk = |(k, (out, list)): (usize, (&mut [R], &List))| {
+            let (first, mut found, mut start) = (k * CHUNK, vec![], 0);
+            for (i, out) in (first..).zip(out) {
+                if list.crowded {
+                    self.cells.find(i, &self.at, &mut found);
+                    *out = find(i, &found);
+                } else {
+                    let end = list.ends[i - first] as usize;
+                    *out = find(i, &list.all[start..end]);
+                    start = end;
+                }
+            }
+        };
+        if parallel {
+            let chunks = out.par_chunks_mut(CHUNK).zip(&self.lists);
+            chunks.enumerate().for_each(chunk);
+        } else {
+            let chunks = out.chunks_mut(CHUNK).zip(&self.lists);
+            chunks.enumerate().for_each(chunk);
+        }
+    }
+}
+
+impl List {
+    fn fill(&mut self, first: usize, at: &[Triple], cells: &Cells) {
+        self.ends.clear();
+        self.all.clear();
+        self.crowded = false;
+        for i in first..at.len().min(first + CHUNK) {
+            let start = self.all.len();
+            cells.add(i, at, &mut self.all);
+            if self.all.len() > MOST * CHUNK {
+                self.crowded = true;
+                self.all.truncate(start);
+                return;
+            }
+            self.ends.push(self.all.len() as u32);
+        }
+    }
+}
+
+/// Grid of cells as wide as neighbours are apart, wound around a torus where it would be too large.
+#[derive(Debug, Default)]
+struct Cells {
+    size: f64,
+    /// Number of cells along each axis: 1, or at least 3.
+    counts: [usize; 3],
+    /// Begin of each cell's particles in `order`.
+    starts: Vec<u32>,
+    /// Particles cell by cell, in each cell in the order of their numbers.
+    order: Vec<u32>,
+    /// Cell of each particle.
+    of: Vec<u32>,
+}
+
+/// Cell of a particle that is too far away.
+const NOWHERE: u32 = u32::MAX;
+
+impl Cells {
+    /// Sorts particles at x into cells of that size (m).
+    fn fill(&mut self, x: &[Triple], size: f64) {
+        self.size = size;
+        let mut bounds = [(f64::INFINITY, f64::NEG_INFINITY); 3];
+        for x in x {
+            if let Some(place) = self.place(x) {
+                for ((low, high), at) in bounds.iter_mut().zip(place) {
+                    (*low, *high) = (low.min(at), high.max(at));
+                }
+            }
+        }
+        let most = 2 * x.len() + 27;
+        self.counts = bounds.map(|(low, high)| match high - low {
+            0.0 => 1,
+            span => (span + 1.0).clamp(3.0, most as f64) as usize,
+        });
+        while self.counts.iter().map(|c| *c as f64).product::<f64>() > most as f64 {
+            if let Some(longest) = self.counts.iter_mut().max() {
+                *longest = (*longest / 2).max(3);
+            }
+        }
+        let cells: usize = self.counts.iter().product();
+        self.starts.clear();
+        self.starts.resize(cells + 1, 0);
+        let mut of = std::mem::take(&mut self.of);
+        of.clear();
+        of.extend(x.iter().map(|x| match self.place(x) {
+            Some(place) => self.cell(place) as u32,
+            None => NOWHERE,
+        }));
+        for cell in of.iter().filter(|cell| **cell != NOWHERE) {
+            self.starts[*cell as usize] += 1;
+        }
+        // The begins are counted down from the ends, from the last particle to the first.
+        let mut end = 0;
+        for start in &mut self.starts {
+            end += *start;
+            *start = end;
+        }
+        self.order.clear();
+        self.order.resize(end as usize, 0);
+        for (i, cell) in of.iter().enumerate().rev() {
+            if *cell != NOWHERE {
+                let start = &mut self.starts[*cell as usize];
+                *start -= 1;
+                self.order[*start as usize] = i as u32;
+            }
+        }
+        self.of = of;
+    }
+
+    /// Cell of a position along each axis; `None` if it is too far away.
+    fn place(&self, x: &Triple) -> Option<Triple> {
+        let place = x.map(|x| (x / self.size).floor());
+        place.iter().all(|at| at.abs() < FAR).then_some(place)
+    }
+
+    /// Number of a cell.
+    fn cell(&self, place: Triple) -> usize {
+        let along =
+            |axis: usize| (place[axis] as i64).rem_euclid(self.counts[axis] as i64) as usize;
+        (along(2) * self.counts[1] + along(1)) * self.counts[0] + along(0)
+    }
+
+    /// Adds the particles less than a cell's size from particle i, in the order of their numbers.
+    fn add(&self, i: usize, x: &[Triple], found: &mut Vec<u32>) {
+        let (here, start) = (&x[i], found.len());
+        let Some([a, b, c]) = self.place(here) else {
+            return;
+        };
+        let most = self.size * self.size;
+        let steps = |axis: usize| match self.counts[axis] {
+            1 => &[0.0][..],
+            _ => &[-1.0, 0.0, 1.0],
+        };
+        for dz in steps(2) {
+            for dy in steps(1) {
+                for dx in steps(0) {
+                    let cell = self.cell([a + dx, b + dy, c + dz]);
+                    let particles = self.starts[cell] as usize..self.starts[cell + 1] as usize;
+                    let is_near = |j: &&u32| {
+                        **j as usize != i && squared_distance(here, &x[**j as usize]) < most
+                    };
+                    found.extend(self.order[particles].iter().filter(is_near));
+                }
+            }
+        }
+        found[start..].sort_unstable();
+    }
+
+    /// The particles less than a cell's size from particle i, in the order of their numbers.
+    fn find(&self, i: usize, x: &[Triple], found: &mut Vec<u32>) {
+        found.clear();
+        self.add(i, x, found);
+    }
+}
+
+/// Square of the distance (m2) of two points.
+#[inline]
+pub(super) fn squared_distance(a: &Triple, b: &Triple) -> f64 {
+    let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    x * x + y * y + z * z
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::SplitMix;
+
+    /// All pairs less than `reach` apart, found one by one.
+    fn oracle(x: &[Triple], reach: f64) -> Vec<Vec<u32>> {
+        let of = |i: usize| {
+            let near = |j: &usize| *j != i && squared_distance(&x[i], &x[*j]) < reach * reach;
+            (0..x.len()).filter(near).map(|j| j as u32).collect()
+        };
+        (0..x.len()).map(of).collect()
+    }
+
+    fn found(neighbours: &Neighbours, x: &[Triple], reach: f64, parallel: bool) -> Vec<Vec<u32>> {
+        let mut all = vec![vec![]; x.len()];
+        neighbours.map(&mut all, parallel, |i, near| {
+            let is_near = |j: &&u32| squared_distance(&x[i], &x[**j as usize]) < reach * reach;
+            near.iter().filter(is_near).copied().collect()
+        });
+        all
+    }
+
+    fn cloud(n: usize, size: [f64; 3]) -> Vec<Triple> {
+        let mut random = SplitMix(9);
+        (0..n)
+            .map(|_| size.map(|size| size * random.between(-1.0, 1.0)))
+            .collect()
+    }
+
+    /// In a flat cloud, a long one that is wound around the torus, and a crowd.
+    #[test]
+    fn the_grid_finds_what_all_pairs_show() {
+        let far = [1e300, f64::NAN, 0.0];
+        for (n, size) in [
+            (1500, [1.0, 1.0, 0.0]),
+            (700, [1e9, 0.2, 0.2]),
+            (2000, [0.5; 3]),
+            (1200, [0.01; 3]),
+        ] {
+            let mut x = cloud(n, size);
+            x[7] = far;
+            let expected = oracle(&x, 0.1);
+            for parallel in [false, true] {
+                let mut neighbours = Neighbours::default();
+                neighbours.cover(&x, 0.1, parallel);
+                assert!(
+                    found(&neighbours, &x, 0.1, parallel) == expected,
+                    "{size:?}"
+                );
+            }
+        }
+    }
+
+    /// Lists that were made a few small motions ago are as good as new ones.
+    #[test]
+    fn lists_hold_while_particles_move() {
+        let mut x = cloud(800, [0.4; 3]);
+        let mut random = SplitMix(3);
+        let mut neighbours = Neighbours::default();
+        let mut made = 0;
+        for _ in 0..20 {
+            let before = neighbours.at.clone();
+            neighbours.cover(&x, 0.1, false);
+            made += usize::from(neighbours.at != before);
+            assert_eq!(found(&neighbours, &x, 0.1, false), oracle(&x, 0.1));
+            for x in x.as_flattened_mut() {
+                *x += random.between(-1e-3, 1e-3);
+            }
+        }
+        assert!((2..15).contains(&made), "{made}");
+    }
+}

@@ -1,0 +1,262 @@
+//! Fluids and their tanks: particles on a lattice.
+
+use std::ops::Range;
+
+use a3_core::contact::Skin;
+use a3_core::elements::{Fluid as Liquid, FluidLaw};
+use a3_core::{Network, Path, Vector3};
+
+use super::assembly::{Assembly, Body, Counts};
+use crate::check::{at, at_least, positive};
+use crate::description::{Fluid, FluidShape, Pin, Spot};
+use crate::fault::Fault;
+
+/// Layers of particles of a wall: with three, the particles at the inner side of a wall have all
+/// their neighbours.
+pub const LAYERS: u32 = 3;
+
+/// Least distance of two particles of a fluid at the beginning over the spacing: nearer ones would
+/// fly apart.
+const NEAREST: f64 = 0.7;
+
+/// Spacing over the speed of sound (s) from which on the methods' default steps, which are made for
+/// cloth, serve a fluid.
+const SLOW: f64 = 0.025;
+
+/// Factor of the methods' default steps for these fluids, so that sound moves by a part of the
+/// spacing in each.
+pub(super) fn step_scale(fluids: &[Fluid]) -> f64 {
+    let scale = |fluid: &Fluid| fluid.spacing / fluid.sound / SLOW;
+    fluids.iter().map(scale).fold(1.0, f64::min)
+}
+
+/// Particles of a fluid or a tank: those places of a lattice that belong to it.
+struct Places {
+    /// Number of places along each axis.
+    counts: [i64; 3],
+    /// Corner of the lattice (m).
+    corner: Vector3<f64>,
+    spacing: f64,
+    flat: bool,
+}
+
+impl Places {
+    /// Lattice that fills a box.
+    fn new(fluid: &Fluid, size: [f64; 3], center: [f64; 3]) -> Result<Self, Fault> {
+        let flat = fluid.dimensions == 2;
+        let mut counts = [1; 3];
+        for (axis, (count, size)) in counts.iter_mut().zip(size).enumerate() {
+            if flat && axis == 2 {
+                if size != 0.0 {
+                    let why = format!("in two dimensions, its last number is 0, not {size}");
+                    return Err(Fault::new("size", why));
+                }
+                continue;
+            }
+            at("size", positive("each edge", size))?;
+            let whole = (size / fluid.spacing).round();
+            if whole < 1.0 || (whole * fluid.spacing - size).abs() > 1e-6 * size {
+                let why = format!(
+                    "each edge must be a whole multiple of the spacing {}, not {size}",
+                    fluid.spacing
+                );
+                return Err(Fault::new("size", why));
+            }
+            *count = whole as i64;
+        }
+        Ok(Self {
+            counts,
+            corner: Vector3::from(center) - 0.5 * Vector3::from(size),
+            spacing: fluid.spacing,
+            flat,
+        })
+    }
+
+    /// Number of places of the lattice with so many layers around its sides and its bottom.
+    fn count(&self, layers: i64) -> usize {
+        let ends = (0..3).map(|axis| self.range(axis, layers));
+        ends.fold(1, |all, range| {
+            all.saturating_mul((range.end - range.start) as usize)
+        })
+    }
+
+    /// Places along an axis, with so many layers outside.
+    fn range(&self, axis: usize, layers: i64) -> Range<i64> {
+        let n = self.counts[axis];
+        match axis {
+            2 if self.flat => 0..1,
+            1 => -layers..n,
+            _ => -layers..n.saturating_add(layers),
+        }
+    }
+
+    /// Places with so many layers around the sides and the bottom, x fastest, and whether each is
+    /// inside.
+    fn all(&self, layers: i64) -> impl Iterator<Item = (Vector3<f64>, bool)> {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.range(axis, layers));
+        let places = z.flat_map(move |k| {
+            let x = x.clone();
+            y.clone()
+                .flat_map(move |j| x.clone().map(move |i| [i, j, k]))
+        });
+        places.map(move |place| {
+            let inside = (0..3).all(|axis| (0..self.counts[axis]).contains(&place[axis]));
+            let depth = if self.flat { -0.5 } else { 0.0 };
+            let [i, j, k] = place.map(|k| k as f64 + 0.5);
+            let offset = Vector3::new(i, j, k + depth);
+            (self.corner + self.spacing * offset, inside)
+        })
+    }
+}
+
+impl Fluid {
+    fn law(&self) -> FluidLaw {
+        FluidLaw {
+            dimensions: self.dimensions,
+            spacing: self.spacing,
+            density: self.density,
+            sound: self.sound,
+            viscosity: self.viscosity,
+        }
+    }
+
+    /// Lattices of the fluid and of the space in its tank.
+    fn places(&self) -> Result<(Places, Option<Places>), Fault> {
+        for (key, number) in [
+            ("spacing", self.spacing),
+            ("density", self.density),
+            ("sound", self.sound),
+        ] {
+            at(key, positive("it", number))?;
+        }
+        at("viscosity", at_least(0.0, "it", self.viscosity))?;
+        if !matches!(self.dimensions, 2 | 3) {
+            let why = format!("it must be 2 or 3, not {}", self.dimensions);
+            return Err(Fault::new("dimensions", why));
+        }
+        let fluid = Places::new(self, self.size, self.at)?;
+        let tank = self.tank.as_ref().map(|tank| {
+            let space = Places::new(self, tank.size, tank.at);
+            space.map_err(|fault| fault.within("tank"))
+        });
+        Ok((fluid, tank.transpose()?))
+    }
+
+    /// `Ok` if the fluid begins within its tank, or above its open top.
+    fn check_inside(&self) -> Result<(), Fault> {
+        let Some(tank) = &self.tank else {
+            return Ok(());
+        };
+        for axis in 0..usize::from(self.dimensions) {
+            let reach = |size: [f64; 3], at: [f64; 3]| {
+                [at[axis] - 0.5 * size[axis], at[axis] + 0.5 * size[axis]]
+            };
+            let [low, high] = reach(self.size, self.at);
+            let [floor, wall] = reach(tank.size, tank.at);
+            let slack = 1e-6 * self.spacing;
+            if low < floor - slack || axis != 1 && high > wall + slack {
+                let name = ["x", "y", "z"][axis];
+                let why = format!(
+                    "the fluid would reach from {name} = {low} to {high}, outside the tank's walls \
+                     at {floor} and {wall}"
+                );
+                return Err(Fault::new("at", why));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Body for Fluid {
+    fn counts(&self) -> Result<Counts, Fault> {
+        let (fluid, tank) = self.places()?;
+        let walls = tank.map_or(0, |tank| {
+            tank.count(LAYERS.into()).saturating_sub(tank.count(0))
+        });
+        Ok(Counts {
+            particles: fluid.count(0).saturating_add(walls),
+            smoothed: fluid.count(0).saturating_add(walls),
+            walls,
+            ..Counts::default()
+        })
+    }
+
+    fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
+        self.check_inside()?;
+        let (fluid, tank) = self.places()?;
+        let first = assembly.masses.len();
+        let velocity = Vector3::from(self.velocity.unwrap_or_default());
+        let strain = Vector3::from(self.strain.unwrap_or_default());
+        let half = 0.5 * Vector3::from(self.size);
+        for (place, _) in fluid.all(0) {
+            let from_center = place - Vector3::from(self.at);
+            let share = |axis: usize| match half[axis] {
+                0.0 => 0.0,
+                half => (from_center[axis] / half).powi(2),
+            };
+            if self.shape == FluidShape::Box || (0..3).map(share).sum::<f64>() <= 1.0 {
+                assembly.positions.push(place);
+                let strained = strain.component_mul(&from_center);
+                assembly.velocities.push(velocity + strained);
+            }
+        }
+        let free = assembly.positions.len();
+        for (place, inside) in tank.iter().flat_map(|tank| tank.all(LAYERS.into())) {
+            if !inside {
+                let i = assembly.positions.len();
+                assembly.pins.push((i, Path::Still(place)));
+                assembly.positions.push(place);
+                assembly.velocities.push(Vector3::zeros());
+            }
+        }
+        let all = assembly.positions.len();
+        assembly.masses.resize(all, self.law().mass());
+        assembly.skins.resize(all, Skin::default());
+        if all > free {
+            assembly.tanks.push(free..all);
+        }
+        let (law, particles) = (self.law(), first..all);
+        match &mut assembly.fluid {
+            None => assembly.fluid = Some((law, vec![particles])),
+            Some((other, all)) if *other == law => all.push(particles),
+            Some(_) => {
+                let why = "all fluids of a scene are one liquid: spacing, density, sound, \
+                           viscosity and dimensions must be those of the first";
+                return Err(Fault::new("", why));
+            }
+        }
+        Ok(())
+    }
+
+    fn pins(&self) -> &[Pin] {
+        &[]
+    }
+
+    fn spot(&self, _: Spot, _: &[Vector3<f64>]) -> Option<Vec<usize>> {
+        None
+    }
+}
+
+/// Adds the fluid of all bodies to a network that begins at x (m), n x 3.
+pub(super) fn add(
+    fluid: Option<(FluidLaw, Vec<Range<usize>>)>,
+    network: &mut Network,
+    x: &[f64],
+) -> Result<(), Fault> {
+    let Some((law, particles)) = fluid else {
+        return Ok(());
+    };
+    let particles = particles.into_iter().flatten().map(|i| i as u32);
+    let fluid = at("fluid", Liquid::new(law, particles.collect()))?;
+    if let Some(([i, j], distance)) = fluid.nearest_pair(x)
+        && distance < NEAREST * law.spacing
+    {
+        let why = format!(
+            "particles {i} and {j} would begin {distance} m apart; at least {} is needed, so that \
+             they do not fly apart",
+            NEAREST * law.spacing
+        );
+        return Err(Fault::new("fluid", why));
+    }
+    at("fluid", network.add(fluid))
+}

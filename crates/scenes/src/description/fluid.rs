@@ -1,0 +1,75 @@
+//! Fluids: what they are made of, where they begin, and the tanks that hold them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::motion::Triple;
+
+/// Liquid of smoothed particles that begins as a box or a ball. All fluids of a scene are the same
+/// liquid, which mixes: each repeats `spacing`, `density`, `sound`, `viscosity` and `dimensions`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fluid {
+    /// Shape at the beginning; a box if not given.
+    #[serde(default, skip_serializing_if = "FluidShape::is_box")]
+    pub shape: FluidShape,
+    /// Lengths of the edges of the box or diameters of the ball (m), whole multiples of `spacing`.
+    /// In two dimensions, the last one is 0.
+    pub size: Triple,
+    /// Distance of neighbouring particles (m).
+    pub spacing: f64,
+    /// Centre (m).
+    pub at: Triple,
+    /// Density at rest (kg/m3).
+    pub density: f64,
+    /// Speed of sound (m/s): about ten times the speed of the fastest flow keeps the density within
+    /// a percent.
+    pub sound: f64,
+    /// Kinematic viscosity (m2/s); 0 if not given.
+    #[serde(default)]
+    pub viscosity: f64,
+    /// Number of dimensions, 2 or 3; 3 if not given. In two, the fluid is a sheet across z, 1 m
+    /// deep.
+    #[serde(default = "three")]
+    pub dimensions: u8,
+    /// Velocity (m/s).
+    pub velocity: Option<Triple>,
+    /// Rates at which the fluid is being stretched along x, y and z (1/s): they times the distance
+    /// from the centre are added to the velocity.
+    pub strain: Option<Triple>,
+    /// Tank around it.
+    pub tank: Option<Tank>,
+}
+
+/// Shape in which a fluid begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FluidShape {
+    /// Box.
+    #[default]
+    Box,
+    /// Ball, or a disc in two dimensions.
+    Ball,
+}
+
+impl FluidShape {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+    fn is_box(&self) -> bool {
+        *self == Self::Box
+    }
+}
+
+/// Tank that is open at the top: its walls are pinned particles of the fluid.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tank {
+    /// Lengths of the edges of the space inside (m), whole multiples of the fluid's `spacing`. In
+    /// two dimensions, the last one is 0.
+    pub size: Triple,
+    /// Centre of the space inside (m).
+    pub at: Triple,
+}
+
+fn three() -> u8 {
+    3
+}

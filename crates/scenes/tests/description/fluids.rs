@@ -1,0 +1,141 @@
+//! Fluids: where their particles and walls are, and what is refused.
+
+use super::*;
+
+/// A fluid has its particles in the middle of the cells of its box, and walls on the same lattice
+/// around the sides and the bottom of its tank.
+#[test]
+fn fluids_stand_in_tanks() {
+    let setup = set_up(
+        "[[fluid]]
+        size = [0.4, 0.2, 0.2]
+        spacing = 0.1
+        at = [0.2, 0.1, 0.1]
+        density = 500
+        sound = 10
+        velocity = [1, 0, 0]
+        strain = [0, 2, 0]
+        tank = { size = [0.5, 0.3, 0.2], at = [0.25, 0.15, 0.1] }",
+    )
+    .unwrap();
+    let scene = setup.scene;
+    let network = scene.model.network().unwrap();
+    let walls = 11 * 6 * 8 - 5 * 3 * 2;
+    assert_eq!(network.particles(), 16 + walls);
+    assert_eq!(setup.presentation.tanks, vec![16..16 + walls; 1]);
+    assert_eq!(network.pins().count(), walls);
+    assert!(network.is_wall(16) && !network.is_wall(0));
+    assert!(network.masses().iter().all(|m| (m - 0.5).abs() < 1e-12));
+    let n = network.particles();
+    let first: Vec<f64> = (0..6).map(|k| scene.state[k * n]).collect();
+    let expected = [0.05, 0.05, 0.05, 1.0, -0.1, 0.0];
+    for (number, expected) in first.iter().zip(expected) {
+        assert!((number - expected).abs() < 1e-12, "{first:?}");
+    }
+    let fluid = network.fluid().unwrap();
+    let x = &scene.state[..3 * n];
+    let (_, nearest) = fluid.nearest_pair(x).unwrap();
+    assert!((nearest - 0.1).abs() < 1e-12);
+    // A particle that has all its neighbours has the density at rest.
+    let inside = fluid.densities(x)[0];
+    assert!(inside < 500.0 && inside > 400.0, "{inside}");
+}
+
+/// A fluid in a tank: what stands there instead, and how what is said begins.
+#[test]
+fn what_is_wrong_with_a_fluid_is_said() {
+    let fluid = "[[fluid]]
+dimensions = 2
+size = [1, 2, 0]
+spacing = 0.125
+at = [0.5, 1, 0]
+density = 1000
+sound = 45
+tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }
+";
+    let other = "tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }\n".to_owned() + fluid;
+    let apart = other.replace("at = [0.5, 1, 0]", "at = [2.5, 1, 0]");
+    let same = fluid.replace("tank =", "# ");
+    assert!(build(&(fluid.to_owned() + &same.replace("[0.5, 1, 0]", "[2.5, 1, 0]"))).is_ok());
+    let other_law = apart.replace("sound = 45", "sound = 40");
+    for (there, instead, expected) in [
+        (
+            "density = 1000",
+            "density = 0",
+            "line 6: fluid.density: it must be a finite number above 0",
+        ),
+        (
+            "sound = 45",
+            "sound = -45",
+            "line 7: fluid.sound: it must be a finite number above 0",
+        ),
+        (
+            "sound = 45",
+            "",
+            "line 1: fluid: the key `sound` is missing",
+        ),
+        (
+            "sound = 45",
+            "sound = 45\nviscosity = -1",
+            "line 8: fluid.viscosity: it must be a finite number of at least 0",
+        ),
+        (
+            "sound = 45",
+            "sound = 45\nshape = \"cone\"",
+            "line 8: fluid.shape: ",
+        ),
+        (
+            "spacing = 0.125",
+            "spacing = 0.13",
+            "line 3: fluid.size: each edge must be a whole multiple of the spacing 0.13, not 1",
+        ),
+        (
+            "spacing = 0.125",
+            "spacing = 1e-5",
+            "line 1: fluid: the scene would have 20002700018 particles",
+        ),
+        (
+            "[4, 2.5, 0]",
+            "[4, 2.51, 0]",
+            "line 8: fluid.tank.size: each edge must be a whole multiple",
+        ),
+        (
+            "[1, 2, 0]",
+            "[1, 2, 1]",
+            "line 3: fluid.size: in two dimensions, its last number is 0, not 1",
+        ),
+        (
+            "dimensions = 2",
+            "dimensions = 4",
+            "line 2: fluid.dimensions: it must be 2 or 3, not 4",
+        ),
+        (
+            "at = [0.5, 1, 0]",
+            "at = [0.4, 1, 0]",
+            "line 5: fluid.at: the fluid would reach from x = -0.09999999999999998 to 0.9, outside the tank's walls at 0 and 4",
+        ),
+        (
+            "at = [0.5, 1, 0]",
+            "at = [0.5, 0.9, 0]",
+            "line 5: fluid.at: the fluid would reach from y = -0.09999999999999998",
+        ),
+        (
+            "tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }",
+            &same.replace("[0.5, 1", "[0.55, 1"),
+            "line 1: fluid: particles 0 and 128 would begin 0.05",
+        ),
+        (
+            "tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }\n",
+            &other_law,
+            "line 9: fluid.1: all fluids of a scene are one liquid",
+        ),
+    ] {
+        let text = fluid.replacen(there, instead, 1);
+        assert!(text != fluid, "{there}");
+        assert!(
+            said(&text).starts_with(expected),
+            "{}\n{expected}",
+            said(&text)
+        );
+    }
+}
