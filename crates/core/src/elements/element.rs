@@ -7,6 +7,7 @@ use super::drag::Drag;
 use super::force::Force;
 use super::gravity::Gravity;
 use super::sheet::Sheet;
+use super::solid::Solid;
 use super::springs::Springs;
 use super::wind::Wind;
 use crate::contact::ContactLayer;
@@ -64,6 +65,8 @@ elements! {
     Springs,
     /// Bend springs that buckle.
     BucklingSprings,
+    /// Tetrahedra of an elastic material.
+    Solid,
     /// Uniform gravity.
     Gravity,
     /// Viscous drag.
@@ -118,11 +121,11 @@ impl Element {
         self.force().cost().couplings == 0.0
     }
 
-    /// Whether it is made of springs, which can be scaled, copied and torn.
+    /// Whether it is elastic, and can be scaled and copied.
     pub(crate) fn is_elastic(&self) -> bool {
         matches!(
             self,
-            Self::Sheet(_) | Self::Springs(_) | Self::BucklingSprings(_)
+            Self::Sheet(_) | Self::Springs(_) | Self::BucklingSprings(_) | Self::Solid(_)
         )
     }
 }

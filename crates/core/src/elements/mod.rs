@@ -12,6 +12,7 @@ mod flow;
 pub(crate) mod force;
 mod gravity;
 pub(crate) mod sheet;
+mod solid;
 mod springs;
 mod wind;
 
@@ -23,6 +24,7 @@ pub use drag::Drag;
 pub use element::Element;
 pub use gravity::Gravity;
 pub use sheet::Sheet;
+pub use solid::{Hyperelastic, Material, Solid};
 pub use springs::Springs;
 pub use wind::Wind;
 

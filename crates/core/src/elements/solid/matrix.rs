@@ -1,0 +1,78 @@
+//! Matrices of three rows, of any kind of number.
+
+#![expect(
+    clippy::inline_always,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
+)]
+
+use std::array::from_fn;
+
+use super::number::Number;
+
+/// Matrix, row by row.
+pub(super) type Matrix<N> = [[N; 3]; 3];
+
+/// a . b
+#[inline(always)]
+pub(super) fn dot<N: Number>(a: [N; 3], b: [N; 3]) -> N {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// Column k.
+#[inline(always)]
+pub(super) fn column<N: Number>(a: &Matrix<N>, k: usize) -> [N; 3] {
+    [a[0][k], a[1][k], a[2][k]]
+}
+
+/// a b
+#[inline(always)]
+pub(super) fn product<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
+    from_fn(|i| from_fn(|j| dot(a[i], column(b, j))))
+}
+
+/// a : b
+#[inline(always)]
+pub(super) fn contraction<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> N {
+    dot(a[0], b[0]) + dot(a[1], b[1]) + dot(a[2], b[2])
+}
+
+/// Symmetric part of aT b.
+#[inline(always)]
+pub(super) fn symmetric<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
+    let (half, columns) = (N::of(0.5), |a: &Matrix<N>| from_fn(|k| column(a, k)));
+    let (a, b): ([[N; 3]; 3], [[N; 3]; 3]) = (columns(a), columns(b));
+    let part = |i: usize, j: usize| half * (dot(a[i], b[j]) + dot(a[j], b[i]));
+    let [xy, xz, yz] = [part(0, 1), part(0, 2), part(1, 2)];
+    [
+        [dot(a[0], b[0]), xy, xz],
+        [xy, dot(a[1], b[1]), yz],
+        [xz, yz, dot(a[2], b[2])],
+    ]
+}
+
+/// Matrix of cofactors: the derivative of the determinant.
+#[inline(always)]
+pub(super) fn cofactors<N: Number>(a: &Matrix<N>) -> Matrix<N> {
+    [cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1])]
+}
+
+/// a + b
+#[inline(always)]
+pub(super) fn sum<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
+    from_fn(|i| from_fn(|j| a[i][j] + b[i][j]))
+}
+
+/// s a
+#[inline(always)]
+pub(super) fn scaled<N: Number>(s: N, a: &Matrix<N>) -> Matrix<N> {
+    a.map(|row| row.map(|x| s * x))
+}
