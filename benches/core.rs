@@ -153,6 +153,7 @@ fn mixed() -> Vec<(&'static str, Scene)> {
     let mesh = Mesh {
         positions: (0..grid.particles()).map(place).collect(),
         triangles: grid.triangles().map(|t| t.map(|i| i as u32)).collect(),
+        ..Mesh::default()
     };
     let spring = network(&pure).springs().next().unwrap();
     let i = SIDE * SIDE / 2;

@@ -11,7 +11,7 @@ use crate::description::{
 };
 
 impl Description {
-    /// Multiplies the stiffness and the damping of the springs of every body by these factors.
+    /// Multiplies the stiffness and the damping of every body by these factors.
     pub fn scale_springs(&mut self, stiffness: f64, damping: f64) {
         // Factors of damping over stiffness, and of damping over the critical one, which grows with
         // the root of the stiffness.
@@ -50,6 +50,10 @@ impl Description {
             mesh.stiffness = mesh.stiffness.map(|k| k * stiffness);
             scale(&mut mesh.damping, time);
             scale(&mut mesh.damping_ratio, ratio);
+        }
+        for solid in &mut self.solid {
+            solid.young *= stiffness;
+            solid.damping *= time;
         }
         for chain in &mut self.chain {
             scale_strips(&mut chain.buckling);
@@ -208,11 +212,13 @@ impl Description {
         let cloths = self.cloth.iter_mut().map(|body| &mut body.pin);
         let jellies = self.jelly.iter_mut().map(|body| &mut body.pin);
         let meshes = self.mesh.iter_mut().map(|body| &mut body.pin);
+        let solids = self.solid.iter_mut().map(|body| &mut body.pin);
         let chains = self.chain.iter_mut().map(|body| &mut body.pin);
         let particles = self.particles.iter_mut().map(|body| &mut body.pin);
         cloths
             .chain(jellies)
             .chain(meshes)
+            .chain(solids)
             .chain(chains)
             .chain(particles)
     }

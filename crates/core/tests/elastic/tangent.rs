@@ -135,7 +135,10 @@ fn clamped_couplings_are_positive_semidefinite() {
             let [whole, _] = matrices(&bar, x, false);
             indefinite += usize::from(least(&whole) < -1e-3);
             if k == 0 {
-                assert!((whole - &stiffness).norm() < 1e-9 * stiffness.norm(), "{model:?}");
+                assert!(
+                    (whole - &stiffness).norm() < 1e-9 * stiffness.norm(),
+                    "{model:?}"
+                );
                 let rigid = |k: &&f64| k.abs() < 1e-12 * stiffness.norm();
                 let modes = stiffness.symmetric_eigenvalues();
                 assert_eq!(modes.iter().filter(rigid).count(), 6, "{model:?}: {modes}");

@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use a3_core::contact::Skin;
-use a3_core::elements::{Buckling, Sheet};
+use a3_core::elements::{Buckling, Sheet, Solid};
 use a3_core::{Constraint, Path, Spring, Vector3};
 
 use super::pins::pins;
-use crate::budget::{BODIES, Budget, PARTICLES, RODS, SPRINGS, STRIPS, TOUCHING};
+use crate::budget::{BODIES, Budget, PARTICLES, RODS, SPRINGS, STRIPS, TETRAHEDRA, TOUCHING};
 use crate::check::{BOUNDS, within};
 use crate::description::{Pin, Spot};
 use crate::fault::Fault;
@@ -22,6 +22,7 @@ pub(super) struct Counts {
     /// Springs that buckle.
     pub strips: usize,
     pub rods: usize,
+    pub tetrahedra: usize,
 }
 
 /// A body that a scene is assembled from. Faults have their keys within the body.
@@ -54,6 +55,8 @@ pub(super) struct Assembly {
     pub velocities: Vec<Vector3<f64>>,
     /// Springs of each cloth.
     pub sheets: Vec<Sheet>,
+    /// Tetrahedra of each solid.
+    pub solids: Vec<Solid>,
     pub surface: Surface,
     pub springs: Vec<Spring>,
     pub strips: Vec<Buckling>,
@@ -113,6 +116,7 @@ impl Assembly {
             (counts.springs, SPRINGS),
             (counts.strips, STRIPS),
             (counts.rods, RODS),
+            (counts.tetrahedra, TETRAHEDRA),
         ] {
             budget.spend(key, count, part)?;
         }

@@ -30,6 +30,7 @@ impl Body for Chain {
                 0
             },
             rods: if self.rigid { self.particles } else { 0 },
+            ..Counts::default()
         })
     }
 

@@ -15,6 +15,7 @@ mod network;
 mod obstacles;
 mod pins;
 mod skins;
+mod solid;
 mod state;
 
 use std::sync::Arc;

@@ -53,6 +53,7 @@ pub static SCENES: &[SceneEntry] = &[
     entry!("double-pendulum"),
     entry!("flag"),
     entry!("jelly"),
+    entry!("cantilever"),
 ];
 
 /// The scene of this name.
