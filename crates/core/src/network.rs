@@ -5,6 +5,7 @@ mod constrained;
 mod layer;
 mod mechanics;
 mod obstacles;
+mod price;
 mod springs;
 mod strain;
 mod tearing;

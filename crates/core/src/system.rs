@@ -133,6 +133,11 @@ pub trait Linearized: Mechanics {
         1.0
     }
 
+    /// Price of gathering the couplings, in evaluations of the forces.
+    fn gathering(&self) -> f64 {
+        4.0 * self.speed()
+    }
+
     /// Coefficient of viscous drag (kg/s), -dF/dv of each particle by itself, which is in no
     /// coupling.
     fn drag_coefficient(&self) -> f64 {

@@ -15,7 +15,7 @@
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
 )]
 
-use super::matrix::{Matrix, cofactors, contraction, dot, product, scaled, sum, symmetric};
+use super::matrix::{Matrix, cofactors, contraction, dot, plus, product, scaled, sum, symmetric};
 use super::number::Number;
 use crate::error::{Error, at_least, positive};
 
@@ -111,22 +111,33 @@ impl Material {
     #[inline(always)]
     pub(super) fn stress<N: Number>(&self, f: &Matrix<N>, rate: Option<&Matrix<N>>) -> Matrix<N> {
         let [lambda, mu] = self.lame();
-        let viscous = rate.map(|rate| {
-            let tau = self.damping;
-            hooke([tau * lambda, tau * mu], &symmetric(f, rate))
-        });
+        let viscous = match rate {
+            Some(rate) => {
+                let tau = self.damping;
+                Some(hooke([tau * lambda, tau * mu], &symmetric(f, rate)))
+            }
+            None => None,
+        };
         match self.model {
             Hyperelastic::NeoHookean => {
                 let [m, l, a] = self.neo_hookean();
                 let cofactors = cofactors(f);
-                let along = N::of(m) - N::of(m) / (contraction(f, f) + N::of(1.0));
-                let pressure = N::of(l) * (dot(f[0], cofactors[0]) - N::of(a));
-                let elastic = sum(&scaled(along, f), &scaled(pressure, &cofactors));
-                viscous.map_or(elastic, |viscous| sum(&elastic, &product(f, &viscous)))
+                let (one, m) = (f[0][0].constant(1.0), f[0][0].constant(m));
+                let along = m - m / (contraction(f, f) + one);
+                let volume = dot(f[0], cofactors[0]);
+                let pressure = one.constant(l) * (volume - one.constant(a));
+                let elastic = plus(&scaled(along, f), pressure, &cofactors);
+                match viscous {
+                    Some(viscous) => sum(&elastic, &product(f, &viscous)),
+                    None => elastic,
+                }
             }
             Hyperelastic::StVenantKirchhoff => {
                 let elastic = hooke([lambda, mu], &strain(f));
-                let second = viscous.map_or(elastic, |viscous| sum(&elastic, &viscous));
+                let second = match viscous {
+                    Some(viscous) => sum(&elastic, &viscous),
+                    None => elastic,
+                };
                 product(f, &second)
             }
         }
@@ -136,10 +147,11 @@ impl Material {
 /// Strain E of Green and Saint Venant.
 #[inline(always)]
 fn strain<N: Number>(f: &Matrix<N>) -> Matrix<N> {
-    let mut strain = scaled(N::of(0.5), &symmetric(f, f));
-    for k in 0..3 {
-        strain[k][k] = strain[k][k] - N::of(0.5);
-    }
+    let half = f[0][0].constant(0.5);
+    let mut strain = scaled(half, &symmetric(f, f));
+    strain[0][0] = strain[0][0] - half;
+    strain[1][1] = strain[1][1] - half;
+    strain[2][2] = strain[2][2] - half;
     strain
 }
 
@@ -151,10 +163,11 @@ fn trace<N: Number>(a: &Matrix<N>) -> N {
 /// Hooke's law, lambda tr E 1 + 2 mu E.
 #[inline(always)]
 fn hooke<N: Number>([lambda, mu]: [f64; 2], strain: &Matrix<N>) -> Matrix<N> {
-    let pressure = N::of(lambda) * trace(strain);
-    let mut stress = scaled(N::of(2.0 * mu), strain);
-    for k in 0..3 {
-        stress[k][k] = stress[k][k] + pressure;
-    }
+    let trace = trace(strain);
+    let pressure = trace.constant(lambda) * trace;
+    let mut stress = scaled(trace.constant(2.0 * mu), strain);
+    stress[0][0] = stress[0][0] + pressure;
+    stress[1][1] = stress[1][1] + pressure;
+    stress[2][2] = stress[2][2] + pressure;
     stress
 }

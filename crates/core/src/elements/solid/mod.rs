@@ -20,14 +20,17 @@ use std::array::from_fn;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::Error;
-use matrix::{Matrix, dot};
-use number::{LANES, Lanes, Number};
+use matrix::{Matrix, product, three};
+use number::Number;
 use tangent::Pairs;
 
 pub use material::{Hyperelastic, Material};
 
-/// Height over the longest edge at which a tetrahedron counts as flat.
+/// Volume over that of a cube on the longest edge below which a tetrahedron counts as flat.
 const FLAT: f64 = 1e-9;
+
+/// Number of tetrahedra in a block: as many as the longest vectors of a processor hold, or more.
+const LANES: usize = 8;
 
 /// Tetrahedra of one material.
 #[derive(Clone, Debug)]
@@ -39,14 +42,14 @@ pub struct Solid {
     pairs: Pairs,
 }
 
-/// Tetrahedra that are evaluated at once. The last block repeats its last one.
+/// Tetrahedra beside one another. The last block repeats its last one.
 #[derive(Clone, Debug, Default)]
 struct Block {
     corners: [[u32; LANES]; 4],
     /// Gradients (1/m) of the shape functions of corners 1 to 3.
-    gradients: Matrix<Lanes>,
+    gradients: [[[f64; LANES]; 3]; 3],
     /// Volume at rest (m3).
-    volume: Lanes,
+    volume: [f64; LANES],
 }
 
 /// Vectors at the corners of tetrahedra.
@@ -80,10 +83,10 @@ impl Solid {
             }
             for (row, own) in block.gradients.iter_mut().zip(gradients) {
                 for (number, own) in row.iter_mut().zip(own) {
-                    number.0[lane] = *own;
+                    number[lane] = *own;
                 }
             }
-            block.volume.0[lane] = *volume;
+            block.volume[lane] = *volume;
         }
         let mut solid = Self {
             material,
@@ -112,13 +115,13 @@ impl Solid {
 
     /// Volume at rest of each tetrahedron (m3).
     pub fn volumes(&self) -> impl Iterator<Item = f64> {
-        (0..self.count).map(|k| self.blocks[k / LANES].volume.0[k % LANES])
+        (0..self.count).map(|k| self.blocks[k / LANES].volume[k % LANES])
     }
 
     /// Gradients (1/m) of the shape functions of corners 1 to 3 of a tetrahedron.
     fn gradients(&self, k: usize) -> Matrix<f64> {
         let gradients = &self.blocks[k / LANES].gradients;
-        gradients.map(|row| row.map(|number| number.0[k % LANES]))
+        gradients.map(|row| row.map(|number| number[k % LANES]))
     }
 
     /// Each tetrahedron: its corners, gradients, volume at rest, and deformation gradient at x.
@@ -151,11 +154,9 @@ struct Deformed {
 
 /// Derivative of a linear function, by its values at the corners.
 #[inline(always)]
-fn deformation<N: Number>(gradients: &Matrix<N>, [origin, ends @ ..]: &Corners<N>) -> Matrix<N> {
-    from_fn(|axis| {
-        let edges = ends.map(|end| end[axis] - origin[axis]);
-        from_fn(|k| dot(edges, matrix::column(gradients, k)))
-    })
+fn deformation<N: Number>(gradients: &Matrix<N>, a: &Corners<N>) -> Matrix<N> {
+    let edges: Matrix<N> = three!(axis => three!(k => a[k + 1][axis] - a[0][axis]));
+    product(&edges, gradients)
 }
 
 /// Gradients (1/m) of the shape functions of corners 1 to 3, and the volume (m3), or why there are

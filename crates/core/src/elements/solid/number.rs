@@ -1,98 +1,173 @@
-//! Numbers in which the law of a material is evaluated: one, or those of eight tetrahedra, with
-//! their differentials or without. The law is written once for all of them.
+//! Numbers in which the law of a material is evaluated: one, or those of as many tetrahedra as the
+//! processor takes at a time, with their differentials or without. The law is written once for all
+//! of them.
 
 #![expect(
     clippy::inline_always,
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
 )]
 
-use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Number of tetrahedra that are evaluated at once.
-pub(super) const LANES: usize = 8;
+use pulp::Simd;
 
 /// Number with the four operations.
 pub(super) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// Constant.
-    fn of(x: f64) -> Self;
+    fn constant(self, x: f64) -> Self;
+
+    /// self + a b
+    fn plus_product(self, a: Self, b: Self) -> Self;
 }
 
 impl Number for f64 {
     #[inline(always)]
-    fn of(x: f64) -> Self {
+    fn constant(self, x: f64) -> Self {
         x
+    }
+
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        self + a * b
     }
 }
 
-/// Numbers of as many tetrahedra as are evaluated at once.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(align(64))]
-pub(super) struct Lanes(pub [f64; LANES]);
+/// Numbers of as many tetrahedra as the processor takes at a time. Their products are added
+/// unrounded, so that their bits are the same for any number of them.
+#[derive(Clone, Copy)]
+pub(super) struct Vector<S: Simd> {
+    pub simd: S,
+    pub value: S::f64s,
+}
 
-impl Number for Lanes {
+impl<S: Simd> Vector<S> {
     #[inline(always)]
-    fn of(x: f64) -> Self {
-        Self([x; LANES])
+    fn with(self, value: S::f64s) -> Self {
+        Self { value, ..self }
+    }
+}
+
+impl<S: Simd> Number for Vector<S> {
+    #[inline(always)]
+    fn constant(self, x: f64) -> Self {
+        self.with(self.simd.splat_f64s(x))
+    }
+
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        self.with(self.simd.mul_add_f64s(a.value, b.value, self.value))
+    }
+}
+
+impl<S: Simd> Add for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.with(self.simd.add_f64s(self.value, other.value))
+    }
+}
+
+impl<S: Simd> Sub for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.with(self.simd.sub_f64s(self.value, other.value))
+    }
+}
+
+impl<S: Simd> Mul for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.with(self.simd.mul_f64s(self.value, other.value))
+    }
+}
+
+impl<S: Simd> Div for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.with(self.simd.div_f64s(self.value, other.value))
     }
 }
 
 /// Number and its differential.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(super) struct Dual<N> {
     pub value: N,
     pub change: N,
 }
 
-impl From<Lanes> for Dual<Lanes> {
-    #[inline(always)]
-    fn from(value: Lanes) -> Self {
-        Self {
-            value,
-            change: Lanes::of(0.0),
-        }
-    }
-}
-
 impl<N: Number> Number for Dual<N> {
     #[inline(always)]
-    fn of(x: f64) -> Self {
+    fn constant(self, x: f64) -> Self {
         Self {
-            value: N::of(x),
-            change: N::of(0.0),
+            value: self.value.constant(x),
+            change: self.value.constant(0.0),
+        }
+    }
+
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        let change = self.change.plus_product(a.change, b.value);
+        Self {
+            value: self.value.plus_product(a.value, b.value),
+            change: change.plus_product(a.value, b.change),
         }
     }
 }
 
-macro_rules! operators {
-    ($($name:ident::$operator:ident(|$a:ident, $b:ident, $result:ident| $change:expr);)*) => {
-        $(impl $name for Lanes {
-            type Output = Self;
+impl<N: Number> Add for Dual<N> {
+    type Output = Self;
 
-            #[inline(always)]
-            fn $operator(self, other: Self) -> Self {
-                Self(from_fn(|k| self.0[k].$operator(other.0[k])))
-            }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            change: self.change + other.change,
         }
-
-        impl<N: Number> $name for Dual<N> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $operator(self, other: Self) -> Self {
-                let $result = self.value.$operator(other.value);
-                let ($a, $b) = (self, other);
-                Self { value: $result, change: $change }
-            }
-        })*
-    };
+    }
 }
 
-operators! {
-    Add::add(|a, b, _sum| a.change + b.change);
-    Sub::sub(|a, b, _difference| a.change - b.change);
-    Mul::mul(|a, b, _product| a.change * b.value + a.value * b.change);
-    Div::div(|a, b, quotient| (a.change - quotient * b.change) / b.value);
+impl<N: Number> Sub for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            change: self.change - other.change,
+        }
+    }
+}
+
+impl<N: Number> Mul for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            change: (self.change * other.value).plus_product(self.value, other.change),
+        }
+    }
+}
+
+impl<N: Number> Div for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self {
+            value,
+            change: (self.change - value * other.change) / other.value,
+        }
+    }
 }

@@ -7,7 +7,7 @@ use std::array::from_fn;
 use std::sync::{Mutex, PoisonError};
 
 use super::material::{Hyperelastic, Material};
-use super::matrix::{Matrix, dot};
+use super::matrix::{Matrix, cofactors, dot};
 use super::principal::{Principal, eigen};
 use super::{Deformed, Solid};
 use crate::system::{Coupling, GeneralCoupling};
@@ -25,7 +25,7 @@ pub(super) struct Pairs {
     ends: Vec<[u32; 2]>,
     /// Pair of each two corners of each tetrahedron.
     places: Vec<[u32; 6]>,
-    /// Sums over tetrahedra, which one evaluation at a time borrows.
+    /// Sums over tetrahedra, which one evaluation at a time borrows; none before the first.
     sums: Mutex<Vec<Sums>>,
 }
 
@@ -34,7 +34,7 @@ impl Clone for Pairs {
         Self {
             ends: self.ends.clone(),
             places: self.places.clone(),
-            sums: Mutex::new(vec![Sums::default(); self.ends.len()]),
+            sums: Mutex::default(),
         }
     }
 }
@@ -49,7 +49,7 @@ impl Pairs {
         let place = |pair: [u32; 2]| ends.partition_point(|other| *other < pair) as u32;
         Self {
             places: all.into_iter().map(|pairs| pairs.map(place)).collect(),
-            sums: Mutex::new(vec![Sums::default(); ends.len()]),
+            sums: Mutex::default(),
             ends,
         }
     }
@@ -69,7 +69,8 @@ impl Solid {
     ) {
         let pairs = &self.pairs;
         let mut own = pairs.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        own.fill(Sums::default());
+        own.clear();
+        own.resize(pairs.ends.len(), Sums::default());
         for (tetrahedron, places) in self.deformed(x).zip(&pairs.places) {
             let hessian = Hessian::new(&self.material, &tetrahedron, clamped);
             for ([k, l], place) in CORNERS.into_iter().zip(places) {
@@ -111,10 +112,9 @@ impl Hessian {
         let (mut stretch, mut flip, mut twist) = eigensystem(material, frame.stretches);
         if clamped {
             (flip, twist) = (flip.map(|e| e.max(0.0)), twist.map(|e| e.max(0.0)));
-            let (values, vectors) = eigen(stretch);
-            let of =
-                |i: usize, j: usize, k: usize| values[k].max(0.0) * vectors[k][i] * vectors[k][j];
-            stretch = from_fn(|i| from_fn(|j| of(i, j, 0) + of(i, j, 1) + of(i, j, 2)));
+            if !is_definite(&stretch) {
+                stretch = positive_part(stretch);
+            }
         }
         let [a, b, c] = tetrahedron.gradients;
         let gradients = [from_fn(|k| -(a[k] + b[k] + c[k])), a, b, c];
@@ -178,6 +178,19 @@ impl Hessian {
             }
         }
     }
+}
+
+/// Whether a symmetric matrix is positive definite.
+fn is_definite(a: &Matrix<f64>) -> bool {
+    let cofactors = cofactors(a);
+    a[0][0] > 0.0 && cofactors[2][2] > 0.0 && dot(a[0], cofactors[0]) > 0.0
+}
+
+/// A symmetric matrix with its negative eigenvalues taken as zero.
+fn positive_part(a: Matrix<f64>) -> Matrix<f64> {
+    let (values, vectors) = eigen(a);
+    let of = |i: usize, j: usize, k: usize| values[k].max(0.0) * vectors[k][i] * vectors[k][j];
+    from_fn(|i| from_fn(|j| of(i, j, 0) + of(i, j, 1) + of(i, j, 2)))
 }
 
 /// Second derivatives of the energy of a volume by the stretches s (Pa), and, in the plane across
