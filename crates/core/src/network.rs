@@ -344,10 +344,10 @@ impl Network {
         for element in &elastic {
             list(!element.is_empty(), element.force().name());
         }
-        let damped = elastic
-            .iter()
-            .any(|element| element.force().reads_velocity());
-        list(damped, "spring damping");
+        for element in elastic {
+            let damping = element.solid().map_or("spring damping", |_| "viscosity");
+            list(element.force().reads_velocity(), damping);
+        }
         for element in others {
             list(true, element.force().name());
         }

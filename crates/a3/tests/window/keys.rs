@@ -8,7 +8,7 @@ use crate::display::{Display, until};
 use crate::screen::is_red;
 
 /// In the order of key t, after the cloth.
-pub const SCENES: [&str; 9] = [
+pub const SCENES: [&str; 10] = [
     "simple",
     "pendulum",
     "chain",
@@ -17,6 +17,7 @@ pub const SCENES: [&str; 9] = [
     "double-pendulum",
     "flag",
     "jelly",
+    "cantilever",
     "cloth",
 ];
 

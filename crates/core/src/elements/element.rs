@@ -116,6 +116,14 @@ impl Element {
         }
     }
 
+    /// The solid, if it is one.
+    pub(crate) fn solid(&self) -> Option<&Solid> {
+        match self {
+            Self::Solid(solid) => Some(solid),
+            _ => None,
+        }
+    }
+
     /// Whether it couples no particles.
     pub(crate) fn is_empty(&self) -> bool {
         self.force().cost().couplings == 0.0

@@ -4,6 +4,7 @@
 mod common;
 
 mod box_of;
+mod cantilever;
 mod inversion;
 mod motion;
 mod statics;

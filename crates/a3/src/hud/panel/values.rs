@@ -84,7 +84,7 @@ fn factor(value: f64, scale: DialScale) -> Dial {
 }
 
 pub fn stiffness(session: &Session, _: usize) -> Option<Dial> {
-    own(session)?.springs().next()?;
+    own(session)?.is_elastic().then_some(())?;
     let scale = DialScale::Log {
         from: 0.1,
         to: 10.0,
@@ -93,7 +93,7 @@ pub fn stiffness(session: &Session, _: usize) -> Option<Dial> {
 }
 
 pub fn damping(session: &Session, _: usize) -> Option<Dial> {
-    own(session)?.springs().find(|s| s.law.damping > 0.0)?;
+    own(session)?.is_damped().then_some(())?;
     let scale = DialScale::Linear {
         from: 0.0,
         to: 5.0,

@@ -118,6 +118,25 @@ impl Solid {
         (0..self.count).map(|k| self.blocks[k / LANES].volume[k % LANES])
     }
 
+    /// Each neighbour of particle i in a tetrahedron, with its distance at rest (m).
+    pub(crate) fn neighbours(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        let each = self
+            .tetrahedra()
+            .enumerate()
+            .filter_map(move |(k, corners)| {
+                let own = corners.iter().position(|corner| *corner as usize == i)?;
+                let rows = self.gradients(k);
+                let edges = Matrix3::from_fn(|row, column| rows[row][column]).try_inverse()?;
+                let place = |corner: usize| match corner {
+                    0 => Vector3::zeros(),
+                    corner => edges.column(corner - 1).into_owned(),
+                };
+                let far = |corner: usize| (place(corner) - place(own)).norm();
+                Some([0, 1, 2, 3].map(|corner| (corners[corner] as usize, far(corner))))
+            });
+        each.flatten().filter(move |(other, _)| *other != i)
+    }
+
     /// Gradients (1/m) of the shape functions of corners 1 to 3 of a tetrahedron.
     fn gradients(&self, k: usize) -> Matrix<f64> {
         let gradients = &self.blocks[k / LANES].gradients;
