@@ -153,6 +153,7 @@ fn mixed() -> Vec<(&'static str, Scene)> {
     let mesh = Mesh {
         positions: (0..grid.particles()).map(place).collect(),
         triangles: grid.triangles().map(|t| t.map(|i| i as u32)).collect(),
+        ..Mesh::default()
     };
     let spring = network(&pure).springs().next().unwrap();
     let i = SIDE * SIDE / 2;
@@ -169,11 +170,8 @@ fn mixed() -> Vec<(&'static str, Scene)> {
             SIDE / 2
         )
     };
-    let two = format!(
-        "gravity = [0, -9.81, 0]\ndrag_per_mass = 0.3\n{}\n{}",
-        half(0.0),
-        half(1.0)
-    );
+    let two = [0.0, 1.0].map(half).join("\n");
+    let two = format!("gravity = [0, -9.81, 0]\ndrag_per_mass = 0.3\n{two}");
     let jelly = "[[jelly]]
         grid = [21, 22, 22]
         size = [1, 1, 1]

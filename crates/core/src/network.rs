@@ -7,6 +7,7 @@ mod fluid;
 mod layer;
 mod mechanics;
 mod obstacles;
+mod price;
 mod springs;
 mod strain;
 mod tearing;
@@ -355,10 +356,10 @@ impl Network {
         for element in &elastic {
             list(!element.is_empty(), element.force().name());
         }
-        let damped = elastic
-            .iter()
-            .any(|element| element.force().reads_velocity());
-        list(damped, "spring damping");
+        for element in elastic {
+            let damping = element.solid().map_or("spring damping", |_| "viscosity");
+            list(element.force().reads_velocity(), damping);
+        }
         for element in others {
             list(true, element.force().name());
         }

@@ -181,6 +181,11 @@ pub trait Linearized: Mechanics {
         1.0
     }
 
+    /// Price of gathering the couplings, in evaluations of the forces.
+    fn gathering(&self) -> f64 {
+        4.0 * self.speed()
+    }
+
     /// Coefficient of viscous drag (kg/s), -dF/dv of each particle by itself, which is in no
     /// coupling.
     fn drag_coefficient(&self) -> f64 {
@@ -219,6 +224,8 @@ pub enum Coupling {
     Axial(AxialCoupling),
     /// A coupling by any symmetric matrices.
     Block(BlockCoupling),
+    /// A coupling by any matrices, which adds (KT dd + CT dd') to dFj.
+    General(GeneralCoupling),
 }
 
 /// Coupling of two particles along the line between them. With u = d / |d|, K = along u uT + across
@@ -252,6 +259,43 @@ pub struct BlockCoupling {
     pub stiffness: [f64; 6],
     /// C (N s/m).
     pub damping: [f64; 6],
+}
+
+/// Coupling of two particles by 3 x 3 matrices, each given row by row. All couplings together are
+/// symmetric, because with one of its K there is KT for the other end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GeneralCoupling {
+    /// Particle at one end.
+    pub i: usize,
+    /// Particle at the other end; i again, with symmetric matrices, where the other end is a place
+    /// that does not depend on the state.
+    pub j: usize,
+    /// K (N/m).
+    pub stiffness: [f64; 9],
+    /// C (N s/m).
+    pub damping: [f64; 9],
+}
+
+impl From<BlockCoupling> for GeneralCoupling {
+    fn from(coupling: BlockCoupling) -> Self {
+        let BlockCoupling {
+            i,
+            j,
+            stiffness,
+            damping,
+        } = coupling;
+        Self {
+            i,
+            j,
+            stiffness: full(stiffness),
+            damping: full(damping),
+        }
+    }
+}
+
+/// The nine numbers, row by row, of a symmetric matrix with these xx, yy, zz, xy, xz and yz.
+pub(crate) fn full([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [f64; 9] {
+    [xx, xy, xz, xy, yy, yz, xz, yz, zz]
 }
 
 /// The matrix A = M + a (C + D) + a2 K of an implicit step, from the

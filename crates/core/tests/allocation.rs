@@ -64,6 +64,10 @@ fn no_step_allocates() {
             };
             run.set_wind(true);
             run.set_swinging(true);
+            if method.implicit {
+                // The pattern of a matrix is analysed in the first step that is worth it.
+                run.take_steps(1).unwrap();
+            }
             let count = allocations(|| run.take_steps(20).unwrap());
             assert_eq!(count, 0, "{} on {}", method.name, entry.name);
         }

@@ -29,10 +29,13 @@ pub(crate) const STRIPS: Part = Part("springs that buckle", 200);
 /// Particles of fluid, with the lists of their neighbours.
 pub(crate) const SMOOTHED: Part = Part("particles of fluid", 700);
 pub(crate) const RODS: Part = Part("rods", 400);
+/// Tetrahedra of solids.
+pub(crate) const TETRAHEDRA: Part = Part("tetrahedra", 700);
 pub(crate) const PINS: Part = Part("pins", 700);
 /// Particles that are looked at to find those of a place such as `top`.
 pub(crate) const LOOKED_AT: Part = Part("particles to look at for pins", 1);
 pub(crate) const TRIANGLES: Part = Part("triangles in files", 60);
+pub(crate) const CELLS: Part = Part("tetrahedra in files", 200);
 /// Triangles of obstacles.
 pub(crate) const FACES: Part = Part("triangles of obstacles", 600);
 

@@ -52,6 +52,10 @@ impl Description {
             scale(&mut mesh.damping, time);
             scale(&mut mesh.damping_ratio, ratio);
         }
+        for solid in &mut self.solid {
+            solid.young *= stiffness;
+            solid.damping *= time;
+        }
         for chain in &mut self.chain {
             scale_strips(&mut chain.buckling);
             chain.stiffness *= stiffness;
@@ -222,11 +226,13 @@ impl Description {
         let rigid = self.body.iter_mut().map(|body| &mut body.pin);
         let jellies = self.jelly.iter_mut().map(|body| &mut body.pin);
         let meshes = self.mesh.iter_mut().map(|body| &mut body.pin);
+        let solids = self.solid.iter_mut().map(|body| &mut body.pin);
         let chains = self.chain.iter_mut().map(|body| &mut body.pin);
         let particles = self.particles.iter_mut().map(|body| &mut body.pin);
         cloths
             .chain(jellies)
             .chain(meshes)
+            .chain(solids)
             .chain(chains)
             .chain(particles)
             .chain(rigid)

@@ -1,4 +1,4 @@
-//! Meshes of triangles from OBJ and glTF files.
+//! Meshes of triangles from OBJ and glTF files, and of tetrahedra from those of Gmsh and TetGen.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use super::files::{beside, read};
 /// Length of the files of a scene's meshes and of their buffers, all together (bytes).
 pub const LONGEST: u64 = 64 << 20;
 
-/// The triangles of all objects in a file. `left` is the length of the files that may still be
+/// The triangles or tetrahedra of all objects in a file. `left` is the length of the files that may still be
 /// read.
 pub fn load(path: &Path, left: &mut u64) -> Result<Mesh, String> {
     let extension = path.extension().and_then(|e| e.to_str());
@@ -19,7 +19,10 @@ pub fn load(path: &Path, left: &mut u64) -> Result<Mesh, String> {
         Some("gltf" | "glb") => spend(path, left).and_then(|bytes| {
             Mesh::from_gltf(&bytes, &mut |uri| spend(&beside(Some(path), uri)?, left))
         }),
-        _ => Err("a mesh is a file that ends in .obj, .gltf or .glb".into()),
+        Some("msh") => spend(path, left).and_then(|bytes| Mesh::from_gmsh(&bytes)),
+        Some("ele") => spend(path, left)
+            .and_then(|ele| Mesh::from_tetgen(&spend(&path.with_extension("node"), left)?, &ele)),
+        _ => Err("a mesh is a file that ends in .obj, .gltf, .glb, .msh or .ele".into()),
     };
     mesh.map_err(|why| format!("{}: {why}", path.display()))
 }

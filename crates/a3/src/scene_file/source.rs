@@ -123,8 +123,15 @@ impl Source {
 
     /// The files on which the scene depends: its own and those of its meshes.
     pub fn files(&self) -> Vec<PathBuf> {
-        let Description { mesh, obstacle, .. } = &*self.description;
+        let Description {
+            mesh,
+            obstacle,
+            solid,
+            ..
+        } = &*self.description;
         let bodies = mesh.iter().map(|mesh| &mesh.file);
+        let solids = solid.iter().filter_map(|solid| solid.file.as_ref());
+        let bodies = bodies.chain(solids);
         let names = bodies.chain(obstacle.iter().map(|obstacle| &obstacle.file));
         let meshes = names.filter_map(|name| beside(self.path.as_deref(), name).ok());
         self.path.iter().cloned().chain(meshes).collect()

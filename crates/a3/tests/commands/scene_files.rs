@@ -56,6 +56,7 @@ fn a_printed_scene_is_the_scene() {
         "simple",
         "mit-sphere",
         "jelly",
+        "cantilever",
         "double-pendulum",
         "flag",
     ] {

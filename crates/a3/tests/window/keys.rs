@@ -8,7 +8,7 @@ use crate::display::{Display, until};
 use crate::screen::is_red;
 
 /// In the order of key t, after the cloth.
-pub const SCENES: [&str; 11] = [
+pub const SCENES: [&str; 16] = [
     "simple",
     "pendulum",
     "chain",
@@ -17,8 +17,13 @@ pub const SCENES: [&str; 11] = [
     "double-pendulum",
     "flag",
     "jelly",
+    "t-handle",
+    "boxes",
+    "dominoes",
+    "ball-on-cloth",
     "drop",
     "dam-break",
+    "cantilever",
     "cloth",
 ];
 

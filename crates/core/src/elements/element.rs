@@ -8,6 +8,7 @@ use super::fluid::Fluid;
 use super::force::Force;
 use super::gravity::Gravity;
 use super::sheet::Sheet;
+use super::solid::Solid;
 use super::springs::Springs;
 use super::wind::Wind;
 use crate::contact::ContactLayer;
@@ -67,6 +68,8 @@ elements! {
     BucklingSprings,
     /// Fluid of smoothed particles.
     Fluid,
+    /// Tetrahedra of an elastic material.
+    Solid,
     /// Uniform gravity.
     Gravity,
     /// Viscous drag.
@@ -124,16 +127,24 @@ impl Element {
         }
     }
 
+    /// The solid, if it is one.
+    pub(crate) fn solid(&self) -> Option<&Solid> {
+        match self {
+            Self::Solid(solid) => Some(solid),
+            _ => None,
+        }
+    }
+
     /// Whether it couples no particles.
     pub(crate) fn is_empty(&self) -> bool {
         self.force().cost().couplings == 0.0
     }
 
-    /// Whether it is made of springs, which can be scaled, copied and torn.
+    /// Whether it is elastic, and can be scaled and copied.
     pub(crate) fn is_elastic(&self) -> bool {
         matches!(
             self,
-            Self::Sheet(_) | Self::Springs(_) | Self::BucklingSprings(_)
+            Self::Sheet(_) | Self::Springs(_) | Self::BucklingSprings(_) | Self::Solid(_)
         )
     }
 }

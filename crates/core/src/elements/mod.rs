@@ -13,6 +13,7 @@ mod fluid;
 pub(crate) mod force;
 mod gravity;
 pub(crate) mod sheet;
+mod solid;
 mod springs;
 mod wind;
 
@@ -25,6 +26,7 @@ pub use element::Element;
 pub use fluid::{Fluid, FluidLaw};
 pub use gravity::Gravity;
 pub use sheet::Sheet;
+pub use solid::{Hyperelastic, Material, Solid};
 pub use springs::Springs;
 pub use wind::Wind;
 

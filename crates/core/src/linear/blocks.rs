@@ -197,19 +197,23 @@ impl BlockCholesky {
         }
         self.blocks.fill([0.0; 9]);
         let mut places = self.places.iter();
-        tangent.blocks(|i, j, [xx, yy, zz, xy, xz, yz]| {
+        tangent.blocks(|i, j, block| {
             let Some(place) = places.next() else { return };
-            let full = [xx, xy, xz, xy, yy, yz, xz, yz, zz];
+            let turned = transposed(&block);
             let free = |k: usize| tangent.masses()[k] != 0.0;
             for end in [i, j] {
                 if free(end) {
-                    for (sum, part) in self.diagonal[end].iter_mut().zip(full) {
-                        *sum += part;
+                    // The blocks of a particle have a symmetric sum.
+                    let halves = block.iter().zip(turned);
+                    for (sum, (a, b)) in self.diagonal[end].iter_mut().zip(halves) {
+                        *sum += 0.5 * (a + b);
                     }
                 }
             }
             if free(i) && free(j) {
-                for (sum, part) in self.blocks[*place as usize].iter_mut().zip(full) {
+                let in_row_of_i = self.rows[*place as usize] as usize == i;
+                let block = if in_row_of_i { block } else { turned };
+                for (sum, part) in self.blocks[*place as usize].iter_mut().zip(block) {
                     *sum -= part;
                 }
             }
@@ -228,6 +232,10 @@ fn inverse([xx, xy, xz, _, yy, yz, _, _, zz]: &Block) -> Option<Block> {
     let s = 1.0 / determinant;
     let (d, e, f) = (xx * zz - xz * xz, xy * xz - xx * yz, minor);
     Some([a, b, c, b, d, e, c, e, f].map(|cofactor| cofactor * s))
+}
+
+fn transposed(a: &Block) -> Block {
+    std::array::from_fn(|k| a[k % 3 * 3 + k / 3])
 }
 
 /// a b

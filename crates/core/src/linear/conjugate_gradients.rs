@@ -101,6 +101,10 @@ impl ConjugateGradients {
             column.fill(0.0);
         }
         tangent.blocks(|i, j, block| {
+            let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = block;
+            let mean = |a: f64, b: f64| 0.5 * (a + b);
+            // The blocks of a particle have a symmetric sum.
+            let block = [xx, yy, zz, mean(xy, yx), mean(xz, zx), mean(yz, zy)];
             for (column, part) in self.inverses.iter_mut().zip(block) {
                 column[i] += part;
                 if j != i {

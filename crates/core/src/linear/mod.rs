@@ -18,8 +18,6 @@ use crate::work::Work;
 /// prices below were measured on cloth of 20 x 20 to 128 x 128 particles and on chains (see the
 /// tests).
 const ITERATION: f64 = 2.4;
-/// Price of gathering the matrix, in evaluations of forces spring by spring.
-const GATHERING: f64 = 4.0;
 /// Iterations that conjugate gradients take, over sqrt(1 + a2 w2) ln(2/tolerance).
 const SPREAD: f64 = 0.3;
 /// Least operations of a factorisation for each coupling of particles in two dimensions, over the
@@ -112,7 +110,7 @@ impl Solver {
             (self.direct, self.analysed) = (None, false);
         }
         Work {
-            algebra: GATHERING * self.speed,
+            algebra: system.gathering(),
             ..Work::default()
         }
     }

@@ -154,23 +154,27 @@ impl Cholesky {
             let Some((low, place)) = places.next() else {
                 return;
             };
-            let [xx, yy, zz, xy, xz, yz] = block;
-            let full = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+            let at = |row: usize, column: usize| block[3 * row + column];
             let free = |k: usize| tangent.masses()[k] != 0.0;
             for end in [i, j] {
                 if free(end) {
-                    for (b, row) in full.iter().enumerate() {
-                        for (value, part) in values[start(end, b)..].iter_mut().zip(&row[b..]) {
-                            *value += part;
+                    // The blocks of a particle have a symmetric sum.
+                    for b in 0..3 {
+                        for (value, r) in values[start(end, b)..].iter_mut().zip(b..3) {
+                            *value += 0.5 * (at(b, r) + at(r, b));
                         }
                     }
                 }
             }
             if free(i) && free(j) {
-                for (b, row) in full.iter().enumerate() {
+                for b in 0..3 {
                     let first = start(*low as usize, b) + (3 - b) + 3 * *place as usize;
-                    for (r, part) in row.iter().enumerate() {
-                        values[first + r] -= part;
+                    for r in 0..3 {
+                        values[first + r] -= if *low as usize == i {
+                            at(b, r)
+                        } else {
+                            at(r, b)
+                        };
                     }
                 }
             }

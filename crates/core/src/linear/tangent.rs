@@ -2,14 +2,14 @@
 //! gathered once, and multiplied without square roots. Pinned particles are filtered: their rows
 //! are those of the identity, and vectors that are solved for are zero there.
 
-use crate::system::{AxialCoupling, BlockCoupling, Coupling, Linearized, Matrix};
+use crate::system::{AxialCoupling, Coupling, GeneralCoupling, Linearized, Matrix, full};
 
 /// A and K.
 pub(crate) struct Tangent {
     axial: Vec<AxialCoupling>,
     /// Factors of each axial coupling in A: over all directions, and along it in addition.
     weights: Vec<[f64; 2]>,
-    blocks: Vec<BlockCoupling>,
+    blocks: Vec<GeneralCoupling>,
     /// Mass of each particle in A (kg); 0 where it is pinned.
     masses: Vec<f64>,
     /// 0 where it is pinned, 1 elsewhere.
@@ -48,7 +48,8 @@ impl Tangent {
         blocks.clear();
         system.couplings(t, x, self.clamped, &mut |coupling| match coupling {
             Coupling::Axial(coupling) => axial.push(coupling),
-            Coupling::Block(coupling) => blocks.push(coupling),
+            Coupling::Block(coupling) => blocks.push(coupling.into()),
+            Coupling::General(coupling) => blocks.push(coupling),
         });
     }
 
@@ -103,13 +104,14 @@ impl Tangent {
     }
 
     /// The block of a coupling in A.
-    fn block(&self, coupling: &BlockCoupling) -> [f64; 6] {
+    fn block(&self, coupling: &GeneralCoupling) -> [f64; 9] {
         let (a, [k, c]) = (self.a, [coupling.stiffness, coupling.damping]);
         std::array::from_fn(|part| a * a * k[part] + a * c[part])
     }
 
-    /// Visits the ends and the 3 x 3 block in A of each coupling: xx, yy, zz, xy, xz, yz.
-    pub fn blocks(&self, mut visit: impl FnMut(usize, usize, [f64; 6])) {
+    /// Visits the ends i and j of each coupling and its 3 x 3 block B in A, row by row: -B is in the
+    /// rows of i and the columns of j.
+    pub fn blocks(&self, mut visit: impl FnMut(usize, usize, [f64; 9])) {
         for (c, [iso, along]) in self.axial.iter().zip(&self.weights) {
             let [x, y, z] = c.direction;
             let block = [
@@ -120,7 +122,7 @@ impl Tangent {
                 along * x * z,
                 along * y * z,
             ];
-            visit(c.i, c.j, block);
+            visit(c.i, c.j, full(block));
         }
         for c in &self.blocks {
             visit(c.i, c.j, self.block(c));
@@ -139,9 +141,10 @@ impl Tangent {
             sums[c.j] += k;
         }
         for c in &self.blocks {
-            let [xx, yy, zz, xy, xz, yz] = self.block(c).map(f64::abs);
+            let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = self.block(c).map(f64::abs);
             // The largest sum of a row bounds the largest eigenvalue.
-            let k = (xx + xy + xz).max(xy + yy + yz).max(xz + yz + zz);
+            let rows = (xx + xy + xz).max(yx + yy + yz).max(zx + zy + zz);
+            let k = rows.max(xx + yx + zx).max(xy + yy + zy).max(xz + yz + zz);
             sums[c.i] += k;
             sums[c.j] += k;
         }
@@ -214,7 +217,7 @@ fn add_axial(c: &AxialCoupling, iso: f64, along: f64, p: &[f64], out: &mut [f64]
 
 /// Adds a block times d at one end of a coupling, and subtracts it at the other; at its only end,
 /// if the other is a place.
-fn add_block(c: &BlockCoupling, [xx, yy, zz, xy, xz, yz]: [f64; 6], p: &[f64], out: &mut [f64]) {
+fn add_block(c: &GeneralCoupling, block: [f64; 9], p: &[f64], out: &mut [f64]) {
     let n = p.len() / 3;
     let anchored = c.i == c.j;
     let d = if anchored {
@@ -222,14 +225,12 @@ fn add_block(c: &BlockCoupling, [xx, yy, zz, xy, xz, yz]: [f64; 6], p: &[f64], o
     } else {
         difference(p, c.i, c.j)
     };
-    let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let product = rows.map(|row| row[0] * d[0] + row[1] * d[1] + row[2] * d[2]);
-    if anchored {
-        for (axis, product) in product.into_iter().enumerate() {
-            out[axis * n + c.i] += product;
+    for (axis, row) in block.as_chunks::<3>().0.iter().enumerate() {
+        out[axis * n + c.i] += row[0] * d[0] + row[1] * d[1] + row[2] * d[2];
+        if !anchored {
+            let row = [block[axis], block[3 + axis], block[6 + axis]];
+            out[axis * n + c.j] -= row[0] * d[0] + row[1] * d[1] + row[2] * d[2];
         }
-    } else {
-        add(c.i, c.j, |axis| product[axis], out);
     }
 }
 

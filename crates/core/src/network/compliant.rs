@@ -8,9 +8,11 @@ use crate::system::{Compliant, Linearized};
 impl Network {
     /// Whether springs of one stiffness and damping each are all that couples particles.
     pub(super) fn is_compliant(&self) -> bool {
-        let buckles = |e: &Element| matches!(e, Element::BucklingSprings(_)) && !e.is_empty();
+        let is_no_spring = |e: &Element| {
+            matches!(e, Element::BucklingSprings(_) | Element::Solid(_)) && !e.is_empty()
+        };
         let flows = self.fluid().is_some();
-        !self.is_constrained() && !flows && !self.elements.iter().any(buckles)
+        !self.is_constrained() && !flows && !self.elements.iter().any(is_no_spring)
     }
 }
 

@@ -282,17 +282,11 @@ impl Linearized for Network {
     }
 
     fn speed(&self) -> f64 {
-        let (mut couplings, mut price) = (0.0, 0.0);
-        for element in &self.elements {
-            let cost = element.force().cost();
-            couplings += cost.couplings;
-            price += cost.price;
-        }
-        if couplings > 0.0 {
-            couplings / price
-        } else {
-            1.0
-        }
+        self.speed_of_forces()
+    }
+
+    fn gathering(&self) -> f64 {
+        self.price_of_gathering()
     }
 
     fn drag_coefficient(&self) -> f64 {

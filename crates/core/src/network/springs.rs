@@ -93,8 +93,29 @@ impl Network {
         self.all_springs().filter(move |s| s.i == i || s.j == i)
     }
 
-    /// Makes every spring so many times as stiff, and damps it by the root of that more: its
-    /// damping ratio stays.
+    /// Each neighbour of particle i in a solid, with its distance at rest (m).
+    pub(crate) fn neighbours_in_solids(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        let solids = self.elements.iter().filter_map(Element::solid);
+        solids.flat_map(move |solid| solid.neighbours(i))
+    }
+
+    /// Whether there are springs or solids.
+    #[must_use]
+    pub fn is_elastic(&self) -> bool {
+        self.elements
+            .iter()
+            .any(|e| e.is_elastic() && !e.is_empty())
+    }
+
+    /// Whether springs or solids are damped.
+    #[must_use]
+    pub fn is_damped(&self) -> bool {
+        let mut elements = self.elements.iter().filter(|e| e.is_elastic());
+        elements.any(|e| e.force().reads_velocity())
+    }
+
+    /// Makes every spring and solid so many times as stiff, and damps it by the root of that more:
+    /// its damping ratio stays.
     ///
     /// # Errors
     /// The factor is not a finite number above 0.
@@ -102,8 +123,8 @@ impl Network {
         self.scale_springs(factor, factor.sqrt())
     }
 
-    /// Makes every spring so many times as stiff, and so many times as damped, and likewise the
-    /// fluid: the square of its speed of sound, and its viscosity.
+    /// Makes every spring and solid so many times as stiff, and so many times as damped, and likewise
+    /// the fluid: the square of its speed of sound, and its viscosity.
     ///
     /// # Errors
     /// The factor of the stiffness is not a finite number above 0, or that of the damping not one
@@ -117,7 +138,7 @@ impl Network {
         Ok(())
     }
 
-    /// Takes over the springs and the fluid of another network of the same particles. Those that have broken here
+    /// Takes over the springs, the solids and the fluid of another network of the same particles. Those that have broken here
     /// stay broken.
     ///
     /// # Errors

@@ -32,6 +32,9 @@ const NOTED: f64 = 0.5;
 /// Gain, in energies of the scene, from which on a run is lost.
 const LOST: f64 = 100.0;
 
+/// Speed that nobody sees, in radii of the scene (1/s): rounding moves what is at rest more slowly.
+const UNSEEN: f64 = 1e-9;
+
 /// Energy that nothing put into a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gain {
@@ -51,7 +54,8 @@ pub struct Balance {
     energy: f64,
     /// Energy at the beginning, with what hands have changed since.
     begin: f64,
-    /// Energy of the scene: kinetic and elastic at the beginning, and its weight times its radius.
+    /// Energy of the scene: kinetic and elastic at the beginning, its weight times its radius, and
+    /// that of a motion that nobody sees.
     own: f64,
     /// Largest fall of the gravitational energy, and that energy at the beginning.
     fall: f64,
@@ -82,8 +86,9 @@ impl Watch {
     /// Begins with a run at y at time t (s), whose scene has that radius (m).
     pub fn begin(&mut self, network: &Network, (t, y): (f64, &[f64]), radius: f64) {
         let energy = energy_of(network, t, y);
-        let weight =
-            network.gravity().map_or(0.0, |g| g.norm()) * network.masses().iter().sum::<f64>();
+        let mass = network.masses().iter().sum::<f64>();
+        let weight = network.gravity().map_or(0.0, |g| g.norm()) * mass;
+        let unseen = 0.5 * mass * (UNSEEN * radius).powi(2);
         (self.disturbed, self.radius) = (false, radius);
         // A step allocates nothing.
         self.scratch = [(); 2].map(|()| vec![0.0; y.len()]);
@@ -91,7 +96,7 @@ impl Watch {
             time: t,
             energy: energy.total(),
             begin: energy.total(),
-            own: energy.kinetic + energy.elastic + energy.contact + weight * radius,
+            own: energy.kinetic + energy.elastic + energy.contact + weight * radius + unseen,
             gravitational: energy.gravitational,
             ..Balance::default()
         };

@@ -218,15 +218,19 @@ impl Simulation {
         }
     }
 
-    /// The point on the way of particle i to `target` up to which no spring of its own is stretched
-    /// too far, and no rod stretched or squeezed. A spring or rod that is already may not become
+    /// The point on the way of particle i to `target` up to which no spring of its own and no edge
+    /// of a tetrahedron is stretched too far, and no rod stretched or squeezed. A spring or rod that is already may not become
     /// worse.
     fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
         let way = target - from;
         let network = || self.model.network().into_iter();
         let springs = network()
             .flat_map(|network| network.springs_of(i))
-            .map(|s| (s.i + s.j - i, 0.0, self.scene.reach * s.law.rest_length));
+            .map(|s| (s.i + s.j - i, s.law.rest_length));
+        let in_solids = network().flat_map(|network| network.neighbours_in_solids(i));
+        let springs = springs
+            .chain(in_solids)
+            .map(|(other, rest)| (other, 0.0, self.scene.reach * rest));
         let rods = network()
             .flat_map(|network| network.rods_of(i))
             .map(|(other, length)| (other, ROD.0 * length, ROD.1 * length));

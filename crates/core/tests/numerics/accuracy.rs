@@ -175,7 +175,15 @@ fn buckling_out_of_a_plane_is_no_chaos() {
 const KINKED: [&str; 2] = ["mit-sphere", "jelly"];
 
 /// Scenes that are left out, because their finest references take minutes.
-const LONG: [&str; 3] = ["flag", "drop", "dam-break"];
+const LONG: [&str; 7] = [
+    "flag",
+    "drop",
+    "dam-break",
+    "cantilever",
+    "boxes",
+    "dominoes",
+    "ball-on-cloth",
+];
 
 /// The uncertainty of the reference is small on every scene without collisions.
 #[test]

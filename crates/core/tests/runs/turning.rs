@@ -32,6 +32,7 @@ obstacle = [{ file = 'solid', scale = 2, at = [0, 9, 0], rotation = [0.5, 0, 0],
         Ok(Mesh {
             positions: vec![[0.0; 3], x, y, [0.0, 0.0, 1.0]],
             triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+            ..Mesh::default()
         })
     };
     let mut build = |text: &str| {

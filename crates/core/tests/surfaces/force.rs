@@ -122,6 +122,7 @@ fn add(coupling: &Coupling, dx: &[f64], dv: &[f64], df: &mut [f64]) {
             )
         }
         Coupling::Block(b) => (b.i, b.j, [b.stiffness, b.damping]),
+        Coupling::General(_) => panic!("contact has symmetric couplings"),
     };
     let of = |a: &[f64]| {
         if i == j {

@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use a3_core::contact::Skin;
-use a3_core::elements::{Buckling, FluidLaw, Sheet};
+use a3_core::elements::{Buckling, FluidLaw, Sheet, Solid};
 use a3_core::rigid::{self, Rotation};
 use a3_core::{Constraint, Path, Spring, Vector3};
 
 use super::pins::pins;
 use crate::budget::{
-    BODIES, Budget, PARTICLES, PARTS, PINS, RODS, SMOOTHED, SPRINGS, STRIPS, TOUCHING,
+    BODIES, Budget, PARTICLES, PARTS, PINS, RODS, SMOOTHED, SPRINGS, STRIPS, TETRAHEDRA, TOUCHING,
 };
 use crate::check::{BOUNDS, within};
 use crate::description::{Pin, Spot};
@@ -30,6 +30,7 @@ pub(super) struct Counts {
     /// Particles of fluid, and those of them that are walls.
     pub smoothed: usize,
     pub walls: usize,
+    pub tetrahedra: usize,
 }
 
 /// A body that a scene is assembled from. Faults have their keys within the body.
@@ -62,6 +63,8 @@ pub(super) struct Assembly {
     pub velocities: Vec<Vector3<f64>>,
     /// Springs of each cloth.
     pub sheets: Vec<Sheet>,
+    /// Tetrahedra of each solid.
+    pub solids: Vec<Solid>,
     pub surface: Surface,
     pub springs: Vec<Spring>,
     pub strips: Vec<Buckling>,
@@ -130,6 +133,7 @@ impl Assembly {
             (counts.parts, PARTS),
             (counts.smoothed, SMOOTHED),
             (counts.walls, PINS),
+            (counts.tetrahedra, TETRAHEDRA),
         ] {
             budget.spend(key, count, part)?;
         }

@@ -98,16 +98,6 @@ impl Body for Jelly {
     }
 
     fn spot(&self, spot: Spot, _: &[Vector3<f64>]) -> Option<Vec<usize>> {
-        let (axis, far) = match spot {
-            Spot::Left => (0, false),
-            Spot::Right => (0, true),
-            Spot::Bottom => (1, false),
-            Spot::Top => (1, true),
-            _ => return None,
-        };
-        let lattice = Lattice(self.grid);
-        let at = if far { self.grid[axis] - 1 } else { 0 };
-        let there = lattice.cells().filter(|cell| cell[axis] == at);
-        Some(there.map(|cell| lattice.index_of(cell)).collect())
+        Lattice(self.grid).face(spot)
     }
 }

@@ -1,7 +1,10 @@
-//! Lattice of a jelly: structural springs along the axes, shear springs across faces and cells,
-//! bend springs to the next particle but one.
+//! Lattice of a box. That of a jelly has structural springs along the axes, shear springs across faces
+//! and cells, and bend springs to the next particle but one; that of a solid has six tetrahedra a
+//! cell.
 
 use a3_core::{Spring, SpringKind, SpringLaw};
+
+use crate::description::Spot;
 
 /// Lattice of nx x ny x nz particles, in which x is counted fastest, then y, then z.
 #[derive(Clone, Copy)]
@@ -27,6 +30,17 @@ const OFFSETS: [(SpringKind, [isize; 3]); 16] = [
     (SpringKind::Bend, [0, 0, 2]),
 ];
 
+/// Axes in the order in which a tetrahedron goes along the edges of its cell, from one corner to the
+/// opposite one (Kuhn). Neighbouring cells agree on the diagonals of their faces.
+const WAYS: [[usize; 3]; 6] = [
+    [0, 1, 2],
+    [1, 2, 0],
+    [2, 0, 1],
+    [0, 2, 1],
+    [2, 1, 0],
+    [1, 0, 2],
+];
+
 impl Lattice {
     /// Number of particles; `None` if it overflows.
     pub fn particles(self) -> Option<usize> {
@@ -43,6 +57,41 @@ impl Lattice {
     pub fn cells(self) -> impl Iterator<Item = [usize; 3]> {
         let [nx, ny, nz] = self.0;
         (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
+    }
+
+    /// The particles of a face, if the spot is one.
+    pub fn face(self, spot: Spot) -> Option<Vec<usize>> {
+        let (axis, far) = match spot {
+            Spot::Left => (0, false),
+            Spot::Right => (0, true),
+            Spot::Bottom => (1, false),
+            Spot::Top => (1, true),
+            _ => return None,
+        };
+        let at = if far { self.0[axis] - 1 } else { 0 };
+        let there = self.cells().filter(|cell| cell[axis] == at);
+        Some(there.map(|cell| self.index_of(cell)).collect())
+    }
+
+    /// The tetrahedra, six in the cell from each particle on, with positive volumes.
+    pub fn tetrahedra(self) -> impl Iterator<Item = [u32; 4]> {
+        let cells = self.cells();
+        let whole = cells.filter(move |cell| (0..3).all(|axis| cell[axis] + 1 < self.0[axis]));
+        whole.flat_map(move |cell| {
+            WAYS.into_iter().enumerate().map(move |(k, axes)| {
+                let mut at = cell;
+                let mut corners = [self.index_of(cell) as u32; 4];
+                for (corner, axis) in corners[1..].iter_mut().zip(axes) {
+                    at[axis] += 1;
+                    *corner = self.index_of(at) as u32;
+                }
+                // The last three ways turn the other way round.
+                if k >= 3 {
+                    corners.swap(1, 2);
+                }
+                corners
+            })
+        })
     }
 
     /// The springs of a lattice of that spacing (m). `law` gives the law of a kind of spring of

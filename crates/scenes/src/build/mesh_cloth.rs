@@ -5,6 +5,7 @@ use nalgebra::Rotation3;
 
 use super::assembly::{Assembly, Body, Counts};
 use super::laws::damping_time;
+use super::pins::extreme;
 use super::skins::SkinSpec;
 use crate::check::{at, positive};
 use crate::description::{MeshCloth, Pin, Spot};
@@ -92,21 +93,8 @@ impl Body for LoadedMesh<'_> {
     }
 
     fn spot(&self, spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>> {
-        let heights = || positions.iter().map(|p| p.y);
-        let (low, high) = (
-            heights().fold(f64::INFINITY, f64::min),
-            heights().fold(f64::NEG_INFINITY, f64::max),
-        );
-        let near = 0.01 * (high - low);
-        let there = |at: f64| {
-            let all = heights().enumerate();
-            all.filter(|(_, y)| (y - at).abs() <= near)
-                .map(|(i, _)| i)
-                .collect()
-        };
         match spot {
-            Spot::Top => Some(there(high)),
-            Spot::Bottom => Some(there(low)),
+            Spot::Top | Spot::Bottom => extreme(spot, positions),
             _ => None,
         }
     }

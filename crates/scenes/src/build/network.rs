@@ -9,8 +9,9 @@ use a3_core::{Network, Touch, Vector3};
 use super::assembly::Assembly;
 use super::mesh_cloth::LoadedMesh;
 use super::rigid::LoadedBody;
+use super::solid::LoadedSolid;
 use super::{constraints, fluid, forces, laws, obstacles, pins, state};
-use crate::budget::{Budget, SPRINGS, TRIANGLES};
+use crate::budget::{Budget, CELLS, SPRINGS, TRIANGLES};
 use crate::check::{at, key_of};
 use crate::description::Description;
 use crate::fault::Fault;
@@ -36,6 +37,7 @@ pub(super) fn bodies(description: &Description) -> usize {
     description.cloth.len()
         + description.jelly.len()
         + description.mesh.len()
+        + description.solid.len()
         + description.chain.len()
         + usize::from(description.particles.is_some())
         + description.body.len()
@@ -64,6 +66,9 @@ pub(super) fn build(
     let mut network = at("", Network::new(assembly.masses))?;
     for sheet in assembly.sheets {
         at("", network.add(sheet))?;
+    }
+    for solid in assembly.solids {
+        at("", network.add(solid))?;
     }
     at("", network.add_springs(assembly.springs))?;
     for (k, strip) in assembly.strips.into_iter().enumerate() {
@@ -135,7 +140,7 @@ fn assembled(
     if count == 0 {
         return Err(Fault::new(
             "",
-            "the scene is empty: it needs at least one of cloth, jelly, mesh, chain, particles, body, fluid, circle",
+            "the scene is empty: it needs at least one of cloth, jelly, mesh, solid, chain, particles, body, fluid, circle",
         ));
     }
     let mut assembly = Assembly::new(touches(description));
@@ -157,6 +162,14 @@ fn assembled(
         budget.spend(&key, mesh.triangles.len(), TRIANGLES)?;
         let mesh = mesh.welded();
         assembly.add(&key, &LoadedMesh { cloth, mesh }, budget)?;
+    }
+    for (k, solid) in description.solid.iter().enumerate() {
+        let key = key_of("solid", k, description.solid.len());
+        let file = solid.file.as_deref().map(&mut *mesh).transpose();
+        let mesh = at("file", file).map_err(|fault| fault.within(&key))?;
+        let count = mesh.as_ref().map_or(0, |mesh| mesh.tetrahedra.len());
+        budget.spend(&key, count, CELLS)?;
+        assembly.add(&key, &LoadedSolid { solid, mesh }, budget)?;
     }
     for (k, body) in chain.iter().enumerate() {
         assembly.add(&key_of("chain", k, chain.len()), body, budget)?;

@@ -24,6 +24,26 @@ pub(super) fn pins(
     Ok(all)
 }
 
+/// The particles as far to a side as the one that is farthest there, to a hundredth of the extent;
+/// `None` if the spot is no side.
+pub(super) fn extreme(spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>> {
+    let (axis, far) = match spot {
+        Spot::Left => (0, false),
+        Spot::Right => (0, true),
+        Spot::Bottom => (1, false),
+        Spot::Top => (1, true),
+        _ => return None,
+    };
+    let places = || positions.iter().map(|p| p[axis]);
+    let (low, high) = (
+        places().fold(f64::INFINITY, f64::min),
+        places().fold(f64::NEG_INFINITY, f64::max),
+    );
+    let (at, near) = (if far { high } else { low }, 0.01 * (high - low));
+    let there = places().enumerate().filter(|(_, y)| (y - at).abs() <= near);
+    Some(there.map(|(i, _)| i).collect())
+}
+
 fn pinned(
     pin: &Pin,
     positions: &[Vector3<f64>],
@@ -40,8 +60,8 @@ fn pinned(
         let Some(there) = spot(*at) else {
             return Err(Fault::new(
                 "at",
-                "a cloth has top, bottom, left, right, top-left, top-right, bottom-left, bottom-right; a jelly top, \
-                 bottom, left, right; a mesh top, bottom; a chain first, last; others are pinned by `particles`",
+                "a cloth has top, bottom, left, right, top-left, top-right, bottom-left, bottom-right; a jelly and \
+                 a solid top, bottom, left, right; a mesh top, bottom; a chain first, last; others are pinned by `particles`",
             ));
         };
         budget.spend("at", there.len(), PINS)?;

@@ -59,6 +59,7 @@ pub static SCENES: &[SceneEntry] = &[
     entry!("ball-on-cloth"),
     entry!("drop"),
     entry!("dam-break"),
+    entry!("cantilever"),
 ];
 
 /// The scene of this name.

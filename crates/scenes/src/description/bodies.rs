@@ -148,6 +148,60 @@ pub struct MeshCloth {
     pub pin: Vec<Pin>,
 }
 
+/// Energy of a solid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SolidModel {
+    /// Stable neo-Hookean energy, by which a tetrahedron that is inside out turns back.
+    #[default]
+    NeoHookean,
+    /// Energy after Saint Venant and Kirchhoff, for moderate strains.
+    StVenantKirchhoff,
+}
+
+/// Elastic solid of tetrahedra: a box, or the mesh of a file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Solid {
+    /// Numbers of particles of a box along x, y and z, each at least 2. An alternative is `file`.
+    pub grid: Option<[usize; 3]>,
+    /// Lengths of the edges of a box (m).
+    pub size: Option<Triple>,
+    /// A file of tetrahedra in the scene file's folder or in one below it: .msh of Gmsh, or .ele of
+    /// TetGen, whose .node is beside it. An alternative is `grid`.
+    pub file: Option<String>,
+    /// Unit of length of the file (m); 1 if not given.
+    pub scale: Option<f64>,
+    /// Mass per volume (kg/m3): each particle has a quarter of the mass of its tetrahedra.
+    pub density: f64,
+    /// Young's modulus (Pa).
+    pub young: f64,
+    /// Poisson's ratio, above -1 and below 0.5.
+    pub poisson: f64,
+    /// Energy: `neo-hookean` if not given, or `st-venant-kirchhoff`.
+    #[serde(default)]
+    pub model: SolidModel,
+    /// Viscosity over stiffness (s); 0 if not given.
+    #[serde(default)]
+    pub damping: f64,
+    /// Centre of a box, or position of the file's origin (m).
+    pub at: Triple,
+    /// Rotation vector: its direction is the axis, its length the angle (rad).
+    pub rotation: Option<Triple>,
+    /// Velocity (m/s).
+    pub velocity: Option<Triple>,
+    /// Distance up to which its surface repels others where surfaces touch (m).
+    #[serde(default)]
+    pub thickness: Option<f64>,
+    /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_smooth")]
+    pub friction: f64,
+    /// Pins of this body. `top`, `bottom`, `left` and `right` of a solid from a file are the
+    /// particles that are farthest there, to a hundredth of its extent.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pin: Vec<Pin>,
+}
+
 /// Straight row of particles joined by springs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

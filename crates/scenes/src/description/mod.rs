@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::budget::check_text;
 use crate::fault::Fault;
 
-pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles};
+pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, SolidModel};
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
 pub use floor::{Floor, FloorSpec};
 pub use fluid::{Fluid, FluidShape, Tank};
@@ -29,7 +29,7 @@ pub use rigid::{PartSpec, RigidBody};
 /// N and rad.
 ///
 /// Particles are numbered through all bodies: those of cloths come first, then those of jellies,
-/// meshes, chains, single particles and rigid bodies, and last those of fluids, each followed by its
+/// meshes, solids, chains, single particles and rigid bodies, and last those of fluids, each followed by its
 /// tank's walls.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -79,6 +79,9 @@ pub struct Description {
     /// Cloths of any shape, from files of triangles.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mesh: Vec<MeshCloth>,
+    /// Elastic solids of tetrahedra.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub solid: Vec<Solid>,
     /// Rows of particles joined by springs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub chain: Vec<Chain>,

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 /// Three numbers: x, y (up), z.
 pub type Triple = [f64; 3];
 
-/// Part of a body that can be pinned. A cloth has edges and corners, a jelly has faces, a chain has
-/// ends, a mesh has a top and a bottom.
+/// Part of a body that can be pinned. A cloth has edges and corners, a jelly and a solid have
+/// faces, a chain has ends, a mesh has a top and a bottom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[allow(missing_docs, reason = "the names say it")]

@@ -1,8 +1,12 @@
-//! Meshes of triangles, and the springs of a cloth that has their shape.
+//! Meshes of triangles, with tetrahedra within them or without, and the springs of a cloth that has
+//! their shape.
 
 mod accessor;
 mod gltf;
+mod gmsh;
 mod obj;
+mod tetgen;
+mod tetrahedra;
 
 use std::collections::BTreeMap;
 
@@ -10,19 +14,25 @@ use a3_core::{Error, Spring, SpringKind, SpringLaw, Vector3};
 
 use crate::check::{BOUNDS, within};
 use crate::description::Triple;
+pub(crate) use tetrahedra::boundary;
 
 /// Largest number of points in a file.
 const MAX_POINTS: usize = 1 << 20;
 /// Largest number of triangles in a file.
 const MAX_TRIANGLES: usize = 2 * MAX_POINTS;
+/// Largest number of tetrahedra in a file.
+const MAX_TETRAHEDRA: usize = MAX_POINTS;
 
-/// Mesh of triangles.
+/// Mesh of triangles, or of tetrahedra with the triangles around them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Positions of the points (m).
     pub positions: Vec<Triple>,
     /// Corners of the triangles, all in the same winding order.
     pub triangles: Vec<[u32; 3]>,
+    /// Corners of the tetrahedra within, if the file has any: each with a positive volume, unless
+    /// it differs from others.
+    pub tetrahedra: Vec<[u32; 4]>,
 }
 
 impl Mesh {
@@ -45,6 +55,22 @@ impl Mesh {
         file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Self, String> {
         gltf::read(bytes, file)?.checked()
+    }
+
+    /// The tetrahedra in a text file of Gmsh, version 2.2 or 4.1.
+    ///
+    /// # Errors
+    /// A point or an element is wrong, there is no tetrahedron, or there are too many.
+    pub fn from_gmsh(bytes: &[u8]) -> Result<Self, String> {
+        gmsh::read(bytes)?.checked()
+    }
+
+    /// The tetrahedra in a pair of TetGen's files, `.node` and `.ele`.
+    ///
+    /// # Errors
+    /// A point or an element is wrong, there is no tetrahedron, or there are too many.
+    pub fn from_tetgen(node: &[u8], ele: &[u8]) -> Result<Self, String> {
+        tetgen::read(node, ele)?.checked()
     }
 
     /// The mesh, if it has triangles, and its points are where they can be.
@@ -88,6 +114,7 @@ impl Mesh {
         Self {
             positions: positions.collect(),
             triangles: self.triangles.clone(),
+            tetrahedra: self.tetrahedra.clone(),
         }
     }
 

@@ -4,6 +4,7 @@
 mod building;
 mod faults;
 mod fluids;
+mod solids;
 
 use a3_core::{Grid, Scene};
 use a3_scenes::{Description, Fault, Mesh, Setup, find};
@@ -27,6 +28,7 @@ fn mesh(name: &str) -> Result<Mesh, String> {
                 [0.0, 0.0, 0.0],
             ],
             triangles: vec![[0, 1, 2], [5, 4, 3]],
+            ..Mesh::default()
         }),
         _ => Err(format!("{name}: there is no such file")),
     }

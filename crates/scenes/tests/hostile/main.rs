@@ -3,6 +3,7 @@
 mod memory;
 mod mutation;
 
+use a3_core::Element;
 use a3_scenes::{Description, Mesh, SCENES, Setup};
 
 use memory::taken;
@@ -42,6 +43,7 @@ fn mesh(name: &str) -> Result<Mesh, String> {
     match name {
         "solid.obj" => Mesh::from_obj(solid),
         "square.obj" => Mesh::from_obj(square),
+        "two.msh" => Mesh::from_gmsh(&seeds("msh")[1]),
         other => no_file(other).map(|_| Mesh::default()),
     }
 }
@@ -56,6 +58,12 @@ fn is_scene(description: &Description, text: &str) -> bool {
     let mut numbers = scene.state.clone();
     if let Some(network) = scene.model.network() {
         numbers.extend(network.masses());
+        for element in network.elements() {
+            if let Element::Solid(solid) = element {
+                numbers.extend(solid.volumes());
+                numbers.extend(solid.material().lame());
+            }
+        }
         let laws = network.springs().map(|s| s.law);
         numbers.extend(laws.flat_map(|law| [law.stiffness, law.rest_length, law.damping]));
         let points = network
@@ -127,6 +135,25 @@ fn gltf_files_are_taken_or_refused() {
     assert!(taken > INPUTS / 25, "{taken}");
 }
 
+#[test]
+fn files_of_gmsh_are_taken_or_refused() {
+    let taken = feed(&seeds("msh"), |bytes| is_mesh(Mesh::from_gmsh(bytes)));
+    assert!(taken > INPUTS / 25, "{taken}");
+}
+
+#[test]
+fn pairs_of_files_of_tetgen_are_taken_or_refused() {
+    let [ele, node] = &seeds("ele")[..] else {
+        panic!("other seeds")
+    };
+    let of_ele = |bytes: &[u8]| is_mesh(Mesh::from_tetgen(node, bytes));
+    let taken = feed(std::slice::from_ref(ele), of_ele);
+    assert!(taken > INPUTS / 25, "{taken}");
+    let of_node = |bytes: &[u8]| is_mesh(Mesh::from_tetgen(bytes, ele));
+    let taken = feed(std::slice::from_ref(node), of_node);
+    assert!(taken > INPUTS / 25, "{taken}");
+}
+
 /// Whether there is a mesh, which is complete then.
 fn is_mesh(mesh: Result<Mesh, String>) -> bool {
     let Ok(mesh) = mesh.map_err(|why| said(&why)) else {
@@ -140,6 +167,21 @@ fn is_mesh(mesh: Result<Mesh, String>) -> bool {
             .all(|i| (*i as usize) < count)
     );
     assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
+    let corners = mesh.tetrahedra.iter().flatten();
+    assert!(corners.into_iter().all(|i| (*i as usize) < count));
+    if !mesh.tetrahedra.is_empty() {
+        // A solid of it is refused, or has finite numbers.
+        let text =
+            "solid = [{ file = 'a.msh', density = 1, young = 1, poisson = 0.3, at = [0, 0, 0] }]";
+        let description = Description::parse(text).unwrap();
+        match description.build(None, &mut |_| Ok(mesh.clone())) {
+            Ok(setup) => {
+                let network = setup.scene.model.network().unwrap();
+                assert!(network.masses().iter().all(|m| m.is_finite() && *m > 0.0));
+            }
+            Err(fault) => said(&fault.to_string()),
+        }
+    }
     true
 }
 
@@ -164,6 +206,29 @@ fn what_is_too_much_is_refused() {
         );
         std::fs::read(path).unwrap()
     };
+    let many = "4000000000";
+    for (text, expected) in [
+        (
+            format!("$MeshFormat\n2.2 0 8\n$Nodes\n{many}\n1 0 0 0\n"),
+            "ends within $Nodes",
+        ),
+        (
+            format!("$MeshFormat\n4.1 0 8\n$Nodes\n{many} {many} 1 1\n0 0 0 {many}\n"),
+            "ends within",
+        ),
+        (
+            format!("$MeshFormat\n4.1 0 8\n$Elements\n{many} 1 1 1\n3 0 4 {many}\n1 2"),
+            "four corners",
+        ),
+        ("$MeshFormat\n4.1 1 8\n".into(), "only Gmsh's text formats"),
+        (String::new(), "no Gmsh file"),
+    ] {
+        refused(expected, || Mesh::from_gmsh(text.as_bytes()).map(|_| ()));
+    }
+    let long = format!("{many} 3 0 0\n0 1 2 3\n");
+    refused("ends before all", || {
+        Mesh::from_tetgen(long.as_bytes(), b"0 4").map(|_| ())
+    });
     for (name, expected) in [("g_dag", "two parents"), ("g_sparse", "more than")] {
         let bytes = seed("gltf", &format!("{name}.gltf"));
         refused(expected, || {
@@ -198,7 +263,7 @@ fn what_is_large_is_taken() {
     let numbers: Vec<_> = (0..50_000).rev().map(|i| i.to_string()).collect();
     let long = CHAIN.replace("particles = 2", "particles = 100000");
     let pins = format!("{long}pin = [{{ particles = [{}] }}]", numbers.join(","));
-    for text in [pins, format!("{long}rigid = true")] {
+    for text in [pins, format!("{long}rigid = true"), SOLID.into()] {
         let begun = std::time::Instant::now();
         let memory = taken(|| assert!(is_scene(&Description::parse(&text).unwrap(), &text)));
         assert!(memory < MOST, "{memory:?}");
@@ -213,4 +278,14 @@ from = [0, 0, 0]
 to = [1, 0, 0]
 mass = 1
 stiffness = 1
+";
+
+const SOLID: &str = "
+[[solid]]
+grid = [40, 32, 28]
+size = [4, 3.5, 2.9]
+density = 1000
+young = 1e5
+poisson = 0.3
+at = [0, 0, 0]
 ";

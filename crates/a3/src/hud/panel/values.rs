@@ -85,9 +85,7 @@ fn factor(value: f64, scale: DialScale) -> Dial {
 
 pub fn stiffness(session: &Session, _: usize) -> Option<Dial> {
     let own = own(session)?;
-    if own.fluid().is_none() {
-        own.springs().next()?;
-    }
+    (own.is_elastic() || own.fluid().is_some()).then_some(())?;
     let scale = DialScale::Log {
         from: 0.1,
         to: 10.0,
@@ -97,9 +95,8 @@ pub fn stiffness(session: &Session, _: usize) -> Option<Dial> {
 
 pub fn damping(session: &Session, _: usize) -> Option<Dial> {
     let own = own(session)?;
-    if own.fluid().is_none_or(|fluid| fluid.law().viscosity == 0.0) {
-        own.springs().find(|s| s.law.damping > 0.0)?;
-    }
+    let is_viscous = own.fluid().is_some_and(|fluid| fluid.law().viscosity > 0.0);
+    (own.is_damped() || is_viscous).then_some(())?;
     let scale = DialScale::Linear {
         from: 0.0,
         to: 5.0,

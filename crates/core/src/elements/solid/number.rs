@@ -1,0 +1,173 @@
+//! Numbers in which the law of a material is evaluated: one, or those of as many tetrahedra as the
+//! processor takes at a time, with their differentials or without. The law is written once for all
+//! of them.
+
+#![expect(
+    clippy::inline_always,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
+)]
+
+use std::ops::{Add, Div, Mul, Sub};
+
+use pulp::Simd;
+
+/// Number with the four operations.
+pub(super) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// Constant.
+    fn constant(self, x: f64) -> Self;
+
+    /// self + a b
+    fn plus_product(self, a: Self, b: Self) -> Self;
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn constant(self, x: f64) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        self + a * b
+    }
+}
+
+/// Numbers of as many tetrahedra as the processor takes at a time. Their products are added
+/// unrounded, so that their bits are the same for any number of them.
+#[derive(Clone, Copy)]
+pub(super) struct Vector<S: Simd> {
+    pub simd: S,
+    pub value: S::f64s,
+}
+
+impl<S: Simd> Vector<S> {
+    #[inline(always)]
+    fn with(self, value: S::f64s) -> Self {
+        Self { value, ..self }
+    }
+}
+
+impl<S: Simd> Number for Vector<S> {
+    #[inline(always)]
+    fn constant(self, x: f64) -> Self {
+        self.with(self.simd.splat_f64s(x))
+    }
+
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        self.with(self.simd.mul_add_f64s(a.value, b.value, self.value))
+    }
+}
+
+impl<S: Simd> Add for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.with(self.simd.add_f64s(self.value, other.value))
+    }
+}
+
+impl<S: Simd> Sub for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.with(self.simd.sub_f64s(self.value, other.value))
+    }
+}
+
+impl<S: Simd> Mul for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.with(self.simd.mul_f64s(self.value, other.value))
+    }
+}
+
+impl<S: Simd> Div for Vector<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.with(self.simd.div_f64s(self.value, other.value))
+    }
+}
+
+/// Number and its differential.
+#[derive(Clone, Copy)]
+pub(super) struct Dual<N> {
+    pub value: N,
+    pub change: N,
+}
+
+impl<N: Number> Number for Dual<N> {
+    #[inline(always)]
+    fn constant(self, x: f64) -> Self {
+        Self {
+            value: self.value.constant(x),
+            change: self.value.constant(0.0),
+        }
+    }
+
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        let change = self.change.plus_product(a.change, b.value);
+        Self {
+            value: self.value.plus_product(a.value, b.value),
+            change: change.plus_product(a.value, b.change),
+        }
+    }
+}
+
+impl<N: Number> Add for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            change: self.change + other.change,
+        }
+    }
+}
+
+impl<N: Number> Sub for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            change: self.change - other.change,
+        }
+    }
+}
+
+impl<N: Number> Mul for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            change: (self.change * other.value).plus_product(self.value, other.change),
+        }
+    }
+}
+
+impl<N: Number> Div for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self {
+            value,
+            change: (self.change - value * other.change) / other.value,
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! Stiffness and damping of solids between pairs of particles. In the frame of the principal
+//! stretches, the second derivative of an isotropic energy is a 3 x 3 block between the stretches
+//! and, for each pair of axes, one eigenvalue where they shear alike (flip) and one where they turn
+//! (twist): Smith, de Goes, Kim, *Analytic Eigensystems for Isotropic Distortion Energies*, 2019.
+
+use std::array::from_fn;
+use std::sync::{Mutex, PoisonError};
+
+use super::material::{Hyperelastic, Material};
+use super::matrix::{Matrix, cofactors, dot};
+use super::principal::{Principal, eigen};
+use super::{Deformed, Solid};
+use crate::system::{Coupling, GeneralCoupling};
+
+/// Pairs of corners of a tetrahedron.
+const CORNERS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
+/// Stiffness (N/m) and damping (N s/m) of a pair of particles.
+type Sums = [[f64; 9]; 2];
+
+/// Pairs of particles that are in one tetrahedron.
+#[derive(Debug, Default)]
+pub(super) struct Pairs {
+    /// Particles of each, the lower number first, in order.
+    ends: Vec<[u32; 2]>,
+    /// Pair of each two corners of each tetrahedron.
+    places: Vec<[u32; 6]>,
+    /// Sums over tetrahedra, which one evaluation at a time borrows; none before the first.
+    sums: Mutex<Vec<Sums>>,
+}
+
+impl Clone for Pairs {
+    fn clone(&self) -> Self {
+        Self {
+            ends: self.ends.clone(),
+            places: self.places.clone(),
+            sums: Mutex::default(),
+        }
+    }
+}
+
+impl Pairs {
+    pub fn new(tetrahedra: impl Iterator<Item = [u32; 4]>) -> Self {
+        let pairs = |t: [u32; 4]| CORNERS.map(|[k, l]| [t[k].min(t[l]), t[k].max(t[l])]);
+        let all: Vec<_> = tetrahedra.map(pairs).collect();
+        let mut ends = all.concat();
+        ends.sort_unstable();
+        ends.dedup();
+        let place = |pair: [u32; 2]| ends.partition_point(|other| *other < pair) as u32;
+        Self {
+            places: all.into_iter().map(|pairs| pairs.map(place)).collect(),
+            sums: Mutex::default(),
+            ends,
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+}
+
+impl Solid {
+    /// Visits the couplings of all pairs in their order.
+    pub(super) fn visit_couplings(
+        &self,
+        x: &[f64],
+        clamped: bool,
+        visit: &mut dyn FnMut(Coupling),
+    ) {
+        let pairs = &self.pairs;
+        let mut own = pairs.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        own.clear();
+        own.resize(pairs.ends.len(), Sums::default());
+        for (tetrahedron, places) in self.deformed(x).zip(&pairs.places) {
+            let hessian = Hessian::new(&self.material, &tetrahedron, clamped);
+            for ([k, l], place) in CORNERS.into_iter().zip(places) {
+                // The pair has the lower number first.
+                let swapped = tetrahedron.corners[k] > tetrahedron.corners[l];
+                let pair = if swapped { [l, k] } else { [k, l] };
+                let sums = &mut own[*place as usize];
+                hessian.add(&self.material, &tetrahedron, pair, sums);
+            }
+        }
+        for ([i, j], [stiffness, damping]) in pairs.ends.iter().zip(&*own) {
+            visit(Coupling::General(GeneralCoupling {
+                i: *i as usize,
+                j: *j as usize,
+                stiffness: *stiffness,
+                damping: *damping,
+            }));
+        }
+    }
+}
+
+/// Second derivative of a tetrahedron's energy by its deformation gradient, in the principal frame.
+struct Hessian {
+    frame: Principal,
+    /// Between the stretches (Pa).
+    stretch: Matrix<f64>,
+    /// Eigenvalues of shear and of turn in the plane across each axis (Pa).
+    flip: [f64; 3],
+    twist: [f64; 3],
+    /// Gradients (1/m) of the shape functions of all corners: as they are, and in the frame.
+    gradients: [[f64; 3]; 4],
+    framed: [[f64; 3]; 4],
+}
+
+impl Hessian {
+    /// With `clamped`, negative eigenvalues are taken as zero.
+    fn new(material: &Material, tetrahedron: &Deformed, clamped: bool) -> Self {
+        let frame = Principal::new(&tetrahedron.deformation);
+        let (mut stretch, mut flip, mut twist) = eigensystem(material, frame.stretches);
+        if clamped {
+            (flip, twist) = (flip.map(|e| e.max(0.0)), twist.map(|e| e.max(0.0)));
+            if !is_definite(&stretch) {
+                stretch = positive_part(stretch);
+            }
+        }
+        let [a, b, c] = tetrahedron.gradients;
+        let gradients = [from_fn(|k| -(a[k] + b[k] + c[k])), a, b, c];
+        Self {
+            stretch,
+            flip,
+            twist,
+            framed: gradients.map(|g| frame.v.map(|v| dot(v, g))),
+            gradients,
+            frame,
+        }
+    }
+
+    /// Adds the stiffness and the damping between two corners.
+    fn add(
+        &self,
+        material: &Material,
+        tetrahedron: &Deformed,
+        [k, l]: [usize; 2],
+        [stiffness, damping]: &mut Sums,
+    ) {
+        let (a, b) = (self.framed[k], self.framed[l]);
+        // The derivative of the force along axis i of the frame by a motion along axis j.
+        let framed: Matrix<f64> = from_fn(|i| {
+            from_fn(|j| {
+                let stretch = self.stretch[i][j] * a[i] * b[j];
+                let across = |m: usize| 0.5 * (self.flip[m] + self.twist[m]);
+                if i == j {
+                    let [m, o] = [(i + 1) % 3, (i + 2) % 3];
+                    stretch + across(o) * a[m] * b[m] + across(m) * a[o] * b[o]
+                } else {
+                    let m = 3 - i - j;
+                    stretch + 0.5 * (self.flip[m] - self.twist[m]) * a[j] * b[i]
+                }
+            })
+        });
+        let u = &self.frame.u;
+        let half: Matrix<f64> = from_fn(|i| {
+            from_fn(|axis| {
+                framed[i][0] * u[0][axis] + framed[i][1] * u[1][axis] + framed[i][2] * u[2][axis]
+            })
+        });
+        let volume = tetrahedron.volume;
+        for (part, sum) in stiffness.iter_mut().enumerate() {
+            let (row, column) = (part / 3, part % 3);
+            let whole = u[0][row] * half[0][column]
+                + u[1][row] * half[1][column]
+                + u[2][row] * half[2][column];
+            *sum -= volume * whole;
+        }
+        if material.damping > 0.0 {
+            let [lambda, mu] = material.lame();
+            let scale = volume * material.damping;
+            let f = &tetrahedron.deformation;
+            let (g, h) = (self.gradients[k], self.gradients[l]);
+            let (fg, fh) = (f.map(|row| dot(row, g)), f.map(|row| dot(row, h)));
+            for (part, sum) in damping.iter_mut().enumerate() {
+                let (row, column) = (part / 3, part % 3);
+                let shear = dot(g, h) * dot(f[row], f[column]) + fh[row] * fg[column];
+                *sum -= scale * (lambda * fg[row] * fh[column] + mu * shear);
+            }
+        }
+    }
+}
+
+/// Whether a symmetric matrix is positive definite.
+fn is_definite(a: &Matrix<f64>) -> bool {
+    let cofactors = cofactors(a);
+    a[0][0] > 0.0 && cofactors[2][2] > 0.0 && dot(a[0], cofactors[0]) > 0.0
+}
+
+/// A symmetric matrix with its negative eigenvalues taken as zero.
+fn positive_part(a: Matrix<f64>) -> Matrix<f64> {
+    let (values, vectors) = eigen(a);
+    let of = |i: usize, j: usize, k: usize| values[k].max(0.0) * vectors[k][i] * vectors[k][j];
+    from_fn(|i| from_fn(|j| of(i, j, 0) + of(i, j, 1) + of(i, j, 2)))
+}
+
+/// Second derivatives of the energy of a volume by the stretches s (Pa), and, in the plane across
+/// each axis, (`e_i` - `e_j`) / (`s_i` - `s_j`) and (`e_i` + `e_j`) / (`s_i` + `s_j`) of its first
+/// derivatives e.
+fn eigensystem(material: &Material, s: [f64; 3]) -> (Matrix<f64>, [f64; 3], [f64; 3]) {
+    let others = |k: usize| [s[(k + 1) % 3], s[(k + 2) % 3]];
+    match material.model {
+        Hyperelastic::NeoHookean => {
+            let [m, l, rest] = material.neo_hookean();
+            let size = dot(s, s) + 1.0;
+            let (along, log) = (m - m / size, 2.0 * m / (size * size));
+            let pressure = l * (s[0] * s[1] * s[2] - rest);
+            let area = |k: usize| others(k)[0] * others(k)[1];
+            let stretch = from_fn(|i| {
+                from_fn(|j| {
+                    let both = log * s[i] * s[j] + l * area(i) * area(j);
+                    both + if i == j {
+                        along
+                    } else {
+                        pressure * s[3 - i - j]
+                    }
+                })
+            });
+            let (flip, twist) = (
+                s.map(|s| along - pressure * s),
+                s.map(|s| along + pressure * s),
+            );
+            (stretch, flip, twist)
+        }
+        Hyperelastic::StVenantKirchhoff => {
+            let [lambda, mu] = material.lame();
+            let pressure = 0.5 * lambda * (dot(s, s) - 3.0);
+            let stretch = from_fn(|i| {
+                from_fn(|j| {
+                    let own = pressure + mu * (3.0 * s[i] * s[i] - 1.0);
+                    lambda * s[i] * s[j] + if i == j { own } else { 0.0 }
+                })
+            });
+            let shear = |sign: f64| {
+                from_fn(|k| {
+                    let [a, b] = others(k);
+                    pressure + mu * (a * a + sign * a * b + b * b - 1.0)
+                })
+            };
+            (stretch, shear(1.0), shear(-1.0))
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Tetrahedra from Gmsh's text files, versions 2.2 and 4.1: `$Nodes` and `$Elements`. All other
+//! sections are passed over, and so are elements of other kinds.
+
+use super::Mesh;
+use super::tetrahedra::{Numbered, lines, position, whole};
+
+/// Number of the element that is a tetrahedron of four corners.
+const TETRAHEDRON: u64 = 4;
+
+/// Lines with their numbers, of which the last that was read is known.
+struct Reader<I> {
+    lines: I,
+    line: usize,
+}
+
+impl<'a, I: Iterator<Item = (usize, Vec<&'a str>)>> Reader<I> {
+    /// The next line; `within` is the section that must not end before it.
+    fn next(&mut self, within: &str) -> Result<Vec<&'a str>, String> {
+        let Some((line, words)) = self.lines.next() else {
+            return Err(format!("the file ends within {within}"));
+        };
+        self.line = line;
+        if words[0].starts_with('$') {
+            return Err(format!(
+                "line {line}: {within} ends early: more lines are announced"
+            ));
+        }
+        Ok(words)
+    }
+
+    /// The whole numbers of the next line, so many at least.
+    fn numbers(&mut self, within: &str, least: usize) -> Result<Vec<u64>, String> {
+        let words = self.next(within)?;
+        let numbers = whole(&words).map_err(|why| self.wrong(&why))?;
+        if numbers.len() < least {
+            return Err(self.wrong(&format!("{least} whole numbers are needed here")));
+        }
+        Ok(numbers)
+    }
+
+    fn wrong(&self, why: &str) -> String {
+        format!("line {}: {why}", self.line)
+    }
+}
+
+/// The mesh in a file.
+pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
+    let mut reader = Reader {
+        lines: lines(bytes, b'\r'),
+        line: 0,
+    };
+    let mut numbered = Numbered::default();
+    let mut version = None;
+    while let Some((line, words)) = reader.lines.next() {
+        reader.line = line;
+        match (words[0], version) {
+            ("$MeshFormat", _) => version = Some(format(&reader.next("$MeshFormat")?)?),
+            ("$Nodes" | "$Elements", None) => return Err(NO_FORMAT.into()),
+            ("$Nodes", Some(Version::Two)) => nodes_2(&mut reader, &mut numbered)?,
+            ("$Nodes", Some(Version::Four)) => nodes_4(&mut reader, &mut numbered)?,
+            ("$Elements", Some(Version::Two)) => elements_2(&mut reader, &mut numbered)?,
+            ("$Elements", Some(Version::Four)) => elements_4(&mut reader, &mut numbered)?,
+            _ => {}
+        }
+    }
+    if version.is_none() {
+        return Err(NO_FORMAT.into());
+    }
+    numbered.mesh()
+}
+
+const NO_FORMAT: &str = "it is no Gmsh file: one begins with $MeshFormat";
+
+#[derive(Clone, Copy)]
+enum Version {
+    Two,
+    Four,
+}
+
+/// The version that a line such as `4.1 0 8` says.
+fn format(words: &[&str]) -> Result<Version, String> {
+    match words {
+        ["2.2", "0", ..] => Ok(Version::Two),
+        ["4.1", "0", ..] => Ok(Version::Four),
+        _ => Err(
+            "only Gmsh's text formats 2.2 and 4.1 are read: save with `-format msh41` or `msh22`"
+                .into(),
+        ),
+    }
+}
+
+fn nodes_2<'a>(
+    reader: &mut Reader<impl Iterator<Item = (usize, Vec<&'a str>)>>,
+    numbered: &mut Numbered,
+) -> Result<(), String> {
+    let count = reader.numbers("$Nodes", 1)?[0];
+    for _ in 0..count {
+        let words = reader.next("$Nodes")?;
+        let point = whole(&words[..1]).and_then(|number| Ok((number[0], position(&words[1..])?)));
+        let added = point.and_then(|(number, at)| numbered.add_point(number, at));
+        added.map_err(|why| reader.wrong(&why))?;
+    }
+    Ok(())
+}
+
+fn elements_2<'a>(
+    reader: &mut Reader<impl Iterator<Item = (usize, Vec<&'a str>)>>,
+    numbered: &mut Numbered,
+) -> Result<(), String> {
+    let count = reader.numbers("$Elements", 1)?[0];
+    for _ in 0..count {
+        let numbers = reader.numbers("$Elements", 3)?;
+        if numbers[1] == TETRAHEDRON {
+            let first = numbers[2].saturating_add(3);
+            let corners = usize::try_from(first)
+                .ok()
+                .and_then(|first| numbers.get(first..));
+            add(reader.line, corners.unwrap_or_default(), numbered)?;
+        }
+    }
+    Ok(())
+}
+
+fn nodes_4<'a>(
+    reader: &mut Reader<impl Iterator<Item = (usize, Vec<&'a str>)>>,
+    numbered: &mut Numbered,
+) -> Result<(), String> {
+    let blocks = reader.numbers("$Nodes", 2)?[0];
+    for _ in 0..blocks {
+        let count = reader.numbers("$Nodes", 4)?[3];
+        let first = numbered.points.len();
+        for _ in 0..count {
+            let number = reader.numbers("$Nodes", 1)?[0];
+            let added = numbered.add_point(number, [0.0; 3]);
+            added.map_err(|why| reader.wrong(&why))?;
+        }
+        for k in first..numbered.points.len() {
+            let words = reader.next("$Nodes")?;
+            numbered.points[k].1 = position(&words).map_err(|why| reader.wrong(&why))?;
+        }
+    }
+    Ok(())
+}
+
+fn elements_4<'a>(
+    reader: &mut Reader<impl Iterator<Item = (usize, Vec<&'a str>)>>,
+    numbered: &mut Numbered,
+) -> Result<(), String> {
+    let blocks = reader.numbers("$Elements", 2)?[0];
+    for _ in 0..blocks {
+        let head = reader.numbers("$Elements", 4)?;
+        for _ in 0..head[3] {
+            let numbers = reader.numbers("$Elements", 1)?;
+            if head[2] == TETRAHEDRON {
+                add(reader.line, &numbers[1..], numbered)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Adds the tetrahedron of a line.
+fn add(line: usize, corners: &[u64], numbered: &mut Numbered) -> Result<(), String> {
+    let added = match *corners {
+        [a, b, c, d] => numbered.add_tetrahedron([a, b, c, d], line),
+        _ => Err("a tetrahedron has four corners".into()),
+    };
+    added.map_err(|why| format!("line {line}: {why}"))
+}

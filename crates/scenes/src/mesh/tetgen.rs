@@ -1,0 +1,55 @@
+//! Tetrahedra from a pair of TetGen's text files: points (`.node`) and tetrahedra (`.ele`).
+
+use super::Mesh;
+use super::tetrahedra::{Numbered, lines, position, whole};
+
+/// The mesh in a pair of files. The first points of tetrahedra of ten are their corners.
+pub(super) fn read(node: &[u8], ele: &[u8]) -> Result<Mesh, String> {
+    let mut numbered = Numbered::default();
+    let head = "its number of points and their dimension, 3";
+    each(node, ".node", head, 3, |line, number, words| {
+        let added = position(words).and_then(|at| numbered.add_point(number, at));
+        added.map_err(|why| format!("line {line} of the .node file: {why}"))
+    })?;
+    let head = "its number of tetrahedra and of the corners of each, 4 or 10";
+    each(ele, ".ele", head, 4, |line, number, words| {
+        let corners = words.get(..4).map(whole).transpose();
+        let added = match corners.as_ref().map(Option::as_deref) {
+            Ok(Some(&[a, b, c, d])) => numbered.add_tetrahedron([a, b, c, d], line),
+            Ok(_) => Err(format!("tetrahedron {number} has four corners")),
+            Err(why) => Err(why.clone()),
+        };
+        added.map_err(|why| format!("line {line}: {why}"))
+    })?;
+    numbered.mesh()
+}
+
+/// Visits the lines that the first one announces: each with its number, the first of its words, and
+/// the others.
+fn each(
+    bytes: &[u8],
+    name: &str,
+    head: &str,
+    kind: u64,
+    mut visit: impl FnMut(usize, u64, &[&str]) -> Result<(), String>,
+) -> Result<(), String> {
+    let mut lines = lines(bytes, b'#');
+    let first = lines.next().map(|(_, words)| words);
+    let counts = first.and_then(|words| whole(words.get(..2)?).ok());
+    let is_kind = |found: u64| found == kind || kind == 4 && found == 10;
+    let Some(&[count, _]) = counts.as_deref().filter(|counts| is_kind(counts[1])) else {
+        return Err(format!(
+            "the first line of the {name} file must give {head}"
+        ));
+    };
+    for _ in 0..count {
+        let Some((line, words)) = lines.next() else {
+            return Err(format!(
+                "the {name} file ends before all {count} of its lines"
+            ));
+        };
+        let number = whole(&words[..1]).map_err(|why| format!("line {line}: {why}"))?[0];
+        visit(line, number, &words[1..])?;
+    }
+    Ok(())
+}

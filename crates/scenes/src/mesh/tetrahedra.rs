@@ -1,0 +1,147 @@
+//! Tetrahedra of a mesh, from whichever file, and the triangles around them.
+
+use a3_core::Vector3;
+
+use super::{MAX_POINTS, MAX_TETRAHEDRA, Mesh};
+use crate::description::Triple;
+
+/// Faces of a tetrahedron, counterclockwise as seen from outside.
+const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+/// The faces that are in one tetrahedron, in the order of these, counterclockwise as seen from
+/// outside.
+pub(crate) fn boundary(tetrahedra: &[[u32; 4]]) -> Vec<[u32; 3]> {
+    let faces = |t: &[u32; 4]| FACES.map(|face| face.map(|k| t[k]));
+    let mut all: Vec<_> = tetrahedra
+        .iter()
+        .flat_map(faces)
+        .enumerate()
+        .map(|(place, face)| {
+            let mut corners = face;
+            corners.sort_unstable();
+            (corners, place as u32, face)
+        })
+        .collect();
+    all.sort_unstable();
+    let mut outer: Vec<_> = all
+        .chunk_by(|(a, ..), (b, ..)| a == b)
+        .filter(|same| same.len() == 1)
+        .map(|same| (same[0].1, same[0].2))
+        .collect();
+    outer.sort_unstable();
+    outer.into_iter().map(|(_, face)| face).collect()
+}
+
+/// Points and tetrahedra as a file numbers them.
+#[derive(Default)]
+pub(super) struct Numbered {
+    /// Number of each point, and its position.
+    pub points: Vec<(u64, Triple)>,
+    /// Numbers of the corners of each tetrahedron, and its line.
+    pub tetrahedra: Vec<([u64; 4], usize)>,
+}
+
+impl Numbered {
+    /// Adds the point of a line.
+    pub fn add_point(&mut self, number: u64, position: Triple) -> Result<(), String> {
+        if self.points.len() == MAX_POINTS {
+            return Err(format!("there are more than {MAX_POINTS} points"));
+        }
+        self.points.push((number, position));
+        Ok(())
+    }
+
+    /// Adds the tetrahedron of a line.
+    pub fn add_tetrahedron(&mut self, corners: [u64; 4], line: usize) -> Result<(), String> {
+        if self.tetrahedra.len() == MAX_TETRAHEDRA {
+            return Err(format!("there are more than {MAX_TETRAHEDRA} tetrahedra"));
+        }
+        self.tetrahedra.push((corners, line));
+        Ok(())
+    }
+
+    /// The mesh, with its points numbered in their order. Where all tetrahedra are inside out, the
+    /// file counts corners the other way round, and they are turned.
+    pub fn mesh(mut self) -> Result<Mesh, String> {
+        self.points.sort_by_key(|(number, _)| *number);
+        if let Some(twice) = self.points.windows(2).find(|w| w[0].0 == w[1].0) {
+            return Err(format!("there are two points of number {}", twice[0].0));
+        }
+        let find = |number: u64, line: usize| {
+            let place = self
+                .points
+                .binary_search_by_key(&number, |(number, _)| *number);
+            let none = |_| format!("line {line}: there is no point {number}");
+            place.map(|place| place as u32).map_err(none)
+        };
+        let corners = self.tetrahedra.iter().map(|([a, b, c, d], line)| {
+            Ok([
+                find(*a, *line)?,
+                find(*b, *line)?,
+                find(*c, *line)?,
+                find(*d, *line)?,
+            ])
+        });
+        let mut tetrahedra = corners.collect::<Result<Vec<_>, String>>()?;
+        if tetrahedra.is_empty() {
+            return Err("the file has no tetrahedra of four corners".into());
+        }
+        let positions: Vec<_> = self.points.iter().map(|(_, position)| *position).collect();
+        let is_turned = |t: &[u32; 4]| {
+            let [a, b, c, d] = t.map(|i| Vector3::from(positions[i as usize]));
+            (b - a).cross(&(c - a)).dot(&(d - a)) < 0.0
+        };
+        if tetrahedra.iter().all(is_turned) {
+            tetrahedra.iter_mut().for_each(|t| t.swap(2, 3));
+        }
+        Ok(Mesh {
+            triangles: boundary(&tetrahedra),
+            positions,
+            tetrahedra,
+        })
+    }
+}
+
+/// Lines of a file that have words, with their numbers from 1; what begins with `comment` is passed
+/// over.
+pub(super) fn lines(bytes: &[u8], comment: u8) -> impl Iterator<Item = (usize, Vec<&str>)> {
+    let each = bytes.split(|b| *b == b'\n').enumerate();
+    each.filter_map(move |(k, line)| {
+        let end = line
+            .iter()
+            .position(|b| *b == comment)
+            .unwrap_or(line.len());
+        let text = std::str::from_utf8(&line[..end]).unwrap_or("?");
+        let words: Vec<_> = text.split_ascii_whitespace().take(MOST_WORDS).collect();
+        (!words.is_empty()).then_some((k + 1, words))
+    })
+}
+
+/// Most words of a line that are looked at.
+const MOST_WORDS: usize = 64;
+
+/// The words as whole numbers, or which of them is none.
+pub(super) fn whole(words: &[&str]) -> Result<Vec<u64>, String> {
+    let each = words.iter().map(|word| {
+        let number = word.parse().ok();
+        number.ok_or_else(|| format!("`{}` is no whole number", brief(word)))
+    });
+    each.collect()
+}
+
+/// Three coordinates at the beginning of these words.
+pub(super) fn position(words: &[&str]) -> Result<Triple, String> {
+    let mut position = [0.0; 3];
+    for (axis, x) in position.iter_mut().enumerate() {
+        let word = words.get(axis);
+        let number = word
+            .and_then(|word| word.parse().ok())
+            .filter(|x: &f64| x.is_finite());
+        *x = number.ok_or("a point has a number and three finite coordinates")?;
+    }
+    Ok(position)
+}
+
+fn brief(word: &str) -> String {
+    word.chars().take(40).collect()
+}
