@@ -1,4 +1,5 @@
-//! Meshes of triangles from OBJ and glTF files, and of tetrahedra from those of Gmsh and TetGen.
+//! Meshes of triangles from OBJ and glTF files, and of tetrahedra from those of Gmsh and
+//! `TetGen`.
 
 use std::path::Path;
 

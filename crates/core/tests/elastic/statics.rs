@@ -139,9 +139,9 @@ fn uniaxial(material: &Material, length: f64) -> (f64, f64) {
         let s = 0.5 * (low + high);
         let (along, pressure) = parts(s);
         if along + pressure * length > 0.0 {
-            high = s
+            high = s;
         } else {
-            low = s
+            low = s;
         }
     }
     let (along, pressure) = parts(low);

@@ -1,6 +1,6 @@
-//! Lattice of a box. That of a jelly has structural springs along the axes, shear springs across faces
-//! and cells, and bend springs to the next particle but one; that of a solid has six tetrahedra a
-//! cell.
+//! Lattice of a box. That of a jelly has structural springs along the axes, shear springs across
+//! faces and cells, and bend springs to the next particle but one; that of a solid has six
+//! tetrahedra a cell.
 
 use a3_core::{Spring, SpringKind, SpringLaw};
 
@@ -30,8 +30,8 @@ const OFFSETS: [(SpringKind, [isize; 3]); 16] = [
     (SpringKind::Bend, [0, 0, 2]),
 ];
 
-/// Axes in the order in which a tetrahedron goes along the edges of its cell, from one corner to the
-/// opposite one (Kuhn). Neighbouring cells agree on the diagonals of their faces.
+/// Axes in the order in which a tetrahedron goes along the edges of its cell, from one corner to
+/// the opposite one (Kuhn). Neighbouring cells agree on the diagonals of their faces.
 const WAYS: [[usize; 3]; 6] = [
     [0, 1, 2],
     [1, 2, 0],

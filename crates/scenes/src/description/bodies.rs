@@ -168,7 +168,7 @@ pub struct Solid {
     /// Lengths of the edges of a box (m).
     pub size: Option<Triple>,
     /// A file of tetrahedra in the scene file's folder or in one below it: .msh of Gmsh, or .ele of
-    /// TetGen, whose .node is beside it. An alternative is `grid`.
+    /// `TetGen`, whose .node is beside it. An alternative is `grid`.
     pub file: Option<String>,
     /// Unit of length of the file (m); 1 if not given.
     pub scale: Option<f64>,

@@ -65,7 +65,7 @@ impl Mesh {
         gmsh::read(bytes)?.checked()
     }
 
-    /// The tetrahedra in a pair of TetGen's files, `.node` and `.ele`.
+    /// The tetrahedra in a pair of `TetGen`'s files, `.node` and `.ele`.
     ///
     /// # Errors
     /// A point or an element is wrong, there is no tetrahedron, or there are too many.

@@ -1,4 +1,4 @@
-//! Tetrahedra from a pair of TetGen's text files: points (`.node`) and tetrahedra (`.ele`).
+//! Tetrahedra from a pair of `TetGen`'s text files: points (`.node`) and tetrahedra (`.ele`).
 
 use super::Mesh;
 use super::tetrahedra::{Numbered, lines, position, whole};

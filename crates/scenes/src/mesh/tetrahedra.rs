@@ -92,7 +92,9 @@ impl Numbered {
             (b - a).cross(&(c - a)).dot(&(d - a)) < 0.0
         };
         if tetrahedra.iter().all(is_turned) {
-            tetrahedra.iter_mut().for_each(|t| t.swap(2, 3));
+            for t in &mut tetrahedra {
+                t.swap(2, 3);
+            }
         }
         Ok(Mesh {
             triangles: boundary(&tetrahedra),

@@ -73,7 +73,7 @@ fn seed(name: &str) -> Vec<u8> {
     .unwrap()
 }
 
-fn from_file(mesh: Mesh, extra: &str) -> Result<Setup, String> {
+fn from_file(mesh: &Mesh, extra: &str) -> Result<Setup, String> {
     let text = format!(
         "[[solid]]\nfile = 'a'\ndensity = 12\nyoung = 1\npoisson = 0\nat = [0, 0, 0]\n{extra}"
     );
@@ -82,7 +82,7 @@ fn from_file(mesh: Mesh, extra: &str) -> Result<Setup, String> {
     built.map_err(|fault| fault.locate(&text).to_string())
 }
 
-/// All formats have the same two tetrahedra, whose corners TetGen's file counts the other way.
+/// All formats have the same two tetrahedra, whose corners `TetGen`'s file counts the other way.
 #[test]
 fn files_hold_tetrahedra() {
     let meshes = [
@@ -93,7 +93,7 @@ fn files_hold_tetrahedra() {
     for mesh in meshes {
         let mesh = mesh.unwrap();
         assert_eq!((mesh.positions.len(), mesh.triangles.len()), (5, 6));
-        let setup = from_file(mesh, "scale = 2\npin = [{ at = ['top'] }]").unwrap();
+        let setup = from_file(&mesh, "scale = 2\npin = [{ at = ['top'] }]").unwrap();
         let network = setup.scene.model.network().unwrap();
         let volumes: Vec<_> = solid(network).volumes().collect();
         let expected = [8.0 / 6.0, 16.0 / 6.0];
@@ -213,7 +213,7 @@ fn what_is_wrong_with_a_file_is_said() {
         let Err(why) = read else {
             assert_eq!(expected, "");
             // Without the first tetrahedron, its corner is in none.
-            let why = from_file(read.unwrap(), "").map(|_| ()).unwrap_err();
+            let why = from_file(&read.unwrap(), "").map(|_| ()).unwrap_err();
             assert!(
                 why.contains("file: point 0, counted from 0, is in no tetrahedron"),
                 "{why}"
@@ -234,12 +234,12 @@ fn what_is_wrong_with_a_file_is_said() {
     }
     let mut mesh = Mesh::from_gmsh(whole.as_bytes()).unwrap();
     mesh.tetrahedra[1].swap(0, 1);
-    let why = from_file(mesh.clone(), "").map(|_| ()).unwrap_err();
+    let why = from_file(&mesh, "").map(|_| ()).unwrap_err();
     assert!(
         why.contains("line 2: solid.file: tetrahedron 1 is inside out"),
         "{why}"
     );
     mesh.positions[4] = [0.5, 0.5, 0.0];
-    let why = from_file(mesh, "").map(|_| ()).unwrap_err();
+    let why = from_file(&mesh, "").map(|_| ()).unwrap_err();
     assert!(why.contains("tetrahedron 1 is flat"), "{why}");
 }

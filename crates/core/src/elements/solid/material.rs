@@ -4,8 +4,8 @@
 //! - after Saint Venant and Kirchhoff mu E : E + lambda/2 (tr E)2, Hooke's law for large rotations;
 //!   a tetrahedron and its mirror image have the same energy;
 //! - stable neo-Hookean m/2 (I - 3) + l/2 (J - a)2 - m/2 log(I + 1), which is finite for every F,
-//!   with m = 4 mu / 3, l = lambda + 5 mu / 6 and a = 1 + 3 m / (4 l): it rests at F = 1, and agrees
-//!   with Hooke's law there (Smith, de Goes, Kim, *Stable Neo-Hookean Flesh Simulation*, 2018).
+//!   with m = 4 mu / 3, l = lambda + 5 mu / 6 and a = 1 + 3 m / (4 l): it rests at F = 1, and has
+//!   Hooke's law there (Smith, de Goes, Kim, *Stable Neo-Hookean Flesh Simulation*, 2018).
 //!
 //! Viscosity after Kelvin and Voigt adds tau (lambda tr E' 1 + 2 mu E') to the second
 //! Piola-Kirchhoff stress. In a rigid motion E' is zero.

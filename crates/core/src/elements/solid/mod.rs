@@ -193,7 +193,7 @@ fn shape(corners: &[u32; 4], rest: &[Vector3<f64>]) -> Result<(Matrix<f64>, f64)
     let longest = [b - a, c - a, d - a, c - b, d - b, d - c].map(|edge| edge.norm());
     let longest = longest.into_iter().fold(0.0, f64::max);
     let [i, j, k, l] = corners;
-    if !(six.abs() > FLAT * longest.powi(3)) {
+    if six.is_nan() || six.abs() <= FLAT * longest.powi(3) {
         return Err(format!(
             "is flat: its corners {i}, {j}, {k} and {l} lie in a plane"
         ));

@@ -1,5 +1,5 @@
-//! Principal stretches: F = U diag(s) VT with two rotations U and V, so that the last stretch, which
-//! is the smallest, is negative where a tetrahedron is inside out.
+//! Principal stretches: F = U diag(s) VT with two rotations U and V, so that the last stretch,
+//! which is the smallest, is negative where a tetrahedron is inside out.
 
 use std::array::from_fn;
 
@@ -55,9 +55,9 @@ pub(super) fn eigen(mut a: Matrix<f64>) -> ([f64; 3], [[f64; 3]; 3]) {
             let t = slope.signum() / (slope.abs() + (slope * slope + 1.0).sqrt());
             let c = 1.0 / (t * t + 1.0).sqrt();
             let s = t * c;
-            for k in 0..3 {
-                let (x, y) = (a[k][p], a[k][q]);
-                (a[k][p], a[k][q]) = (c * x - s * y, s * x + c * y);
+            for row in &mut a {
+                let (x, y) = (row[p], row[q]);
+                (row[p], row[q]) = (c * x - s * y, s * x + c * y);
             }
             for k in 0..3 {
                 let (x, y) = (a[p][k], a[q][k]);
