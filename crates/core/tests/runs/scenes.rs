@@ -100,7 +100,7 @@ fn default_controls_hold_everywhere() {
             run.set_swinging(true);
             let end = match entry.name {
                 "flag" | "jelly" => 2.0,
-                "drop" | "dam-break" => 0.4,
+                "drop" | "dam-break" => 0.3,
                 _ => 10.0,
             };
             run.advance_to(end)
