@@ -239,7 +239,8 @@ mod tests {
             let radius = place.iter().map(|x| x * x).sum::<f32>().sqrt();
             assert!((1.0..1.13).contains(&radius), "{radius}");
             let along: f32 = place.iter().zip(normal).map(|(x, n)| x * n / radius).sum();
-            assert!(along > 0.85, "{along}");
+            // Particles show through as bumps.
+            assert!(along > 0.65, "{along}");
         }
         let volume: f64 = liquid
             .triangles

@@ -98,11 +98,11 @@ fn default_controls_hold_everywhere() {
             let Ok(mut run) = run else { continue };
             run.set_wind(true);
             run.set_swinging(true);
-            let (heavy, slow) = (["flag", "jelly"], ["boxes", "dominoes", "ball-on-cloth"]);
             let end = match entry.name {
-                name if heavy.contains(&name) => 2.0,
-                name if slow.contains(&name) => 0.02,
-                "drop" | "dam-break" => 0.4,
+                "flag" | "jelly" => 2.0,
+                "cantilever" => 1.0,
+                "drop" | "dam-break" => 0.3,
+                "boxes" | "dominoes" | "ball-on-cloth" => 0.02,
                 _ => 10.0,
             };
             run.advance_to(end)

@@ -21,7 +21,7 @@ const NEAREST: f64 = 0.7;
 
 /// Spacing over the speed of sound (s) from which on the methods' default steps, which are made for
 /// cloth, serve a fluid.
-const SLOW: f64 = 0.025;
+const SLOW: f64 = 0.0125;
 
 /// Factor of the methods' default steps for these fluids, so that sound moves by a part of the
 /// spacing in each.

@@ -5,6 +5,7 @@
 //! `A3_GLTF_VALIDATOR` set to that `node_modules`.
 
 mod endings;
+mod fluid;
 mod glb;
 mod meshes;
 mod numbers;
