@@ -30,6 +30,8 @@ const STEPS: u32 = 300;
 /// Step (s) and steps in scenes whose surfaces touch, where each frame is checked for surfaces that
 /// pass through one another. Adaptive methods take too long there.
 const TOUCHING: (f64, u32) = (2.5e-3, 60);
+/// Step (s) and steps in scenes whose rigid bodies touch: implicit methods take long there.
+const RIGID: (f64, u32) = (1e-3, 20);
 
 struct Run {
     scene: String,
@@ -126,9 +128,17 @@ fn runs() -> Vec<Run> {
     small
         .chain(large)
         .flat_map(|(scene, grid, steps, threads)| {
-            let toml = std::fs::read_to_string(&scene).unwrap_or_default();
+            let toml = a3_scenes::find(&scene).map_or_else(
+                || std::fs::read_to_string(&scene).unwrap(),
+                |built_in| built_in.text.to_owned(),
+            );
             let check = toml.contains("self_collision = true");
-            let (step, steps) = if check { TOUCHING } else { (STEP, steps) };
+            let rigid = toml.contains("[[body]]") && toml.contains("gravity");
+            let (step, steps) = match (check, rigid) {
+                (true, _) => TOUCHING,
+                (_, true) => RIGID,
+                _ => (STEP, steps),
+            };
             let methods = METHODS.iter();
             let methods = methods.filter(move |method| !(check && method.is_adaptive()));
             methods.map(move |method| Run {

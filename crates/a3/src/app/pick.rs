@@ -5,7 +5,8 @@ use a3_core::contact::Shape;
 use a3_core::{Simulation, Vector3};
 use a3_render::Camera;
 
-use crate::show;
+use crate::show::tessellation::{self, Tessellation};
+use crate::show::{self, to_f32};
 
 /// A particle or an obstacle, by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +34,8 @@ impl Grip {
 }
 
 /// The particle or the obstacle under the pointer, whichever is nearer to the eye. If a surface is
-/// hit, the particle is the closest corner of its nearest triangle; otherwise it is the one that is
-/// nearest on the screen within `reach`, a share of the picture's height.
+/// hit, the particle is the closest corner of its nearest triangle, and on a rigid body the closest of
+/// its particles; otherwise it is the one that is nearest on the screen within `reach`, a share of the picture's height.
 pub fn pick(
     simulation: &Simulation,
     camera: &Camera,
@@ -50,18 +51,16 @@ pub fn pick(
     let places: Vec<_> = (0..simulation.particles()).map(project).collect();
     // Distance from the pointer, in heights of the picture.
     let gap = |at: [f32; 2]| ((at[0] - pointer[0]) * aspect).hypot(at[1] - pointer[1]);
+    let near = |i: &usize| places[*i].map_or(f32::INFINITY, |(at, _)| gap(at));
     let on_surface = {
         show::whole_triangles(simulation)
             .filter_map(|corners| {
                 let corners = corners.map(|i| i as usize);
                 let [a, b, c] = corners.map(|i| places[i]);
-                let (a, b, c) = (a?, b?, c?);
-                let [u, v, w] = weights(pointer, a.0, b.0, c.0)?;
-                Some((u * a.1 + v * b.1 + w * c.1, corners))
+                Some((depth_in(pointer, [a?, b?, c?])?, corners))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .and_then(|(depth, corners)| {
-                let near = |i: &usize| places[*i].map_or(f32::INFINITY, |(at, _)| gap(at));
                 corners
                     .into_iter()
                     .min_by(|a, b| near(a).total_cmp(&near(b)))
@@ -79,6 +78,20 @@ pub fn pick(
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .and_then(|(i, _)| Some((i, places[i]?.1)))
     };
+    // On a rigid body, the nearest of its particles is taken.
+    let on_body = tessellation::placed(network, simulation.state())
+        .filter_map(|(k, part)| {
+            let depth = depth_of(&part, camera, pointer, aspect)?;
+            let body = &network.bodies()[k];
+            let own = body.points().chain([body.center()]);
+            let i = own.min_by(|a, b| near(a).total_cmp(&near(b)))?;
+            Some((i, depth))
+        })
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    let on_surface = on_surface
+        .into_iter()
+        .chain(on_body)
+        .min_by(|a, b| a.1.total_cmp(&b.1));
     let particle = on_surface.or_else(nearest).and_then(|(i, depth)| {
         let (at, distance) = places[i]?;
         Some((depth, Target::Particle(i), at, distance))
@@ -104,6 +117,23 @@ pub fn pick(
     let (_, target, at, distance) = sphere.chain(particle).min_by(|a, b| a.0.total_cmp(&b.0))?;
     let offset = [at[0] - pointer[0], at[1] - pointer[1]];
     Some((target, Grip { distance, offset }))
+}
+
+/// The depth (m) at which the line of sight through the pointer first meets a part of a body.
+fn depth_of(part: &Tessellation, camera: &Camera, pointer: [f32; 2], aspect: f32) -> Option<f32> {
+    let project = |p: &Vector3<f64>| camera.project(to_f32(*p), aspect);
+    let places: Vec<_> = part.points.iter().map(project).collect();
+    let hits = part.triangles.iter().filter_map(|corners| {
+        let [a, b, c] = corners.map(|i| places[i as usize]);
+        depth_in(pointer, [a?, b?, c?])
+    });
+    hits.min_by(f32::total_cmp)
+}
+
+/// The depth (m) of the pointer in a triangle of places and their depths, if it is inside.
+fn depth_in(pointer: [f32; 2], [a, b, c]: [([f32; 2], f32); 3]) -> Option<f32> {
+    let [u, v, w] = weights(pointer, a.0, b.0, c.0)?;
+    Some(u * a.1 + v * b.1 + w * c.1)
 }
 
 /// The first point (m) at which the line of sight through the pointer meets a ball.
@@ -188,6 +218,22 @@ mod tests {
                 let hit = hit.map(|(target, _)| target);
                 assert_eq!(hit, Some(Target::Particle(210)), "{tile:?}");
             }
+        }
+    }
+
+    /// A body is picked by its sides, whatever lies behind it, and what is in front of it is not.
+    #[test]
+    fn a_body_is_picked_by_its_sides() {
+        let scene = a3_scenes::find("boxes").unwrap().build(None).unwrap().scene;
+        let run =
+            Simulation::new(scene, integrators::find("r").unwrap(), Control::Step(0.001)).unwrap();
+        let network = run.model().network().unwrap();
+        for (height, body) in [(0.25, 0), (1.27, 2), (2.3, 4)] {
+            let camera = Camera::look_at([3.0, height, 2.0], [0.0, height, 0.0]);
+            let Some((Target::Particle(i), _)) = pick(&run, &camera, [0.5, 0.5], 1.6, 0.03) else {
+                panic!("nothing is picked at {height}");
+            };
+            assert_eq!(network.body_of(i), Some(body));
         }
     }
 

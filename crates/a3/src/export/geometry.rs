@@ -6,8 +6,7 @@ use std::io;
 use a3_core::{Network, Simulation};
 use a3_scenes::Surface;
 
-use super::tessellation;
-use crate::show::whole_triangles;
+use crate::show::{tessellation, whole_triangles};
 
 /// The connections between particles, which stay the same from frame to frame until something
 /// tears.

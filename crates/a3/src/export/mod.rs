@@ -6,7 +6,6 @@ mod glb;
 mod json;
 mod obj;
 mod pc2;
-mod tessellation;
 
 use std::io::{self, Write};
 use std::path::Path;

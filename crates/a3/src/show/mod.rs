@@ -8,15 +8,16 @@ mod obstacles;
 mod parts;
 mod picture;
 mod springs;
+pub mod tessellation;
 mod trail;
 mod vectors;
 mod view;
 mod wires;
 
-pub use bodies::parts as body_parts;
 pub use liquid::Liquid;
 pub use obstacles::drawn_radius;
 pub use parts::whole_triangles;
 pub use picture::Show;
 pub use springs::{kind_name, list_springs_of, springs_of};
+pub use vectors::to_f32;
 pub use view::camera;

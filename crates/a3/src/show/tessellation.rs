@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use a3_core::contact::Shape;
 use a3_core::{Network, Vector3};
 
-use crate::show::body_parts;
+use super::bodies::parts;
 
 /// Number of meridians of a round shape, and of parallels from pole to pole.
 const MERIDIANS: u32 = 24;
@@ -13,9 +13,9 @@ const PARALLELS: u32 = 12;
 
 /// Points of a shape, seen from its place (m), and the corners of its triangles, anticlockwise as
 /// seen from outside. Sides of a box share no points, so that its edges stay sharp.
-struct Tessellation {
-    points: Vec<Vector3<f64>>,
-    triangles: Vec<[u32; 3]>,
+pub struct Tessellation {
+    pub points: Vec<Vector3<f64>>,
+    pub triangles: Vec<[u32; 3]>,
 }
 
 impl Tessellation {
@@ -100,12 +100,23 @@ pub fn count(network: &Network) -> usize {
 
 /// The points of all bodies (m), as they are in the state y.
 pub fn points(network: &Network, y: &[f64]) -> Vec<Vector3<f64>> {
-    let parts = body_parts(network, y);
-    let placed = parts.flat_map(|(_, part, pose)| {
-        let points = Tessellation::of(&part.shape).points.into_iter();
-        points.map(move |point| pose.of(point).position)
-    });
-    placed.collect()
+    placed(network, y)
+        .flat_map(|(_, part)| part.points)
+        .collect()
+}
+
+/// Each part of each body, with the body's number, as it is in the state y.
+pub fn placed<'a>(
+    network: &'a Network,
+    y: &'a [f64],
+) -> impl Iterator<Item = (usize, Tessellation)> + 'a {
+    parts(network, y).map(|(k, part, pose)| {
+        let mut placed = Tessellation::of(&part.shape);
+        for point in &mut placed.points {
+            *point = pose.of(*point).position;
+        }
+        (k, placed)
+    })
 }
 
 #[cfg(test)]
