@@ -57,6 +57,7 @@ mod control;
 pub mod elements;
 mod energy;
 mod error;
+mod geometry;
 mod grid;
 pub mod integrators;
 mod linear;

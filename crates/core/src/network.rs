@@ -3,6 +3,7 @@
 mod bodies;
 mod compliant;
 mod constrained;
+mod energies;
 mod fluid;
 mod layer;
 mod mechanics;
@@ -21,7 +22,6 @@ use crate::constraints::Constraints;
 use crate::contact::{Obstacle, StrainLimit};
 use crate::elements::force::check_particle;
 use crate::elements::{Airflow, Drag, Element, Gravity, Sheet, Wind};
-use crate::energy::Energy;
 use crate::error::{Error, at_least, positive};
 use crate::path::Path;
 use crate::rigid::Body;
@@ -374,29 +374,5 @@ impl Network {
         list(self.tear.is_some(), "tearing");
         list(!self.strain_limits.is_empty(), "strain limit");
         names
-    }
-
-    /// The energy in the state (x, v) at time 0, and at all times if no obstacle moves. Drag,
-    /// damping and wind have none.
-    #[must_use]
-    pub fn energy(&self, x: &[f64], v: &[f64]) -> Energy {
-        self.energy_at(0.0, x, v)
-    }
-
-    /// The energy in the state (x, v) at time t (s), where obstacles are then.
-    #[must_use]
-    pub fn energy_at(&self, t: f64, x: &[f64], v: &[f64]) -> Energy {
-        let of_axis = |v: &[f64]| -> f64 {
-            let of_one = |(v, m): (&f64, &f64)| 0.5 * m * v * v;
-            v.iter().zip(&self.masses).map(of_one).sum()
-        };
-        let mut energy = Energy {
-            kinetic: v.chunks_exact(self.particles()).map(of_axis).sum(),
-            ..Energy::default()
-        };
-        for element in &self.elements {
-            energy += element.force().energy(&self.at(t, x, v));
-        }
-        energy
     }
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use a3_core::contact::Shape;
+use a3_core::rigid::Body;
 use a3_core::{Network, Vector3};
 
 use super::bodies::parts;
@@ -82,7 +83,7 @@ fn round([low, high]: [Vector3<f64>; 2], radius: f64) -> Tessellation {
 pub fn triangles(network: &Network, first: u32) -> Vec<[u32; 3]> {
     let mut next = first;
     let mut all = vec![];
-    for part in network.bodies().iter().flat_map(|body| body.parts()) {
+    for part in network.bodies().iter().flat_map(Body::parts) {
         let Tessellation { points, triangles } = Tessellation::of(&part.shape);
         all.extend(triangles.iter().map(|t| t.map(|i| next + i)));
         next += points.len() as u32;
@@ -92,7 +93,7 @@ pub fn triangles(network: &Network, first: u32) -> Vec<[u32; 3]> {
 
 /// The number of points of all bodies.
 pub fn count(network: &Network) -> usize {
-    let parts = network.bodies().iter().flat_map(|body| body.parts());
+    let parts = network.bodies().iter().flat_map(Body::parts);
     parts
         .map(|part| Tessellation::of(&part.shape).points.len())
         .sum()

@@ -15,7 +15,7 @@
 //! slides or parts needs one plane here. Whatever the closest points are, a plane that lies between
 //! the primitives proves that they are apart, so errors of the closest points do no harm.
 
-use super::closest::{Closest, PairKind, closest, weighted};
+use crate::geometry::{Closest, PairKind, closest, weighted};
 use nalgebra::Vector3;
 
 /// Distance (m) below which two primitives count as touching.

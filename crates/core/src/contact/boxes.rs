@@ -5,7 +5,8 @@ use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
-use super::surface::{Items, Surface};
+use super::items::Items;
+use super::surface::Surface;
 
 /// Straight courses of all vertices, from which they may stray by half of the reach.
 pub(super) struct Course<'a> {

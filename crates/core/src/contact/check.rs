@@ -7,11 +7,11 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
 use super::candidates::Stretch;
-use super::closest::{PairKind, closest};
 use super::exact::crossings;
 use super::layer::{ContactLayer, Scratch};
 use super::listing::Candidate;
 use crate::error::Vertex;
+use crate::geometry::{PairKind, closest};
 
 /// Numbers of ordered pairs of boxes that may meet at the beginning: in all, or for each box, of
 /// which a cloth has some thirty.

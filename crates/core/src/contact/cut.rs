@@ -12,11 +12,11 @@ use std::collections::BTreeSet;
 use nalgebra::Vector3;
 
 use super::candidates::Candidates;
-use super::closest::{PairKind, closest, weighted};
 use super::listing::Candidate;
 use super::motion::Motion;
 use super::surface::Surface;
 use crate::error::Vertex;
+use crate::geometry::{PairKind, closest, weighted};
 
 /// Pair that leaves no room: two of its vertices, one of either primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

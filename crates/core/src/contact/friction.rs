@@ -3,12 +3,12 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::candidates::Candidates;
-use super::closest::{PairKind, weighted};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::repulsion::Pair;
 use super::solids::{Arm, Field, Solid};
 use super::surface::Surface;
+use crate::geometry::{PairKind, weighted};
 
 /// Passes of friction between surfaces that the contact force keeps apart.
 const FRICTION_PASSES: usize = 4;
@@ -75,7 +75,7 @@ impl Contact {
         let first = kind.first();
         let side = |from: usize, to: usize, sign: f64| {
             let side = (&self.points[from..to], &self.weights[from..to]);
-            Solid::arm(surface, motion, side, self.normal, sign)
+            Solid::arm(surface, &motion.solids, side, self.normal, sign)
         };
         let last = if kind == PairKind::VertexFloor { 2 } else { 4 };
         let arms = [side(0, first, 1.0), side(first, last, -1.0)];

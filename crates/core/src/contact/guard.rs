@@ -7,14 +7,14 @@
 //! 2002). What is left after them is [cut](super::cut).
 
 use super::candidates::Candidates;
-use super::closest::{Closest, closest};
 use super::cut::Squeezed;
 use super::friction::{Contact, Masses, rub};
 use super::layer::{ContactLayer, Scratch};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
-use super::solids::Solid;
 use super::surface::Surface;
+use crate::geometry::{Closest, closest};
+use crate::rigid::ROTATION;
 
 /// Passes of impulses before what is left is cut.
 const PASSES: usize = 12;
@@ -82,7 +82,7 @@ impl ContactLayer {
         motion.inverse_masses.clear();
         motion.inverse_masses.extend_from_slice(inverse_masses);
         motion.inverse_masses.resize(motion.x0.len(), 0.0);
-        Solid::read(surface, y0, y1, motion);
+        motion.read_solids(surface, [y0, y1]);
         let mut guarded = Guarded::default();
         motion.cover(surface, candidates);
         let mut changed = rub(surface, h, candidates, motion, &mut guarded);
@@ -101,8 +101,11 @@ impl ContactLayer {
         }
         if changed {
             write_back(motion, surface.particles(), y0, y1);
-            for (k, solid) in motion.solids.iter().enumerate() {
-                solid.write_back(k, cuts.share(solid.center), motion, y1);
+            let rotations = y1[2 * half..].chunks_exact_mut(ROTATION);
+            for (k, (solid, numbers)) in motion.solids.iter().zip(rotations).enumerate() {
+                let share = cuts.share(solid.center);
+                let end = solid.end(share, motion.moves.turns[k], motion.v.turns[k]);
+                end.write(numbers);
             }
         }
         Ok(guarded)

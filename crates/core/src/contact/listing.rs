@@ -6,8 +6,9 @@ use parry3d_f64::partitioning::BvhNode;
 use rayon::prelude::*;
 
 use super::boxes::{Course, Tree};
-use super::closest::{PairKind, closest};
-use super::surface::{Items, Surface};
+use super::items::Items;
+use super::surface::Surface;
+use crate::geometry::{PairKind, closest};
 
 /// Share of the largest thickness by which gaps are listed smaller than they are computed, for
 /// rounding.

@@ -7,10 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::advance::time_of_impact;
 use super::candidates::{Candidates, Stretch};
-use super::closest::{PairKind, closest};
 use super::listing::Candidate;
 use super::solids::{Field, Solid};
 use super::surface::Surface;
+use crate::geometry::{PairKind, closest};
+use crate::rigid::{ROTATION, Rotation};
 
 /// What the guard did in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -85,6 +86,26 @@ impl Motion {
             speeds: None,
         };
         candidates.cover(surface, &stretch);
+    }
+
+    /// Reads the rigid bodies of a surface in a step between two states. The displacements and the
+    /// velocities, which are those of the vertices already, get the turns of the bodies.
+    pub fn read_solids(&mut self, surface: &Surface, states: [&[f64]; 2]) {
+        for field in [&mut self.moves, &mut self.v, &mut self.v0] {
+            field.turns.clear();
+        }
+        self.solids.clear();
+        let first = 6 * surface.particles();
+        for (k, body) in surface.rigid().iter().enumerate() {
+            let numbers = first + ROTATION * k..first + ROTATION * (k + 1);
+            let ends = states.map(|y| Rotation::read(&y[numbers.clone()]));
+            let inverse_mass = self.inverse_masses[body.center()];
+            let (solid, way, [before, after]) = Solid::new(body, inverse_mass, ends);
+            self.solids.push(solid);
+            self.moves.turns.push(way);
+            self.v0.turns.push(before);
+            self.v.turns.push(after);
+        }
     }
 
     /// Whether vertex i of a surface has its way whatever it meets.

@@ -1,7 +1,7 @@
 //! Obstacles: a shape on a path, with friction.
 
-use super::shape::Shape;
 use crate::error::{Error, at_least};
+use crate::geometry::Shape;
 use crate::path::{Path, Pose, Turn};
 
 /// Body that particles stay out of, still or moving.

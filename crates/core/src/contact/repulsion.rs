@@ -16,8 +16,8 @@
 
 use nalgebra::Vector3;
 
-use super::closest::{PairKind, closest, weighted};
 use super::surface::Law;
+use crate::geometry::{PairKind, closest, weighted};
 
 /// Squared sine of the angle between two edges as long as four thicknesses from which they repel
 /// each other fully.

@@ -7,9 +7,9 @@ use nalgebra::Vector3;
 use super::cut::Squeezed;
 use super::layer::ContactLayer;
 use super::motion::Guarded;
-use super::nearest::{Nearest, of_box, of_capsule, of_floor, of_sphere};
 use super::obstacle::Obstacle;
-use super::shape::Shape;
+use crate::geometry::Shape;
+use crate::geometry::nearest::{Nearest, of_box, of_capsule, of_floor, of_sphere};
 use crate::path::Pose;
 
 /// Gap before a step, as a share of the depth after it, up to which a particle counts as touching

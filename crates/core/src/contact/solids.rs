@@ -4,9 +4,8 @@ use std::ops::{Deref, DerefMut, Range};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::motion::Motion;
 use super::surface::Surface;
-use crate::rigid::{ROTATION, Rotation, rotation_vector, turn};
+use crate::rigid::{Body, Rotation, rotation_vector, turn};
 
 /// A vector for each vertex, and one for each rigid body: displacements (m) and rotation vectors
 /// (rad), or velocities (m/s) and angular velocities (rad/s).
@@ -62,51 +61,43 @@ pub(super) struct Arm {
 }
 
 impl Solid {
-    /// The bodies of a surface in a step from y0 to y1, whose displacements and velocities, which
-    /// are those of the vertices already, get the turns of the bodies.
-    pub fn read(surface: &Surface, y0: &[f64], y1: &[f64], motion: &mut Motion) {
-        let n = surface.particles();
-        for field in [&mut motion.moves, &mut motion.v, &mut motion.v0] {
-            field.turns.clear();
-        }
-        motion.solids.clear();
-        for (k, body) in surface.rigid().iter().enumerate() {
-            let tail = 6 * n + ROTATION * k..6 * n + ROTATION * (k + 1);
-            let ends = [&y0[tail.clone()], &y1[tail]].map(Rotation::read);
-            let [before, after] = ends.map(|rotation| body.moving(&rotation));
-            let matrix = after.rotation;
-            let along = |moments: Vector3<f64>| {
-                matrix * Matrix3::from_diagonal(&moments) * matrix.transpose()
-            };
-            let way = rotation_vector(ends[1].q, ends[0].q);
-            motion.moves.turns.push(way);
-            motion.v0.turns.push(before.spin);
-            motion.v.turns.push(after.spin);
-            motion.solids.push(Self {
-                center: body.center(),
-                points: body.points(),
-                inverse_mass: motion.inverse_masses[body.center()],
-                inertia: along(body.inertia()),
-                inverse_inertia: along(body.inertia().map(f64::recip)),
-                arms: body.anchors().map(|(_, anchor)| matrix * anchor).collect(),
-                ends,
-                unguarded: [way, after.spin],
-            });
-        }
+    /// A body at the end of a step between these ends, and its rotation vector in the step (rad) and
+    /// the angular velocities at both ends (rad/s).
+    pub fn new(
+        body: &Body,
+        inverse_mass: f64,
+        ends: [Rotation; 2],
+    ) -> (Self, Vector3<f64>, [Vector3<f64>; 2]) {
+        let [before, after] = ends.map(|rotation| body.moving(&rotation));
+        let matrix = after.rotation;
+        let along =
+            |moments: Vector3<f64>| matrix * Matrix3::from_diagonal(&moments) * matrix.transpose();
+        let way = rotation_vector(ends[1].q, ends[0].q);
+        let solid = Self {
+            center: body.center(),
+            points: body.points(),
+            inverse_mass,
+            inertia: along(body.inertia()),
+            inverse_inertia: along(body.inertia().map(f64::recip)),
+            arms: body.anchors().map(|(_, anchor)| matrix * anchor).collect(),
+            ends,
+            unguarded: [way, after.spin],
+        };
+        (solid, way, [before.spin, after.spin])
     }
 
     /// The arm of a point of contact on the body of a vertex, at the closest point of its simplices
     /// as seen from the vertices with these weights.
     pub fn arm(
         surface: &Surface,
-        motion: &Motion,
+        solids: &[Self],
         side: (&[u32], &[f64]),
         normal: Vector3<f64>,
         sign: f64,
     ) -> Option<Arm> {
         let (points, weights) = side;
         let solid = surface.solid(points[0])?;
-        let own = &motion.solids[solid];
+        let own = &solids[solid];
         let mut lever = Vector3::zeros();
         for (i, weight) in points.iter().zip(weights) {
             lever += own.arms[*i as usize - own.points.start] * (weight * sign);
@@ -143,13 +134,11 @@ impl Solid {
         }
     }
 
-    /// Writes what was changed of body k to y1: of its displacement and its turn only that share of
-    /// the step.
-    pub fn write_back(&self, k: usize, share: f64, motion: &Motion, y1: &mut [f64]) {
-        let rotations = y1.len() - ROTATION * motion.solids.len();
-        let own = rotations + ROTATION * k..rotations + ROTATION * (k + 1);
+    /// The rotation and angular momentum at the end of the step, whose rotation vector (rad) the
+    /// guard has made `turned`, and whose angular velocity `turning` (rad/s), if only that share of
+    /// the step was made.
+    pub fn end(&self, share: f64, turned: Vector3<f64>, turning: Vector3<f64>) -> Rotation {
         let [way, spin] = self.unguarded;
-        let (turned, turning) = (motion.moves.turns[k], motion.v.turns[k]);
         let [start, mut end] = self.ends;
         if share < 1.0 {
             end.q = turn(turned * share) * start.q;
@@ -159,7 +148,7 @@ impl Solid {
         if turning != spin {
             end.momentum += self.inertia * (turning - spin);
         }
-        end.write(&mut y1[own]);
+        end
     }
 }
 

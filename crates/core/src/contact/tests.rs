@@ -3,12 +3,12 @@
 use nalgebra::Vector3;
 
 use super::candidates::{Candidates, Stretch};
-use super::closest::{PairKind, closest};
 use super::layer::ContactLayer;
 use super::listing::Candidate;
 use super::obstacle::Obstacle;
-use super::shape::Shape;
 use super::surface::{Skin, Surface};
+use crate::geometry::Shape;
+use crate::geometry::{PairKind, closest};
 use crate::path::Path;
 use crate::random::SplitMix;
 

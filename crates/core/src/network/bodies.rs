@@ -8,7 +8,6 @@ use nalgebra::Vector3;
 use super::Network;
 use crate::elements::Finish;
 use crate::elements::force::Carried;
-use crate::energy::Energy;
 use crate::error::Error;
 use crate::path::Pose;
 use crate::rigid::{Body, Moving, ROTATION, Rotation};
@@ -154,17 +153,6 @@ impl Network {
     pub fn halves<'a>(&self, y: &'a [f64]) -> (&'a [f64], &'a [f64]) {
         let n = 3 * self.particles();
         (&y[..n], &y[n..2 * n])
-    }
-
-    /// Energy of the state y at time t (s), that of rotations included.
-    #[must_use]
-    pub fn energy_of(&self, t: f64, y: &[f64]) -> Energy {
-        let (x, v) = self.halves(y);
-        let mut energy = self.energy_at(t, x, v);
-        for (k, body) in self.bodies.iter().enumerate() {
-            energy.kinetic += body.energy(&self.rotation(k, y));
-        }
-        energy
     }
 
     /// Each body with its rotation and how it moves in the state y.

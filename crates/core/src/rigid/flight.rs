@@ -4,7 +4,7 @@
 //! motion by one part alone is a turn about that axis at a constant rate, which is computed
 //! exactly. Turns by half a step about the first two axes, by a whole one about the third, and
 //! again by half a step in reverse order are symplectic, reversible, keep the angular momentum to
-//! the bit, and are of order 2 (Dullweber, Leimkuhler, McLachlan, *Symplectic splitting methods for
+//! the bit, and are of order 2 (Dullweber, Leimkuhler, `McLachlan`, *Symplectic splitting methods for
 //! rigid body molecular dynamics*, 1997). Nine such turns by the shares of [`SHARES`] are of order
 //! 6. A body with equal moments turns about one axis, exactly.
 
@@ -16,8 +16,8 @@ use super::{Body, Rotation, turn};
 /// raising the orders of unconventional schemes for ordinary differential equations*, 1997): the
 /// first five of nine.
 const SHARES: [f64; 5] = [
-    0.392_161_444_007_314_13,
-    0.332_599_136_789_359_46,
+    0.392_161_444_007_314_1,
+    0.332_599_136_789_359_4,
     -0.706_246_172_557_639_4,
     0.082_213_596_293_550_8,
     0.798_543_990_934_829_9,

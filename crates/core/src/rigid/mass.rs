@@ -4,8 +4,8 @@ use std::ops::AddAssign;
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-use crate::contact::Shape;
 use crate::error::{Error, positive};
+use crate::geometry::Shape;
 
 /// Difference of two moments of inertia, as a share of the largest, below which products of inertia
 /// of that size count as none: the axes are then those of the shape.

@@ -19,8 +19,8 @@ use std::ops::Range;
 
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
-use crate::contact::Shape;
 use crate::error::{Error, positive};
+use crate::geometry::Shape;
 use crate::path::{Orientation, Place, Pose};
 
 pub use mass::MassProperties;

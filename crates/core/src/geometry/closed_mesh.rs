@@ -123,7 +123,7 @@ impl ClosedMesh {
     }
 
     /// Nearest point of the surface to a point d inside.
-    pub(super) fn nearest(&self, d: Vector3<f64>) -> Option<Nearest> {
+    pub(crate) fn nearest(&self, d: Vector3<f64>) -> Option<Nearest> {
         let from = Vector::new(d.x, d.y, d.z);
         if !self.tree.root_aabb().contains_local_point(from) {
             return None;

@@ -3,14 +3,14 @@
 use nalgebra::Vector3;
 
 /// Nearest point of a surface (m), and the unit normal there.
-pub(super) struct Nearest {
+pub(crate) struct Nearest {
     pub point: Vector3<f64>,
     pub normal: Vector3<f64>,
 }
 
 /// Nearest point of a sphere around the origin to a point d inside it; to the centre, that in the
 /// direction of `aside`.
-pub(super) fn of_sphere(
+pub(crate) fn of_sphere(
     d: Vector3<f64>,
     radius: f64,
     aside: impl Fn() -> Vector3<f64>,
@@ -33,7 +33,7 @@ pub(super) fn of_sphere(
 }
 
 /// Nearest point of a box around the origin to a point d inside it: on the nearest face.
-pub(super) fn of_box(
+pub(crate) fn of_box(
     d: Vector3<f64>,
     half_extents: Vector3<f64>,
     axes: [Vector3<f64>; 3],
@@ -55,7 +55,7 @@ pub(super) fn of_box(
 }
 
 /// Nearest point of a capsule to a point d inside it.
-pub(super) fn of_capsule(
+pub(crate) fn of_capsule(
     d: Vector3<f64>,
     [a, b]: [Vector3<f64>; 2],
     radius: f64,
@@ -76,7 +76,7 @@ pub(super) fn of_capsule(
 }
 
 /// Nearest point of a floor at height 0 to a point d below it.
-pub(super) fn of_floor(d: Vector3<f64>) -> Option<Nearest> {
+pub(crate) fn of_floor(d: Vector3<f64>) -> Option<Nearest> {
     (d.y < 0.0).then(|| Nearest {
         point: Vector3::new(d.x, 0.0, d.z),
         normal: Vector3::y(),
