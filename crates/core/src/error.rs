@@ -117,6 +117,8 @@ pub enum Cause {
 pub enum Vertex {
     /// Index of a particle.
     Particle(usize),
+    /// Index of the rigid body that it belongs to.
+    Body(usize),
     /// Index of the obstacle that it belongs to.
     Obstacle(usize),
 }
@@ -125,6 +127,7 @@ impl fmt::Display for Vertex {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Particle(i) => write!(f, "particle {i}"),
+            Self::Body(k) => write!(f, "body {k}"),
             Self::Obstacle(k) => write!(f, "obstacle {k}"),
         }
     }

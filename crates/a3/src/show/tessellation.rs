@@ -73,7 +73,7 @@ fn round([low, high]: [Vector3<f64>; 2], radius: f64) -> Tessellation {
             let next = (k + 1) % MERIDIANS;
             let [a, b] = [k, next].map(|k| row * MERIDIANS + k);
             let [c, d] = [a, b].map(|i| i + MERIDIANS);
-            triangles.extend([[a, d, b], [a, c, d]]);
+            triangles.extend([[a, b, d], [a, d, c]]);
         }
     }
     Tessellation { points, triangles }

@@ -30,12 +30,12 @@ pub struct Crossed {
 impl fmt::Display for Crossed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let side = |vertices: &[Vertex]| {
-            if let [Vertex::Obstacle(k), ..] = vertices {
-                return format!("obstacle {k}");
+            if let [whole @ (Vertex::Obstacle(_) | Vertex::Body(_)), ..] = vertices {
+                return whole.to_string();
             }
             let numbers = vertices.iter().filter_map(|vertex| match vertex {
                 Vertex::Particle(i) => Some(i.to_string()),
-                Vertex::Obstacle(_) => None,
+                Vertex::Obstacle(_) | Vertex::Body(_) => None,
             });
             let numbers = numbers.collect::<Vec<_>>().join(", ");
             match vertices {

@@ -177,11 +177,12 @@ impl Surface {
         self.skins.len()
     }
 
-    /// Particle or obstacle to which a vertex belongs.
+    /// Particle, rigid body or obstacle to which a vertex belongs.
     #[must_use]
     pub fn vertex(&self, vertex: u32) -> Vertex {
         let Some(mut point) = (vertex as usize).checked_sub(self.particles) else {
-            return Vertex::Particle(vertex as usize);
+            let particle = Vertex::Particle(vertex as usize);
+            return self.solid(vertex).map_or(particle, Vertex::Body);
         };
         let mut k = 0;
         while k + 1 < self.anchors.len() && point >= self.anchors[k].len() {

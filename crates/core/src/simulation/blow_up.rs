@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::{Checkpoint, Simulation};
 use crate::error::{BlowUp, Cause, Error};
+use crate::rigid::{Body, ROTATION};
 use crate::scene::Model;
 
 /// Distance from the scene's middle, in its radii, at which a particle is lost.
@@ -55,6 +56,16 @@ impl Simulation {
         result.and(Err(blow_up.into()))
     }
 
+    /// The particle to which number k of the state belongs: for the rotation of a rigid body, its
+    /// centre.
+    fn particle_of(&self, k: usize) -> usize {
+        let n = self.particles();
+        let body = k.checked_sub(6 * n).map(|k| k / ROTATION);
+        let network = self.model.network();
+        let body = body.and_then(|body| network?.bodies().get(body));
+        body.map_or(k % n, Body::center)
+    }
+
     /// The first particle that is farther than this many radii from the middle, or not finite, if
     /// there is one.
     fn beyond(&self, radii: f64, y: &[f64]) -> Option<Cause> {
@@ -86,7 +97,9 @@ impl Simulation {
         }
         v.iter()
             .position(|v| !v.is_finite())
-            .map(|k| Cause::NotFinite { particle: k % n })
+            .map(|k| Cause::NotFinite {
+                particle: self.particle_of(3 * n + k),
+            })
     }
 }
 
