@@ -44,13 +44,9 @@ fn no_step_allocates() {
     for entry in a3_scenes::SCENES {
         for method in integrators::METHODS {
             let setup = entry.build(None).unwrap();
-            // A fluid allocates when it lists neighbours.
-            if setup
-                .scene
-                .model
-                .network()
-                .is_some_and(|n| n.fluid().is_some())
-            {
+            // A fluid allocates when it lists neighbours, and surfaces when they list pairs.
+            let network = setup.scene.model.network();
+            if network.is_some_and(|n| n.fluid().is_some() || n.contact_layer().is_some()) {
                 continue;
             }
             let control = setup.defaults.control_of(method);

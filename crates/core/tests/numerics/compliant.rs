@@ -269,7 +269,7 @@ fn a_system_that_lists_its_springs_is_served_and_another_is_refused() {
             panic!("{} takes a system without springs", m.name)
         };
         assert!(
-            why.starts_with(m.title) && why.contains("implicit"),
+            why.starts_with(m.title) && why.contains("use another solver"),
             "{why}"
         );
     }
