@@ -15,6 +15,13 @@ pub fn scene(name: &str) -> Scene {
     a3_scenes::find(name).unwrap().build(None).unwrap().scene
 }
 
+/// Whether a second of the scene takes the method minutes: implicit methods take the slopes of f by
+/// differences where many rigid bodies are.
+pub fn takes_minutes(method: &Method, scene: &Scene) -> bool {
+    let bodies = scene.model.network().map_or(0, |n| n.bodies().len());
+    method.implicit && bodies > 1
+}
+
 /// Scene described by the text of a scene file.
 pub fn described(text: &str) -> Scene {
     a3_scenes::Description::parse(text)

@@ -3,7 +3,7 @@
 use a3_core::integrators::METHODS;
 use a3_core::{Checkpoint, Control, Method, Network, Path, Scene, Simulation, Vector3};
 
-use super::common::{described, method, scene, simulation};
+use super::common::{described, method, scene, simulation, takes_minutes};
 
 /// Action on a run, after which it takes steps.
 type Act = fn(&mut Simulation);
@@ -106,7 +106,9 @@ fn every_scene_goes_on_by_every_method() {
     for entry in a3_scenes::SCENES {
         let setup = entry.build(None).unwrap();
         for method in METHODS {
-            if method.check(setup.scene.model.system()).is_ok() {
+            if method.check(setup.scene.model.system()).is_ok()
+                && !takes_minutes(method, &setup.scene)
+            {
                 check(
                     &setup.scene,
                     method,
