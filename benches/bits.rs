@@ -10,16 +10,19 @@ use a3_core::{Control, Method, Scene, Simulation};
 
 const HASHES: &str = include_str!("../crates/a3/tests/golden/states.txt");
 
-/// Step (s) and end (s) of all runs.
-const STEP: f64 = 2e-3;
-const UNTIL: f64 = 300.0 * STEP;
+/// Step (s) and number of steps of all runs, and of those where rigid bodies touch.
+const STEPS: (f64, f64) = (2e-3, 300.0);
+const RIGID: (f64, f64) = (1e-3, 20.0);
 
 /// FNV-1a of all bits of the state after a run, or why there is none.
 fn hash(scene: &Scene, method: &'static Method) -> String {
-    let Ok(mut run) = Simulation::new(scene.clone(), method, Control::Step(STEP)) else {
+    let network = scene.model.network();
+    let rigid = network.is_some_and(|n| !n.bodies().is_empty() && n.gravity().is_some());
+    let (step, steps) = if rigid { RIGID } else { STEPS };
+    let Ok(mut run) = Simulation::new(scene.clone(), method, Control::Step(step)) else {
         return "refused".into();
     };
-    if run.advance_to(UNTIL).is_err() {
+    if run.advance_to(step * steps).is_err() {
         return "lost".into();
     }
     let (n, velocities) = (run.particles(), run.velocities());
