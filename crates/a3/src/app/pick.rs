@@ -34,8 +34,9 @@ impl Grip {
 }
 
 /// The particle or the obstacle under the pointer, whichever is nearer to the eye. If a surface is
-/// hit, the particle is the closest corner of its nearest triangle, and on a rigid body the closest of
-/// its particles; otherwise it is the one that is nearest on the screen within `reach`, a share of the picture's height.
+/// hit, the particle is the closest corner of its nearest triangle, and on a rigid body the closest
+/// of its particles; otherwise it is the one that is nearest on the screen within `reach`, a share
+/// of the picture's height.
 pub fn pick(
     simulation: &Simulation,
     camera: &Camera,
