@@ -10,14 +10,14 @@ use super::solids::{Arm, Field, Solid};
 use super::surface::Surface;
 use crate::geometry::{PairKind, weighted};
 
-/// Passes of friction between surfaces that the contact force keeps apart.
-const FRICTION_PASSES: usize = 4;
-
-/// Passes where there are rigid bodies, each of which may rest on many points.
-const RIGID_PASSES: usize = 20;
+/// The most passes of friction between surfaces that the contact force keeps apart.
+const FRICTION_PASSES: usize = 20;
 
 /// Share of the most that friction takes of a velocity below which a slip counts as none.
-const STUCK: f64 = 1e-9;
+const STUCK: f64 = 1e-4;
+
+/// Share of the most that friction takes of a displacement below which it counts as none.
+const STILL: f64 = 1e-13;
 
 /// What impulses move.
 #[derive(Clone, Copy)]
@@ -246,6 +246,19 @@ pub(super) fn rub(
     !pressed.is_empty()
 }
 
+/// Goes over the contacts until a whole pass leaves each as it is, at most so often.
+fn pass_until_still<T>(contacts: &[T], mut leaves: impl FnMut(usize, &T) -> bool) {
+    for _ in 0..FRICTION_PASSES {
+        let mut still = true;
+        for (k, contact) in contacts.iter().enumerate() {
+            still &= leaves(k, contact);
+        }
+        if still {
+            break;
+        }
+    }
+}
+
 /// Friction of contacts with the most impulse (N s) that each has: of velocities, and of
 /// displacements, which vanish where the velocities do, and follow them elsewhere.
 fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded: &mut Guarded) {
@@ -276,29 +289,28 @@ fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded
     let delays: Vec<f64> = pressed.iter().map(|(contact, _)| delay(contact)).collect();
     // Impulse of friction of each contact so far: a later pass may take of it again.
     let mut all = vec![Vector3::zeros(); pressed.len()];
-    let passes = if solids.is_empty() {
-        FRICTION_PASSES
-    } else {
-        RIGID_PASSES
-    };
-    for _ in 0..passes {
-        for (((contact, most), impulse), delay) in pressed.iter().zip(&mut all).zip(&delays) {
-            let slip = contact.slip(v);
-            let mobility = contact.mobility(slip);
-            let held = hold(*impulse - slip / mobility, *most);
-            let change = held - *impulse;
-            contact.push(change, masses, v);
-            *impulse = held;
-            let limit = most * mobility;
-            let left = slip + change * mobility;
-            let displaced = contact.slip(moves);
-            let forth = if left.norm() <= STUCK * limit {
-                -hold(displaced, limit * h)
-            } else {
-                change * (mobility * *delay)
-            };
-            contact.apply(forth, masses, moves);
-        }
+    pass_until_still(pressed, |k, (contact, most)| {
+        let slip = contact.slip(v);
+        let held = hold(all[k] - slip / contact.mobility(slip), *most);
+        let change = held - all[k];
+        contact.push(change, masses, v);
+        all[k] = held;
+        change.norm() <= STUCK * most
+    });
+    for ((contact, _), (impulse, delay)) in pressed.iter().zip(all.iter().zip(&delays)) {
+        contact.push(impulse * *delay, masses, moves);
     }
+    let limit = |contact: &Contact, most: f64, slip| most * contact.mobility(slip);
+    let sticks = |(contact, most): &&(Contact, f64)| {
+        let slip = contact.slip(v);
+        slip.norm() <= STUCK * limit(contact, *most, slip)
+    };
+    let stuck: Vec<_> = pressed.iter().filter(sticks).collect();
+    pass_until_still(&stuck, |_, (contact, most)| {
+        let displaced = contact.slip(moves);
+        let most = h * limit(contact, *most, displaced);
+        contact.apply(-hold(displaced, most), masses, moves);
+        displaced.norm() <= STILL * most
+    });
     guarded.impulse += all.iter().map(Vector3::norm).sum::<f64>();
 }

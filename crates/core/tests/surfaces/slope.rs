@@ -71,7 +71,7 @@ fn a_sheet_sticks_or_slides_by_its_friction() {
     for (method, step) in [("v", 0.0005), ("r", 0.004), ("i", 0.004)] {
         let tangent = 30_f64.to_radians().tan();
         let [moved, _] = slides(0.6, tangent, method, step, [20.0, 30.0]);
-        assert!(moved < 1e-9, "{method} moved {moved:.1e} m");
+        assert!(moved < 1e-12, "{method} moved {moved:.1e} m");
         let [_, rate] = slides(0.3, tangent, method, step, [6.0, 8.0]);
         assert!(
             (rate / 2.356_287 - 1.0).abs() < 1e-3,
@@ -85,7 +85,7 @@ fn the_tangent_of_the_slope_decides() {
     let [held, _] = slides(0.51, 0.5, "v", 0.002, [20.0, 21.0]);
     let [slid, _] = slides(0.49, 0.5, "v", 0.002, [20.0, 21.0]);
     assert!(
-        held < 1e-9 && slid > 0.01,
+        held < 1e-12 && slid > 0.01,
         "held {held:.1e} m, slid {slid:.1e} m"
     );
 }
