@@ -22,9 +22,9 @@ const STEP: f64 = 2e-3;
 const TOLERANCE: &str = "1e-6";
 /// Scenes of at least 4096 particles, whose rows threads share: scene, grid and steps.
 const LARGE: [(&str, &str, u32); 3] = [
-    ("cloth", "64x64", 40),
-    ("mit", "70x64", 40),
-    ("flag", "64x66", 40),
+    ("cloth", "64x64", 20),
+    ("mit", "70x64", 20),
+    ("flag", "64x66", 20),
 ];
 const STEPS: u32 = 300;
 /// Step (s) and steps in scenes whose surfaces touch, where each frame is checked for surfaces that

@@ -14,9 +14,11 @@ const INTERVAL: Duration = Duration::from_millis(250);
 const IDLE: u32 = 50;
 /// Simulated time (s) for which a step was seen to hold before it is said to hold.
 const HOLDING: f64 = 10.0;
-/// Most work of the runs that try steps, in steps times particles, after which a step counts as
-/// holding: the same on every machine, so that the step that is named is the same too.
-const MOST_WORK: u64 = 4_000_000;
+/// Most work of the runs that try steps, in evaluations times particles, after which a step counts
+/// as holding: the same on every machine, so that the step that is named is the same too.
+const MOST_WORK: f64 = 8e6;
+/// What an evaluation with its guard costs where surfaces touch, over one of springs alone.
+const TOUCHING: f64 = 100.0;
 
 /// The largest stable step for the fastest motion of a run, estimated every now and then.
 #[derive(Default)]
@@ -103,25 +105,30 @@ fn would_hold(run: &Simulation, modes: &[Mode]) -> Option<f64> {
     // Never fails for a method in METHODS.
     let limit = largest_step(run.method(), modes).ok().flatten()?;
     let mut step = rounded(0.9 * limit.step.min(LARGEST_STEP));
-    let mut left = MOST_WORK / run.particles() as u64;
-    while left > 0 && !holds(run, step, &mut left) {
+    let touches = run
+        .model()
+        .network()
+        .is_some_and(|network| network.contact_layer().is_some());
+    let price = run.particles() as f64 * if touches { TOUCHING } else { 1.0 };
+    let mut left = MOST_WORK / price;
+    while left > 0.0 && !holds(run, step, &mut left) {
         step = rounded(0.6 * step);
     }
     Some(step)
 }
 
-/// Whether a run from the start of the scene is not lost with steps of h (s), of which it takes no
-/// more than are `left`.
-fn holds(run: &Simulation, h: f64, left: &mut u64) -> bool {
+/// Whether a run from the start of the scene is not lost with steps of h (s), for which it does no
+/// more work (in evaluations) than is `left`.
+fn holds(run: &Simulation, h: f64, left: &mut f64) -> bool {
     let Ok(mut again) = Simulation::new(run.scene().clone(), run.method(), Control::Step(h)) else {
         return true;
     };
-    while again.time() < HOLDING && *left > 0 {
-        let steps = 16.min(*left);
-        *left -= steps;
-        if again.take_steps(steps).is_err() {
+    while again.time() < HOLDING && *left > 0.0 {
+        let before = again.work().total();
+        if again.take_steps(4).is_err() {
             return false;
         }
+        *left -= again.work().total() - before;
     }
     true
 }

@@ -70,6 +70,25 @@ pub struct Balance {
     most: Option<Gain>,
 }
 
+impl Balance {
+    /// Energy that the gain of a run is compared with (J).
+    fn scale(&self) -> f64 {
+        self.own + self.fall + self.work
+    }
+
+    /// Whether the particles alone move with more energy than a run may gain. What flies through a
+    /// whole scene in a step meets all of it, and costs thousands of steps.
+    fn is_exceeded(&self, network: &Network, y: &[f64]) -> bool {
+        let (_, v) = network.halves(y);
+        let squared = |axis: usize| {
+            let v = &v[axis * network.particles()..];
+            let terms = network.masses().iter().zip(v).map(|(m, v)| m * v * v);
+            terms.sum::<f64>()
+        };
+        0.5 * (0..3).map(squared).sum::<f64>() > LOST * self.scale()
+    }
+}
+
 /// Balance with its scratch.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
@@ -148,7 +167,8 @@ impl Watch {
         let driven = is_driven(network);
         let balance = &mut self.balance;
         let since = t - balance.time;
-        if since < if driven { DRIVEN } else { REST } {
+        let early = since < if driven { DRIVEN } else { REST };
+        if early && !(network.contact_layer().is_some() && balance.is_exceeded(network, y)) {
             return None;
         }
         let energy = energy_of(network, t, y);
@@ -163,7 +183,7 @@ impl Watch {
             .max(balance.gravitational - energy.gravitational);
         (balance.time, balance.energy, balance.power) = (t, energy.total(), power);
         let gain = balance.energy - balance.begin - balance.work;
-        let share = gain / (balance.own + balance.fall + balance.work);
+        let share = gain / balance.scale();
         balance.share = share;
         if gain > 0.0 && balance.most.is_none_or(|most| share > most.share) {
             balance.most = Some(Gain {
