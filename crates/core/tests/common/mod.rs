@@ -1,6 +1,8 @@
 //! Helpers of several tests.
 #![allow(dead_code, missing_docs, reason = "each test file uses its part")]
 
+use std::sync::Mutex;
+
 use a3_core::integrators;
 use a3_core::{
     Grid, Method, Network, ParticleSystem, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
@@ -13,6 +15,21 @@ pub fn method(name: &str) -> &'static Method {
 
 pub fn scene(name: &str) -> Scene {
     a3_scenes::find(name).unwrap().build(None).unwrap().scene
+}
+
+/// Does the work for each item, on as many threads as there are cores.
+pub fn on_all_cores<T: Send>(items: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
+    let items = Mutex::new(items.into_iter().collect::<Vec<_>>());
+    let next = || items.lock().unwrap().pop();
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some(item) = next() {
+                    work(item);
+                }
+            });
+        }
+    });
 }
 
 /// Whether a second of the scene takes the method minutes: implicit methods take the slopes of f by

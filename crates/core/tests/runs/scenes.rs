@@ -1,6 +1,6 @@
 //! The table of scenes: numbers of particles and springs, and every scene with every method.
 
-use crate::common::{described, scene, scene_with_grid, takes_minutes};
+use crate::common::{described, on_all_cores, scene, scene_with_grid, takes_minutes};
 use a3_core::{Control, Grid, MAX_PARTICLES, Rows, Simulation, SpringKind, integrators};
 
 #[test]
@@ -88,7 +88,7 @@ fn grids_that_make_no_sense_are_refused() {
 /// and swing, or for less where that would take minutes.
 #[test]
 fn default_controls_hold_everywhere() {
-    for entry in a3_scenes::SCENES {
+    on_all_cores(a3_scenes::SCENES, |entry| {
         for method in integrators::METHODS {
             let setup = entry.build(None).unwrap();
             let (scene, control) = (setup.scene, setup.defaults.control_of(method));
@@ -122,13 +122,13 @@ fn default_controls_hold_everywhere() {
                 entry.name
             );
         }
-    }
+    });
 }
 
 /// Default steps are shortened for a finer cloth, whose fastest mode is faster, and are stable.
 #[test]
 fn default_controls_hold_on_other_grids() {
-    for (rows, cols) in [(8, 8), (40, 40), (60, 20), (20, 60)] {
+    on_all_cores([(8, 8), (40, 40), (60, 20), (20, 60)], |(rows, cols)| {
         for method in integrators::METHODS.iter().filter(|m| !m.positions_only) {
             let grid = Grid::new(rows, cols).unwrap();
             let setup = a3_scenes::find("cloth").unwrap().build(Some(grid)).unwrap();
@@ -145,7 +145,7 @@ fn default_controls_hold_on_other_grids() {
                 method.name
             );
         }
-    }
+    });
 }
 
 /// A pin has the place and the velocity of its path from the first moment on, whatever the body it
