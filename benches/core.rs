@@ -239,7 +239,7 @@ fn evaluation(c: &mut Criterion) {
 /// One evaluation of chains of rods on their way: constraints. Throughput is in rods.
 fn rods(c: &mut Criterion) {
     let mut group = c.benchmark_group("evaluation/rods");
-    for rods in [1u32, 10, 100] {
+    for rods in [1u32, 10, 100, 1000, 10_000] {
         let text = format!(
             "gravity = [0, -9.81, 0]
             [[chain]]

@@ -275,7 +275,7 @@ fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
         slow: GROWTH.powf(h / tenfold_time(h)),
         eigenvalues: modes
             .iter()
-            .filter(|mode| mode.stiffness > 0.0)
+            .filter(|mode| mode.returns())
             .flat_map(Mode::eigenvalues)
             .map(|[re, im]| [h * re, h * im])
             .collect(),

@@ -28,7 +28,7 @@ pub(crate) const PARTS: Part = Part("parts of rigid bodies", 20_000);
 pub(crate) const STRIPS: Part = Part("springs that buckle", 200);
 /// Particles of fluid, with the lists of their neighbours.
 pub(crate) const SMOOTHED: Part = Part("particles of fluid", 700);
-pub(crate) const RODS: Part = Part("rods", 400);
+pub(crate) const RODS: Part = Part("rods", 1000);
 /// Tetrahedra of solids.
 pub(crate) const TETRAHEDRA: Part = Part("tetrahedra", 700);
 pub(crate) const PINS: Part = Part("pins", 700);

@@ -6,205 +6,74 @@
 //! Andrew Witkin, *Physically Based Modeling: Constrained Dynamics*, SIGGRAPH course notes.
 //!
 //! Each row of C is a distance (m), and each row of J a unit vector, and its opposite at the other
-//! end of a rod.
+//! end of a rod. A force at a point of a rigid body moves and turns the body: W then has the body's
+//! inverse inertia too, and J the lever r x g of the force along g.
 
+mod constraint;
+mod direct;
 mod pool;
+mod row;
 mod solve;
 
 use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, positive};
+pub use constraint::Constraint;
+use direct::Pattern;
 use pool::Pool;
-use solve::{Row, Scratch};
+use row::Row;
 
-/// Nearer than this, in radii, to the centre of a circle or a sphere there is no way out of it to
-/// be told.
-const CENTER: f64 = 1e-12;
-
-/// A constraint on the positions of one or two particles.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Constraint {
-    /// A particle stays at a point.
-    Point {
-        /// The particle.
-        particle: usize,
-        /// The point (m).
-        position: Vector3<f64>,
-    },
-    /// A particle slides along a straight line.
-    Line {
-        /// The particle.
-        particle: usize,
-        /// A point of the line (m).
-        point: Vector3<f64>,
-        /// Direction, of any length but 0.
-        direction: Vector3<f64>,
-    },
-    /// A particle slides along a circle: a bead on a wire.
-    Circle {
-        /// The particle.
-        particle: usize,
-        /// Centre (m).
-        center: Vector3<f64>,
-        /// Normal of the circle's plane, of any length but 0.
-        normal: Vector3<f64>,
-        /// Radius (m).
-        radius: f64,
-    },
-    /// A particle slides over a sphere, and does not leave it.
-    Sphere {
-        /// The particle.
-        particle: usize,
-        /// Centre (m).
-        center: Vector3<f64>,
-        /// Radius (m).
-        radius: f64,
-    },
-    /// Two particles stay as far from one another: a rigid rod without mass.
-    Rod {
-        /// Particle at one end.
-        i: usize,
-        /// Particle at the other end.
-        j: usize,
-        /// Length (m).
-        length: f64,
-    },
+/// How a rigid body turns.
+pub(crate) struct Turning {
+    /// Place of its centre (m).
+    pub center: Vector3<f64>,
+    /// From its principal axes to the world.
+    pub rotation: Matrix3<f64>,
+    /// Angular velocity (rad/s).
+    pub spin: Vector3<f64>,
+    /// Angular acceleration without constraints (rad/s2).
+    pub acceleration: Vector3<f64>,
+    /// Inverses of the principal moments of inertia (1/kg m2).
+    pub inverse_inertia: Vector3<f64>,
 }
 
-impl Constraint {
-    /// Its particle, and the other one of a rod.
-    #[must_use]
-    pub fn ends(&self) -> (usize, Option<usize>) {
-        match *self {
-            Self::Point { particle, .. }
-            | Self::Line { particle, .. }
-            | Self::Circle { particle, .. }
-            | Self::Sphere { particle, .. } => (particle, None),
-            Self::Rod { i, j, .. } => (i, Some(j)),
-        }
-    }
-
-    /// The same constraint with directions of length 1, or an error if its numbers make no sense.
-    fn checked(self) -> Result<Self, Error> {
-        match self {
-            Self::Point { position, .. } => finite("a constraint's point", position)?,
-            Self::Line { point, .. } => finite("a point of a line", point)?,
-            Self::Circle { center, radius, .. } => {
-                finite("the centre of a circle", center)?;
-                positive("the radius of a circle", radius)?;
-            }
-            Self::Sphere { center, radius, .. } => {
-                finite("the centre of a sphere", center)?;
-                positive("the radius of a sphere", radius)?;
-            }
-            Self::Rod { i, j, length } => {
-                positive("the length of a rod", length)?;
-                if i == j {
-                    return Err(Error::Invalid(format!(
-                        "a rod needs two different particles, not {i} twice"
-                    )));
-                }
-            }
-        }
-        let mut unit = self;
-        if let Self::Line { direction: u, .. } | Self::Circle { normal: u, .. } = &mut unit {
-            let length = u.norm();
-            positive("the length of a direction", length)?;
-            *u /= length;
-        }
-        Ok(unit)
-    }
-
-    /// Visits its equations, always as many, where its first particle is at x and moves with v;
-    /// those of a rod relative to its second particle.
-    fn equations(&self, x: Vector3<f64>, v: Vector3<f64>, mut visit: impl FnMut(Equation)) {
-        match *self {
-            Self::Point { position, .. } => {
-                for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-                    visit(Equation::plane(axis, x - position));
-                }
-            }
-            Self::Line {
-                point, direction, ..
-            } => {
-                for normal in normals(direction) {
-                    visit(Equation::plane(normal, x - point));
-                }
-            }
-            Self::Circle {
-                center,
-                normal,
-                radius,
-                ..
-            } => {
-                let within = |a: Vector3<f64>| a - normal * normal.dot(&a);
-                visit(Equation::plane(normal, x - center));
-                visit(Equation::distance(within(x - center), within(v), radius));
-            }
-            Self::Sphere { center, radius, .. } => {
-                visit(Equation::distance(x - center, v, radius));
-            }
-            Self::Rod { length, .. } => visit(Equation::distance(x, v, length)),
-        }
-    }
+/// A particle that is held, with the places of what moves it among all that is: its own motion or
+/// that of its body's centre, and the rotation of the body, or 0.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    particle: usize,
+    place: usize,
+    turn: usize,
 }
 
-/// An equation C = 0 in a state.
-struct Equation {
-    /// Gradient J by the position of the first particle.
-    gradient: Vector3<f64>,
-    /// Error C (m).
-    value: f64,
-    /// Change J' v of the gradient (m/s2).
-    bend: f64,
-}
-
-impl Equation {
-    /// normal . x = 0
-    fn plane(normal: Vector3<f64>, x: Vector3<f64>) -> Self {
-        Self {
-            gradient: normal,
-            value: normal.dot(&x),
-            bend: 0.0,
-        }
-    }
-
-    /// |x| = radius
-    fn distance(x: Vector3<f64>, v: Vector3<f64>, radius: f64) -> Self {
-        let distance = x.norm();
-        let (gradient, bend) = if distance > CENTER * radius {
-            let outwards = x / distance;
-            let across = v - outwards * outwards.dot(&v);
-            (outwards, across.norm_squared() / distance)
-        } else {
-            (Vector3::zeros(), 0.0)
-        };
-        Self {
-            gradient,
-            value: distance - radius,
-            bend,
-        }
-    }
+/// What moves as one: a particle, or the rotation of a body. Place 0 is one that nothing moves.
+#[derive(Clone, Copy, Debug)]
+enum Moved {
+    Nothing,
+    Particle(usize),
+    Body(usize),
 }
 
 /// All constraints of a network.
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints {
     all: Vec<Constraint>,
-    /// The particles that are held, each once: evaluations take time by their number, not by that
-    /// of all particles.
-    particles: Vec<usize>,
-    /// The place of each particle that is held among these, from 1 on.
-    places: BTreeMap<usize, usize>,
-    /// For each constraint the places of its particles among these, from 1 on; 0 is a particle that
-    /// nothing moves.
-    ends: Vec<[usize; 2]>,
-    /// Number of equations.
-    rows: usize,
+    /// What constraints move: evaluations take time by its number, not by that of all particles.
+    moved: Vec<Moved>,
+    /// Places of particles and of rotations among it.
+    particles: BTreeMap<usize, usize>,
+    rotations: BTreeMap<usize, usize>,
+    /// The particles that each constraint holds.
+    ends: Vec<[Held; 2]>,
+    /// The constraint of each equation.
+    owners: Vec<usize>,
     /// Natural frequency (1/s) with which errors are taken back.
     baumgarte_frequency: f64,
+    /// Which equations share what they move, once it is asked for.
+    pattern: OnceLock<Arc<Pattern>>,
     /// Scratch of evaluations, no part of the value.
     scratch: Pool,
 }
@@ -213,31 +82,55 @@ impl Default for Constraints {
     fn default() -> Self {
         Self {
             all: vec![],
-            particles: vec![],
-            places: BTreeMap::new(),
+            moved: vec![Moved::Nothing],
+            particles: BTreeMap::new(),
+            rotations: BTreeMap::new(),
             ends: vec![],
-            rows: 0,
+            owners: vec![],
             baumgarte_frequency: 10.0,
+            pattern: OnceLock::new(),
             scratch: Pool::default(),
         }
     }
 }
 
 impl Constraints {
-    /// Adds a constraint whose particles exist.
-    pub fn add(&mut self, constraint: Constraint) -> Result<(), Error> {
+    /// Adds a constraint whose particles exist. `carrier` gives the centre and the number of the
+    /// body that carries a particle.
+    pub fn add(
+        &mut self,
+        constraint: Constraint,
+        carrier: impl Fn(usize) -> Option<(usize, usize)>,
+    ) -> Result<(), Error> {
         let constraint = constraint.checked()?;
         let (first, second) = constraint.ends();
-        let mut end = |particle| {
-            *self.places.entry(particle).or_insert_with(|| {
-                self.particles.push(particle);
-                self.particles.len()
+        let moved = &mut self.moved;
+        let mut place = |places: &mut BTreeMap<usize, usize>, of: usize, what| {
+            *places.entry(of).or_insert_with(|| {
+                moved.push(what);
+                moved.len() - 1
             })
         };
-        self.ends.push([end(first), second.map_or(0, end)]);
-        constraint.equations(Vector3::zeros(), Vector3::zeros(), |_| self.rows += 1);
+        let mut hold = |particle: usize| {
+            let body = carrier(particle);
+            let mover = body.map_or(particle, |(center, _)| center);
+            Held {
+                particle,
+                place: place(&mut self.particles, mover, Moved::Particle(mover)),
+                turn: body.map_or(0, |(_, k)| place(&mut self.rotations, k, Moved::Body(k))),
+            }
+        };
+        let nothing = Held {
+            particle: first,
+            place: 0,
+            turn: 0,
+        };
+        self.ends.push([hold(first), second.map_or(nothing, hold)]);
+        let (own, owners) = (self.all.len(), &mut self.owners);
+        constraint.equations(Vector3::zeros(), Vector3::zeros(), |_| owners.push(own));
         self.all.push(constraint);
-        self.scratch.reserve(self.rows, self.particles.len() + 1);
+        self.pattern = OnceLock::new();
+        self.scratch.reserve(self.owners.len(), self.moved.len());
         Ok(())
     }
 
@@ -271,60 +164,109 @@ impl Constraints {
         largest
     }
 
-    /// Adds J^T lambda (N) to all other forces: on pinned particles too, whose accelerations (m/s2)
-    /// are asked for.
+    /// Adds J^T lambda (N) to all other forces f: on pinned particles too. `motion` gives the
+    /// inverse mass (1/kg) of a particle that no body carries and its acceleration (m/s2) without
+    /// constraints, and `turning` how a body turns, both under the forces f.
     pub fn add_forces(
         &self,
-        inverse_masses: &[f64],
-        pin: impl Fn(usize) -> Vector3<f64>,
+        motion: impl Fn(usize, &[f64]) -> (f64, Vector3<f64>),
+        turning: impl Fn(usize, &[f64]) -> Turning,
         [x, v]: [&[f64]; 2],
         f: &mut [f64],
     ) {
         self.scratch.lend(|scratch| {
-            let Scratch {
-                weights,
-                vectors,
-                rows,
-            } = scratch;
-            weights.clear();
-            vectors.clear();
-            rows.clear();
-            weights.push(0.0);
-            vectors.push(Vector3::zeros());
-            for &i in &self.particles {
-                let w = inverse_masses[i];
-                weights.push(w);
-                vectors.push(if w == 0.0 { pin(i) } else { vector(f, i) * w });
+            scratch.clear();
+            for moved in &self.moved {
+                let (weight, vector, turning) = match *moved {
+                    Moved::Nothing => (Vector3::zeros(), Vector3::zeros(), None),
+                    Moved::Particle(i) => {
+                        let (weight, acceleration) = motion(i, f);
+                        (Vector3::repeat(weight), acceleration, None)
+                    }
+                    Moved::Body(k) => {
+                        let turning = turning(k, f);
+                        let own = turning.rotation.tr_mul(&turning.acceleration);
+                        (turning.inverse_inertia, own, Some(turning))
+                    }
+                };
+                scratch.weights.push(weight);
+                scratch.vectors.push(vector);
+                scratch.turnings.push(turning);
             }
             let w = self.baumgarte_frequency;
             let (ks, kd) = (w * w, 2.0 * w);
-            for (constraint, &[first, second]) in self.all.iter().zip(&self.ends) {
+            for (constraint, ends) in self.all.iter().zip(&self.ends) {
+                let levers = ends.map(|end| {
+                    let turning = scratch.turnings[end.turn].as_ref()?;
+                    Some(Lever::new(turning, vector(x, end.particle)))
+                });
                 let relative = |a: &[f64]| match constraint.ends() {
                     (i, Some(j)) => vector(a, i) - vector(a, j),
                     (i, None) => vector(a, i),
                 };
                 let (x, v) = (relative(x), relative(v));
-                let a = vectors[first] - vectors[second];
-                let weight = weights[first] + weights[second];
                 constraint.equations(x, v, |equation| {
-                    let Equation {
-                        gradient,
-                        value,
-                        bend,
-                    } = equation;
-                    let wanted = -bend - gradient.dot(&a) - ks * value - kd * gradient.dot(&v);
-                    rows.push(Row::new([first, second], gradient, weight, wanted));
+                    let (gradient, mut bend) = (equation.gradient, equation.bend);
+                    let mut row = Row::default();
+                    for ((end, lever), sign) in ends.iter().zip(&levers).zip([1.0, -1.0]) {
+                        row.add(end.place, gradient * sign);
+                        if let Some(lever) = lever {
+                            row.add(end.turn, lever.of(gradient) * sign);
+                            bend += gradient.dot(&lever.inwards) * sign;
+                        }
+                    }
+                    let a = row.product(&scratch.vectors);
+                    let back = ks * equation.value + kd * gradient.dot(&v);
+                    row.want(-bend - a - back, &scratch.weights);
+                    scratch.rows.push(row);
                 });
             }
-            solve::solve(rows, weights, vectors);
-            solve::transpose(rows, |row| row.multiplier, vectors);
+            scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
             let n = f.len() / 3;
-            for (&i, force) in self.particles.iter().zip(&vectors[1..]) {
+            for (row, owner) in scratch.rows.iter().zip(&self.owners) {
+                let ([first, second], force) = (self.ends[*owner], row.force());
                 for axis in 0..3 {
-                    f[axis * n + i] += force[axis];
+                    f[axis * n + first.particle] += force[axis];
+                    if second.place != 0 {
+                        f[axis * n + second.particle] -= force[axis];
+                    }
                 }
             }
         });
+    }
+
+    /// What each equation moves.
+    fn find_pattern(&self) -> Pattern {
+        let rows = self.owners.iter().map(|owner| {
+            let [a, b] = self.ends[*owner];
+            [a.place, a.turn, b.place, b.turn]
+        });
+        Pattern::new(&rows.collect::<Vec<_>>(), self.moved.len())
+    }
+}
+
+/// Lever of a point of a rigid body.
+struct Lever {
+    /// From the centre to the point (m).
+    arm: Vector3<f64>,
+    rotation: Matrix3<f64>,
+    /// Acceleration of the point by the spin alone (m/s2).
+    inwards: Vector3<f64>,
+}
+
+impl Lever {
+    fn new(turning: &Turning, point: Vector3<f64>) -> Self {
+        let arm = point - turning.center;
+        Self {
+            arm,
+            rotation: turning.rotation,
+            inwards: turning.spin.cross(&turning.spin.cross(&arm)),
+        }
+    }
+
+    /// Torque of a force at the point, along the principal axes.
+    fn of(&self, force: Vector3<f64>) -> Vector3<f64> {
+        self.rotation.tr_mul(&self.arm.cross(&force))
     }
 }
 
@@ -332,22 +274,4 @@ impl Constraints {
 fn vector(a: &[f64], i: usize) -> Vector3<f64> {
     let n = a.len() / 3;
     Vector3::new(a[i], a[n + i], a[2 * n + i])
-}
-
-/// Two unit vectors, at right angles to a third and to one another.
-fn normals(direction: Vector3<f64>) -> [Vector3<f64>; 2] {
-    let mut axis = Vector3::zeros();
-    axis[direction.iamin()] = 1.0;
-    let first = direction.cross(&axis).normalize();
-    [first, direction.cross(&first)]
-}
-
-fn finite(what: &str, a: Vector3<f64>) -> Result<(), Error> {
-    if a.iter().all(|a| a.is_finite()) {
-        return Ok(());
-    }
-    let [x, y, z] = a.into();
-    Err(Error::Invalid(format!(
-        "{what} must be three finite numbers, not ({x}, {y}, {z})"
-    )))
 }

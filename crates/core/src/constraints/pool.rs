@@ -1,12 +1,13 @@
 //! Scratch that evaluations of the same constraints borrow, on any thread.
 
+use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::solve::Scratch;
 
 /// Scratch for one evaluation at a time; others that run meanwhile bring their own. It is no part
 /// of the value of what owns it: a clone has scratch of the same size.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Pool(Mutex<Scratch>);
 
 impl Pool {
@@ -14,9 +15,9 @@ impl Pool {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Makes room for so many equations and particles.
-    pub fn reserve(&mut self, rows: usize, particles: usize) {
-        self.lock().reserve(rows, particles);
+    /// Makes room for so many equations, and so many things that they move.
+    pub fn reserve(&mut self, rows: usize, moved: usize) {
+        self.lock().reserve(rows, moved);
     }
 
     /// Lends the scratch.
@@ -28,10 +29,16 @@ impl Pool {
     }
 }
 
+impl fmt::Debug for Pool {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("Pool")
+    }
+}
+
 impl Clone for Pool {
     fn clone(&self) -> Self {
         let (mut pool, own) = (Self::default(), self.lock());
-        pool.reserve(own.rows.capacity(), own.vectors.capacity());
+        pool.reserve(own.rows.capacity(), own.weights.capacity());
         pool
     }
 }

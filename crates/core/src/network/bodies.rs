@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use nalgebra::Vector3;
 
 use super::Network;
+use crate::constraints::Turning;
 use crate::elements::Finish;
 use crate::elements::force::Carried;
 use crate::error::Error;
@@ -54,8 +55,8 @@ impl Network {
     /// [`Rotation`] writes.
     ///
     /// # Errors
-    /// A particle does not exist, belongs to another body already, is pinned, held by a constraint
-    /// or in a sheet.
+    /// A particle does not exist, belongs to another body already, is pinned or in a
+    /// sheet.
     pub fn add_body(&mut self, body: Body) -> Result<(), Error> {
         self.check_particle(body.center())?;
         if body.points().end > self.particles() {
@@ -63,10 +64,10 @@ impl Network {
         }
         for i in body.points() {
             let in_sheet = self.sheets().any(|sheet| sheet.particles().contains(&i));
-            if i == body.center() || self.body_of(i).is_some() || in_sheet || self.is_held(i) {
+            if i == body.center() || self.body_of(i).is_some() || in_sheet {
                 return Err(Error::Invalid(format!(
-                    "particle {i} cannot be a point of a body: it is a centre, in a sheet, held, \
-                     or a point already"
+                    "particle {i} cannot be a point of a body: it is a centre, in a sheet, or a \
+                     point already"
                 )));
             }
             self.check_led(i)?;
@@ -82,6 +83,9 @@ impl Network {
         }
         self.uniform_inverse_mass = None;
         self.bodies.push(body);
+        if self.is_constrained() {
+            self.renew_constraints()?;
+        }
         self.renew_contact();
         self.scratch.reserve(self.particles());
         Ok(())
@@ -203,7 +207,8 @@ impl Network {
                     let mass = self.masses[k % n];
                     *f += mass * gravity[k / n] - if mass > 0.0 { drag * v } else { 0.0 };
                 }
-                self.hold(t, x, v, f);
+                let bodies = |k: usize, f: &[f64]| self.turning(k, y, terms, x, f);
+                self.hold(t, [x, v], bodies, f);
             }
             run(x, v, f)
         })
@@ -219,10 +224,6 @@ impl Network {
         x: &[f64],
         f: &[f64],
     ) -> Wrench {
-        let row = |a: &[f64], i: usize| {
-            let n = a.len() / 3;
-            Vector3::new(a[i], a[n + i], a[2 * n + i])
-        };
         let center = row(x, body.center());
         let mut wrench = Wrench {
             force: row(f, body.center()),
@@ -239,6 +240,29 @@ impl Network {
         wrench
     }
 
+    /// How body k turns, and the acceleration of its centre (m/s2), under the forces f, with y and
+    /// all points at x.
+    fn turning(
+        &self,
+        k: usize,
+        y: &[f64],
+        terms: Terms,
+        x: &[f64],
+        f: &[f64],
+    ) -> (Turning, Vector3<f64>) {
+        let (body, rotation) = (&self.bodies[k], self.rotation(k, y));
+        let moving = body.moving(&rotation);
+        let wrench = self.wrench(body, &rotation, terms, x, f);
+        let turning = Turning {
+            center: row(x, body.center()),
+            rotation: moving.rotation,
+            spin: moving.spin,
+            acceleration: moving.angular_acceleration(&body.inertia(), wrench.torque),
+            inverse_inertia: body.inertia().map(|moment| 1.0 / moment),
+        };
+        (turning, wrench.force * self.inverse_masses[body.center()])
+    }
+
     /// Rate (1/s) at which drag takes from the motion of a body.
     fn decay(&self, body: &Body) -> f64 {
         self.carried().drag / self.masses[body.center()]
@@ -251,6 +275,12 @@ impl Network {
             *a = self.inverse_masses[k % n] * f;
         }
     }
+}
+
+/// The row of particle i.
+fn row(a: &[f64], i: usize) -> Vector3<f64> {
+    let n = a.len() / 3;
+    Vector3::new(a[i], a[n + i], a[2 * n + i])
 }
 
 impl Rigid for Network {

@@ -3,30 +3,24 @@
 use nalgebra::Vector3;
 
 use super::Network;
-use crate::constraints::Constraint;
+use crate::constraints::{Constraint, Constraints, Turning};
 use crate::elements::{Attraction, Element};
 use crate::error::Error;
 use crate::path::Path;
+use crate::rigid::Body;
 
 impl Network {
     /// Adds a constraint, which is held by forces: a state that breaks it is drawn back to it.
     ///
     /// # Errors
-    /// There is no such particle, or it is a point of a rigid body; both ends of a rod are the
-    /// same; or a number makes no sense.
+    /// There is no such particle; both ends of a rod are the same; or a number makes no sense.
     pub fn add_constraint(&mut self, constraint: Constraint) -> Result<(), Error> {
         let (first, second) = constraint.ends();
         self.check_particle(first)?;
         self.check_particle(second.unwrap_or(first))?;
-        for i in [first, second.unwrap_or(first)] {
-            if self.is_carried(i) {
-                return Err(Error::Invalid(format!(
-                    "a constraint cannot hold particle {i}, a point of a rigid body: join the \
-                     body by a spring, or hold its centre"
-                )));
-            }
-        }
-        self.constraints.add(constraint)
+        let (bodies, masses) = (&self.bodies, &self.masses);
+        self.constraints
+            .add(constraint, |i| carrier(bodies, masses, i))
     }
 
     /// The constraints, their directions of length 1.
@@ -90,15 +84,58 @@ impl Network {
         !self.constraints.all().is_empty()
     }
 
-    /// Adds the forces of the constraints, if there are any, to all others.
-    pub(super) fn hold(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        if self.is_constrained() {
-            let pin = |i: usize| {
-                let pin = self.pins_of(i..i + 1).first();
-                pin.map_or_else(Vector3::zeros, |pin| pin.path.at(t).acceleration)
-            };
-            self.constraints
-                .add_forces(&self.inverse_masses, pin, [x, v], f);
+    /// Adds the constraints anew: other bodies carry what they hold.
+    pub(super) fn renew_constraints(&mut self) -> Result<(), Error> {
+        let mut constraints = Constraints::default();
+        constraints.set_baumgarte_frequency(self.constraints.baumgarte_frequency())?;
+        for constraint in self.constraints.all() {
+            constraints.add(*constraint, |i| carrier(&self.bodies, &self.masses, i))?;
+        }
+        self.constraints = constraints;
+        Ok(())
+    }
+
+    /// Adds the forces of the constraints, if there are any, to all others, where there are no rigid
+    /// bodies: positions and velocities alone do not say how these turn.
+    pub(super) fn hold_particles(&self, t: f64, state: [&[f64]; 2], f: &mut [f64]) {
+        if self.bodies.is_empty() {
+            self.hold(t, state, |_, _| unreachable!("there are no bodies"), f);
         }
     }
+
+    /// Adds the forces of the constraints, if there are any, to all others. `bodies` gives how a
+    /// body turns and the acceleration of its centre, under given forces.
+    pub(super) fn hold(
+        &self,
+        t: f64,
+        [x, v]: [&[f64]; 2],
+        bodies: impl Fn(usize, &[f64]) -> (Turning, Vector3<f64>),
+        f: &mut [f64],
+    ) {
+        if !self.is_constrained() {
+            return;
+        }
+        let motion = |i: usize, f: &[f64]| {
+            let (n, w) = (self.particles(), self.inverse_masses[i]);
+            let centered = || self.bodies.iter().position(|body| body.center() == i);
+            let acceleration = if w == 0.0 {
+                let pin = self.pins_of(i..i + 1).first();
+                pin.map_or_else(Vector3::zeros, |pin| pin.path.at(t).acceleration)
+            } else if let Some(k) = centered() {
+                bodies(k, f).1
+            } else {
+                Vector3::new(f[i], f[n + i], f[2 * n + i]) * w
+            };
+            (w, acceleration)
+        };
+        self.constraints
+            .add_forces(motion, |k, f| bodies(k, f).0, [x, v], f);
+    }
+}
+
+/// Centre and number of the body that carries particle i.
+fn carrier(bodies: &[Body], masses: &[f64], i: usize) -> Option<(usize, usize)> {
+    let carried = masses[i] == 0.0;
+    let k = carried.then(|| bodies.iter().position(|body| body.points().contains(&i)))??;
+    Some((bodies[k].center(), k))
 }

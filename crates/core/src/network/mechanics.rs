@@ -159,7 +159,7 @@ impl Mechanics for Network {
 
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.evaluate(&self.at(t, x, v), f, &self.finish(Terms::AllForces));
-        self.hold(t, x, v, f);
+        self.hold_particles(t, [x, v], f);
     }
 
     fn accelerations(&self, t: f64, x: &[f64], v: &[f64], a: &mut [f64]) {
@@ -214,7 +214,7 @@ impl Splitting for Network {
     /// All forces but gravity and drag, which are in the drift, unless there are constraints.
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
         self.evaluate(&self.at(t, x, v), f, &self.finish(Terms::KickForces));
-        self.hold(t, x, v, f);
+        self.hold_particles(t, [x, v], f);
     }
 
     fn kick_reads_velocity(&self) -> bool {

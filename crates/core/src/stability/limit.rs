@@ -48,14 +48,14 @@ pub fn tenfold_time(h: f64) -> f64 {
 }
 
 /// Largest steps of a method with which no mode grows, and with which none grows tenfold; all
-/// shorter steps are as good. Modes without a restoring force are left out: they fall or buckle
-/// with any method. `None` if no mode is left.
+/// shorter steps are as good. Modes without a restoring force are left out, and those that grow by
+/// themselves: they fall, buckle or flutter with any method. `None` if no mode is left.
 ///
 /// # Errors
 /// The method does not support a mechanical system with drag and damping as in these modes.
 pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Error> {
     let mut limit: Option<Limit> = None;
-    for (k, mode) in modes.iter().enumerate().filter(|(_, m)| m.stiffness > 0.0) {
+    for (k, mode) in modes.iter().enumerate().filter(|(_, m)| m.returns()) {
         let mut growth = Growth::new(method, *mode)?;
         // Rate of the fastest motion, by stiffness or by damping.
         let rate = mode.frequency().max(mode.drag + mode.damping);

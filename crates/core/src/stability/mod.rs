@@ -31,6 +31,10 @@ pub use rest::{RestState, observe_at_rest, rest};
 pub use search::{Edge, Observation};
 pub use spectrum::{LargestMode, spectrum};
 
+/// Rate of growth, over the frequency, that differences of forces may show of a mode that does not
+/// grow.
+const ROUNDING: f64 = 1e-6;
+
 /// Mode of motion x'' = -stiffness x - (drag + damping) x'.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mode {
@@ -57,6 +61,12 @@ impl Mode {
     #[must_use]
     pub fn frequency(&self) -> f64 {
         self.stiffness.max(0.0).sqrt()
+    }
+
+    /// Whether it has a restoring force and does not grow by itself, but for rounding.
+    #[must_use]
+    pub fn returns(&self) -> bool {
+        self.stiffness > 0.0 && self.drag + self.damping >= -ROUNDING * self.frequency()
     }
 
     /// Both eigenvalues as [re, im] (1/s).

@@ -173,7 +173,7 @@ impl Motion {
         for mode in self
             .modes
             .iter()
-            .filter(|m| m.stiffness > 0.0 && expected.is_finite())
+            .filter(|m| m.returns() && expected.is_finite())
         {
             moving.push(Growth::new(method, *mode)?);
         }

@@ -302,3 +302,17 @@ fn a_scene_of_any_shape_has_a_spectrum() {
     let tall = scene_with_grid("cloth", 60, 4);
     assert!(spectrum(tall.model.system(), 0.0, &tall.state)[0].frequency() > 0.0);
 }
+
+#[test]
+fn what_grows_by_itself_limits_no_step() {
+    let falling = Mode::of_eigenvalue(0.3, 2.0);
+    let swinging = Mode::of_eigenvalue(-0.1, 50.0);
+    // What differences of forces make of a motion without damping.
+    let rounded = Mode::of_eigenvalue(1e-9, 50.0);
+    assert!(!falling.returns() && swinging.returns() && rounded.returns());
+    for method in integrators::METHODS.iter().filter(|m| !m.positions_only) {
+        let of = |modes: &[Mode]| largest_step(method, modes).unwrap().map(|limit| limit.step);
+        assert_eq!(of(&[swinging, falling]), of(&[swinging]), "{}", method.name);
+        assert_eq!(of(&[falling]), None);
+    }
+}

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use a3_core::rigid::ROTATION;
-use a3_core::{Network, Touch, Vector3};
+use a3_core::{Network, ParticleSystem, Touch, Vector3};
 
 use super::assembly::Assembly;
 use super::mesh_cloth::LoadedMesh;
@@ -82,6 +82,8 @@ pub(super) fn build(
         state.resize(first + ROTATION, 0.0);
         rotation.write(&mut state[first..]);
     }
+    // Puts the points of bodies to their places.
+    network.hold(0.0, &mut state);
     for rod in assembly.rods {
         at("", network.add_constraint(rod))?;
     }

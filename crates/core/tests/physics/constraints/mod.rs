@@ -1,6 +1,7 @@
 //! Constraints hold to rounding, forces that hold them do no work, and methods keep their orders
 //! with them.
 
+mod bodies;
 mod limits;
 mod motion;
 

@@ -127,13 +127,21 @@ fn every_explicit_method_keeps_its_order() {
     }
 }
 
-/// C'' = -ks C - kd C' to rounding for every rod of a long moving chain that violates its
-/// constraints.
+/// C'' = -ks C - kd C' to rounding for every rod of chains that violate their constraints: of few
+/// rods, of many, and of many of which some are given twice, so that no factorisation serves.
 #[test]
 fn accelerations_are_what_the_constraints_ask_for() {
-    let rods = 40;
-    let (network, mut y) = chain(rods);
-    let n = rods + 1;
+    for (rods, doubled) in [(5, 0), (40, 0), (1000, 0), (40, 7)] {
+        let (mut network, y) = chain(rods);
+        for k in 0..doubled {
+            network.add_constraint(rod(5 * k, 5 * k + 1, 0.5)).unwrap();
+        }
+        accelerations_fit(&network, y);
+    }
+}
+
+fn accelerations_fit(network: &Network, mut y: Vec<f64>) {
+    let n = network.particles();
     for (k, y) in y.iter_mut().enumerate().filter(|(k, _)| k % n > 0) {
         *y += 0.1 * (17.0 * k as f64).sin();
     }

@@ -1,0 +1,198 @@
+//! A constraint, and its equations in a state.
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, positive};
+
+/// Nearer than this, in radii, to the centre of a circle or a sphere there is no way out of it to
+/// be told.
+const CENTER: f64 = 1e-12;
+
+/// A constraint on the positions of one or two particles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Constraint {
+    /// A particle stays at a point.
+    Point {
+        /// The particle.
+        particle: usize,
+        /// The point (m).
+        position: Vector3<f64>,
+    },
+    /// A particle slides along a straight line.
+    Line {
+        /// The particle.
+        particle: usize,
+        /// A point of the line (m).
+        point: Vector3<f64>,
+        /// Direction, of any length but 0.
+        direction: Vector3<f64>,
+    },
+    /// A particle slides along a circle: a bead on a wire.
+    Circle {
+        /// The particle.
+        particle: usize,
+        /// Centre (m).
+        center: Vector3<f64>,
+        /// Normal of the circle's plane, of any length but 0.
+        normal: Vector3<f64>,
+        /// Radius (m).
+        radius: f64,
+    },
+    /// A particle slides over a sphere, and does not leave it.
+    Sphere {
+        /// The particle.
+        particle: usize,
+        /// Centre (m).
+        center: Vector3<f64>,
+        /// Radius (m).
+        radius: f64,
+    },
+    /// Two particles stay as far from one another: a rigid rod without mass.
+    Rod {
+        /// Particle at one end.
+        i: usize,
+        /// Particle at the other end.
+        j: usize,
+        /// Length (m).
+        length: f64,
+    },
+}
+
+impl Constraint {
+    /// Its particle, and the other one of a rod.
+    #[must_use]
+    pub fn ends(&self) -> (usize, Option<usize>) {
+        match *self {
+            Self::Point { particle, .. }
+            | Self::Line { particle, .. }
+            | Self::Circle { particle, .. }
+            | Self::Sphere { particle, .. } => (particle, None),
+            Self::Rod { i, j, .. } => (i, Some(j)),
+        }
+    }
+
+    /// The same constraint with directions of length 1, or an error if its numbers make no sense.
+    pub(super) fn checked(self) -> Result<Self, Error> {
+        match self {
+            Self::Point { position, .. } => finite("a constraint's point", position)?,
+            Self::Line { point, .. } => finite("a point of a line", point)?,
+            Self::Circle { center, radius, .. } => {
+                finite("the centre of a circle", center)?;
+                positive("the radius of a circle", radius)?;
+            }
+            Self::Sphere { center, radius, .. } => {
+                finite("the centre of a sphere", center)?;
+                positive("the radius of a sphere", radius)?;
+            }
+            Self::Rod { i, j, length } => {
+                positive("the length of a rod", length)?;
+                if i == j {
+                    return Err(Error::Invalid(format!(
+                        "a rod needs two different particles, not {i} twice"
+                    )));
+                }
+            }
+        }
+        let mut unit = self;
+        if let Self::Line { direction: u, .. } | Self::Circle { normal: u, .. } = &mut unit {
+            let length = u.norm();
+            positive("the length of a direction", length)?;
+            *u /= length;
+        }
+        Ok(unit)
+    }
+
+    /// Visits its equations, always as many, where its first particle is at x and moves with v;
+    /// those of a rod relative to its second particle.
+    pub(super) fn equations(
+        &self,
+        x: Vector3<f64>,
+        v: Vector3<f64>,
+        mut visit: impl FnMut(Equation),
+    ) {
+        match *self {
+            Self::Point { position, .. } => {
+                for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+                    visit(Equation::plane(axis, x - position));
+                }
+            }
+            Self::Line {
+                point, direction, ..
+            } => {
+                for normal in normals(direction) {
+                    visit(Equation::plane(normal, x - point));
+                }
+            }
+            Self::Circle {
+                center,
+                normal,
+                radius,
+                ..
+            } => {
+                let within = |a: Vector3<f64>| a - normal * normal.dot(&a);
+                visit(Equation::plane(normal, x - center));
+                visit(Equation::distance(within(x - center), within(v), radius));
+            }
+            Self::Sphere { center, radius, .. } => {
+                visit(Equation::distance(x - center, v, radius));
+            }
+            Self::Rod { length, .. } => visit(Equation::distance(x, v, length)),
+        }
+    }
+}
+
+/// An equation C = 0 in a state.
+pub(super) struct Equation {
+    /// Gradient J by the position of the first particle.
+    pub gradient: Vector3<f64>,
+    /// Error C (m).
+    pub value: f64,
+    /// Change J' v of the gradient (m/s2).
+    pub bend: f64,
+}
+
+impl Equation {
+    /// normal . x = 0
+    fn plane(normal: Vector3<f64>, x: Vector3<f64>) -> Self {
+        Self {
+            gradient: normal,
+            value: normal.dot(&x),
+            bend: 0.0,
+        }
+    }
+
+    /// |x| = radius
+    fn distance(x: Vector3<f64>, v: Vector3<f64>, radius: f64) -> Self {
+        let distance = x.norm();
+        let (gradient, bend) = if distance > CENTER * radius {
+            let outwards = x / distance;
+            let across = v - outwards * outwards.dot(&v);
+            (outwards, across.norm_squared() / distance)
+        } else {
+            (Vector3::zeros(), 0.0)
+        };
+        Self {
+            gradient,
+            value: distance - radius,
+            bend,
+        }
+    }
+}
+
+/// Two unit vectors, at right angles to a third and to one another.
+fn normals(direction: Vector3<f64>) -> [Vector3<f64>; 2] {
+    let mut axis = Vector3::zeros();
+    axis[direction.iamin()] = 1.0;
+    let first = direction.cross(&axis).normalize();
+    [first, direction.cross(&first)]
+}
+
+fn finite(what: &str, a: Vector3<f64>) -> Result<(), Error> {
+    if a.iter().all(|a| a.is_finite()) {
+        return Ok(());
+    }
+    let [x, y, z] = a.into();
+    Err(Error::Invalid(format!(
+        "{what} must be three finite numbers, not ({x}, {y}, {z})"
+    )))
+}
