@@ -147,8 +147,8 @@ pub trait Linearized: Mechanics {
     /// the matrix of an implicit step is then positive definite.
     fn couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling));
 
-    /// Whether [`couplings`](Self::couplings) are all couplings. If not, implicit methods refuse the
-    /// system.
+    /// Whether [`couplings`](Self::couplings) are all couplings. If not, implicit methods refuse
+    /// the system.
     fn lists_all_couplings(&self) -> bool {
         true
     }

@@ -10,8 +10,8 @@ use super::files::{beside, read};
 /// Length of the files of a scene's meshes and of their buffers, all together (bytes).
 pub const LONGEST: u64 = 64 << 20;
 
-/// The triangles or tetrahedra of all objects in a file. `left` is the length of the files that may still be
-/// read.
+/// The triangles or tetrahedra of all objects in a file. `left` is the length of the files that may
+/// still be read.
 pub fn load(path: &Path, left: &mut u64) -> Result<Mesh, String> {
     let extension = path.extension().and_then(|e| e.to_str());
     let extension = extension.map(str::to_lowercase);

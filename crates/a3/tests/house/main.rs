@@ -1,5 +1,6 @@
-//! The rules of the house: no file of more than 400 lines, no circle of imports between the modules
-//! of a crate, and a map in ARCHITECTURE.md that names every room and none that is not there.
+//! The rules of the house: no file of more than 400 lines, no comment of more than 100 columns, no
+//! circle of imports between the modules of a crate, and a map in ARCHITECTURE.md that names every
+//! room and none that is not there.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -13,6 +14,7 @@ use imports::Crate;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const MOST_LINES: usize = 400;
+const MOST_COLUMNS: usize = 100;
 
 /// All files below a folder whose names end so, in order.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
@@ -63,6 +65,21 @@ fn no_file_is_longer_than_400_lines() {
         })
         .collect();
     assert!(long.is_empty(), "{long:#?}");
+}
+
+/// The formatter breaks code, but no comments.
+#[test]
+fn no_comment_is_wider_than_100_columns() {
+    let mut wide = vec![];
+    for path in rust_files() {
+        for (k, line) in fs::read_to_string(&path).unwrap().lines().enumerate() {
+            let is_comment = line.trim_start().starts_with("//");
+            if is_comment && line.chars().count() > MOST_COLUMNS {
+                wide.push(format!("{}:{}", path.display(), k + 1));
+            }
+        }
+    }
+    assert!(wide.is_empty(), "{wide:#?}");
 }
 
 #[test]

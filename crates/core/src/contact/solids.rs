@@ -61,8 +61,8 @@ pub(super) struct Arm {
 }
 
 impl Solid {
-    /// A body at the end of a step between these ends, and its rotation vector in the step (rad) and
-    /// the angular velocities at both ends (rad/s).
+    /// A body at the end of a step between these ends, and its rotation vector in the step (rad)
+    /// and the angular velocities at both ends (rad/s).
     pub fn new(
         body: &Body,
         inverse_mass: f64,

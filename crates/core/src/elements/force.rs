@@ -40,8 +40,8 @@ pub(crate) struct Cost {
     pub price: f64,
 }
 
-/// Price of gathering the couplings of springs, in evaluations of them. It was measured on cloth and
-/// on chains.
+/// Price of gathering the couplings of springs, in evaluations of them. It was measured on cloth
+/// and on chains.
 pub(crate) const GATHERING: f64 = 4.0;
 
 /// A force of a network. Matrices of positions, velocities and forces are n x 3, column-major;

@@ -109,8 +109,8 @@ impl Tangent {
         std::array::from_fn(|part| a * a * k[part] + a * c[part])
     }
 
-    /// Visits the ends i and j of each coupling and its 3 x 3 block B in A, row by row: -B is in the
-    /// rows of i and the columns of j.
+    /// Visits the ends i and j of each coupling and its 3 x 3 block B in A, row by row: -B is in
+    /// the rows of i and the columns of j.
     pub fn blocks(&self, mut visit: impl FnMut(usize, usize, [f64; 9])) {
         for (c, [iso, along]) in self.axial.iter().zip(&self.weights) {
             let [x, y, z] = c.direction;

@@ -95,8 +95,8 @@ impl Network {
         Ok(())
     }
 
-    /// Adds the forces of the constraints, if there are any, to all others, where there are no rigid
-    /// bodies: positions and velocities alone do not say how these turn.
+    /// Adds the forces of the constraints, if there are any, to all others, where there are no
+    /// rigid bodies: positions and velocities alone do not say how these turn.
     pub(super) fn hold_particles(&self, t: f64, state: [&[f64]; 2], f: &mut [f64]) {
         if self.bodies.is_empty() {
             self.hold(t, state, |_, _| unreachable!("there are no bodies"), f);

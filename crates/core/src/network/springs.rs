@@ -123,8 +123,8 @@ impl Network {
         self.scale_springs(factor, factor.sqrt())
     }
 
-    /// Makes every spring and solid so many times as stiff, and so many times as damped, and likewise
-    /// the fluid: the square of its speed of sound, and its viscosity.
+    /// Makes every spring and solid so many times as stiff, and so many times as damped, and
+    /// likewise the fluid: the square of its speed of sound, and its viscosity.
     ///
     /// # Errors
     /// The factor of the stiffness is not a finite number above 0, or that of the damping not one
@@ -138,8 +138,8 @@ impl Network {
         Ok(())
     }
 
-    /// Takes over the springs, the solids and the fluid of another network of the same particles. Those that have broken here
-    /// stay broken.
+    /// Takes over the springs, the solids and the fluid of another network of the same particles.
+    /// Those that have broken here stay broken.
     ///
     /// # Errors
     /// The other has not as many particles.

@@ -4,9 +4,9 @@
 //! motion by one part alone is a turn about that axis at a constant rate, which is computed
 //! exactly. Turns by half a step about the first two axes, by a whole one about the third, and
 //! again by half a step in reverse order are symplectic, reversible, keep the angular momentum to
-//! the bit, and are of order 2 (Dullweber, Leimkuhler, `McLachlan`, *Symplectic splitting methods for
-//! rigid body molecular dynamics*, 1997). Nine such turns by the shares of [`SHARES`] are of order
-//! 6. A body with equal moments turns about one axis, exactly.
+//! the bit, and are of order 2 (Dullweber, Leimkuhler, `McLachlan`, *Symplectic splitting methods
+//! for rigid body molecular dynamics*, 1997). Nine such turns by the shares of [`SHARES`] are of
+//! order 6. A body with equal moments turns about one axis, exactly.
 
 use nalgebra::{Quaternion, Vector3};
 

@@ -219,8 +219,8 @@ impl Simulation {
     }
 
     /// The point on the way of particle i to `target` up to which no spring of its own and no edge
-    /// of a tetrahedron is stretched too far, and no rod stretched or squeezed. A spring or rod that is already may not become
-    /// worse.
+    /// of a tetrahedron is stretched too far, and no rod stretched or squeezed. A spring or rod
+    /// that is already may not become worse.
     fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
         let way = target - from;
         let network = || self.model.network().into_iter();

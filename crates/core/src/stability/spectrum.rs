@@ -20,7 +20,8 @@ const DENSE: usize = 300;
 /// For a linearised mechanical system they come from Lanczos's method on the mass-normalised
 /// stiffness, each with the damping of its own shape. Constraints add the mode in which their
 /// errors decay. For a small first-order system the modes come from the eigenvalues of its
-/// Jacobian. For any other system there are none. A mode of negative stiffness buckles.
+/// Jacobian, by what f reads: not by what rigid bodies carry. For any other system there are none.
+/// A mode of negative stiffness buckles.
 #[must_use]
 pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let mut modes = match system.mechanics().and_then(Mechanics::linearized) {
@@ -31,8 +32,7 @@ pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
             modes.extend(of_constraints(mechanics));
             modes
         }
-        None if y.len() <= DENSE => of_jacobian(system, t, y),
-        None => vec![],
+        None => of_jacobian(system, t, y),
     };
     modes.sort_by(|a, b| b.stiffness.total_cmp(&a.stiffness));
     modes
@@ -230,18 +230,22 @@ fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
 /// Modes of a first-order system: one for each real eigenvalue and each conjugate pair of the
 /// Jacobian, which is computed by central differences.
 fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
-    let n = y.len();
-    let mut jacobian = DMatrix::zeros(n, n);
-    let (mut at, mut above, mut below) = (y.to_vec(), vec![0.0; n], vec![0.0; n]);
-    for j in 0..n {
+    let carried = |k: &usize| system.rigid().is_some_and(|rigid| rigid.is_carried(*k));
+    let unknowns: Vec<usize> = (0..y.len()).filter(|k| !carried(k)).collect();
+    if unknowns.len() > DENSE {
+        return vec![];
+    }
+    let mut jacobian = DMatrix::zeros(unknowns.len(), unknowns.len());
+    let (mut at, mut above, mut below) = (y.to_vec(), vec![0.0; y.len()], vec![0.0; y.len()]);
+    for (column, &j) in unknowns.iter().enumerate() {
         let h = 1e-6 * y[j].abs().max(1.0);
         at[j] = y[j] + h;
         system.eval_f(t, &at, &mut above);
         at[j] = y[j] - h;
         system.eval_f(t, &at, &mut below);
         at[j] = y[j];
-        for i in 0..n {
-            jacobian[(i, j)] = (above[i] - below[i]) / (2.0 * h);
+        for (row, &i) in unknowns.iter().enumerate() {
+            jacobian[(row, column)] = (above[i] - below[i]) / (2.0 * h);
         }
     }
     if jacobian.iter().any(|a| !a.is_finite()) {

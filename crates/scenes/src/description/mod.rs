@@ -29,8 +29,8 @@ pub use rigid::{PartSpec, RigidBody};
 /// N and rad.
 ///
 /// Particles are numbered through all bodies: those of cloths come first, then those of jellies,
-/// meshes, solids, chains, single particles and rigid bodies, and last those of fluids, each followed by its
-/// tank's walls.
+/// meshes, solids, chains, single particles and rigid bodies, and last those of fluids, each
+/// followed by its tank's walls.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Description {

@@ -28,7 +28,8 @@ pub struct RigidBody {
     pub velocity: Option<Triple>,
     /// Angular velocity (rad/s), along the axis about which it turns.
     pub spin: Option<Triple>,
-    /// Distance up to which its surface repels others (m); a fiftieth of its smallest part if not given.
+    /// Distance up to which its surface repels others (m); a fiftieth of its smallest part if not
+    /// given.
     #[serde(default)]
     pub thickness: Option<f64>,
     /// Coefficient of Coulomb friction; 0 if not given.

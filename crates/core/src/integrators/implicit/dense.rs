@@ -1,5 +1,5 @@
-//! Implicit stages of a small system without masses, or of rigid bodies, by Newton's method with the Jacobian J from
-//! central differences.
+//! Implicit stages of a small system without masses, or of rigid bodies, by Newton's method with
+//! the Jacobian J from central differences.
 
 use super::{CLOSE, MOST, Newton, norm};
 use crate::error::Error;
