@@ -225,3 +225,31 @@ fn every_method_swings_a_bar_or_refuses_it() {
         }
     }
 }
+
+/// A rod without a length is as long as its ends are apart, where the body has turned them to.
+#[test]
+fn rods_of_a_scene_end_where_bodies_begin() {
+    let scene = crate::common::described(
+        "gravity = [0, -9.81, 0]
+        [particles]
+        positions = [[0.6, 0.5, 0]]
+        mass = 1
+        pin = [{ particles = [0] }]
+        [[body]]
+        parts = [{ capsule = [1.2, 0.05] }]
+        rotation = [0, 0, 1.5707963267948966]
+        at = [0, -0.3, 0]
+        mass = 0.2
+        [[constraint]]
+        rod = [0, 3]",
+    );
+    let network = scene.model.network().unwrap();
+    let Constraint::Rod { length, .. } = network.constraints()[0] else {
+        panic!("a rod")
+    };
+    let [left, right] = [(-0.6f64 - 0.6), 0.0].map(|x| x.hypot(0.8));
+    assert!(
+        (length - left).abs().min((length - right).abs()) < 1e-12,
+        "{length}"
+    );
+}
