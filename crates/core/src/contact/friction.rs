@@ -13,7 +13,9 @@ use crate::geometry::{PairKind, weighted};
 /// The most passes of friction between surfaces that the contact force keeps apart.
 const FRICTION_PASSES: usize = 20;
 
-/// Share of the most that friction takes of a velocity below which a slip counts as none.
+/// Share of the most that friction takes of a velocity below which a slip counts as none, so that
+/// passes may end before they converge. Only its displacement is taken back: the velocity stays,
+/// and grows if it is the beginning of a slide.
 const STUCK: f64 = 1e-4;
 
 /// Share of the most that friction takes of a displacement below which it counts as none.
