@@ -1,6 +1,5 @@
 //! Long runs, with a progress bar on the terminal.
 
-use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use a3_core::{Error, Simulation};
@@ -68,42 +67,33 @@ pub fn march(
     Ok(frame(simulation))
 }
 
-/// A bar that is shown at once, for work in any unit.
-pub struct Bar {
-    drawn: ProgressBar,
-    expected: Cell<f64>,
-    done: Cell<f64>,
-}
+/// A bar that is shown at once, for work in any unit. Several threads may advance it.
+pub struct Bar(ProgressBar);
 
 impl Bar {
     /// A bar for so much work.
     pub fn new(expected: f64) -> Self {
         let bar = new_bar();
         bar.enable_steady_tick(Duration::from_millis(250));
-        Self {
-            drawn: bar,
-            expected: Cell::new(expected),
-            done: Cell::new(0.0),
-        }
+        let bar = Self(bar);
+        bar.expect(expected);
+        bar
     }
 
     /// Notes that so much more work is done.
     pub fn advance(&self, work: f64) {
-        self.done.set(self.done.get() + work);
-        self.drawn
-            .set_position((1000.0 * self.done.get() / self.expected.get()) as u64);
+        self.0.inc(parts(work));
     }
 
     /// Sets how much work there is in all, of which none is done yet.
     pub fn expect(&self, work: f64) {
-        self.expected.set(work);
-        self.done.set(0.0);
-        self.drawn.set_position(0);
+        self.0.set_length(parts(work));
+        self.0.set_position(0);
     }
 
     /// Takes the bar off the terminal while something else is written.
     pub fn pause<T>(&self, write: impl FnOnce() -> T) -> T {
-        self.drawn.suspend(write)
+        self.0.suspend(write)
     }
 
     /// Writes a warning to stderr.
@@ -113,18 +103,23 @@ impl Bar {
 
     /// Estimates the time that is left from here on.
     pub fn start(&self) {
-        self.drawn.reset_eta();
+        self.0.reset_eta();
     }
 
     /// Shows what is being done.
     pub fn say(&self, what: String) {
-        self.drawn.set_message(what);
+        self.0.set_message(what);
     }
 
     /// Takes the bar away.
     pub fn clear(&self) {
-        self.drawn.finish_and_clear();
+        self.0.finish_and_clear();
     }
+}
+
+/// Work in the smallest parts that a bar counts.
+fn parts(work: f64) -> u64 {
+    (1e6 * work) as u64
 }
 
 /// A bar on stderr. Where that is no terminal, nothing is drawn.

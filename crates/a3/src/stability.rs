@@ -9,6 +9,7 @@ use a3_core::stability::{
 };
 use a3_core::{Error, Method, Scene};
 use a3_plot::{Region, StabilityRegions};
+use rayon::prelude::*;
 
 use crate::chart::{describe, methods, style, write_picture};
 use crate::cli::Stability;
@@ -49,21 +50,17 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     bar.say("the state of rest and its modes ".into());
     let hanging = rest(&scene).map_err(Failure::run)?;
     bar.advance(1.0);
-    let mut rows = vec![];
-    let count = methods.len();
-    for (k, method) in methods.into_iter().enumerate() {
-        let say = |what: &str| bar.say(format!("{} {what}, {} of {count} ", method.name, k + 1));
+    // Nothing is timed here, so methods may be measured beside one another.
+    let rows = methods.into_par_iter().map(|method| {
         let row = measure(method, &motion, hanging.as_ref(), |what| {
-            say(what);
+            bar.say(format!("{} {what} ", method.name));
             bar.advance(if what == STAGES[0] { 0.0 } else { 1.0 });
         });
-        let row = row.map_err(Failure::run)?;
         bar.advance(1.0);
-        if !interrupt::go_on() {
-            break;
-        }
-        rows.push(row);
-    }
+        row.map(|row| interrupt::go_on().then_some(row))
+    });
+    let rows: Vec<_> = rows.collect::<Result<_, _>>().map_err(Failure::run)?;
+    let rows: Vec<MethodLimits> = rows.into_iter().flatten().collect();
     bar.clear();
     if rows.is_empty() {
         return Err(nothing());

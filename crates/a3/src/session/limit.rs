@@ -17,11 +17,9 @@ const IDLE: u32 = 50;
 const MOST_NUMBERS: usize = 300;
 /// Simulated time (s) for which a step was seen to hold before it is said to hold.
 const HOLDING: f64 = 10.0;
-/// Most work of the runs that try steps, in evaluations times particles, after which a step counts
+/// Most [work](a3_core::Model::work) of the runs that try steps, after which a step counts
 /// as holding: the same on every machine, so that the step that is named is the same too.
 const MOST_WORK: f64 = 8e6;
-/// What an evaluation with its guard costs where surfaces touch, over one of springs alone.
-const TOUCHING: f64 = 100.0;
 
 /// The largest stable step for the fastest motion of a run, estimated every now and then.
 #[derive(Default)]
@@ -109,12 +107,7 @@ fn would_hold(run: &Simulation, modes: &[Mode]) -> Option<f64> {
     // Never fails for a method in METHODS.
     let limit = largest_step(run.method(), modes).ok().flatten()?;
     let mut step = rounded(0.9 * limit.step.min(LARGEST_STEP));
-    let touches = run
-        .model()
-        .network()
-        .is_some_and(|network| network.contact_layer().is_some());
-    let price = run.particles() as f64 * if touches { TOUCHING } else { 1.0 };
-    let mut left = MOST_WORK / price;
+    let mut left = MOST_WORK / run.model().work();
     while left > 0.0 && !holds(run, step, &mut left) {
         step = rounded(0.6 * step);
     }

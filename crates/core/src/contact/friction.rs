@@ -1,12 +1,14 @@
 //! Contacts of pairs as the guard changes them: impulses along the normal, and Coulomb friction.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::candidates::Candidates;
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::repulsion::Pair;
-use super::solids::{Arm, Field, Solid};
+use super::solids::{Arm, Field, SAME, Solid};
 use super::surface::Surface;
 use crate::geometry::{PairKind, weighted};
 
@@ -19,7 +21,10 @@ const FRICTION_PASSES: usize = 20;
 const STUCK: f64 = 1e-4;
 
 /// Share of the most that friction takes of a displacement below which it counts as none.
-const STILL: f64 = 1e-13;
+const STILL: f64 = 1e-10;
+
+/// Number of contacts of two bodies, the last ones, among which one at the same point is looked for.
+const LAST: usize = 32;
 
 /// What impulses move.
 #[derive(Clone, Copy)]
@@ -101,11 +106,30 @@ impl Contact {
     /// The relative vector of the closest points.
     fn relative(&self, field: &Field) -> Vector3<f64> {
         let relative = weighted(&self.weights, &self.points.map(|i| field[i as usize]));
-        let arms = self
-            .rigid
-            .iter()
-            .flat_map(|rigid| rigid.arms.iter().flatten());
-        arms.fold(relative, |relative, arm| relative + arm.roll(field))
+        self.arms()
+            .fold(relative, |sum, arm| sum + arm.beyond_points(field))
+    }
+
+    /// The arms at rigid bodies.
+    fn arms(&self) -> impl Iterator<Item = &Arm> {
+        let arms = self.rigid.as_ref().map(|rigid| rigid.arms.iter());
+        arms.into_iter().flatten().flatten()
+    }
+
+    /// The arms, if both sides are rigid bodies.
+    fn both_arms(&self) -> Option<[Arm; 2]> {
+        let [first, second] = self.rigid.as_ref()?.arms;
+        Some([first?, second?])
+    }
+
+    /// Whether impulses at this contact do the same to two rigid bodies as those at another of
+    /// theirs.
+    fn is_at(&self, other: &Self) -> bool {
+        let arms = self.both_arms().zip(other.both_arms());
+        arms.is_some_and(|(own, others)| {
+            let mut both = own.iter().zip(&others);
+            (self.normal - other.normal).norm() < SAME && both.all(|(a, b)| a.is_at(b))
+        })
     }
 
     /// The part across the normal of the relative vector of the closest points.
@@ -128,7 +152,8 @@ impl Contact {
         self.push(change / self.mobility(change), masses, field);
     }
 
-    /// Gives the first primitive an impulse (N s), and the opposite to the second.
+    /// Gives the first primitive an impulse (N s), and the opposite to the second. The points of
+    /// rigid bodies have to be settled.
     fn push(&self, impulse: Vector3<f64>, masses: Masses, field: &mut Field) {
         for (i, weight) in self.points.iter().zip(self.weights) {
             let i = *i as usize;
@@ -136,11 +161,7 @@ impl Contact {
                 field[i] += impulse * (weight * masses.inverse[i]);
             }
         }
-        for arm in self
-            .rigid
-            .iter()
-            .flat_map(|rigid| rigid.arms.iter().flatten())
-        {
+        for arm in self.arms() {
             masses.solids[arm.solid].push(arm, impulse, field);
         }
     }
@@ -161,6 +182,9 @@ impl Contact {
         if let Some(rigid) = &self.rigid {
             let impulse = self.rigid_impulse(rigid, friction, relative);
             self.push(impulse, masses, field);
+            for arm in self.arms() {
+                masses.solids[arm.solid].settle(arm.solid, field);
+            }
             return impulse.norm();
         }
         let slip = relative + self.normal * approach;
@@ -238,14 +262,38 @@ pub(super) fn rub(
         let contact = Contact::new(surface, candidate, weights, normal, motion);
         (contact.inverse_mass > 0.0).then_some((contact, law.skin.friction * force * h))
     };
-    let mut pressed = vec![];
-    candidates.each(0.0, find, |found| pressed.push(found));
-    if pressed.is_empty() {
+    let mut pressed = Pressed::default();
+    candidates.each(0.0, find, |(contact, most)| pressed.add(contact, most));
+    if pressed.contacts.is_empty() {
         return false;
     }
-    hold_pressed(&pressed, h, motion, guarded);
+    hold_pressed(&pressed.contacts, h, motion, guarded);
     motion.cover(surface, candidates);
-    !pressed.is_empty()
+    true
+}
+
+/// Contacts with the most impulse of friction (N s) that each has. Those of two rigid bodies at one
+/// point act as one: where faces lie on one another, dozens of pairs meet at a corner.
+#[derive(Default)]
+struct Pressed {
+    contacts: Vec<(Contact, f64)>,
+    /// Numbers of the contacts of two bodies.
+    between: BTreeMap<[usize; 2], Vec<usize>>,
+}
+
+impl Pressed {
+    fn add(&mut self, contact: Contact, most: f64) {
+        if let Some(arms) = contact.both_arms() {
+            let known = self.between.entry(arms.map(|arm| arm.solid)).or_default();
+            let is_same = |k: &&usize| self.contacts[**k].0.is_at(&contact);
+            if let Some(k) = known.iter().rev().take(LAST).find(is_same) {
+                self.contacts[*k].1 += most;
+                return;
+            }
+            known.push(self.contacts.len());
+        }
+        self.contacts.push((contact, most));
+    }
 }
 
 /// Goes over the contacts until a whole pass leaves each as it is, at most so often.
@@ -314,5 +362,10 @@ fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded
         contact.apply(-hold(displaced, most), masses, moves);
         displaced.norm() <= STILL * most
     });
+    for (k, solid) in solids.iter().enumerate() {
+        for field in [&mut *moves, &mut *v] {
+            solid.settle(k, field);
+        }
+    }
     guarded.impulse += all.iter().map(Vector3::norm).sum::<f64>();
 }

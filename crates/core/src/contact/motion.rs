@@ -92,7 +92,7 @@ impl Motion {
     /// velocities, which are those of the vertices already, get the turns of the bodies.
     pub fn read_solids(&mut self, surface: &Surface, states: [&[f64]; 2]) {
         for field in [&mut self.moves, &mut self.v, &mut self.v0] {
-            field.turns.clear();
+            field.forget_solids();
         }
         self.solids.clear();
         let first = 6 * surface.particles();
@@ -102,9 +102,9 @@ impl Motion {
             let inverse_mass = self.inverse_masses[body.center()];
             let (solid, way, [before, after]) = Solid::new(body, inverse_mass, ends);
             self.solids.push(solid);
-            self.moves.turns.push(way);
-            self.v0.turns.push(before);
-            self.v.turns.push(after);
+            self.moves.add_solid(way);
+            self.v0.add_solid(before);
+            self.v.add_solid(after);
         }
     }
 

@@ -7,12 +7,39 @@ use nalgebra::{Matrix3, Vector3};
 use super::surface::Surface;
 use crate::rigid::{Body, Rotation, rotation_vector, turn};
 
+/// Distance of two points of contact that count as one, over that from the body's centre, and that
+/// of their normals.
+pub(super) const SAME: f64 = 1e-6;
+
 /// A vector for each vertex, and one for each rigid body: displacements (m) and rotation vectors
 /// (rad), or velocities (m/s) and angular velocities (rad/s).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Field {
     pub points: Vec<Vector3<f64>>,
     pub turns: Vec<Vector3<f64>>,
+    /// What impulses changed of each rigid body that the points and the turns do not have yet.
+    changes: Vec<Change>,
+}
+
+/// Change of a rigid body: of its centre, and of its turn.
+#[derive(Clone, Copy, Debug, Default)]
+struct Change {
+    along: Vector3<f64>,
+    turned: Vector3<f64>,
+}
+
+impl Field {
+    /// Forgets all bodies.
+    pub fn forget_solids(&mut self) {
+        self.turns.clear();
+        self.changes.clear();
+    }
+
+    /// Adds a body of that turn.
+    pub fn add_solid(&mut self, turn: Vector3<f64>) {
+        self.turns.push(turn);
+        self.changes.push(Change::default());
+    }
 }
 
 impl Deref for Field {
@@ -123,11 +150,18 @@ impl Solid {
         Matrix3::identity() * self.inverse_mass - cross * self.inverse_inertia * cross
     }
 
-    /// Changes the body's motion by an impulse (N s) at an arm.
+    /// Changes the body's motion by an impulse (N s) at an arm, but for its points, which
+    /// [`settle`](Self::settle) moves.
     pub fn push(&self, arm: &Arm, impulse: Vector3<f64>, field: &mut Field) {
-        let along = impulse * (arm.sign * self.inverse_mass);
-        let turned = self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
-        field.turns[arm.solid] += turned;
+        let change = &mut field.changes[arm.solid];
+        change.along += impulse * (arm.sign * self.inverse_mass);
+        change.turned += self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
+    }
+
+    /// Gives the points of this body, which is number k, what impulses changed of it.
+    pub fn settle(&self, k: usize, field: &mut Field) {
+        let Change { along, turned } = std::mem::take(&mut field.changes[k]);
+        field.turns[k] += turned;
         field.points[self.center] += along;
         for (i, lever) in self.points.clone().zip(&self.arms) {
             field.points[i] += along + turned.cross(lever);
@@ -153,9 +187,16 @@ impl Solid {
 }
 
 impl Arm {
-    /// The part of the velocity of the point of contact that its round body's turn has beyond that
-    /// of the closest point of its simplices.
-    pub fn roll(&self, field: &Field) -> Vector3<f64> {
-        field.turns[self.solid].cross(&self.round) * self.sign
+    /// Whether another arm of the body ends at the same point.
+    pub fn is_at(&self, other: &Self) -> bool {
+        (self.lever - other.lever).norm() < SAME * self.lever.norm()
+    }
+
+    /// The part of the velocity of the point of contact that the points of its body do not have: a
+    /// round body's turn beyond the closest point of its simplices, and what is not settled.
+    pub fn beyond_points(&self, field: &Field) -> Vector3<f64> {
+        let Change { along, turned } = field.changes[self.solid];
+        let roll = field.turns[self.solid].cross(&self.round);
+        (roll + along + turned.cross(&self.lever)) * self.sign
     }
 }

@@ -39,9 +39,9 @@ const PRECISION: f64 = 0.02;
 const ACCURATE: f64 = 0.01;
 /// Number of times at which the error of a run is taken, about.
 const CHECKS: u64 = 100;
-/// Largest number of evaluations times particles of the accurate run; it ends before.
-const TRUE: u64 = 50_000_000;
-/// Largest number of evaluations times particles of the long runs, which are shorter if need be.
+/// Most [work](Model::work) of the accurate run; it ends before.
+const TRUE: f64 = 5e7;
+/// Most [work](Model::work) of the long runs, which are shorter if need be.
 const LONG: f64 = 5e6;
 /// Length of the runs that tell whether a limit is sharp, as a multiple of that of the others.
 const LONGER: u64 = 10;
@@ -105,7 +105,7 @@ impl Motion {
                 return Ok(None);
             }
             let time = k as f64 * interval;
-            let dear = run.work().evaluations * run.particles() as u64 > TRUE;
+            let dear = run.work().evaluations as f64 * scene.model.work() > TRUE;
             if dear || run.advance_to(time).is_err() {
                 motion.predictable = motion.predictable.min(time - interval);
                 break;
@@ -166,7 +166,7 @@ impl Motion {
         method: &'static Method,
         go_on: impl Fn() -> bool,
     ) -> Result<Option<Observation>, Error> {
-        let particles = self.scene.model.particles();
+        let work = self.scene.model.work();
         let limit = largest_step(method, &self.modes)?;
         let expected = limit.map_or(1.0, |limit| limit.step);
         let mut moving = vec![];
@@ -187,7 +187,7 @@ impl Motion {
                 .fold(1.0, f64::max);
             let most = self.most[0] + self.most[1] * swings.min(SWING);
             let count = steps(h, expected);
-            let cost = count as f64 * particles as f64 * f64::from(method.evaluations);
+            let cost = count as f64 * work * f64::from(method.evaluations);
             let affordable = (LONG / cost).max(1.0) as u64;
             let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
             Ok(step_and_look(
@@ -195,7 +195,7 @@ impl Motion {
                 |count| go_on() && run.take_steps(count).is_ok() && level(&run) < most,
             ))
         };
-        let mut seen = bisect(expected, particles, PRECISION, |h| holds(h, 1))?;
+        let mut seen = bisect(expected, work, PRECISION, |h| holds(h, 1))?;
         let sharp = limit.is_none_or(|limit| limit.is_sharp());
         if let Some(Observation { step, edge, .. }) = &mut seen
             && *edge == Edge::Sharp
@@ -205,7 +205,7 @@ impl Motion {
             } else if !holds(*step / NEAR, LONGER)? {
                 // The energy grows slowly at shorter steps: the long runs tell which of them hold.
                 let long = |h| holds(h, LONGER);
-                seen = bisect(*step / NEAR, particles, PRECISION, long)?;
+                seen = bisect(*step / NEAR, work, PRECISION, long)?;
                 if let Some(seen) = &mut seen {
                     seen.edge = Edge::Blurred;
                 }
@@ -229,8 +229,8 @@ impl Motion {
     ) -> Result<Option<f64>, Error> {
         // A step of a small scene, and one that solves equations, cost more than their particles.
         let dear = if method.implicit { 30.0 } else { 1.0 };
-        let particles = self.scene.model.particles().max(20) as f64;
-        let shortest = self.predictable * particles * dear / MOST;
+        let work = self.scene.model.work().max(20.0);
+        let shortest = self.predictable * work * dear / MOST;
         if self.size == 0.0 {
             return Ok(None);
         }

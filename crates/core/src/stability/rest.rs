@@ -50,8 +50,8 @@ pub struct RestState {
 /// State in which the scene comes to rest without wind and swing and without tearing, computed by
 /// implicit Euler with growing steps.
 ///
-/// `None` for a first-order scene, for one that implicit Euler does not support, for one whose pins
-/// or obstacles move, and for one that does not settle.
+/// `None` for a first-order scene, for one that implicit Euler does not support, for one with rigid
+/// bodies, for one whose pins or obstacles move, and for one that does not settle.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -59,7 +59,8 @@ pub fn rest(scene: &Scene) -> Result<Option<RestState>, Error> {
     let Some((implicit, network)) = find("implicit").zip(scene.model.network()) else {
         return Ok(None);
     };
-    if implicit.check(network).is_err() || network.moves_by_itself() {
+    let has_bodies = !network.bodies().is_empty();
+    if implicit.check(network).is_err() || has_bodies || network.moves_by_itself() {
         return Ok(None);
     }
     let mut scene = scene.clone();
@@ -185,7 +186,7 @@ pub fn observe_at_rest(
             held && size.of(dx, dv) < GROWTH * nudge
         }))
     };
-    let mut seen = bisect(guess, still.model.particles(), PRECISION, holds)?;
+    let mut seen = bisect(guess, still.model.work(), PRECISION, holds)?;
     if let Some(seen) = seen
         .as_mut()
         .filter(|s| s.edge == Edge::Sharp && !limit.is_sharp())

@@ -7,7 +7,7 @@ use crate::error::Error;
 const LONGEST: f64 = 1.0;
 /// Longest step that is tried where a limit is expected, as a multiple of that limit.
 const BEYOND: f64 = 32.0;
-/// Largest number of steps times particles of a run, which takes some seconds.
+/// Most work of a run, in steps times that of an evaluation: some seconds.
 pub(super) const MOST: f64 = 2e8;
 /// Number of checks during a run that holds.
 const LOOKS: u64 = 200;
@@ -57,12 +57,12 @@ pub(super) fn step_and_look(steps: u64, mut look: impl FnMut(u64) -> bool) -> bo
 
 /// Largest step (s) for which `holds` returns true, by bisection of its logarithm from the expected
 /// limit (s), infinity if there is none, to a relative precision. `None` if runs would take too
-/// long.
+/// long; `work` is that of an evaluation.
 ///
 /// The limit is open or sharp: whoever calls this finds out whether it is blurred.
 pub(super) fn bisect(
     expected: f64,
-    particles: usize,
+    work: f64,
     precision: f64,
     holds: impl Fn(f64) -> Result<bool, Error>,
 ) -> Result<Option<Observation>, Error> {
@@ -71,7 +71,7 @@ pub(super) fn bisect(
         runs += 1;
         holds(h)
     };
-    let shortest = (HORIZON * particles as f64 / MOST).max(1e-6);
+    let shortest = (HORIZON * work / MOST).max(1e-6);
     let limited = expected.is_finite();
     let longest = if limited { BEYOND * expected } else { LONGEST };
     let guess = expected.min(longest);
