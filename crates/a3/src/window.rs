@@ -11,17 +11,18 @@ use crate::{headless, keep, output, setup, show};
 /// Opens the window on one run.
 pub fn run(options: &WindowOptions) -> Result<(), Failure> {
     let mut session = setup::window(options)?;
+    // The scene, its meshes and their buffers.
+    let files = if options.watch {
+        output::files_read()
+    } else {
+        vec![]
+    };
     if let Some(path) = &options.resume {
         keep::take_up(&mut session, path)?;
     }
     if let Some(i) = options.springs_of {
         output::say(&show::list_springs_of(session.first(), i))?;
     }
-    let files = if options.watch {
-        options.what.scene.files()
-    } else {
-        vec![]
-    };
     open(session, options.look.status, files)
 }
 

@@ -6,36 +6,56 @@ use std::path::Path;
 use a3_scenes::Mesh;
 
 use super::files::{beside, read};
+use super::hash::Hash;
 
 /// Length of the files of a scene's meshes and of their buffers, all together (bytes).
-pub const LONGEST: u64 = 64 << 20;
+const LONGEST: u64 = 64 << 20;
 
-/// The triangles or tetrahedra of all objects in a file. `left` is the length of the files that may
-/// still be read.
-pub fn load(path: &Path, left: &mut u64) -> Result<Mesh, String> {
+/// The files of a scene's meshes and of their buffers, as they are read.
+pub struct Reader {
+    /// Length of the files that may still be read (bytes).
+    left: u64,
+    /// Hash of what was read.
+    pub hash: Hash,
+}
+
+impl Reader {
+    /// Reads the files of a scene so many times.
+    pub fn new(times: u64) -> Self {
+        Self {
+            left: LONGEST * times,
+            hash: Hash::default(),
+        }
+    }
+
+    /// The bytes of a file.
+    fn bytes(&mut self, path: &Path) -> Result<Vec<u8>, String> {
+        let bytes = read(path, LONGEST)?;
+        let left = self.left.checked_sub(bytes.len() as u64);
+        self.left = left.ok_or_else(|| {
+            format!(
+                "the meshes of the scene are larger than {} MiB together",
+                LONGEST >> 20
+            )
+        })?;
+        self.hash.add(bytes.iter().copied());
+        Ok(bytes)
+    }
+}
+
+/// The triangles or tetrahedra of all objects in a file.
+pub fn load(path: &Path, reader: &mut Reader) -> Result<Mesh, String> {
     let extension = path.extension().and_then(|e| e.to_str());
     let extension = extension.map(str::to_lowercase);
     let mesh = match extension.as_deref() {
-        Some("obj") => spend(path, left).and_then(|bytes| Mesh::from_obj(&bytes)),
-        Some("gltf" | "glb") => spend(path, left).and_then(|bytes| {
-            Mesh::from_gltf(&bytes, &mut |uri| spend(&beside(Some(path), uri)?, left))
+        Some("obj") => reader.bytes(path).and_then(|bytes| Mesh::from_obj(&bytes)),
+        Some("gltf" | "glb") => reader.bytes(path).and_then(|bytes| {
+            Mesh::from_gltf(&bytes, &mut |uri| reader.bytes(&beside(Some(path), uri)?))
         }),
-        Some("msh") => spend(path, left).and_then(|bytes| Mesh::from_gmsh(&bytes)),
-        Some("ele") => spend(path, left)
-            .and_then(|ele| Mesh::from_tetgen(&spend(&path.with_extension("node"), left)?, &ele)),
+        Some("msh") => reader.bytes(path).and_then(|bytes| Mesh::from_gmsh(&bytes)),
+        Some("ele") => reader.bytes(path)
+            .and_then(|ele| Mesh::from_tetgen(&reader.bytes(&path.with_extension("node"))?, &ele)),
         _ => Err("a mesh is a file that ends in .obj, .gltf, .glb, .msh or .ele".into()),
     };
     mesh.map_err(|why| format!("{}: {why}", path.display()))
-}
-
-/// The bytes of a file, which are taken from what may be read.
-fn spend(path: &Path, left: &mut u64) -> Result<Vec<u8>, String> {
-    let bytes = read(path, LONGEST)?;
-    *left = left.checked_sub(bytes.len() as u64).ok_or_else(|| {
-        format!(
-            "the meshes of the scene are larger than {} MiB together",
-            LONGEST >> 20
-        )
-    })?;
-    Ok(bytes)
 }

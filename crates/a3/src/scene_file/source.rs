@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use a3_core::contact::Shape;
-use a3_core::{Grid, Method, Network, Scene, Vector3, integrators};
+use a3_core::{Grid, Method, Scene, integrators};
 use a3_scenes::{Description, Setup};
 
 use super::files::{beside, read_text};
+use super::hash::Hash;
 use super::mesh;
 
 /// A scene, by name or in a file.
@@ -21,6 +22,8 @@ pub struct Source {
     pub description: Arc<Description>,
     /// The text of the file, also of a built-in scene.
     text: Arc<str>,
+    /// The hash of the files of its meshes when it was last built.
+    meshes: Arc<AtomicU64>,
 }
 
 impl Source {
@@ -32,6 +35,7 @@ impl Source {
                 path: None,
                 description: Arc::new(entry.description().map_err(|e| e.to_string())?),
                 text: entry.text.into(),
+                meshes: Arc::default(),
             });
         }
         let path = Path::new(typed);
@@ -62,15 +66,18 @@ impl Source {
             path: Some(path.into()),
             description: Arc::new(description),
             text: text.into(),
+            meshes: Arc::default(),
         })
     }
 
     /// Builds the scene, with this grid of its cloth or with its own.
     pub fn build(&self, grid: Option<Grid>) -> Result<Setup, String> {
         // With a grid of its own, a scene is built with both.
-        let mut left = mesh::LONGEST * if grid.is_some() { 2 } else { 1 };
-        let mut mesh = |name: &str| mesh::load(&beside(self.path.as_deref(), name)?, &mut left);
-        self.description.build(grid, &mut mesh).map_err(|fault| {
+        let mut reader = mesh::Reader::new(if grid.is_some() { 2 } else { 1 });
+        let mut mesh = |name: &str| mesh::load(&beside(self.path.as_deref(), name)?, &mut reader);
+        let built = self.description.build(grid, &mut mesh);
+        self.meshes.store(reader.hash.value(), Ordering::Relaxed);
+        built.map_err(|fault| {
             let fault = fault.locate(&self.text);
             match &self.path {
                 Some(_) => place(&self.typed, &fault.to_string()),
@@ -94,47 +101,17 @@ impl Source {
         &self.text
     }
 
-    /// A text by which the scene differs from others: its name, and for a file a hash of its text,
-    /// and of its state and the points of its obstacles, which depend on its meshes.
+    /// A text by which the scene that was last built differs from others: its name, and for a file
+    /// a hash of its text, of the files of its meshes, and of its state.
     pub fn fingerprint(&self, scene: &Scene) -> String {
         if self.path.is_none() {
             return scene.name.clone();
         }
-        let network = scene.model.network().into_iter();
-        let meshes = network.flat_map(Network::obstacles).filter_map(|obstacle| {
-            let Shape::Mesh(mesh) = &obstacle.shape else {
-                return None;
-            };
-            Some(mesh.points())
-        });
-        let points = meshes.flatten().flat_map(Vector3::as_slice);
-        let state = scene.state.iter().chain(points);
-        let state = state.flat_map(|y| y.to_le_bytes());
-        // FNV-1a, which is the same on every platform.
-        let hash = self
-            .text
-            .bytes()
-            .chain(state)
-            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-                (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-            });
-        format!("{} {hash:016x}", scene.name)
-    }
-
-    /// The files on which the scene depends: its own and those of its meshes.
-    pub fn files(&self) -> Vec<PathBuf> {
-        let Description {
-            mesh,
-            obstacle,
-            solid,
-            ..
-        } = &*self.description;
-        let bodies = mesh.iter().map(|mesh| &mesh.file);
-        let solids = solid.iter().filter_map(|solid| solid.file.as_ref());
-        let bodies = bodies.chain(solids);
-        let names = bodies.chain(obstacle.iter().map(|obstacle| &obstacle.file));
-        let meshes = names.filter_map(|name| beside(self.path.as_deref(), name).ok());
-        self.path.iter().cloned().chain(meshes).collect()
+        let mut hash = Hash::default();
+        hash.add(self.text.bytes());
+        hash.add(self.meshes.load(Ordering::Relaxed).to_le_bytes());
+        hash.add(scene.state.iter().flat_map(|y| y.to_le_bytes()));
+        format!("{} {:016x}", scene.name, hash.value())
     }
 }
 

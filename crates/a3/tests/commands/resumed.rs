@@ -120,11 +120,17 @@ fn what_does_not_fit_is_refused_by_name() {
     let folder = folder.path();
     let scene = |mass: &str| {
         let text = format!(
-            "[[chain]]\nparticles = 3\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = {mass}\nstiffness = 50\npin = [{{ particles = [0] }}]\n"
+            "[[chain]]\nparticles = 3\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = {mass}\nstiffness = 50\npin = [{{ particles = [0] }}]\n\
+             [[mesh]]\nfile = \"square.obj\"\ndensity = 1\nstiffness = [1, 1]\n"
         );
         fs::write(folder.join("own.toml"), text).unwrap();
     };
+    let square = |faces: &str| {
+        let points = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\n";
+        fs::write(folder.join("square.obj"), format!("{points}{faces}")).unwrap();
+    };
     scene("1");
+    square("f 1 2 3\nf 1 3 4\n");
     let keep = [
         "--until",
         "0.5",
@@ -156,6 +162,10 @@ fn what_does_not_fit_is_refused_by_name() {
         &["--scene", "own.toml", "--until", "0.4"],
         "at t = 0.5 s already",
     );
+    // The same points in other triangles.
+    square("f 1 2 4\nf 2 3 4\n");
+    refused(&own, "of another scene own");
+    square("f 1 2 3\nf 1 3 4\n");
     scene("2");
     refused(&own, "of another scene own");
     fs::write(folder.join("c.checkpoint"), "{}").unwrap();

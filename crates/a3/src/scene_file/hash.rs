@@ -1,0 +1,25 @@
+//! A hash of bytes, the same on every platform: FNV-1a.
+
+/// Hash of what was added to it.
+#[derive(Clone, Copy)]
+pub struct Hash(u64);
+
+impl Default for Hash {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hash {
+    /// Adds bytes.
+    pub fn add(&mut self, bytes: impl IntoIterator<Item = u8>) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    /// The hash of what was added so far.
+    pub fn value(self) -> u64 {
+        self.0
+    }
+}
