@@ -94,6 +94,7 @@ fn all_within(surface: &Surface, x: &[Vector3<f64>]) -> Vec<(PairKind, [u32; 4])
 /// all pairs that touch on a stretch, each once and in canonical order, and at an instant those
 /// that touch then, whatever its margins.
 #[test]
+#[cfg_attr(miri, ignore = "takes hours there")]
 fn lists_are_complete_and_in_order() {
     let mut random = SplitMix(7);
     let thicknesses = [0.05, 0.15];
@@ -163,6 +164,7 @@ fn lists_are_complete_and_in_order() {
 
 /// Forces on triangles that fly about have the same bits whatever the margins of the list.
 #[test]
+#[cfg_attr(miri, ignore = "takes hours there")]
 fn no_bit_depends_on_the_list() {
     let triangles: Vec<[u32; 3]> = (0..20).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
     let surface = Surface::new(&[skin(0.2); 60], &triangles, &[], &[], &obstacles(), true);

@@ -292,6 +292,7 @@ mod tests {
 
     /// Lists that were made a few small motions ago are as good as new ones.
     #[test]
+    #[cfg_attr(miri, ignore = "takes hours there")]
     fn lists_hold_while_particles_move() {
         let mut x = cloud(800, [0.4; 3]);
         let mut random = SplitMix(3);
