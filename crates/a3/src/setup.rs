@@ -82,6 +82,11 @@ pub fn scene(what: &What) -> Result<Scene, Failure> {
 
 /// The scene with its presentation and its defaults.
 fn build(what: &What) -> Result<Setup, Failure> {
+    if let Some(count) = what.threads {
+        // Only the first scene of a command sets it; the others have it.
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
+        let _ = threads.build_global();
+    }
     what.scene.build(what.grid).map_err(Failure::usage)
 }
 

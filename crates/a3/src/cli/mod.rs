@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::scene_file::Source;
 use values::{
     beginning, budget, error, factor, grid, horizon, particle, pause, picture_size, rate, size,
-    solver, solver_and_step, step, until,
+    solver, solver_and_step, step, threads, until,
 };
 
 pub use explain::explain;
@@ -89,6 +89,9 @@ pub struct What {
     /// Keep surfaces from passing through one another and themselves
     #[arg(long)]
     pub self_collision: bool,
+    /// Number of threads; by default that of the processors, or `RAYON_NUM_THREADS`
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<usize>,
 }
 
 #[derive(Args)]

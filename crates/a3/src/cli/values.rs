@@ -10,6 +10,9 @@ use crate::bounds::{LARGEST_STEP, SMALLEST_STEP, TOLERANCES};
 /// Beginning of the error for a name that no solver has.
 pub const UNKNOWN_SOLVER: &str = "the solvers are";
 
+/// Largest number of threads.
+const MOST_THREADS: usize = 1024;
+
 /// A number, or a fraction such as 1/60.
 fn number(text: &str) -> Option<f64> {
     match text.split_once('/') {
@@ -43,6 +46,16 @@ pub fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), Str
 pub fn particle(text: &str) -> Result<usize, String> {
     text.parse()
         .map_err(|_| "a particle is a whole number from 0, such as 12".into())
+}
+
+/// A number of threads.
+pub fn threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count) if (1..=MOST_THREADS).contains(&count) => Ok(count),
+        _ => Err(format!(
+            "the number of threads is a whole number from 1 to {MOST_THREADS}, such as 4"
+        )),
+    }
 }
 
 /// The end of a run (s).

@@ -102,10 +102,12 @@ pub fn write_with(
 
 /// A PNG of pixels: rows from the top, with eight bits each of red, green, blue and opacity.
 pub fn png(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, Failure> {
-    use image::ImageEncoder;
     let mut bytes = vec![];
-    image::codecs::png::PngEncoder::new(&mut bytes)
-        .write_image(pixels, width, height, image::ExtendedColorType::Rgba8)
-        .map_err(Failure::run)?;
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_compression(png::Compression::Fast);
+    let written = encoder.write_header();
+    let written = written.and_then(|mut picture| picture.write_image_data(pixels));
+    written.map_err(Failure::run)?;
     Ok(bytes)
 }

@@ -53,7 +53,8 @@ pub fn load(path: &Path, reader: &mut Reader) -> Result<Mesh, String> {
             Mesh::from_gltf(&bytes, &mut |uri| reader.bytes(&beside(Some(path), uri)?))
         }),
         Some("msh") => reader.bytes(path).and_then(|bytes| Mesh::from_gmsh(&bytes)),
-        Some("ele") => reader.bytes(path)
+        Some("ele") => reader
+            .bytes(path)
             .and_then(|ele| Mesh::from_tetgen(&reader.bytes(&path.with_extension("node"))?, &ele)),
         _ => Err("a mesh is a file that ends in .obj, .gltf, .glb, .msh or .ele".into()),
     };

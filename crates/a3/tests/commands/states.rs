@@ -4,7 +4,7 @@ use std::fs;
 use std::process::Stdio;
 
 use crate::common::{a3, command, gpu_is_missing, simulate, text};
-use crate::refused;
+use crate::{complaint, refused};
 use serde_json::Value;
 
 #[test]
@@ -240,5 +240,30 @@ fn a_blow_up_writes_nothing_and_says_where() {
     let output = a3(folder.path(), &words);
     if !gpu_is_missing(&output) {
         assert!(refused(folder.path(), &words, 1).contains("blew up"));
+    }
+}
+
+/// So many threads run, and none of them changes a bit.
+#[test]
+#[cfg(target_os = "linux")]
+fn threads_are_as_many_as_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |threads: &str| {
+        let words = "simulate r 0.001 --scene mit --grid 80x80 --until 0.2 -o x.json --threads";
+        let words: Vec<&str> = words.split(' ').chain([threads]).collect();
+        let mut run = command(folder.path(), &words).spawn().unwrap();
+        let tasks = format!("/proc/{}/task", run.id());
+        let mut most = 0;
+        while run.try_wait().unwrap().is_none() {
+            most = fs::read_dir(&tasks).map_or(most, |tasks| most.max(tasks.count()));
+        }
+        (most, fs::read(folder.path().join("x.json")).unwrap())
+    };
+    let ((few, one), (many, eight)) = (run("1"), run("8"));
+    assert!(few < 8 && many == few + 7, "{few} and {many} threads");
+    assert!(one == eight);
+    for none in ["0", "-1", "many", "1e3"] {
+        let line = complaint(&a3(folder.path(), &["--threads", none]), 2);
+        assert!(line.contains("a whole number from 1 to 1024"), "{line}");
     }
 }

@@ -14,6 +14,9 @@ const LOST: f64 = 100.0;
 /// picture of the scene.
 const GOOD: f64 = 3.0;
 
+/// Numbers that are looked at without a branch.
+const BLOCK: usize = 64;
+
 impl Simulation {
     /// The cause of a blow-up, if a particle of y is lost.
     pub(super) fn lost(&self, y: &[f64]) -> Option<Cause> {
@@ -79,10 +82,8 @@ impl Simulation {
         // By blocks without a branch inside. Written so that NaN, which compares as false, is lost
         // too.
         let near = |block: Range<usize>| block.fold(true, |near, i| near & (squared(i) <= limit));
-        if !(0..n)
-            .step_by(64)
-            .all(|start| near(start..n.min(start + 64)))
-        {
+        let mut blocks = (0..n).step_by(BLOCK);
+        if !blocks.all(|start| near(start..n.min(start + BLOCK))) {
             let particle = (0..n).find(|&i| !near(i..i + 1))?;
             let distance = squared(particle).sqrt();
             return Some(if distance.is_finite() {
@@ -91,8 +92,8 @@ impl Simulation {
                 Cause::NotFinite { particle }
             });
         }
-        // Multiplying by zero leaves zero, unless the number is not finite.
-        if v.iter().map(|v| v * 0.0).sum::<f64>() == 0.0 {
+        let finite = |block: &[f64]| block.iter().fold(true, |finite, v| finite & v.is_finite());
+        if v.chunks(BLOCK).all(finite) {
             return None;
         }
         v.iter()

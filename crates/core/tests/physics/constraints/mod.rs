@@ -37,6 +37,23 @@ pub fn rod(i: usize, j: usize, length: f64) -> Constraint {
     Constraint::Rod { i, j, length }
 }
 
+/// C'' = -ks C - kd C' for every rod of a network in a state [x | v] with these accelerations.
+pub fn rods_are_held(network: &Network, [x, v, a]: [&[f64]; 3], most: f64) {
+    let n = network.particles();
+    let at = |values: &[f64], i: usize| vector(values[i], values[n + i], values[2 * n + i]);
+    for constraint in network.constraints() {
+        let Constraint::Rod { i, j, length } = *constraint else {
+            panic!("a rod")
+        };
+        let [x, v, a] = [x, v, a].map(|values| at(values, i) - at(values, j));
+        let r = x.norm();
+        let (c, speed) = (r - length, x.dot(&v) / r);
+        let second = (v.dot(&v) + x.dot(&a) - speed * speed) / r;
+        let off = second + 100.0 * c + 20.0 * speed;
+        assert!(off.abs() < most, "rod {i} to {j}: {off:e} m/s2");
+    }
+}
+
 pub fn wire() -> Constraint {
     Constraint::Circle {
         particle: 0,
