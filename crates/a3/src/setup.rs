@@ -120,7 +120,7 @@ fn simulate(
             .map(|m| m.name);
         let serve = serve.collect::<Vec<_>>().join(", ");
         return Err(Failure::usage(format!(
-            "scene {}: {e}; use one of {serve}",
+            "scene {}: {e}; these serve it: {serve}",
             scene.name
         )));
     }

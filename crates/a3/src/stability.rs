@@ -42,15 +42,13 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     output::check(&path, &["svg", "png"])?;
     let nothing = || Failure::Interrupted("interrupted before anything was measured".into());
     let bar = Bar::new(2.0 + 3.0 * methods.len() as f64);
-    bar.say("the true motion ".into());
+    bar.say("the true motion and the state of rest ".into());
     let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
-    let motion = Motion::of(&scene, interrupt::go_on).map_err(Failure::run)?;
-    let motion = motion.ok_or_else(nothing)?;
-    bar.advance(1.0);
-    bar.say("the state of rest and its modes ".into());
-    let hanging = rest(&scene).map_err(Failure::run)?;
-    bar.advance(1.0);
     // Nothing is timed here, so methods may be measured beside one another.
+    let (motion, hanging) = rayon::join(|| Motion::of(&scene, interrupt::go_on), || rest(&scene));
+    let motion = motion.map_err(Failure::run)?.ok_or_else(nothing)?;
+    let hanging = hanging.map_err(Failure::run)?;
+    bar.advance(2.0);
     let rows = methods.into_par_iter().map(|method| {
         let row = measure(method, &motion, hanging.as_ref(), |what| {
             bar.say(format!("{} {what} ", method.name));

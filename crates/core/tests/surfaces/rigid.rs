@@ -85,6 +85,44 @@ fn a_box_sticks_or_slides() {
     assert!(moved < 1e-5, "{moved}");
 }
 
+/// Where two equal faces lie on one another, dozens of pairs meet at each corner. Together they
+/// hold a box up to the slope that Coulomb says.
+#[test]
+fn a_box_sticks_to_another_or_slides() {
+    let text = |degrees: f64| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        format!(
+            "gravity = [{}, {}, 0]
+            floor = {{ height = 0, friction = 1, thickness = 0.01 }}
+            [[body]]
+            parts = [{{ box = [0.5, 0.5, 0.5] }}]
+            at = [0, 0.2555, 0]
+            mass = 60
+            [[body]]
+            parts = [{{ box = [0.5, 0.5, 0.5] }}]
+            at = [0, 0.764, 0]
+            mass = 30
+            friction = 0.4",
+            9.81 * sin,
+            -9.81 * cos
+        )
+    };
+    let moved = |degrees: f64, from: f64, to: f64| {
+        let mut run = run(&text(degrees), "verlet", Control::Step(1e-3));
+        let mut apart = |time: f64| {
+            run.advance_to(time).unwrap();
+            center(&run, 1)[0].x - center(&run, 0)[0].x
+        };
+        let before = apart(from);
+        apart(to) - before
+    };
+    // The slope of friction 0.4 is 21.8 degrees.
+    let stuck = moved(18.0, 0.5, 1.5);
+    assert!(stuck.abs() < 1e-3, "{stuck} m");
+    let slid = moved(25.0, 0.2, 0.5);
+    assert!((0.02..0.2).contains(&slid), "{slid} m");
+}
+
 #[test]
 fn a_stack_of_five_boxes_stands() {
     let setup = a3_scenes::find("boxes").unwrap().build(None).unwrap();

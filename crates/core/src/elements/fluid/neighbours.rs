@@ -268,6 +268,7 @@ mod tests {
 
     /// In a flat cloud, a long one that is wound around the torus, and a crowd.
     #[test]
+    #[cfg_attr(miri, ignore = "takes hours there")]
     fn the_grid_finds_what_all_pairs_show() {
         let far = [1e300, f64::NAN, 0.0];
         for (n, size) in [

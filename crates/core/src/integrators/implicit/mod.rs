@@ -60,7 +60,7 @@ pub(super) fn check(system: &dyn ParticleSystem) -> Result<(), Error> {
     if count > dense::LARGEST {
         return Err(Error::Invalid(format!(
             "implicit methods serve rigid bodies and systems without masses up to a state of {} \
-             numbers, and this has {count}: use an explicit one",
+             numbers, and this has {count}: use an explicit solver",
             dense::LARGEST,
         )));
     }
