@@ -7,9 +7,14 @@ use super::pane::Pane;
 use super::reference::ReferenceRun;
 use super::state::Session;
 
-/// Real time that a frame may spend on steps. Steps that do not fit are left out: all runs are then
-/// slower than real time. Tests run several at a time and must not depend on it.
-const BUDGET: Duration = Duration::from_millis(if cfg!(test) { 400 } else { 12 });
+/// Real time that a frame may spend on steps: at least so much, and at least this share of the real
+/// time that the frame stands for, so that steps may take as long as a slow display. Steps that do
+/// not fit are left out: all runs are then slower than real time. Tests run several at a time and
+/// must not depend on it.
+const BUDGET: (Duration, f64) = (
+    Duration::from_millis(if cfg!(test) { 400 } else { 12 }),
+    0.5,
+);
 /// Real time that a frame may spend on the reference: at least so much, and at least this share of
 /// the real time that the frame stands for. Tests run several at a time and must not depend on it.
 const REFERENCE_BUDGET: (Duration, f64) =
@@ -17,7 +22,7 @@ const REFERENCE_BUDGET: (Duration, f64) =
 /// Real time that a key may take.
 pub(super) const KEY_BUDGET: Duration = Duration::from_millis(200);
 /// The most real time (s) that a frame makes up for, however long the last one took.
-const LONGEST_FRAME: f64 = 0.1;
+const LONGEST_FRAME: f64 = 0.3;
 /// Real time between two looks at the states while they move.
 const READING_INTERVAL: Duration = Duration::from_millis(100);
 
@@ -27,10 +32,13 @@ impl Session {
     pub fn tick(&mut self, real: f64) {
         if self.animated() {
             let real = real.min(LONGEST_FRAME);
-            let (least, share) = REFERENCE_BUDGET;
-            let reference_budget = least.max(Duration::from_secs_f64(share * real));
+            let budget = |(least, share): (Duration, f64)| {
+                let share = Duration::from_secs_f64(share * real);
+                share.max(least)
+            };
             let simulated = real * 0.5f64.powi(self.readings.slowness);
-            self.advance(self.clock + simulated, BUDGET, reference_budget);
+            let until = self.clock + simulated;
+            self.advance(until, budget(BUDGET), budget(REFERENCE_BUDGET));
         } else {
             self.settle();
         }
