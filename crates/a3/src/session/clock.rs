@@ -168,7 +168,7 @@ mod tests {
         let mut session = session(&["t", "0.01", "--scene", "chain"]);
         session.tick(300.0);
         assert!(session.panes[0].simulation.time() <= LONGEST_FRAME + 1e-9);
-        assert!(session.panes[0].simulation.steps() <= 10);
+        assert!(session.panes[0].simulation.steps() <= 30);
     }
 
     #[test]
