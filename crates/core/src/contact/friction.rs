@@ -23,7 +23,7 @@ const STUCK: f64 = 1e-4;
 /// Share of the most that friction takes of a displacement below which it counts as none.
 const STILL: f64 = 1e-10;
 
-/// Number of contacts of two bodies, the last ones, among which one at the same point is looked for.
+/// Number of contacts of two bodies, the last ones, among which one at the same point is sought.
 const LAST: usize = 32;
 
 /// What impulses move.
