@@ -99,6 +99,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "takes hours there")]
     fn a_region_outside_a_disc_is_a_frame_with_a_hole() {
         let outside = |[x, y]: Point| (1.0 - x).hypot(y) >= 1.0;
         let found = outlines(outside, Rect::new(-2.0, -3.0, 4.0, 3.0), 120);

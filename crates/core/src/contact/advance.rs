@@ -24,8 +24,11 @@ const LEAST: f64 = 1e-10;
 /// Share of the sum of the magnitudes of all coordinates below which a distance counts as rounding.
 const ROUNDING: f64 = 1e-13;
 
+/// Share of that sum by which rounding alone may change a distance.
+const ROUNDED: f64 = 1e-15;
+
 /// Share of the gap, or of what a pair has above it if that is less, by which a hit stays farther
-/// apart than the gap; and share of its distance that a pair may lose which begins nearer.
+/// apart than the gap; and share of its room that a pair may lose which begins nearer.
 const NEAR: f64 = 0.1;
 
 /// Number of planes after which the time reached so far is given.
@@ -33,17 +36,18 @@ const PLANES: usize = 20_000;
 
 /// Share of a step at which a pair comes as near as `gap`, or `None` if it never does.
 ///
-/// The points (m) move linearly from `from` to `from + moves` (m); `gap` (m, at least 0) includes
-/// the radii of the primitives. `None` is a certificate: the pair is farther apart than the gap at
+/// The points (m) move linearly from `from` to `from + moves` (m). Of round primitives, `radius` is
+/// the sum of the radii (m), which `gap` (m, at least 0) includes. `None` is a certificate: the pair is farther apart than the gap at
 /// every time of the step. `Some(t)` is conservative: the pair is so until t, and then apart by the
 /// gap and at most a tenth of it, or a tenth of what it had above the gap at first; by more only if
 /// 20 000 planes do not decide. Both allow for 1e-10 m and about 1e-12 of the largest coordinate,
 /// more than the rounding here and in the sums `from + moves`.
 ///
 /// A pair that begins nearer than the gap is hit at once, `Some(0.0)`, if its closest points
-/// approach. If they do not, the pair may part, slide and turn: it is only hit where it would come
-/// nearer than nine tenths of its distance at first. A pair that begins touching is hit whatever
-/// its motion, because the sides on which its primitives belong are not known.
+/// approach. If they do not, the pair may part, slide and turn: it is only hit where it would lose
+/// a tenth of its room, the distance that it has above the radius. A pair that begins touching is
+/// hit whatever its motion, because the sides on which its primitives belong are not known; of
+/// round primitives they are, so that these may part, and lose up to 3e-10 m where they turn.
 ///
 /// Edges and triangles may be degenerate. A [`PairKind::VertexFloor`] is apart by the height of the
 /// vertex above the floor, with its sign; if it begins lower than the gap, it is hit if it sinks.
@@ -53,26 +57,31 @@ pub fn time_of_impact(
     kind: PairKind,
     from: &[Vector3<f64>; 4],
     moves: &[Vector3<f64>; 4],
+    radius: f64,
     gap: f64,
 ) -> Option<f64> {
-    let magnitude: f64 = from.iter().chain(moves).map(|x| x.abs().sum()).sum();
+    let magnitude = magnitude(from) + magnitude(moves);
     if !magnitude.is_finite() {
         return Some(0.0);
     }
     let tolerance = LEAST + ROUNDING * magnitude;
+    // Approach (m) in the step from which on a pair is hit that begins nearer than the gap.
+    let approach = |room: f64| tolerance.min(NEAR * room.max(0.0)) + ROUNDED * magnitude;
     if kind == PairKind::VertexFloor {
         let (height, rise) = (from[0].y - from[1].y, moves[0].y - moves[1].y);
-        return sinks_to(gap, height, rise, tolerance);
+        return sinks_to(gap, height, rise, tolerance, approach(height - radius));
     }
     // As point 0 sees it: exact where coordinates are large and distances small.
     let (from, moves) = (from.map(|x| x - from[0]), moves.map(|u| u - moves[0]));
     let mut plane = Plane::between(kind, &from, &moves);
     let mut least = gap;
     if plane.apart <= gap + 2.0 * tolerance {
-        least = (1.0 - NEAR) * plane.apart;
-        if plane.apart - least <= 2.0 * tolerance || plane.rate < -tolerance {
+        let room = plane.apart - radius;
+        let touches = NEAR * room <= 2.0 * tolerance;
+        if plane.rate < -approach(room) || (touches && radius == 0.0) {
             return Some(0.0);
         }
+        least = plane.apart - (NEAR * room).max(2.0 * tolerance);
     }
     let near = least + tolerance + NEAR * gap.min(plane.apart - least);
     let mut t = 0.0;
@@ -90,12 +99,22 @@ pub fn time_of_impact(
     Some(t)
 }
 
+/// Sum of the magnitudes of all coordinates of points (m).
+fn magnitude(points: &[Vector3<f64>; 4]) -> f64 {
+    points.iter().map(|x| x.abs().sum()).sum()
+}
+
+/// Distance (m) by which rounding alone may change that of primitives with these points.
+pub(super) fn rounded(points: &[Vector3<f64>; 4]) -> f64 {
+    ROUNDED * magnitude(points)
+}
+
 /// Share of a step at which a vertex, whose height above a floor and whose rise in the step are
-/// given (m), comes as low as `gap` (m).
-fn sinks_to(gap: f64, height: f64, rise: f64, tolerance: f64) -> Option<f64> {
+/// given (m), comes as low as `gap` (m). One that begins lower is hit if it sinks by `approach`.
+fn sinks_to(gap: f64, height: f64, rise: f64, tolerance: f64, approach: f64) -> Option<f64> {
     let above = height - gap;
     if above <= 2.0 * tolerance {
-        return (rise < -tolerance.min(NEAR * height.max(0.0))).then_some(0.0);
+        return (rise < -approach).then_some(0.0);
     }
     let near = NEAR * (tolerance + NEAR * gap.min(above));
     (above + rise < near).then(|| (above - near) / -rise)

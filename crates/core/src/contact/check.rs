@@ -6,6 +6,7 @@ use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
+use super::advance::rounded;
 use super::candidates::Stretch;
 use super::exact::crossings;
 use super::layer::{ContactLayer, Scratch};
@@ -124,13 +125,12 @@ impl ContactLayer {
         };
         candidates.cover(surface, &stretch);
         let is_inside = |pair: &&Candidate| {
-            let (offset, radius) = (
-                closest(pair.kind, &pair.of(places)).offset,
-                surface.law(pair.kind, &pair.points).radius,
-            );
+            let (x, radius) = (pair.of(places), surface.radii(pair.kind, &pair.points));
+            let offset = closest(pair.kind, &x).offset;
+            let least = radius - rounded(&x);
             match pair.kind {
-                PairKind::VertexFloor => offset.y < radius,
-                _ => radius > 0.0 && offset.norm() < radius,
+                PairKind::VertexFloor => offset.y < least,
+                _ => radius > 0.0 && offset.norm() < least,
             }
         };
         let inside = candidates.near(surface.nearest()).filter(is_inside);

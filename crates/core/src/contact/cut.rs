@@ -5,15 +5,16 @@
 //! the step. Vertices that are led have their whole way; every other vertex goes no farther than to
 //! its side of the plane, by a share of its displacement. A pair with a plane stays apart however
 //! much its vertices are cut for other pairs, so that every round gives a plane to a pair that had
-//! none, and at worst all pairs have one.
+//! none, and at worst all pairs have one. The points of rigid bodies go along arcs, so that a plane
+//! may not be enough for them: a pair that comes too near in spite of it has its shares halved.
 
 use std::collections::BTreeSet;
 
-use nalgebra::Vector3;
-
+use super::advance::rounded;
 use super::candidates::Candidates;
 use super::listing::Candidate;
 use super::motion::Motion;
+use super::solids::Field;
 use super::surface::Surface;
 use crate::error::Vertex;
 use crate::geometry::{PairKind, closest, weighted};
@@ -28,21 +29,11 @@ pub struct Squeezed {
 /// Scratch of cuts.
 #[derive(Debug, Default)]
 pub(super) struct Cuts {
-    before: Vec<Vector3<f64>>,
+    before: Field,
     shares: Vec<f64>,
 }
 
 impl Cuts {
-    /// Forgets the cuts of another step.
-    pub fn forget(&mut self) {
-        self.shares.clear();
-    }
-
-    /// Share of its displacement that is left to a vertex.
-    pub fn share(&self, vertex: usize) -> f64 {
-        self.shares.get(vertex).copied().unwrap_or(1.0)
-    }
-
     /// Shortens displacements so that no pair comes too near. Returns the number of vertices that
     /// are cut, and the sum of the magnitudes of the momentum that they lose (N s). Displacements
     /// that leave no room stay as they are.
@@ -52,7 +43,7 @@ impl Cuts {
         candidates: &mut Candidates,
         motion: &mut Motion,
     ) -> Result<(usize, f64), Squeezed> {
-        self.before.clone_from(&motion.moves.points);
+        self.before.clone_from(&motion.moves);
         self.shares.clear();
         self.shares.resize(motion.moves.len(), 1.0);
         let mut held = BTreeSet::new();
@@ -62,32 +53,26 @@ impl Cuts {
             let mut new = false;
             for pair in candidates.near(surface.nearest()) {
                 let key = (pair.kind, pair.points);
-                if !held.contains(&key) && motion.impact(surface, pair).is_some() {
-                    held.insert(key);
+                let is_rigid = pair.points.iter().any(|i| surface.solid(*i).is_some());
+                if (held.contains(&key) && !is_rigid) || motion.impact(surface, pair).is_none() {
+                    continue;
+                }
+                if held.insert(key) {
                     new = true;
                     squeezed = squeezed.and(self.hold(surface, pair, motion));
+                } else {
+                    new |= self.halve(surface, pair, motion);
                 }
             }
             if let Err(squeezed) = squeezed {
-                motion.moves.points.clone_from(&self.before);
-                self.forget();
+                motion.moves.clone_from(&self.before);
                 motion.cover(surface, candidates);
                 return Err(squeezed);
             }
             if !new {
                 break;
             }
-            // A rigid body goes as far as its vertex that goes the least far.
-            for solid in &motion.solids {
-                let all = solid.points.clone().chain([solid.center]);
-                let least = all.clone().map(|i| self.shares[i]).fold(1.0, f64::min);
-                all.for_each(|i| self.shares[i] = least);
-            }
-            let moves = motion.moves.points.iter_mut();
-            let all = moves.zip(&self.before).zip(&self.shares);
-            for ((moved, before), share) in all {
-                *moved = before * *share;
-            }
+            self.shorten(motion);
         }
         let (mut vertices, mut lost) = (0, 0.0);
         for (i, share) in self.shares.iter().enumerate() {
@@ -102,6 +87,42 @@ impl Cuts {
             motion.v.turns[k] *= self.shares[solid.center];
         }
         Ok((vertices, lost))
+    }
+
+    /// Gives every vertex its share of its displacement; a rigid body that of its vertex that goes
+    /// the least far.
+    fn shorten(&mut self, motion: &mut Motion) {
+        for solid in &motion.solids {
+            let all = solid.points.clone().chain([solid.center]);
+            let least = all.clone().map(|i| self.shares[i]).fold(1.0, f64::min);
+            all.for_each(|i| self.shares[i] = least);
+        }
+        let moves = motion.moves.points.iter_mut();
+        for ((moved, before), share) in moves.zip(&self.before.points).zip(&self.shares) {
+            *moved = before * *share;
+        }
+        for k in 0..motion.solids.len() {
+            let share = self.shares[motion.solids[k].center];
+            if share < 1.0 {
+                let whole = self.before.turns[k];
+                motion.moves.turns[k] = motion.solids[k].shortened(whole, share);
+                motion.bend(k);
+            }
+        }
+    }
+
+    /// Halves the shares of a pair that comes too near in spite of its plane, and below a
+    /// thousandth makes them 0. Returns whether there was anything to halve.
+    fn halve(&mut self, surface: &Surface, pair: &Candidate, motion: &Motion) -> bool {
+        let mut halved = false;
+        for i in pair.points {
+            let share = &mut self.shares[i as usize];
+            if *share > 0.0 && !motion.is_led(surface, i) {
+                *share = if *share < 1e-3 { 0.0 } else { 0.5 * *share };
+                halved = true;
+            }
+        }
+        halved
     }
 
     /// Cuts the displacements of a pair at the plane between its primitives.
@@ -138,7 +159,7 @@ impl Cuts {
         let [first_all, second_all] = [most(0..first, false), most(first..last, false)];
         let room = distance - kept;
         let free = room - first_led - second_led;
-        if free < 0.0 {
+        if free < -(rounded(&x) + rounded(&moves)) {
             let vertices = [0..first, first..last].map(|mut side| {
                 let k = side.clone().find(|k| led[*k]);
                 surface.vertex(pair.points[k.or(side.next()).unwrap_or(0)])
@@ -151,7 +172,7 @@ impl Cuts {
         let mut second_points = near.weights;
         second_points[..first].fill(0.0);
         let foot = -weighted(&second_points, &x).dot(&normal);
-        let second_end = foot + second_led + free * share;
+        let second_end = foot + second_led + free.max(0.0) * share;
         let first_end = second_end + kept;
         for k in 0..last {
             if led[k] {

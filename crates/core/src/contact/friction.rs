@@ -9,7 +9,7 @@ use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::repulsion::Pair;
 use super::solids::{Arm, Field, SAME, Solid};
-use super::surface::Surface;
+use super::surface::{Law, Surface};
 use crate::geometry::{PairKind, weighted};
 
 /// The most passes of friction between surfaces that the contact force keeps apart.
@@ -22,6 +22,9 @@ const STUCK: f64 = 1e-4;
 
 /// Share of the most that friction takes of a displacement below which it counts as none.
 const STILL: f64 = 1e-10;
+
+/// Share that rigid bodies get back in a step of what they lack of the distance that they keep.
+const RESTORED: f64 = 0.1;
 
 /// Number of contacts of two bodies, the last ones, among which one at the same point is sought.
 const LAST: usize = 32;
@@ -43,6 +46,8 @@ pub(super) struct Contact {
     normal: Vector3<f64>,
     /// The change of their relative velocity along the normal by an impulse along it (1/kg).
     pub inverse_mass: f64,
+    /// Displacement (m) by which the primitives should part in the step.
+    pub wanted: f64,
     rigid: Option<RigidContact>,
 }
 
@@ -70,12 +75,21 @@ impl Contact {
             weights,
             normal,
             inverse_mass: terms.sum(),
+            wanted: 0.0,
             rigid: None,
         };
         if !motion.solids.is_empty() {
             contact.find_arms(surface, candidate.kind, motion);
         }
         contact
+    }
+
+    /// Lets rigid bodies part by a tenth of what they lack of the distance that they should keep.
+    /// Nothing else would give them back what they lose, step by step, where they are pressed.
+    pub fn want(&mut self, law: Law, distance: f64) {
+        if self.rigid.is_some() {
+            self.wanted = RESTORED * (law.most_kept() - distance).max(0.0);
+        }
     }
 
     fn find_arms(&mut self, surface: &Surface, kind: PairKind, motion: &Motion) {
@@ -114,6 +128,11 @@ impl Contact {
     fn arms(&self) -> impl Iterator<Item = &Arm> {
         let arms = self.rigid.as_ref().map(|rigid| rigid.arms.iter());
         arms.into_iter().flatten().flatten()
+    }
+
+    /// Numbers of the rigid bodies that touch.
+    pub fn solids(&self) -> impl Iterator<Item = usize> {
+        self.arms().map(|arm| arm.solid)
     }
 
     /// The arms, if both sides are rigid bodies.
@@ -171,10 +190,11 @@ impl Contact {
         self.relative(field).dot(&self.normal) >= 0.0
     }
 
-    /// Stops an approach, and by friction at most mu times as much of a slip. Returns the impulse's
-    /// magnitude (N s), 0 if there was no approach.
-    pub fn stop(&self, friction: f64, masses: Masses, field: &mut Field) -> f64 {
-        let relative = self.relative(field);
+    /// Stops an approach, so that the primitives part by as much as is wanted, and by friction at
+    /// most mu times as much of a slip. Returns the impulse's magnitude (N s), 0 if there was no
+    /// approach.
+    pub fn stop(&self, friction: f64, wanted: f64, masses: Masses, field: &mut Field) -> f64 {
+        let relative = self.relative(field) - self.normal * wanted;
         let approach = -relative.dot(&self.normal);
         if approach <= 0.0 {
             return 0.0;
@@ -313,6 +333,7 @@ fn pass_until_still<T>(contacts: &[T], mut leaves: impl FnMut(usize, &T) -> bool
 /// displacements, which vanish where the velocities do, and follow them elsewhere.
 fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded: &mut Guarded) {
     let Motion {
+        x0,
         moves,
         v0,
         v,
@@ -363,8 +384,9 @@ fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded
         displaced.norm() <= STILL * most
     });
     for (k, solid) in solids.iter().enumerate() {
-        for field in [&mut *moves, &mut *v] {
-            solid.settle(k, field);
+        solid.settle(k, v);
+        if solid.settle(k, moves) {
+            solid.bend(k, x0, moves);
         }
     }
     guarded.impulse += all.iter().map(Vector3::norm).sum::<f64>();

@@ -87,7 +87,6 @@ impl ContactLayer {
         motion.cover(surface, candidates);
         let mut changed = rub(surface, h, candidates, motion, &mut guarded);
         let mut rounds = 0;
-        cuts.forget();
         while !push_apart(surface, h, candidates, motion, &mut guarded, &mut changed) {
             match cuts.cut(surface, candidates, motion) {
                 Ok(cut) => {
@@ -103,8 +102,7 @@ impl ContactLayer {
             write_back(motion, surface.particles(), y0, y1);
             let rotations = y1[2 * half..].chunks_exact_mut(ROTATION);
             for (k, (solid, numbers)) in motion.solids.iter().zip(rotations).enumerate() {
-                let share = cuts.share(solid.center);
-                let end = solid.end(share, motion.moves.turns[k], motion.v.turns[k]);
+                let end = solid.end(motion.moves.turns[k], motion.v.turns[k]);
                 end.write(numbers);
             }
         }
@@ -219,15 +217,16 @@ fn push(
         inverse: inverse_masses,
         solids,
     };
-    let by_move = contact.stop(friction, masses, moves);
-    let by_speed = contact.stop(friction, masses, v);
+    let by_move = contact.stop(friction, contact.wanted, masses, moves);
+    let by_speed = contact.stop(friction, 0.0, masses, v);
     guarded.impulses += 1;
     guarded.impulse += by_speed.max(by_move / h);
     for i in candidate.points {
         moved[i as usize] |= inverse_masses[i as usize] > 0.0;
-        if let Some(k) = surface.solid(i) {
-            moved[solids[k].points.clone()].fill(true);
-        }
+    }
+    for k in contact.solids() {
+        motion.bend(k);
+        moved[motion.solids[k].points.clone()].fill(true);
     }
 }
 
@@ -243,5 +242,9 @@ fn contact_at(
     let Closest { weights, offset } = closest(candidate.kind, &at);
     let distance = offset.norm();
     let normal = offset / distance;
-    (distance > 0.0).then(|| Contact::new(surface, candidate, weights, normal, motion))
+    (distance > 0.0).then(|| {
+        let mut contact = Contact::new(surface, candidate, weights, normal, motion);
+        contact.want(surface.law(candidate.kind, &candidate.points), distance);
+        contact
+    })
 }

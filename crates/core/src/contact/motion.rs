@@ -108,6 +108,12 @@ impl Motion {
         }
     }
 
+    /// Takes the points of rigid body k to where its rotation has them at the end of the step.
+    /// Impulses move them across their levers, which is right to first order.
+    pub fn bend(&mut self, k: usize) {
+        self.solids[k].bend(k, &self.x0, &mut self.moves);
+    }
+
     /// Whether vertex i of a surface has its way whatever it meets.
     pub fn is_led(&self, surface: &Surface, i: u32) -> bool {
         match surface.solid(i) {
@@ -125,7 +131,7 @@ impl Motion {
             return None;
         }
         let kept = Self::kept(surface, candidate, &x);
-        time_of_impact(candidate.kind, &x, &moves, kept)
+        time_of_impact(candidate.kind, &x, &moves, law.radius, kept)
     }
 
     /// Share of the step, after another one, at which a pair comes too near, if it does.
@@ -133,8 +139,9 @@ impl Motion {
         let (x, moves) = (candidate.of(&self.x0), candidate.of(&self.moves));
         let at = std::array::from_fn(|k| x[k] + moves[k] * time);
         let rest = moves.map(|u| u * (1.0 - time));
+        let law = surface.law(candidate.kind, &candidate.points);
         let kept = Self::kept(surface, candidate, &x);
-        let share = time_of_impact(candidate.kind, &at, &rest, kept)?;
+        let share = time_of_impact(candidate.kind, &at, &rest, law.radius, kept)?;
         Some(time + (1.0 - time) * share)
     }
 

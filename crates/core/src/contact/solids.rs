@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut, Range};
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::surface::Surface;
 use crate::rigid::{Body, Rotation, rotation_vector, turn};
@@ -158,31 +158,58 @@ impl Solid {
         change.turned += self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
     }
 
-    /// Gives the points of this body, which is number k, what impulses changed of it.
-    pub fn settle(&self, k: usize, field: &mut Field) {
+    /// Gives the points of this body, which is number k, what impulses changed of it. Returns
+    /// whether they did.
+    pub fn settle(&self, k: usize, field: &mut Field) -> bool {
         let Change { along, turned } = std::mem::take(&mut field.changes[k]);
         field.turns[k] += turned;
         field.points[self.center] += along;
         for (i, lever) in self.points.clone().zip(&self.arms) {
             field.points[i] += along + turned.cross(lever);
         }
+        along != Vector3::zeros() || turned != Vector3::zeros()
+    }
+
+    /// Takes the points of this body, which is number k and began at x0 (m), to where its rotation
+    /// has them at the end of the step.
+    pub fn bend(&self, k: usize, x0: &[Vector3<f64>], moves: &mut Field) {
+        let by = UnitQuaternion::new_unchecked(turn(moves.turns[k] - self.unguarded[0]));
+        let center = x0[self.center] + moves.points[self.center];
+        for (i, arm) in self.points.clone().zip(&self.arms) {
+            moves.points[i] = center + by * arm - x0[i];
+        }
+    }
+
+    /// The rotation vector of the step (rad) if only that share is made of a step whose rotation
+    /// vector is `turned`.
+    pub fn shortened(&self, turned: Vector3<f64>, share: f64) -> Vector3<f64> {
+        let [start, end] = self.ends.map(|rotation| rotation.q);
+        let whole = rotation_vector(self.orientation(turned), start);
+        self.unguarded[0] + rotation_vector(turn(whole * share) * start, end)
+    }
+
+    /// The orientation at the end of a step with that rotation vector (rad).
+    fn orientation(&self, turned: Vector3<f64>) -> Quaternion<f64> {
+        let (way, q) = (self.unguarded[0], self.ends[1].q);
+        if turned == way {
+            q
+        } else {
+            turn(turned - way) * q
+        }
     }
 
     /// The rotation and angular momentum at the end of the step, whose rotation vector (rad) the
-    /// guard has made `turned`, and whose angular velocity `turning` (rad/s), if only that share of
-    /// the step was made.
-    pub fn end(&self, share: f64, turned: Vector3<f64>, turning: Vector3<f64>) -> Rotation {
-        let [way, spin] = self.unguarded;
-        let [start, mut end] = self.ends;
-        if share < 1.0 {
-            end.q = turn(turned * share) * start.q;
-        } else if turned != way {
-            end.q = turn(turned - way) * end.q;
-        }
+    /// guard has made `turned`, and whose angular velocity `turning` (rad/s).
+    pub fn end(&self, turned: Vector3<f64>, turning: Vector3<f64>) -> Rotation {
+        let spin = self.unguarded[1];
+        let mut momentum = self.ends[1].momentum;
         if turning != spin {
-            end.momentum += self.inertia * (turning - spin);
+            momentum += self.inertia * (turning - spin);
         }
-        end
+        Rotation {
+            q: self.orientation(turned),
+            momentum,
+        }
     }
 }
 

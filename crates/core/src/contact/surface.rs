@@ -53,10 +53,11 @@ impl Law {
         self.radius + KEPT * self.skin.thickness
     }
 
-    /// Least distance of the pair that is kept (m), if it is so far apart already.
+    /// Least distance of the pair that is kept (m), less than what it has at first; what is within
+    /// a round body keeps the distance that it has.
     pub fn kept(&self, distance: f64) -> f64 {
         let room = distance - self.radius;
-        self.radius + (KEPT * self.skin.thickness).min(0.9 * room)
+        self.radius + (KEPT * self.skin.thickness).min(0.9 * room).min(room)
     }
 }
 

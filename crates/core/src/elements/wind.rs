@@ -176,6 +176,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "takes hours there")]
     fn gusts_stay_within_their_bound_and_average_to_the_breeze() {
         let mean = Vector3::new(0.0, 0.0, 2.0);
         let wind = Wind::new(1, mean);

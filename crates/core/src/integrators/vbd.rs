@@ -204,6 +204,7 @@ mod tests {
     use crate::testing::{cloth, residual};
 
     #[test]
+    #[cfg_attr(miri, ignore = "takes hours there")]
     fn many_iterations_are_implicit_euler() {
         let scene = cloth(Grid::new(6, 6).unwrap(), 1e-3);
         let network = scene.model.network().unwrap();

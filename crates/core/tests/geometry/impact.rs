@@ -12,7 +12,7 @@ const GAPS: [f64; 2] = [0.0, 1e-3];
 
 impl Pair {
     fn time_of_impact(&self, gap: f64) -> Option<f64> {
-        time_of_impact(self.kind, &self.from, &self.moves, gap)
+        time_of_impact(self.kind, &self.from, &self.moves, 0.0, gap)
     }
 
     /// Verdict of tight inclusion on whether the pair comes nearer than a distance in a maximum
@@ -131,7 +131,7 @@ fn lifted(heights: [f64; 4]) -> [Vector3<f64>; 4] {
 
 #[test]
 fn what_begins_nearer_than_the_gap_is_held_only_if_it_approaches() {
-    let of = |kind, height, moves| time_of_impact(kind, &above(height), &lifted(moves), 1e-3);
+    let of = |kind, height, moves| time_of_impact(kind, &above(height), &lifted(moves), 0.0, 1e-3);
     for kind in [VertexTriangle, VertexFloor] {
         assert_eq!(of(kind, 5e-4, [0.0; 4]), None);
         assert_eq!(of(kind, 5e-4, [0.1, 0.0, 0.0, 0.0]), None);
@@ -142,6 +142,18 @@ fn what_begins_nearer_than_the_gap_is_held_only_if_it_approaches() {
         let t = of(kind, 0.5, [-1.0, 0.0, 0.0, 0.0]).unwrap();
         assert!((t - 0.49899).abs() < 1e-8, "{t}");
     }
+    // Round primitives that touch may part, and slide.
+    let round = |height: f64, rise: f64| {
+        let moves = lifted([rise, 0.0, 0.0, 0.0]);
+        time_of_impact(VertexTriangle, &above(height), &moves, 0.5, 0.501)
+    };
+    for height in [0.5, 0.5 - 1e-12, 0.5 + 1e-12] {
+        assert_eq!([0.0, 0.1].map(|rise| round(height, rise)), [None; 2]);
+        assert_eq!(round(height, -1e-11), Some(0.0));
+    }
+    // They may lose a tenth of their room, and no tenth of the radius.
+    assert_eq!(round(0.5001, -1e-12), None);
+    assert_eq!(round(0.5001, -1e-4), Some(0.0));
     // Touching: only of a floor it is known which side is up.
     assert_eq!(of(VertexTriangle, 0.0, [0.1, 0.0, 0.0, 0.0]), Some(0.0));
     assert_eq!(of(VertexFloor, 0.0, [0.1, 0.0, 0.0, 0.0]), None);
@@ -156,11 +168,12 @@ fn numbers_that_are_not_finite_are_a_hit() {
     for bad in [f64::NAN, f64::INFINITY] {
         for kind in [VertexTriangle, EdgeEdge, VertexFloor] {
             assert_eq!(
-                time_of_impact(kind, &above(bad), &lifted([0.0; 4]), 1e-3),
+                time_of_impact(kind, &above(bad), &lifted([0.0; 4]), 0.0, 1e-3),
                 Some(0.0)
             );
             let moves = lifted([bad, 0.0, 0.0, 0.0]);
-            assert_eq!(time_of_impact(kind, &above(1.0), &moves, 1e-3), Some(0.0));
+            let hit = time_of_impact(kind, &above(1.0), &moves, 0.0, 1e-3);
+            assert_eq!(hit, Some(0.0));
         }
     }
 }
@@ -174,7 +187,7 @@ fn handcrafted_cases_are_decided_as_in_the_benchmark() {
         let from = from.map(Vector3::from);
         let moves = std::array::from_fn(|i| Vector3::from(to[i]) - from[i]);
         assert_eq!(
-            time_of_impact(kind, &from, &moves, 0.0).is_some(),
+            time_of_impact(kind, &from, &moves, 0.0, 0.0).is_some(),
             hit,
             "{kind:?} {to:?}"
         );

@@ -3,6 +3,8 @@
 use a3_core::{Control, Simulation, Vector3, integrators};
 use a3_scenes::Description;
 
+use crate::pairs::Random;
+
 fn run(text: &str, method: &str, control: Control) -> Simulation {
     let setup = Description::parse(text)
         .and_then(|scene| scene.build(None, &mut |_| unreachable!("no file is named")))
@@ -250,4 +252,54 @@ fn bodies_that_begin_within_one_another_are_named() {
     let made = Simulation::new(setup.scene, method, Control::Step(1e-3));
     let error = made.err().unwrap().to_string();
     assert!(error.contains("body 0 crosses body 1"), "{error}");
+}
+
+/// Boxes, balls and capsules that fall on one another.
+fn heap(seed: u64, bodies: usize) -> String {
+    let mut random = Random(seed);
+    let mut text = "gravity = [0, -9.81, 0]
+        floor = { height = 0, friction = 0.5, thickness = 0.01 }
+        "
+    .to_string();
+    for k in 0..bodies {
+        let [a, b, c, friction] = [(); 4].map(|()| 0.08 + 0.12 * random.unit());
+        let part = match k % 3 {
+            0 => format!("capsule = [{}, {}]", 2.0 * a, 0.6 * b),
+            1 => format!("box = [{}, {}, {}]", 2.0 * a, 2.0 * b, 2.0 * c),
+            _ => format!("ball = {a}"),
+        };
+        let height = 0.35 + 0.52 * k as f64;
+        let [x, z, turned, spin] =
+            [0.15, 0.15, 3.0, 2.0].map(|most| most * (2.0 * random.unit() - 1.0));
+        text += &format!(
+            "[[body]]
+            parts = [{{ {part} }}]
+            rotation = [{turned}, {spin}, 1]
+            density = 1000
+            at = [{x}, {height}, {z}]
+            spin = [{spin}, 1, {turned}]
+            friction = {}
+            ",
+            3.0 * friction
+        );
+    }
+    text
+}
+
+/// Steps of any length, which end wherever a frame is shown, do not press bodies into one another,
+/// however little they approach in each.
+#[test]
+fn no_bodies_of_a_heap_cross() {
+    for seed in 0..3 {
+        let mut run = run(&heap(seed, 10), "dopri5", Control::Tolerance(1e-5));
+        let mut pushed = 0;
+        for frame in 1..=75 {
+            run.advance_to(f64::from(frame) / 60.0).unwrap();
+            let network = run.model().network().unwrap();
+            let crossed = network.crossed(run.time(), network.halves(run.state()).0);
+            assert!(crossed.is_empty(), "{seed}, frame {frame}: {crossed:?}");
+            pushed = run.guarded().impulses;
+        }
+        assert!(pushed > 100, "{seed}: {pushed}");
+    }
 }

@@ -127,8 +127,10 @@ mod tests {
     #[test]
     fn the_pressure_is_that_of_tait() {
         for s in [0.5_f64, 1.0, 1.001, 1.1] {
+            // Powers may be rounded in any way.
             let expected = 1000.0 * 900.0 / 7.0 * (s.powi(7) - 1.0).max(0.0);
-            assert_relative_eq!(WATER.pressure(1000.0 * s), expected, max_relative = 1e-12);
+            let pressure = WATER.pressure(1000.0 * s);
+            assert_relative_eq!(pressure, expected, max_relative = 1e-12, epsilon = 1e-9);
         }
         assert_eq!(WATER.push(700.0), 0.0);
         assert_eq!(WATER.energy(700.0), 0.0);

@@ -243,7 +243,9 @@ mod tests {
     /// The forces by one number at a time, and by every kind of vector that this processor has.
     #[test]
     fn vectors_of_any_length_give_the_same_bits() {
-        for (rows, cols) in [(2, 2), (5, 3), (9, 33), (4, 140), (3, 515), (3, 1050)] {
+        let sizes = [(2, 2), (5, 3), (9, 33), (4, 140), (3, 515), (3, 1050)];
+        let most = if cfg!(miri) { 2 } else { sizes.len() };
+        for (rows, cols) in sizes.into_iter().take(most) {
             for damping_time in [0.0, 0.01] {
                 let grid = Grid::new(rows, cols).unwrap();
                 let sheet = Sheet::new(grid, 0.1, [100.0, 80.0, 30.0], damping_time).unwrap();
