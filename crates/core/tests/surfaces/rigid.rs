@@ -271,7 +271,7 @@ fn heap(seed: u64, bodies: usize) -> String {
         let height = 0.35 + 0.52 * k as f64;
         let [x, z, turned, spin] =
             [0.15, 0.15, 3.0, 2.0].map(|most| most * (2.0 * random.unit() - 1.0));
-        text += &format!(
+        let body = format!(
             "[[body]]
             parts = [{{ {part} }}]
             rotation = [{turned}, {spin}, 1]
@@ -282,6 +282,7 @@ fn heap(seed: u64, bodies: usize) -> String {
             ",
             3.0 * friction
         );
+        text.push_str(&body);
     }
     text
 }
