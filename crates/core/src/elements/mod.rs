@@ -12,6 +12,8 @@ mod flow;
 mod fluid;
 pub(crate) mod force;
 mod gravity;
+mod inverse_root;
+mod packed;
 pub(crate) mod sheet;
 mod solid;
 mod springs;

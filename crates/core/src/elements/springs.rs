@@ -2,37 +2,69 @@
 //! u)) u, and its opposite on j; p is its pull, k (L - r) of most. A spring of length zero has no
 //! direction, and no force.
 
+use std::sync::OnceLock;
+
 use super::force::{At, Cost, Force, check_ends, ends};
+use super::packed::{Packed, SPEED};
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::spring::Spring;
 use crate::system::{AxialCoupling, Coupling};
 
-/// Single springs, which are evaluated in their order.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Springs(Vec<Spring>);
+/// Single springs. Few are evaluated in their order, and many in blocks.
+#[derive(Debug, Default)]
+pub struct Springs {
+    all: Vec<Spring>,
+    /// They in blocks, if there are many, once they are asked for.
+    packed: OnceLock<Option<Packed>>,
+}
 
 impl Springs {
     /// Springs in the order given.
     #[must_use]
-    pub fn new(springs: Vec<Spring>) -> Self {
-        Self(springs)
+    pub fn new(all: Vec<Spring>) -> Self {
+        Self {
+            all,
+            packed: OnceLock::new(),
+        }
     }
 
     /// All of them, in their order.
     #[must_use]
     pub fn all(&self) -> &[Spring] {
-        &self.0
+        &self.all
     }
 
     /// Adds one at the end.
     pub(crate) fn push(&mut self, spring: Spring) {
-        self.0.push(spring);
+        self.change().push(spring);
     }
 
     /// Puts them in the order of their ends: neighbours in memory are then used one after another.
     pub(crate) fn sort(&mut self) {
-        self.0.sort_by_key(ends);
+        self.change().sort_by_key(ends);
+    }
+
+    /// The springs, to be changed.
+    fn change(&mut self) -> &mut Vec<Spring> {
+        self.packed = OnceLock::new();
+        &mut self.all
+    }
+
+    fn packed(&self) -> Option<&Packed> {
+        self.packed.get_or_init(|| Packed::new(&self.all)).as_ref()
+    }
+}
+
+impl Clone for Springs {
+    fn clone(&self) -> Self {
+        Self::new(self.all.clone())
+    }
+}
+
+impl PartialEq for Springs {
+    fn eq(&self, other: &Self) -> bool {
+        self.all == other.all
     }
 }
 
@@ -42,51 +74,59 @@ impl Force for Springs {
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
-        self.0
+        self.all
             .iter()
             .try_for_each(|spring| check_ends([spring.i, spring.j], particles))
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
-        add_all(&self.0, at.x, at.v, f);
+        match self.packed() {
+            Some(packed) => packed.add_forces(at, f),
+            None => add_all(&self.all, at.x, at.v, f),
+        }
     }
 
     fn add_differential(&self, at: &At, d: [&[f64]; 2], df: &mut [f64]) {
-        for spring in &self.0 {
+        if let Some(packed) = self.packed() {
+            packed.add_differential(at, d, df);
+            return;
+        }
+        for spring in &self.all {
             add_differential(spring, at, d, df);
         }
     }
 
     fn couplings(&self, _t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
-        for spring in &self.0 {
+        for spring in &self.all {
             visit(coupling(spring, x, clamped));
         }
     }
 
     fn energy(&self, at: &At) -> Energy {
-        energy(self.0.iter().copied(), at.x)
+        energy(self.all.iter().copied(), at.x)
     }
 
     fn reads_velocity(&self) -> bool {
-        self.0.iter().any(|spring| spring.law.damping > 0.0)
+        self.all.iter().any(|spring| spring.law.damping > 0.0)
     }
 
     fn cost(&self) -> Cost {
-        let springs = self.0.len() as f64;
+        let springs = self.all.len() as f64;
+        let speed = if self.packed().is_some() { SPEED } else { 1.0 };
         Cost {
             couplings: springs,
-            price: springs,
+            price: springs / speed,
         }
     }
 
     fn scale(&mut self, stiffness: f64, damping: f64) {
-        for spring in &mut self.0 {
+        for spring in self.change() {
             spring.law.scale(stiffness, damping);
         }
     }
 
     fn remove_springs(&mut self, torn: &[[usize; 2]]) {
-        self.0
+        self.change()
             .retain(|spring| torn.binary_search(&ends(spring)).is_err());
     }
 }

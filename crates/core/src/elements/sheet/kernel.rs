@@ -13,10 +13,10 @@ use std::ops::Range;
 use pulp::Simd;
 
 use super::super::finish::Finish;
-use super::inverse_root::inverse_root;
 use super::lanes::{Columns, Lanes, Numbers, Vectors, add, dot, pick, plus, put, replace, sub};
 use super::laws::{Law, kind};
 use super::missing::Masks;
+use crate::elements::inverse_root::inverse_root;
 
 /// Columns of forces that are kept from row to row: right, two right, down, down and right (of this
 /// row and of the one above), down and left (the same), two down (the same).

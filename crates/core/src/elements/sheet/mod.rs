@@ -1,7 +1,6 @@
 //! The springs of a grid in one pass over its rows, with vectors as wide as the processor has.
 
 mod force;
-mod inverse_root;
 mod kernel;
 mod lanes;
 mod laws;

@@ -11,7 +11,7 @@ use pulp::Simd;
 /// Newton's method. Finite at 0. Takes half the time of the processor's own square root and
 /// division, which do not overlap.
 #[inline(always)]
-pub(crate) fn inverse_root<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
+pub(super) fn inverse_root<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
     let mut y = [a];
     for bits in pulp::bytemuck::cast_slice_mut::<S::f64s, u64>(&mut y) {
         *bits = 0x5fe6_eb50_c7b5_37a9_u64.wrapping_sub(*bits >> 1);

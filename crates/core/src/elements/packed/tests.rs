@@ -1,0 +1,133 @@
+//! Springs in blocks, with the same springs one by one as the oracle.
+
+use pulp::Scalar;
+
+use super::*;
+use crate::elements::force::Force;
+use crate::elements::springs::{Springs, add_all, add_differential};
+use crate::random::SplitMix;
+use crate::spring::{SpringKind, SpringLaw};
+
+/// Springs between random particles of which the numbers differ by at most so many.
+fn springs(count: usize, particles: usize, reach: usize, damping: f64) -> Vec<Spring> {
+    let mut random = SplitMix(5);
+    let mut below = |most: usize| random.between(0.0, most as f64) as usize;
+    let ends: Vec<_> = (0..count)
+        .map(|_| {
+            let i = below(particles - 1);
+            let j = i + 1 + below(reach.min(particles - 1 - i));
+            if below(2) == 0 { [i, j] } else { [j, i] }
+        })
+        .collect();
+    let mut number = || random.between(0.5, 2.0);
+    let law = |[i, j]: [usize; 2]| Spring {
+        i,
+        j,
+        kind: SpringKind::Structural,
+        law: SpringLaw {
+            stiffness: 100.0 * number(),
+            rest_length: number(),
+            damping: damping * number(),
+        },
+    };
+    ends.into_iter().map(law).collect()
+}
+
+fn numbers(count: usize, seed: u64) -> Vec<f64> {
+    let mut random = SplitMix(seed);
+    (0..count).map(|_| random.between(-1.0, 1.0)).collect()
+}
+
+/// The most by which two vectors differ, over the largest number of the first.
+fn off(a: &[f64], b: &[f64]) -> f64 {
+    let size = a.iter().fold(0.0_f64, |most, a| most.max(a.abs()));
+    let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    apart.fold(0.0, f64::max) / size
+}
+
+/// Forces and their differential, in as many bands as asked for.
+fn in_blocks(packed: &Packed, bands: usize, all: &[Vec<f64>; 4]) -> [Vec<f64>; 2] {
+    let [x, v, dx, dv] = all.each_ref().map(|a| Some(a.as_slice()));
+    [[x, v, None, None], [x, v, dx, dv]].map(|fields| {
+        let mut f = vec![0.0; all[0].len()];
+        packed.add_in(bands, fields, &mut f);
+        f
+    })
+}
+
+#[test]
+#[cfg_attr(miri, ignore = "takes hours there")]
+fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
+    for (count, particles, reach) in [
+        (1024, 40, 40),
+        (1025, 5000, 5000),
+        (4000, 1500, 10),
+        (9000, 3000, 300),
+    ] {
+        for damping in [0.0, 3.0] {
+            let springs = springs(count, particles, reach, damping);
+            let mut all: [Vec<f64>; 4] =
+                std::array::from_fn(|seed| numbers(3 * particles, seed as u64));
+            // A spring without a length.
+            let Spring { i, j, .. } = springs[7];
+            for axis in 0..3 {
+                all[0][axis * particles + i] = all[0][axis * particles + j];
+            }
+            let at = At {
+                t: 0.0,
+                x: &all[0],
+                v: &all[1],
+                masses: &[],
+                triangles: &[],
+            };
+            let mut expected = [vec![0.0; 3 * particles], vec![0.0; 3 * particles]];
+            add_all(&springs, at.x, at.v, &mut expected[0]);
+            for spring in &springs {
+                add_differential(spring, &at, [&all[2], &all[3]], &mut expected[1]);
+            }
+            let packed = Packed::new(&springs).unwrap();
+            let found = in_blocks(&packed, 1, &all);
+            for (expected, found) in expected.iter().zip(&found) {
+                assert!(off(expected, found) < 1e-13, "{count} {damping}");
+            }
+            for bands in [2, 3, 8] {
+                assert!(in_blocks(&packed, bands, &all) == found, "{bands} bands");
+            }
+            let whole = packed.order.stretch(0, 1);
+            let mut band = Band::default();
+            let fields = all.each_ref().map(|a| Some(a.as_slice()));
+            packed.sum(&mut band, &whole, fields);
+            let by_vectors = std::mem::replace(&mut band.f, vec![[0.0; 4]; whole.all.len()]);
+            pulp::WithSimd::with_simd(packed.sum_of(&mut band, &whole, true), Scalar::new());
+            assert!(by_vectors == band.f, "one number at a time");
+        }
+    }
+}
+
+#[test]
+fn few_springs_are_not_packed_and_a_change_packs_anew() {
+    assert!(Packed::new(&springs(LEAST - 1, 50, 50, 0.0)).is_none());
+    let mut element = Springs::new(springs(LEAST, 50, 50, 0.0));
+    let (x, v) = (numbers(150, 1), numbers(150, 2));
+    let at = At {
+        t: 0.0,
+        x: &x,
+        v: &v,
+        masses: &[],
+        triangles: &[],
+    };
+    let forces = |element: &Springs| {
+        let mut f = vec![0.0; 150];
+        element.add_forces(&at, &mut f);
+        f
+    };
+    let before = forces(&element);
+    element.scale(2.0, 1.0);
+    let doubled: Vec<_> = before.iter().map(|f| 2.0 * f).collect();
+    assert!(off(&doubled, &forces(&element)) < 1e-14);
+    let Spring { i, j, .. } = element.all()[3];
+    element.remove_springs(&[[i.min(j), i.max(j)]]);
+    let mut left = vec![0.0; 150];
+    add_all(element.all(), &x, &v, &mut left);
+    assert!(off(&left, &forces(&element)) < 1e-13);
+}
