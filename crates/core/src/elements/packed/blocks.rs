@@ -6,6 +6,8 @@
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
 )]
 
+use std::ops::Range;
+
 use pulp::{Scalar, Simd, WithSimd};
 
 use crate::elements::inverse_root::inverse_root;
@@ -17,51 +19,53 @@ pub(super) const BLOCK: usize = 64;
 /// Three numbers of a particle and a zero.
 pub(super) type Numbers = [f64; 4];
 
-/// Springs one after another. A block that is not full ends with springs from a particle to itself,
-/// without stiffness.
-#[derive(Clone, Debug)]
-pub(super) struct Block {
-    ends: [[u32; 2]; BLOCK],
+/// A number of each spring of a block.
+type Each<T> = [T; BLOCK];
+
+/// Springs one after another, each of their numbers in a list of its own, which the processor reads
+/// ahead. Blocks that are not full end with springs from a particle to itself, without stiffness.
+#[derive(Debug, Default)]
+pub(super) struct Blocks {
+    ends: Vec<Each<[u32; 2]>>,
     /// k (N/m).
-    stiffness: [f64; BLOCK],
+    stiffness: Vec<Each<f64>>,
     /// k r (N).
-    push: [f64; BLOCK],
+    push: Vec<Each<f64>>,
     /// c (N s/m).
-    damping: [f64; BLOCK],
+    damping: Vec<Each<f64>>,
 }
 
-impl Block {
-    /// Block of no springs at that particle.
-    pub fn empty(particle: u32) -> Self {
-        Self {
-            ends: [[particle; 2]; BLOCK],
-            stiffness: [0.0; BLOCK],
-            push: [0.0; BLOCK],
-            damping: [0.0; BLOCK],
+impl Blocks {
+    /// Number of blocks.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Adds a block of springs with their ends.
+    pub fn push<'a>(&mut self, springs: impl ExactSizeIterator<Item = ([u32; 2], &'a Spring)>) {
+        let [mut stiffness, mut push, mut damping] = [[0.0; BLOCK]; 3];
+        let mut ends = [[0; 2]; BLOCK];
+        for (m, (of, spring)) in springs.enumerate() {
+            if m == 0 {
+                ends = [[of[0]; 2]; BLOCK];
+            }
+            let law = spring.law;
+            ends[m] = of;
+            stiffness[m] = law.stiffness;
+            push[m] = law.stiffness * law.rest_length;
+            damping[m] = law.damping;
         }
-    }
-
-    /// Makes spring m that one, between these particles.
-    pub fn set(&mut self, m: usize, ends: [u32; 2], spring: &Spring) {
-        let law = spring.law;
-        self.ends[m] = ends;
-        self.stiffness[m] = law.stiffness;
-        self.push[m] = law.stiffness * law.rest_length;
-        self.damping[m] = law.damping;
-    }
-
-    /// The ends of spring m among the particles from the `first` on.
-    #[inline(always)]
-    fn ends(&self, m: usize, first: usize) -> [usize; 2] {
-        self.ends[m].map(|i| (i as usize).wrapping_sub(first))
+        self.ends.push(ends);
+        self.stiffness.push(stiffness);
+        self.push.push(push);
+        self.damping.push(damping);
     }
 }
 
-/// The forces of blocks of springs, added to f: of x and v, or their change by dx and dv. All are
-/// of the particles from the `first` on.
+/// The forces of blocks of springs, added to f: of x and v, or their change by dx and dv.
 pub(super) struct Sum<'a> {
-    pub blocks: &'a [Block],
-    pub first: usize,
+    pub blocks: &'a Blocks,
+    pub which: Range<usize>,
     pub fields: [&'a [Numbers]; 4],
     pub f: &'a mut [Numbers],
     pub is_damped: bool,
@@ -86,14 +90,16 @@ impl WithSimd for Sum<'_> {
 #[inline(always)]
 fn forces<const DAMPED: bool>(sum: Sum) {
     let Sum {
-        blocks, first, f, ..
+        blocks, which, f, ..
     } = sum;
     let [x, v, ..] = sum.fields;
     let mut d = [[0.0; 4]; BLOCK];
     let (mut s, mut rate) = ([0.0; BLOCK], [0.0; BLOCK]);
-    for block in blocks {
+    for block in which {
+        let (ends, stiffness) = (&blocks.ends[block], &blocks.stiffness[block]);
+        let (push, damping) = (&blocks.push[block], &blocks.damping[block]);
         for m in 0..BLOCK {
-            let ends = block.ends(m, first);
+            let ends = pair(ends[m]);
             d[m] = apart(x, ends);
             s[m] = dot(d[m], d[m]);
             if DAMPED {
@@ -101,14 +107,15 @@ fn forces<const DAMPED: bool>(sum: Sum) {
             }
         }
         for m in 0..BLOCK {
-            let inverse = inverse(s[m]);
-            s[m] = (-block.push[m]).mul_add(inverse, block.stiffness[m]);
+            // Finite for a spring without a length, whose force is a multiple of d.
+            let inverse = inverse_root(Scalar::new(), s[m]);
+            s[m] = (-push[m]).mul_add(inverse, stiffness[m]);
             if DAMPED {
-                s[m] = (block.damping[m] * rate[m] * inverse).mul_add(inverse, s[m]);
+                s[m] = (damping[m] * rate[m] * inverse).mul_add(inverse, s[m]);
             }
         }
         for m in 0..BLOCK {
-            let [i, j] = block.ends(m, first);
+            let [i, j] = pair(ends[m]);
             f[i] = plus(f[i], -s[m], d[m]);
             f[j] = plus(f[j], s[m], d[m]);
         }
@@ -121,15 +128,17 @@ fn forces<const DAMPED: bool>(sum: Sum) {
 #[inline(always)]
 fn differential<const DAMPED: bool>(sum: Sum) {
     let Sum {
-        blocks, first, f, ..
+        blocks, which, f, ..
     } = sum;
     let [x, v, dx, dv] = sum.fields;
     let (mut d, mut e) = ([[0.0; 4]; BLOCK], [[0.0; 4]; BLOCK]);
     let (mut a, mut b) = ([0.0; BLOCK], [0.0; BLOCK]);
     let [mut wd, mut we, mut gd] = [[0.0; BLOCK]; 3];
-    for block in blocks {
+    for block in which {
+        let (ends, stiffness) = (&blocks.ends[block], &blocks.stiffness[block]);
+        let (push, damping) = (&blocks.push[block], &blocks.damping[block]);
         for m in 0..BLOCK {
-            let ends = block.ends(m, first);
+            let ends = pair(ends[m]);
             (d[m], e[m]) = (apart(x, ends), apart(dx, ends));
             (a[m], b[m]) = (dot(d[m], d[m]), dot(d[m], e[m]));
             if DAMPED {
@@ -139,19 +148,19 @@ fn differential<const DAMPED: bool>(sum: Sum) {
             }
         }
         for m in 0..BLOCK {
-            let (inverse, k) = (inverse(a[m]), block.stiffness[m]);
-            let s = (-block.push[m]).mul_add(inverse, k);
+            let (inverse, k) = (inverse(a[m]), stiffness[m]);
+            let s = (-push[m]).mul_add(inverse, k);
             let share = b[m] * inverse * inverse;
             (a[m], b[m]) = (s, (k - s) * share);
             if DAMPED {
-                let c = block.damping[m] * inverse * inverse;
+                let c = damping[m] * inverse * inverse;
                 let rate = gd[m] + (-wd[m]).mul_add(share, we[m]);
                 a[m] = c.mul_add(wd[m], a[m]);
                 b[m] = c.mul_add((-wd[m]).mul_add(share, rate), b[m]);
             }
         }
         for m in 0..BLOCK {
-            let [i, j] = block.ends(m, first);
+            let [i, j] = pair(ends[m]);
             let change = plus(d[m].map(|d| b[m] * d), a[m], e[m]);
             f[i] = plus(f[i], -1.0, change);
             f[j] = plus(f[j], 1.0, change);
@@ -164,6 +173,11 @@ fn differential<const DAMPED: bool>(sum: Sum) {
 fn inverse(q: f64) -> f64 {
     let root = inverse_root(Scalar::new(), q);
     if q == 0.0 { 0.0 } else { root }
+}
+
+#[inline(always)]
+fn pair(ends: [u32; 2]) -> [usize; 2] {
+    ends.map(|i| i as usize)
 }
 
 #[inline(always)]

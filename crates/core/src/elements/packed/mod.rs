@@ -36,7 +36,7 @@ pub(super) struct Packed {
 }
 
 /// Scratch of a band: x, v, dx and dv of its particles and of those that their springs reach, and
-/// what is summed.
+/// what is summed, by the numbers that all particles have.
 #[derive(Debug, Default)]
 struct Band {
     fields: [Vec<Numbers>; 4],
@@ -85,9 +85,8 @@ impl Packed {
                 });
             }
             for (k, band) in bands.iter().enumerate() {
-                let Stretch { own, all, .. } = self.order.stretch(k, count);
-                let found = &band.f[own.start - all.start..own.end - all.start];
-                give(&self.order.particles[own], found, f);
+                let own = self.order.stretch(k, count).own;
+                give(&self.order.particles[own.clone()], &band.f[own], f);
             }
         });
     }
@@ -95,13 +94,23 @@ impl Packed {
     /// Sums the forces on a band of particles.
     fn sum(&self, band: &mut Band, stretch: &Stretch, fields: [Option<&[f64]>; 4]) {
         let all = &stretch.all;
+        let reserve = |a: &mut Vec<Numbers>| {
+            if a.len() < all.end {
+                a.resize(all.end, [0.0; 4]);
+            }
+        };
         for (to, from) in band.fields.iter_mut().zip(fields) {
             if let Some(from) = from {
-                take(&self.order.particles[all.clone()], from, to);
+                reserve(to);
+                take(
+                    &self.order.particles[all.clone()],
+                    from,
+                    &mut to[all.clone()],
+                );
             }
         }
-        band.f.clear();
-        band.f.resize(all.len(), [0.0; 4]);
+        reserve(&mut band.f);
+        band.f[all.clone()].fill([0.0; 4]);
         Arch::new().dispatch(self.sum_of(band, stretch, fields[2].is_some()));
     }
 
@@ -112,8 +121,8 @@ impl Packed {
         is_differential: bool,
     ) -> Sum<'a> {
         Sum {
-            blocks: &self.order.blocks[stretch.blocks.clone()],
-            first: stretch.all.start,
+            blocks: &self.order.blocks,
+            which: stretch.blocks.clone(),
             fields: band.fields.each_ref().map(Vec::as_slice),
             f: &mut band.f,
             is_damped: self.is_damped,
@@ -132,14 +141,13 @@ impl Packed {
 }
 
 /// Takes rows of an n x 3 matrix.
-fn take(particles: &[u32], from: &[f64], to: &mut Vec<Numbers>) {
+fn take(particles: &[u32], from: &[f64], to: &mut [Numbers]) {
     let n = from.len() / 3;
     let (x, y, z) = (&from[..n], &from[n..2 * n], &from[2 * n..]);
-    to.clear();
-    to.extend(particles.iter().map(|i| {
+    for (i, to) in particles.iter().zip(to) {
         let i = *i as usize;
-        [x[i], y[i], z[i], 0.0]
-    }));
+        *to = [x[i], y[i], z[i], 0.0];
+    }
 }
 
 /// Adds to rows of an n x 3 matrix.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::blocks::{BLOCK, Block};
+use super::blocks::{BLOCK, Blocks};
 use crate::elements::force::ends;
 use crate::spring::Spring;
 
@@ -13,7 +13,7 @@ const TILE: usize = 256;
 /// first springs of all of them, then the second, and so on: neighbours have no end in common.
 #[derive(Debug)]
 pub(super) struct Order {
-    pub blocks: Vec<Block>,
+    pub blocks: Blocks,
     /// The particles at the ends of springs, which are numbered in this order here.
     pub particles: Vec<u32>,
     /// The first block of each tile, and the number of blocks.
@@ -56,7 +56,7 @@ impl Order {
             ranked.push((i as usize / TILE, rank, entry));
         }
         ranked.sort_by_key(|(tile, rank, (ends, _))| (*tile, *rank, *ends));
-        let (mut blocks, mut tiles) = (vec![], vec![]);
+        let (mut blocks, mut tiles) = (Blocks::default(), vec![]);
         let count = particles.len().div_ceil(TILE);
         let mut rest = ranked.as_slice();
         for tile in 0..count {
@@ -64,11 +64,7 @@ impl Order {
             let own;
             (own, rest) = rest.split_at(rest.partition_point(|(of, ..)| *of == tile));
             for chunk in own.chunks(BLOCK) {
-                let mut block = Block::empty((tile * TILE) as u32);
-                for (m, (_, _, (ends, spring))) in chunk.iter().enumerate() {
-                    block.set(m, *ends, spring);
-                }
-                blocks.push(block);
+                blocks.push(chunk.iter().map(|(_, _, (ends, spring))| (*ends, *spring)));
             }
         }
         tiles.push(blocks.len());
