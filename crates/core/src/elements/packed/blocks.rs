@@ -8,31 +8,19 @@
 
 use std::ops::Range;
 
-use pulp::{Scalar, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
-use crate::elements::inverse_root::inverse_root;
+use super::laws::{self, BLOCK, Each, Laws, Products};
 use crate::spring::Spring;
-
-/// Springs of a block: what is kept of them between the passes over it stays in the nearest cache.
-pub(super) const BLOCK: usize = 64;
 
 /// Three numbers of a particle and a zero.
 pub(super) type Numbers = [f64; 4];
 
-/// A number of each spring of a block.
-type Each<T> = [T; BLOCK];
-
-/// Springs one after another, each of their numbers in a list of its own, which the processor reads
-/// ahead. Blocks that are not full end with springs from a particle to itself, without stiffness.
+/// Springs one after another. Blocks that are not full end with springs from a particle to itself.
 #[derive(Debug, Default)]
 pub(super) struct Blocks {
     ends: Vec<Each<[u32; 2]>>,
-    /// k (N/m).
-    stiffness: Vec<Each<f64>>,
-    /// k r (N).
-    push: Vec<Each<f64>>,
-    /// c (N s/m).
-    damping: Vec<Each<f64>>,
+    laws: Laws,
 }
 
 impl Blocks {
@@ -42,23 +30,15 @@ impl Blocks {
     }
 
     /// Adds a block of springs with their ends.
-    pub fn push<'a>(&mut self, springs: impl ExactSizeIterator<Item = ([u32; 2], &'a Spring)>) {
-        let [mut stiffness, mut push, mut damping] = [[0.0; BLOCK]; 3];
-        let mut ends = [[0; 2]; BLOCK];
-        for (m, (of, spring)) in springs.enumerate() {
-            if m == 0 {
-                ends = [[of[0]; 2]; BLOCK];
-            }
-            let law = spring.law;
-            ends[m] = of;
-            stiffness[m] = law.stiffness;
-            push[m] = law.stiffness * law.rest_length;
-            damping[m] = law.damping;
-        }
-        self.ends.push(ends);
-        self.stiffness.push(stiffness);
-        self.push.push(push);
-        self.damping.push(damping);
+    pub fn push(&mut self, springs: &[([u32; 2], &Spring)]) {
+        let own = |m: usize| {
+            springs
+                .get(m)
+                .map_or([springs[0].0[0]; 2], |(ends, _)| *ends)
+        };
+        self.ends.push(std::array::from_fn(own));
+        self.laws
+            .push(springs.iter().map(|(_, spring)| *spring).enumerate());
     }
 }
 
@@ -86,7 +66,6 @@ impl WithSimd for Sum<'_> {
     }
 }
 
-/// With d = xi - xj and w = vi - vj, the force on i is -s d with s = k - k r / L + c (w . d) / L^2.
 #[inline(always)]
 fn forces<const DAMPED: bool>(sum: Sum) {
     let Sum {
@@ -96,8 +75,7 @@ fn forces<const DAMPED: bool>(sum: Sum) {
     let mut d = [[0.0; 4]; BLOCK];
     let (mut s, mut rate) = ([0.0; BLOCK], [0.0; BLOCK]);
     for block in which {
-        let (ends, stiffness) = (&blocks.ends[block], &blocks.stiffness[block]);
-        let (push, damping) = (&blocks.push[block], &blocks.damping[block]);
+        let (ends, law) = (&blocks.ends[block], blocks.laws.of(block));
         for m in 0..BLOCK {
             let ends = pair(ends[m]);
             d[m] = apart(x, ends);
@@ -107,12 +85,12 @@ fn forces<const DAMPED: bool>(sum: Sum) {
             }
         }
         for m in 0..BLOCK {
-            // Finite for a spring without a length, whose force is a multiple of d.
-            let inverse = inverse_root(Scalar::new(), s[m]);
-            s[m] = (-push[m]).mul_add(inverse, stiffness[m]);
-            if DAMPED {
-                s[m] = (damping[m] * rate[m] * inverse).mul_add(inverse, s[m]);
-            }
+            let of = Products {
+                dd: s[m],
+                wd: rate[m],
+                ..Products::default()
+            };
+            s[m] = laws::force::<DAMPED>(law, m, of);
         }
         for m in 0..BLOCK {
             let [i, j] = pair(ends[m]);
@@ -122,9 +100,6 @@ fn forces<const DAMPED: bool>(sum: Sum) {
     }
 }
 
-/// With e = dxi - dxj, dw = dvi - dvj and p = (e - d (d . e) / L^2) / L, the change of the force on
-/// i is -(s e + (k - s) d (d . e) / L^2) - c (((dw . d) / L + w . p) d + (w . d) p) / L, where s is
-/// k - k r / L; that is -(a e + b d).
 #[inline(always)]
 fn differential<const DAMPED: bool>(sum: Sum) {
     let Sum {
@@ -132,15 +107,13 @@ fn differential<const DAMPED: bool>(sum: Sum) {
     } = sum;
     let [x, v, dx, dv] = sum.fields;
     let (mut d, mut e) = ([[0.0; 4]; BLOCK], [[0.0; 4]; BLOCK]);
-    let (mut a, mut b) = ([0.0; BLOCK], [0.0; BLOCK]);
-    let [mut wd, mut we, mut gd] = [[0.0; BLOCK]; 3];
+    let [mut dd, mut de, mut wd, mut we, mut gd] = [[0.0; BLOCK]; 5];
     for block in which {
-        let (ends, stiffness) = (&blocks.ends[block], &blocks.stiffness[block]);
-        let (push, damping) = (&blocks.push[block], &blocks.damping[block]);
+        let (ends, law) = (&blocks.ends[block], blocks.laws.of(block));
         for m in 0..BLOCK {
             let ends = pair(ends[m]);
             (d[m], e[m]) = (apart(x, ends), apart(dx, ends));
-            (a[m], b[m]) = (dot(d[m], d[m]), dot(d[m], e[m]));
+            (dd[m], de[m]) = (dot(d[m], d[m]), dot(d[m], e[m]));
             if DAMPED {
                 let w = apart(v, ends);
                 (wd[m], we[m]) = (dot(w, d[m]), dot(w, e[m]));
@@ -148,31 +121,22 @@ fn differential<const DAMPED: bool>(sum: Sum) {
             }
         }
         for m in 0..BLOCK {
-            let (inverse, k) = (inverse(a[m]), stiffness[m]);
-            let s = (-push[m]).mul_add(inverse, k);
-            let share = b[m] * inverse * inverse;
-            (a[m], b[m]) = (s, (k - s) * share);
-            if DAMPED {
-                let c = damping[m] * inverse * inverse;
-                let rate = gd[m] + (-wd[m]).mul_add(share, we[m]);
-                a[m] = c.mul_add(wd[m], a[m]);
-                b[m] = c.mul_add((-wd[m]).mul_add(share, rate), b[m]);
-            }
+            let of = Products {
+                dd: dd[m],
+                de: de[m],
+                wd: wd[m],
+                we: we[m],
+                gd: gd[m],
+            };
+            [dd[m], de[m]] = laws::differential::<DAMPED>(law, m, of);
         }
         for m in 0..BLOCK {
             let [i, j] = pair(ends[m]);
-            let change = plus(d[m].map(|d| b[m] * d), a[m], e[m]);
+            let change = plus(d[m].map(|d| de[m] * d), dd[m], e[m]);
             f[i] = plus(f[i], -1.0, change);
             f[j] = plus(f[j], 1.0, change);
         }
     }
-}
-
-/// 1 / sqrt(q), or 0 at 0: a spring without a length has no direction.
-#[inline(always)]
-fn inverse(q: f64) -> f64 {
-    let root = inverse_root(Scalar::new(), q);
-    if q == 0.0 { 0.0 } else { root }
 }
 
 #[inline(always)]

@@ -7,8 +7,11 @@
 //! number of threads: a thread has a band of particles, and evaluates all springs that reach it.
 
 mod blocks;
+mod laws;
 mod order;
+mod runs;
 
+use std::ops::Range;
 use std::sync::{Mutex, TryLockError};
 
 use pulp::Arch;
@@ -17,14 +20,14 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelI
 use super::force::At;
 use crate::spring::Spring;
 use crate::threads::threads;
-use blocks::{Numbers, Sum};
+use blocks::Numbers;
 use order::{Order, Stretch};
 
 /// Number of springs from which on it pays to pack them.
 const LEAST: usize = 1024;
 
 /// Time that springs take one by one over that which they take in blocks (docs/performance.md).
-pub(super) const SPEED: f64 = 1.8;
+pub(super) const SPEED: f64 = 2.0;
 
 /// Springs in blocks.
 #[derive(Debug)]
@@ -36,11 +39,13 @@ pub(super) struct Packed {
 }
 
 /// Scratch of a band: x, v, dx and dv of its particles and of those that their springs reach, and
-/// what is summed, by the numbers that all particles have.
+/// what is summed; by the numbers that all particles have.
 #[derive(Debug, Default)]
 struct Band {
-    fields: [Vec<Numbers>; 4],
-    f: Vec<Numbers>,
+    /// For runs, in three columns.
+    columns: [Vec<f64>; 5],
+    /// For blocks, three numbers side by side.
+    rows: [Vec<Numbers>; 5],
 }
 
 impl Packed {
@@ -85,48 +90,119 @@ impl Packed {
                 });
             }
             for (k, band) in bands.iter().enumerate() {
-                let own = self.order.stretch(k, count).own;
-                give(&self.order.particles[own.clone()], &band.f[own], f);
+                self.give(band, self.order.stretch(k, count).own, f);
             }
         });
     }
 
     /// Sums the forces on a band of particles.
     fn sum(&self, band: &mut Band, stretch: &Stretch, fields: [Option<&[f64]>; 4]) {
-        let all = &stretch.all;
-        let reserve = |a: &mut Vec<Numbers>| {
-            if a.len() < all.end {
-                a.resize(all.end, [0.0; 4]);
-            }
-        };
-        for (to, from) in band.fields.iter_mut().zip(fields) {
-            if let Some(from) = from {
-                reserve(to);
-                take(
-                    &self.order.particles[all.clone()],
-                    from,
-                    &mut to[all.clone()],
-                );
-            }
+        self.take(band, stretch, fields);
+        let is_differential = fields[2].is_some();
+        if !stretch.runs.is_empty() {
+            Arch::new().dispatch(self.sum_of_runs(band, stretch, is_differential));
         }
-        reserve(&mut band.f);
-        band.f[all.clone()].fill([0.0; 4]);
-        Arch::new().dispatch(self.sum_of(band, stretch, fields[2].is_some()));
+        if !stretch.blocks.is_empty() {
+            Arch::new().dispatch(self.sum_of_blocks(band, stretch, is_differential));
+        }
     }
 
-    fn sum_of<'a>(
+    fn sum_of_runs<'a>(
         &'a self,
         band: &'a mut Band,
-        stretch: &Stretch,
+        of: &Stretch,
         is_differential: bool,
-    ) -> Sum<'a> {
-        Sum {
-            blocks: &self.order.blocks,
-            which: stretch.blocks.clone(),
-            fields: band.fields.each_ref().map(Vec::as_slice),
-            f: &mut band.f,
+    ) -> runs::Sum<'a> {
+        let [fields @ .., f] = &mut band.columns;
+        runs::Sum {
+            runs: &self.order.runs,
+            which: of.runs.clone(),
+            stride: self.order.stride(),
+            fields: fields.each_ref().map(Vec::as_slice),
+            f,
             is_damped: self.is_damped,
             is_differential,
+        }
+    }
+
+    fn sum_of_blocks<'a>(
+        &'a self,
+        band: &'a mut Band,
+        of: &Stretch,
+        is_differential: bool,
+    ) -> blocks::Sum<'a> {
+        let [fields @ .., f] = &mut band.rows;
+        blocks::Sum {
+            blocks: &self.order.blocks,
+            which: of.blocks.clone(),
+            fields: fields.each_ref().map(Vec::as_slice),
+            f,
+            is_damped: self.is_damped,
+            is_differential,
+        }
+    }
+
+    /// Copies what a band needs of n x 3 matrices to its scratch, whose sums begin at 0.
+    fn take(&self, band: &mut Band, stretch: &Stretch, fields: [Option<&[f64]>; 4]) {
+        let (stride, all) = (self.order.stride(), &stretch.all);
+        let particles = &self.order.particles;
+        let of_all = &particles[all.start..all.end.min(particles.len())];
+        let sources = fields
+            .into_iter()
+            .map(|field| field.map(Some))
+            .chain([Some(None)]);
+        for (k, source) in sources.enumerate() {
+            let Some(source) = source else { continue };
+            if !stretch.runs.is_empty() {
+                let columns = &mut band.columns[k];
+                columns.resize(3 * stride, 0.0);
+                for (axis, column) in columns.chunks_exact_mut(stride).enumerate() {
+                    let column = &mut column[all.clone()];
+                    let Some(from) = source else {
+                        column.fill(0.0);
+                        continue;
+                    };
+                    let from = &from[axis * from.len() / 3..(axis + 1) * from.len() / 3];
+                    for (to, i) in column.iter_mut().zip(of_all) {
+                        *to = from[*i as usize];
+                    }
+                }
+            }
+            if !stretch.blocks.is_empty() {
+                let rows = &mut band.rows[k];
+                rows.resize(stride, [0.0; 4]);
+                let rows = &mut rows[all.clone()];
+                let Some(from) = source else {
+                    rows.fill([0.0; 4]);
+                    continue;
+                };
+                let n = from.len() / 3;
+                for (to, i) in rows.iter_mut().zip(of_all) {
+                    let i = *i as usize;
+                    *to = [from[i], from[n + i], from[2 * n + i], 0.0];
+                }
+            }
+        }
+    }
+
+    /// Adds the sums of a band to the rows of its own particles in an n x 3 matrix.
+    fn give(&self, band: &Band, own: Range<usize>, f: &mut [f64]) {
+        let (n, stride) = (f.len() / 3, self.order.stride());
+        let [.., columns] = &band.columns;
+        let [.., rows] = &band.rows;
+        for (axis, f) in f.chunks_exact_mut(n).enumerate() {
+            let particles = &self.order.particles[own.clone()];
+            if !columns.is_empty() {
+                let found = &columns[axis * stride..][own.clone()];
+                for (i, found) in particles.iter().zip(found) {
+                    f[*i as usize] += found;
+                }
+            }
+            if !rows.is_empty() {
+                for (i, found) in particles.iter().zip(&rows[own.clone()]) {
+                    f[*i as usize] += found[axis];
+                }
+            }
         }
     }
 
@@ -137,29 +213,6 @@ impl Packed {
             Err(TryLockError::Poisoned(poisoned)) => run(&mut poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => run(&mut vec![]),
         }
-    }
-}
-
-/// Takes rows of an n x 3 matrix.
-fn take(particles: &[u32], from: &[f64], to: &mut [Numbers]) {
-    let n = from.len() / 3;
-    let (x, y, z) = (&from[..n], &from[n..2 * n], &from[2 * n..]);
-    for (i, to) in particles.iter().zip(to) {
-        let i = *i as usize;
-        *to = [x[i], y[i], z[i], 0.0];
-    }
-}
-
-/// Adds to rows of an n x 3 matrix.
-fn give(particles: &[u32], found: &[Numbers], f: &mut [f64]) {
-    let n = f.len() / 3;
-    let (x, f) = f.split_at_mut(n);
-    let (y, z) = f.split_at_mut(n);
-    for (i, found) in particles.iter().zip(found) {
-        let i = *i as usize;
-        x[i] += found[0];
-        y[i] += found[1];
-        z[i] += found[2];
     }
 }
 

@@ -2,22 +2,29 @@
 
 use std::ops::Range;
 
-use super::blocks::{BLOCK, Blocks};
+use super::blocks::Blocks;
+use super::laws::BLOCK;
+use super::runs::Runs;
 use crate::elements::force::ends;
 use crate::spring::Spring;
 
 /// Particles of a tile, whose springs follow one another.
 const TILE: usize = 256;
 
-/// Springs in blocks, tile by tile. The springs of a tile begin at its particles. First come the
-/// first springs of all of them, then the second, and so on: neighbours have no end in common.
+/// Least number of springs of a block between consecutive particles.
+const DENSE: usize = BLOCK / 2;
+
+/// Springs in runs and, where there are none, in blocks, tile by tile. The springs of a tile begin
+/// at its particles. In blocks, first come the first springs of all of them, then the second, and so
+/// on: neighbours have no end in common.
 #[derive(Debug)]
 pub(super) struct Order {
+    pub runs: Runs,
     pub blocks: Blocks,
     /// The particles at the ends of springs, which are numbered in this order here.
     pub particles: Vec<u32>,
-    /// The first block of each tile, and the number of blocks.
-    tiles: Vec<usize>,
+    /// The first run and the first block of each tile, and the numbers of both.
+    tiles: Vec<[usize; 2]>,
     /// The most by which the numbers of the ends of a spring differ.
     reach: usize,
 }
@@ -26,10 +33,14 @@ pub(super) struct Order {
 pub(super) struct Stretch {
     /// The particles.
     pub own: Range<usize>,
-    /// These and others at the ends of the springs.
+    /// These and all others at the ends of the springs, with those that runs have beyond the last.
     pub all: Range<usize>,
+    pub runs: Range<usize>,
     pub blocks: Range<usize>,
 }
+
+/// A spring with its ends as numbered here.
+type Entry<'a> = ([u32; 2], &'a Spring);
 
 impl Order {
     pub fn of(springs: &[Spring]) -> Self {
@@ -40,41 +51,36 @@ impl Order {
         for (number, particle) in particles.iter().enumerate() {
             numbers[*particle] = number as u32;
         }
-        let mut all: Vec<_> = springs
-            .iter()
-            .map(|spring| (ends(spring).map(|i| numbers[i]), spring))
-            .collect();
-        all.sort_by_key(|(ends, _)| *ends);
-        // The number of each spring among those that begin at the same particle.
-        let mut ranked: Vec<(usize, usize, _)> = Vec::with_capacity(all.len());
-        for (k, entry) in all.iter().enumerate() {
-            let [i, _] = entry.0;
-            let rank = match ranked.last() {
-                Some((_, before, _)) if all[k - 1].0[0] == i => before + 1,
-                _ => 0,
-            };
-            ranked.push((i as usize / TILE, rank, entry));
-        }
-        ranked.sort_by_key(|(tile, rank, (ends, _))| (*tile, *rank, *ends));
-        let (mut blocks, mut tiles) = (Blocks::default(), vec![]);
-        let count = particles.len().div_ceil(TILE);
-        let mut rest = ranked.as_slice();
-        for tile in 0..count {
-            tiles.push(blocks.len());
-            let own;
-            (own, rest) = rest.split_at(rest.partition_point(|(of, ..)| *of == tile));
-            for chunk in own.chunks(BLOCK) {
-                blocks.push(chunk.iter().map(|(_, _, (ends, spring))| (*ends, *spring)));
-            }
-        }
-        tiles.push(blocks.len());
+        let numbered = |spring| (ends(spring).map(|i| numbers[i]), spring);
+        let mut all: Vec<Entry> = springs.iter().map(numbered).collect();
         let reach = all.iter().map(|([i, j], _)| (j - i) as usize).max();
+        let (dense, rest) = split(&mut all);
+        let rest = by_rank(rest);
+        let (mut dense, mut rest) = (dense.as_slice(), rest.as_slice());
+        let (mut runs, mut blocks, mut tiles) = (Runs::default(), Blocks::default(), vec![]);
+        for tile in 0..particles.len().div_ceil(TILE) {
+            tiles.push([runs.places.len(), blocks.len()]);
+            let own;
+            let is_own = |([i, _], _): &Entry| *i as usize / TILE == tile;
+            (own, dense) = dense.split_at(dense.partition_point(|run| is_own(&run[0])));
+            own.iter().for_each(|run| runs.push(run));
+            let own;
+            (own, rest) = rest.split_at(rest.partition_point(is_own));
+            own.chunks(BLOCK).for_each(|chunk| blocks.push(chunk));
+        }
+        tiles.push([runs.places.len(), blocks.len()]);
         Self {
+            runs,
             blocks,
             particles: particles.iter().map(|i| *i as u32).collect(),
             tiles,
             reach: reach.unwrap_or(0),
         }
+    }
+
+    /// Length of a column of numbers of all particles, with what runs have beyond the last.
+    pub fn stride(&self) -> usize {
+        (self.tiles.len() - 1) * TILE + self.reach
     }
 
     /// The number of bands, up to the `most`, of which none is much smaller than what its springs
@@ -91,9 +97,44 @@ impl Order {
         let first = own.start.saturating_sub(self.reach) / TILE;
         let last = own.end.div_ceil(TILE);
         Stretch {
-            all: first * TILE..n.min(last * TILE + self.reach),
-            blocks: self.tiles[first]..self.tiles[last],
+            all: first * TILE..last * TILE + self.reach,
+            runs: self.tiles[first][0]..self.tiles[last][0],
+            blocks: self.tiles[first][1]..self.tiles[last][1],
             own,
         }
     }
+}
+
+/// Springs that make dense runs, block by block in the order of tiles, and the others.
+fn split<'a>(all: &mut [Entry<'a>]) -> (Vec<Vec<Entry<'a>>>, Vec<Entry<'a>>) {
+    let place = |([i, j], _): &Entry| (j - i, *i as usize / BLOCK);
+    all.sort_by_key(|entry| (entry.0[1] - entry.0[0], entry.0[0]));
+    let (mut dense, mut rest) = (vec![], vec![]);
+    for chunk in all.chunk_by(|a, b| place(a) == place(b)) {
+        // Of springs between the same particles, one is in the run.
+        let mut run = chunk.to_vec();
+        run.dedup_by_key(|entry| entry.0);
+        if run.len() < DENSE {
+            rest.extend_from_slice(chunk);
+            continue;
+        }
+        let twice = chunk.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+        rest.extend(twice.map(|pair| pair[1]));
+        dense.push(run);
+    }
+    dense.sort_by_key(|run| (run[0].0[0] as usize / TILE, place(&run[0])));
+    (dense, rest)
+}
+
+/// Springs in the order of tiles and, in each, of their numbers among those that begin at the same
+/// particle.
+fn by_rank(mut all: Vec<Entry>) -> Vec<Entry> {
+    all.sort_by_key(|(ends, _)| *ends);
+    let same = |a: &Entry, b: &Entry| a.0[0] == b.0[0];
+    let of_particles = all.chunk_by(same);
+    let mut ranked: Vec<_> = of_particles
+        .flat_map(|chunk| chunk.iter().enumerate())
+        .collect();
+    ranked.sort_by_key(|(rank, ([i, _], _))| (*i as usize / TILE, *rank, *i));
+    ranked.into_iter().map(|(_, entry)| *entry).collect()
 }

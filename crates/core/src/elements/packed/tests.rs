@@ -1,6 +1,6 @@
 //! Springs in blocks, with the same springs one by one as the oracle.
 
-use pulp::Scalar;
+use pulp::{Scalar, WithSimd};
 
 use super::*;
 use crate::elements::force::Force;
@@ -33,6 +33,28 @@ fn springs(count: usize, particles: usize, reach: usize, damping: f64) -> Vec<Sp
     ends.into_iter().map(law).collect()
 }
 
+/// Springs from each particle to the next and to one as much further, but for some that are
+/// missing, and some between the same particles.
+fn rows(reach: usize, particles: usize, damping: f64) -> Vec<Spring> {
+    let starts = (0..particles).filter(|i| i % 11 != 3);
+    let next = starts.flat_map(|i| [(i, i + 1), (i + reach, i), (i, i + reach + 1)]);
+    let ends = next.filter(|(i, j)| reach > 0 && (*i).max(*j) < particles);
+    let twice = springs(100, particles, 1, damping)
+        .into_iter()
+        .take(20 * reach);
+    let spring = |(number, (i, j))| Spring {
+        i,
+        j,
+        kind: SpringKind::Structural,
+        law: SpringLaw {
+            stiffness: 1.0 + (number % 7) as f64,
+            rest_length: 0.5,
+            damping,
+        },
+    };
+    ends.enumerate().map(spring).chain(twice).collect()
+}
+
 fn numbers(count: usize, seed: u64) -> Vec<f64> {
     let mut random = SplitMix(seed);
     (0..count).map(|_| random.between(-1.0, 1.0)).collect()
@@ -46,7 +68,7 @@ fn off(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Forces and their differential, in as many bands as asked for.
-fn in_blocks(packed: &Packed, bands: usize, all: &[Vec<f64>; 4]) -> [Vec<f64>; 2] {
+fn in_bands(packed: &Packed, bands: usize, all: &[Vec<f64>; 4]) -> [Vec<f64>; 2] {
     let [x, v, dx, dv] = all.each_ref().map(|a| Some(a.as_slice()));
     [[x, v, None, None], [x, v, dx, dv]].map(|fields| {
         let mut f = vec![0.0; all[0].len()];
@@ -58,14 +80,19 @@ fn in_blocks(packed: &Packed, bands: usize, all: &[Vec<f64>; 4]) -> [Vec<f64>; 2
 #[test]
 #[cfg_attr(miri, ignore = "takes hours there")]
 fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
-    for (count, particles, reach) in [
-        (1024, 40, 40),
-        (1025, 5000, 5000),
-        (4000, 1500, 10),
-        (9000, 3000, 300),
+    for (dense, count, particles, reach) in [
+        (0, 1024, 40, 40),
+        (0, 1025, 5000, 5000),
+        (0, 4000, 1500, 10),
+        (0, 9000, 3000, 300),
+        (5, 0, 400, 0),
+        (7, 9000, 3000, 300),
+        (70, 0, 1300, 0),
     ] {
         for damping in [0.0, 3.0] {
-            let springs = springs(count, particles, reach, damping);
+            let mut springs = springs(count, particles, reach, damping);
+            springs.extend(rows(dense, particles, damping));
+            let what = format!("{dense} {count} {particles} {damping}");
             let mut all: [Vec<f64>; 4] =
                 std::array::from_fn(|seed| numbers(3 * particles, seed as u64));
             // A spring without a length.
@@ -86,20 +113,34 @@ fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
                 add_differential(spring, &at, [&all[2], &all[3]], &mut expected[1]);
             }
             let packed = Packed::new(&springs).unwrap();
-            let found = in_blocks(&packed, 1, &all);
+            let found = in_bands(&packed, 1, &all);
             for (expected, found) in expected.iter().zip(&found) {
-                assert!(off(expected, found) < 1e-13, "{count} {damping}");
+                assert!(off(expected, found) < 1e-13, "{what}");
             }
             for bands in [2, 3, 8] {
-                assert!(in_blocks(&packed, bands, &all) == found, "{bands} bands");
+                assert!(in_bands(&packed, bands, &all) == found, "{what}: {bands}");
             }
             let whole = packed.order.stretch(0, 1);
             let mut band = Band::default();
             let fields = all.each_ref().map(|a| Some(a.as_slice()));
             packed.sum(&mut band, &whole, fields);
-            let by_vectors = std::mem::replace(&mut band.f, vec![[0.0; 4]; whole.all.len()]);
-            pulp::WithSimd::with_simd(packed.sum_of(&mut band, &whole, true), Scalar::new());
-            assert!(by_vectors == band.f, "one number at a time");
+            let (columns, rows) = (band.columns[4].clone(), band.rows[4].clone());
+            packed.take(&mut band, &whole, fields);
+            assert_eq!(whole.runs.is_empty(), dense == 0, "{what}");
+            if !whole.runs.is_empty() {
+                packed
+                    .sum_of_runs(&mut band, &whole, true)
+                    .with_simd(Scalar::new());
+            }
+            if !whole.blocks.is_empty() {
+                packed
+                    .sum_of_blocks(&mut band, &whole, true)
+                    .with_simd(Scalar::new());
+            }
+            assert!(
+                columns == band.columns[4] && rows == band.rows[4],
+                "{what}: one by one"
+            );
         }
     }
 }

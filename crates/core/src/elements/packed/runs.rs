@@ -1,0 +1,172 @@
+//! Runs: springs of which both ends are consecutive, as in the families of a jelly or of a cloth.
+//! The numbers of neighbours are then loaded at once, and nothing is gathered.
+
+#![expect(
+    clippy::inline_always,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
+)]
+
+use std::ops::Range;
+
+use pulp::{Simd, WithSimd};
+
+use super::laws::{self, BLOCK, Each, Laws, Products};
+use crate::spring::Spring;
+
+/// Springs between consecutive particles. Where a spring is missing, there is one without
+/// stiffness.
+#[derive(Debug, Default)]
+pub(super) struct Runs {
+    /// The first particle at either end of each block.
+    pub places: Vec<[u32; 2]>,
+    pub laws: Laws,
+}
+
+impl Runs {
+    /// Adds springs of consecutive particles, in their order, of which the first ends are in one
+    /// block of all particles.
+    pub fn push(&mut self, springs: &[([u32; 2], &Spring)]) {
+        let [i, j] = springs[0].0;
+        let first = i - i % BLOCK as u32;
+        self.places.push([first, first + (j - i)]);
+        let at = |(ends, spring): &([u32; 2], _)| ((ends[0] - first) as usize, *spring);
+        self.laws.push(springs.iter().map(at));
+    }
+}
+
+/// The forces of runs, added to f: of x and v, or their change by dx and dv. All have three columns
+/// of so many numbers.
+pub(super) struct Sum<'a> {
+    pub runs: &'a Runs,
+    pub which: Range<usize>,
+    pub stride: usize,
+    pub fields: [&'a [f64]; 4],
+    pub f: &'a mut [f64],
+    pub is_damped: bool,
+    pub is_differential: bool,
+}
+
+impl WithSimd for Sum<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        match (self.is_differential, self.is_damped) {
+            (false, false) => forces::<false>(self),
+            (false, true) => forces::<true>(self),
+            (true, false) => differential::<false>(self),
+            (true, true) => differential::<true>(self),
+        }
+    }
+}
+
+/// Three numbers of each particle of a block.
+type Three<'a> = [&'a Each<f64>; 3];
+
+#[inline(always)]
+fn at(a: &[f64], stride: usize, first: u32) -> Three<'_> {
+    let column = |axis: usize| a[axis * stride + first as usize..].first_chunk().unwrap();
+    [column(0), column(1), column(2)]
+}
+
+#[inline(always)]
+fn apart([a, b]: [Three; 2], m: usize) -> [f64; 3] {
+    [a[0][m] - b[0][m], a[1][m] - b[1][m], a[2][m] - b[2][m]]
+}
+
+#[inline(always)]
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
+}
+
+/// Takes g from the forces on the first ends, and gives it to the second.
+#[inline(always)]
+fn give(g: &[Each<f64>; 3], [i, j]: [u32; 2], stride: usize, f: &mut [f64]) {
+    for (axis, g) in g.iter().enumerate() {
+        let column = &mut f[axis * stride..(axis + 1) * stride];
+        let first: &mut Each<f64> = column[i as usize..].first_chunk_mut().unwrap();
+        for m in 0..BLOCK {
+            first[m] -= g[m];
+        }
+        let second: &mut Each<f64> = column[j as usize..].first_chunk_mut().unwrap();
+        for m in 0..BLOCK {
+            second[m] += g[m];
+        }
+    }
+}
+
+#[inline(always)]
+fn forces<const DAMPED: bool>(sum: Sum) {
+    let (runs, stride) = (sum.runs, sum.stride);
+    let [x, v, ..] = sum.fields;
+    let mut g = [[0.0; BLOCK]; 3];
+    for block in sum.which {
+        let law = runs.laws.of(block);
+        let [i, j] = runs.places[block];
+        let places = [at(x, stride, i), at(x, stride, j)];
+        // Without damping, there are no speeds.
+        let speeds = if DAMPED {
+            [at(v, stride, i), at(v, stride, j)]
+        } else {
+            places
+        };
+        for m in 0..BLOCK {
+            let d = apart(places, m);
+            let of = Products {
+                dd: dot(d, d),
+                wd: if DAMPED {
+                    dot(apart(speeds, m), d)
+                } else {
+                    0.0
+                },
+                ..Products::default()
+            };
+            let s = laws::force::<DAMPED>(law, m, of);
+            for axis in 0..3 {
+                g[axis][m] = s * d[axis];
+            }
+        }
+        give(&g, [i, j], stride, sum.f);
+    }
+}
+
+#[inline(always)]
+fn differential<const DAMPED: bool>(sum: Sum) {
+    let (runs, stride) = (sum.runs, sum.stride);
+    let mut g = [[0.0; BLOCK]; 3];
+    for block in sum.which {
+        let law = runs.laws.of(block);
+        let [i, j] = runs.places[block];
+        let [places, moves] = [0, 2].map(|k| {
+            let a = sum.fields[k];
+            [at(a, stride, i), at(a, stride, j)]
+        });
+        // Without damping, there are no speeds.
+        let [speeds, changes] = if DAMPED {
+            [1, 3].map(|k| {
+                let a = sum.fields[k];
+                [at(a, stride, i), at(a, stride, j)]
+            })
+        } else {
+            [places, moves]
+        };
+        for m in 0..BLOCK {
+            let (d, e) = (apart(places, m), apart(moves, m));
+            let mut of = Products {
+                dd: dot(d, d),
+                de: dot(d, e),
+                ..Products::default()
+            };
+            if DAMPED {
+                let w = apart(speeds, m);
+                (of.wd, of.we) = (dot(w, d), dot(w, e));
+                of.gd = dot(apart(changes, m), d);
+            }
+            let [a, b] = laws::differential::<DAMPED>(law, m, of);
+            for axis in 0..3 {
+                g[axis][m] = a.mul_add(e[axis], b * d[axis]);
+            }
+        }
+        give(&g, [i, j], stride, sum.f);
+    }
+}
