@@ -63,10 +63,14 @@ impl Order {
             let own;
             let is_own = |([i, _], _): &Entry| *i as usize / TILE == tile;
             (own, dense) = dense.split_at(dense.partition_point(|run| is_own(&run[0])));
-            own.iter().for_each(|run| runs.push(run));
+            for run in own {
+                runs.push(run);
+            }
             let own;
             (own, rest) = rest.split_at(rest.partition_point(is_own));
-            own.chunks(BLOCK).for_each(|chunk| blocks.push(chunk));
+            for chunk in own.chunks(BLOCK) {
+                blocks.push(chunk);
+            }
         }
         tiles.push([runs.places.len(), blocks.len()]);
         Self {
