@@ -277,14 +277,13 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "takes hours there")]
     fn sweeps_in_any_bands_give_the_bits_of_whole_arrays() {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(3)
             .build()
             .unwrap();
-        let sizes = [(2, 2), (3, 7), (20, 20), (9, 300), (70, 5)];
-        let most = if cfg!(miri) { 2 } else { sizes.len() };
-        for (rows, cols) in sizes.into_iter().take(most) {
+        for (rows, cols) in [(2, 2), (3, 7), (20, 20), (9, 300), (70, 5)] {
             for damping_time in [0.0, 5e-4] {
                 let scene = cloth(Grid::new(rows, cols).unwrap(), damping_time);
                 for (k, method) in [

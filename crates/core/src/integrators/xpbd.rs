@@ -185,6 +185,7 @@ mod tests {
 
     /// On a cloth springs turn between corrections: what is left of the error does not vanish.
     #[test]
+    #[cfg_attr(miri, ignore = "takes hours there")]
     fn many_iterations_on_a_cloth_come_close_to_implicit_euler() {
         let scene = cloth(Grid::new(6, 6).unwrap(), 1e-3);
         let network = scene.model.network().unwrap();
