@@ -37,11 +37,12 @@ const PLANES: usize = 20_000;
 /// Share of a step at which a pair comes as near as `gap`, or `None` if it never does.
 ///
 /// The points (m) move linearly from `from` to `from + moves` (m). Of round primitives, `radius` is
-/// the sum of the radii (m), which `gap` (m, at least 0) includes. `None` is a certificate: the pair is farther apart than the gap at
-/// every time of the step. `Some(t)` is conservative: the pair is so until t, and then apart by the
-/// gap and at most a tenth of it, or a tenth of what it had above the gap at first; by more only if
-/// 20 000 planes do not decide. Both allow for 1e-10 m and about 1e-12 of the largest coordinate,
-/// more than the rounding here and in the sums `from + moves`.
+/// the sum of the radii (m), which `gap` (m, at least 0) includes. `None` is a certificate: the
+/// pair is farther apart than the gap at every time of the step. `Some(t)` is conservative: the
+/// pair is so until t, and then apart by the gap and at most a tenth of it, or a tenth of what it
+/// had above the gap at first; by more only if 20 000 planes do not decide. Both allow for 1e-10 m
+/// and about 1e-12 of the largest coordinate, more than the rounding here and in the sums `from +
+/// moves`.
 ///
 /// A pair that begins nearer than the gap is hit at once, `Some(0.0)`, if its closest points
 /// approach. If they do not, the pair may part, slide and turn: it is only hit where it would lose

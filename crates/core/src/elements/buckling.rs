@@ -11,8 +11,8 @@
 
 use std::f64::consts::PI;
 
+use super::axial::{self, Elastic};
 use super::force::{At, Cost, Force, check_ends, ends};
-use super::springs::{self, Elastic};
 use crate::energy::Energy;
 use crate::error::{Error, at_least, positive};
 use crate::spring::{Spring, SpringKind, SpringLaw};
@@ -83,23 +83,23 @@ impl Force for BucklingSprings {
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
-        springs::add_all(&self.0, at.x, at.v, f);
+        axial::add_all(&self.0, at.x, at.v, f);
     }
 
     fn add_differential(&self, at: &At, d: [&[f64]; 2], df: &mut [f64]) {
         for strip in &self.0 {
-            springs::add_differential(strip, at, d, df);
+            axial::add_differential(strip, at, d, df);
         }
     }
 
     fn couplings(&self, _t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         for strip in &self.0 {
-            visit(springs::coupling(strip, x, clamped));
+            visit(axial::coupling(strip, x, clamped));
         }
     }
 
     fn energy(&self, at: &At) -> Energy {
-        springs::energy(self.0.iter().copied(), at.x)
+        axial::energy(self.0.iter().copied(), at.x)
     }
 
     fn reads_velocity(&self) -> bool {

@@ -3,6 +3,7 @@
 mod air;
 mod airflow;
 mod attraction;
+mod axial;
 mod buckling;
 mod contact_layer;
 mod drag;

@@ -1,8 +1,8 @@
 //! The springs of a sheet as a force.
 
+use super::super::axial;
 use super::super::finish::Finish;
 use super::super::force::{At, Cost, Force, check_particle};
-use super::super::springs;
 use super::model::Sheet;
 use super::strips::{Quantity, set};
 use crate::energy::Energy;
@@ -32,7 +32,7 @@ impl Force for Sheet {
         // The turning of damped springs changes their forces, which the kernel leaves out.
         if self.is_damped() && !is_zero(at.v) {
             for spring in self.springs() {
-                springs::add_differential(&spring, at, [dx, dv], df);
+                axial::add_differential(&spring, at, [dx, dv], df);
             }
             return;
         }
@@ -49,11 +49,11 @@ impl Force for Sheet {
 
     fn couplings(&self, _t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
         self.springs()
-            .for_each(|spring| visit(springs::coupling(&spring, x, clamped)));
+            .for_each(|spring| visit(axial::coupling(&spring, x, clamped)));
     }
 
     fn energy(&self, at: &At) -> Energy {
-        springs::energy(self.springs(), at.x)
+        axial::energy(self.springs(), at.x)
     }
 
     fn reads_velocity(&self) -> bool {
