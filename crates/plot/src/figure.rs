@@ -238,6 +238,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "takes hours there")]
     fn texts_are_measured_as_they_are_drawn() {
         let mut figure = Figure::new([400.0, 100.0]);
         let room = figure.text([20.0, 60.0], Label::new("Wäg & <λ> 10^{−3}", 40.0));
