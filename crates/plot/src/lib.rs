@@ -10,7 +10,8 @@ mod label;
 mod layout;
 mod stability;
 mod style;
-#[cfg(test)]
+// Whole charts take hours under Miri.
+#[cfg(all(test, not(miri)))]
 mod tests;
 mod work_precision;
 
