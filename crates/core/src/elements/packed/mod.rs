@@ -1,9 +1,10 @@
-//! Many single springs, evaluated in blocks that the compiler turns into vectors.
+//! Many single springs, evaluated 64 at a time, which the compiler turns into vectors.
 //!
-//! A particle's three numbers lie side by side here, so that each end of a spring is one load, and
-//! one store of its force. Springs are in an order in which neighbours have no particle in common,
-//! so that no sum waits for the one before, and which stays among a few particles for a while, so
-//! that these stay in the cache. The forces on each particle are summed in that order, whatever the
+//! Springs between consecutive particles make runs, for which positions are kept in columns. The
+//! others make blocks, for which a particle's three numbers lie side by side, so that each end of a
+//! spring is one load, and one store of its force. Springs of blocks are in an order in which
+//! neighbours have no particle in common, so that no sum waits for the one before. Both stay among
+//! a few particles for a while, so that these stay in the cache. The forces on each particle are summed in that order, whatever the
 //! number of threads: a thread has a band of particles, and evaluates all springs that reach it.
 
 mod blocks;
@@ -29,7 +30,7 @@ const LEAST: usize = 1024;
 /// Time that springs take one by one over that which they take in blocks (docs/performance.md).
 pub(super) const SPEED: f64 = 2.0;
 
-/// Springs in blocks.
+/// Springs in runs and in blocks.
 #[derive(Debug)]
 pub(super) struct Packed {
     order: Order,
@@ -147,6 +148,7 @@ impl Packed {
         let (stride, all) = (self.order.stride(), &stretch.all);
         let particles = &self.order.particles;
         let of_all = &particles[all.start..all.end.min(particles.len())];
+        // After the fields, the sums, which have no source.
         let sources = fields
             .into_iter()
             .map(|field| field.map(Some))
