@@ -1,11 +1,12 @@
 //! Many single springs, evaluated 64 at a time, which the compiler turns into vectors.
 //!
 //! Springs between consecutive particles make runs, for which positions are kept in columns. The
-//! others make blocks, for which a particle's three numbers lie side by side, so that each end of a
-//! spring is one load, and one store of its force. Springs of blocks are in an order in which
-//! neighbours have no particle in common, so that no sum waits for the one before. Both stay among
-//! a few particles for a while, so that these stay in the cache. The forces on each particle are summed in that order, whatever the
-//! number of threads: a thread has a band of particles, and evaluates all springs that reach it.
+//! others make blocks, for which a particle's three numbers lie side by side, so that each end of
+//! a spring is one load, and one store of its force. Springs of blocks are in an order in which
+//! neighbours have no particle in common, so that no sum waits for the one before. Both stay
+//! among a few particles for a while, so that these stay in the cache. The forces on each
+//! particle are summed in that order, whatever the number of threads: a thread has a band of
+//! particles, and evaluates all springs that reach it.
 
 mod blocks;
 mod laws;
