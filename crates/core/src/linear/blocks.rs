@@ -17,8 +17,6 @@ type Block = [f64; 9];
 
 /// The factor of a matrix whose pattern was analysed, with scratch.
 pub(crate) struct BlockCholesky {
-    /// Ends of the couplings of the pattern.
-    pairs: Vec<(u32, u32)>,
     /// Block of each coupling.
     places: Vec<u32>,
     /// Particles in the order of their elimination.
@@ -106,7 +104,6 @@ impl BlockCholesky {
         }
         Some(Self {
             places,
-            pairs,
             blocks: vec![[0.0; 9]; rows.len()],
             diagonal: vec![[0.0; 9]; n],
             unknowns: vec![[0.0; 3]; n],
@@ -117,11 +114,6 @@ impl BlockCholesky {
             rows,
             targets,
         })
-    }
-
-    /// Whether the couplings are still those of the pattern.
-    pub fn fits(&self, tangent: &Tangent) -> bool {
-        tangent.pairs().eq(self.pairs.iter().copied())
     }
 
     /// Factorises A. Returns whether it is positive definite.

@@ -1,21 +1,34 @@
-//! Conjugate gradients, preconditioned by the inverse of each particle's own 3 x 3 block, filtered
-//! as in Baraff and Witkin, *Large Steps in Cloth Simulation*, 1998: pinned particles stay, however
-//! many iterations there are.
+//! Conjugate gradients, preconditioned by the inverse of each particle's own 3 x 3 block and by
+//! multigrid where that pays, filtered as in Baraff and Witkin, *Large Steps in Cloth Simulation*,
+//! 1998: pinned particles stay, however many iterations there are. The sum of both preconditioners
+//! is one (Bramble, Pasciak, Xu, *Parallel multilevel preconditioners*, 1990), and takes no further
+//! product with the matrix.
 
 use std::array;
+use std::ops::Range;
 
+use super::multigrid::Multigrid;
 use super::tangent::Tangent;
-use crate::columns::columns;
+use crate::columns::{columns, columns_mut};
 use crate::system::Linearized;
+use crate::threads::{Columns, split_off, threads};
+
+/// Symmetric 3 x 3 block: xx, yy, zz, xy, xz, yz.
+pub(super) type Block = [f64; 6];
+
+/// Number of particles in a block, which stays in the nearest cache.
+const BLOCK: usize = 256;
 
 /// Scratch for a system of one size.
 pub(crate) struct ConjugateGradients {
     r: Vec<f64>,
-    z: Vec<f64>,
     p: Vec<f64>,
     q: Vec<f64>,
-    /// The inverse block of each particle, in columns: xx, yy, zz, xy, xz, yz.
+    /// The inverse block of each particle, in columns.
     inverses: [Vec<f64>; 6],
+    /// Two sums for each block of particles: they are added up in the same order by any number of
+    /// threads.
+    sums: Vec<f64>,
 }
 
 /// The end of an iteration.
@@ -34,10 +47,10 @@ impl ConjugateGradients {
         let zeros = || vec![0.0; 3 * particles];
         Self {
             r: zeros(),
-            z: zeros(),
             p: zeros(),
             q: zeros(),
             inverses: array::from_fn(|_| vec![0.0; particles]),
+            sums: vec![0.0; 2 * particles.div_ceil(BLOCK)],
         }
     }
 
@@ -45,48 +58,40 @@ impl ConjugateGradients {
     pub fn solve(
         &mut self,
         system: &dyn Linearized,
-        tangent: &Tangent,
+        (tangent, mut multigrid): (&Tangent, Option<&mut Multigrid>),
         b: &[f64],
         x: &mut [f64],
-        tolerance: f64,
-        most: u64,
+        (tolerance, most): (f64, u64),
     ) -> Solution {
         self.prepare(tangent);
-        let Self {
-            r,
-            z,
-            p,
-            q,
-            inverses,
-        } = self;
+        if let Some(multigrid) = &mut multigrid {
+            multigrid.prepare(tangent);
+        }
         x.fill(0.0);
-        r.copy_from_slice(b);
-        let scale = dot(b, b).sqrt();
+        self.p.fill(0.0);
+        self.q.fill(0.0);
+        self.r.copy_from_slice(b);
+        let [rr, mut rz] = self.descend(0.0, multigrid.as_deref_mut());
+        let scale = rr.sqrt();
         let mut solution = Solution {
             iterations: 0,
             residual: if scale > 0.0 { 1.0 } else { 0.0 },
             indefinite: false,
         };
-        if scale == 0.0 {
-            return solution;
-        }
-        let mut rz = descend(0.0, [p, q], inverses, [x, r, z]).1;
-        p.copy_from_slice(z);
+        self.turn([0.0; 2], x, multigrid.as_deref());
         while solution.iterations < most && solution.residual > tolerance {
-            tangent.product(system, p, q);
-            let curvature = dot(p, q);
+            tangent.product(system, &self.p, &mut self.q);
+            let curvature = self.curvature();
             if !(curvature > 0.0 && rz > 0.0) {
                 solution.indefinite = true;
                 return solution;
             }
-            let (rr, next) = descend(rz / curvature, [p, q], inverses, [x, r, z]);
+            let step = rz / curvature;
+            let [rr, next] = self.descend(step, multigrid.as_deref_mut());
             solution.iterations += 1;
             solution.residual = rr.sqrt() / scale;
-            let turn = next / rz;
+            self.turn([step, next / rz], x, multigrid.as_deref());
             rz = next;
-            for (p, z) in p.iter_mut().zip(&*z) {
-                *p = z + turn * *p;
-            }
         }
         solution
     }
@@ -101,11 +106,8 @@ impl ConjugateGradients {
             column.fill(0.0);
         }
         tangent.blocks(|i, j, block| {
-            let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = block;
-            let mean = |a: f64, b: f64| 0.5 * (a + b);
             // The blocks of a particle have a symmetric sum.
-            let block = [xx, yy, zz, mean(xy, yx), mean(xz, zx), mean(yz, zy)];
-            for (column, part) in self.inverses.iter_mut().zip(block) {
+            for (column, part) in self.inverses.iter_mut().zip(symmetric(block)) {
                 column[i] += part;
                 if j != i {
                     column[j] += part;
@@ -120,49 +122,158 @@ impl ConjugateGradients {
             }
         }
     }
+
+    /// p . q
+    fn curvature(&mut self) -> f64 {
+        let Self { p, q, sums, .. } = self;
+        let [sum, _] = add_up(p.len() / 3, [], sums, &|particles, [], sums| {
+            let [of_p, of_q] = [&*p, &*q].map(|a| columns(a, &particles));
+            sums[0] = of_p.iter().zip(of_q).map(|(p, q)| dot(p, q)).sum();
+        });
+        sum
+    }
+
+    /// Takes a step along p from the residual, r -= step q. Returns r . r and r . z, with the z
+    /// that the preconditioners make of r.
+    fn descend(&mut self, step: f64, multigrid: Option<&mut Multigrid>) -> [f64; 2] {
+        let Self {
+            r,
+            q,
+            inverses,
+            sums,
+            ..
+        } = self;
+        let [rr, rz] = add_up(
+            r.len() / 3,
+            columns_mut(r),
+            sums,
+            &|particles, mut r, sums| {
+                for (r, q) in r.iter_mut().zip(columns(q, &particles)) {
+                    for (r, q) in r.iter_mut().zip(q) {
+                        *r -= step * q;
+                    }
+                }
+                let r = r.each_ref().map(|r| &**r);
+                sums[0] = r.iter().map(|r| dot(r, r)).sum();
+                sums[1] = 0.0;
+                preconditioned(inverses, &particles, r, |axis, k, z| {
+                    sums[1] += r[axis][k] * z;
+                });
+            },
+        );
+        [
+            rr,
+            rz + multigrid.map_or(0.0, |multigrid| multigrid.solve(r)),
+        ]
+    }
+
+    /// Takes a step, x += step p, and turns to a new direction, p = z + turn p.
+    fn turn(&mut self, [step, turn]: [f64; 2], x: &mut [f64], multigrid: Option<&Multigrid>) {
+        let Self {
+            r,
+            p,
+            inverses,
+            sums,
+            ..
+        } = self;
+        let ([a, b, c], [d, e, f]) = (columns_mut(x), columns_mut(p));
+        add_up(
+            r.len() / 3,
+            [a, b, c, d, e, f],
+            sums,
+            &|particles, [a, b, c, d, e, f], _| {
+                let (x, mut p) = ([a, b, c], [d, e, f]);
+                for (x, p) in x.into_iter().zip(&mut p) {
+                    for (x, p) in x.iter_mut().zip(&mut **p) {
+                        *x += step * *p;
+                        *p *= turn;
+                    }
+                }
+                let of_r = columns(r, &particles);
+                preconditioned(inverses, &particles, of_r, |axis, k, z| p[axis][k] += z);
+                if let Some(multigrid) = multigrid {
+                    for (k, i) in particles.enumerate() {
+                        for (p, z) in p.iter_mut().zip(multigrid.solution(i)) {
+                            p[k] += z;
+                        }
+                    }
+                }
+            },
+        );
+    }
 }
 
-/// Number of particles in a block, which stays in the nearest cache.
-const BLOCK: usize = 256;
+/// Calls `run` on blocks of particles, in parallel where there are many, with their parts of the
+/// columns, and adds up the two sums that it writes for each.
+fn add_up<const N: usize>(
+    particles: usize,
+    columns: Columns<N>,
+    sums: &mut [f64],
+    run: &(impl Fn(Range<usize>, Columns<N>, &mut [f64]) + Sync),
+) -> [f64; 2] {
+    each_block(threads(particles), 0..particles, columns, sums, run);
+    sums.chunks_exact(2)
+        .fold([0.0; 2], |[a, b], sums| [a + sums[0], b + sums[1]])
+}
 
-/// Takes a step along p: x += step p, r -= step q, z = B^-1 r. Returns r . r and r . z of the new
-/// ones.
-fn descend(
-    step: f64,
-    [p, q]: [&[f64]; 2],
-    inverses: &[Vec<f64>; 6],
-    [x, r, z]: [&mut [f64]; 3],
-) -> (f64, f64) {
-    let n = p.len() / 3;
-    let (mut rr, mut rz) = (0.0, 0.0);
-    for start in (0..n).step_by(BLOCK) {
-        let block = start..n.min(start + BLOCK);
-        for axis in 0..3 {
-            let part = axis * n + block.start..axis * n + block.end;
-            let (x, p) = (&mut x[part.clone()], &p[part.clone()]);
-            for (x, p) in x.iter_mut().zip(p) {
-                *x += step * p;
-            }
-            let (r, q) = (&mut r[part.clone()], &q[part]);
-            for (r, q) in r.iter_mut().zip(q) {
-                *r -= step * q;
-            }
-            rr += dot(r, r);
+fn each_block<const N: usize>(
+    bands: usize,
+    particles: Range<usize>,
+    mut columns: Columns<N>,
+    sums: &mut [f64],
+    run: &(impl Fn(Range<usize>, Columns<N>, &mut [f64]) + Sync),
+) {
+    if bands < 2 {
+        let starts = particles.clone().step_by(BLOCK);
+        for (start, sums) in starts.zip(sums.chunks_exact_mut(2)) {
+            let block = start..particles.end.min(start + BLOCK);
+            run(block.clone(), split_off(&mut columns, block.len()), sums);
         }
-        let [rx, ry, rw] = columns(r, &block);
-        for (axis, k) in [[0, 3, 4], [3, 1, 5], [4, 5, 2]].into_iter().enumerate() {
-            let [a, b, c] = k.map(|k| &inverses[k][block.clone()]);
-            let z = &mut z[axis * n + block.start..axis * n + block.end];
-            let of_r = rx.iter().zip(ry).zip(rw);
-            for ((z, ((x, y), w)), ((a, b), c)) in
-                z.iter_mut().zip(of_r).zip(a.iter().zip(b).zip(c))
-            {
-                *z = a * x + b * y + c * w;
-            }
-            rz += dot([rx, ry, rw][axis], z);
+        return;
+    }
+    let above = bands / 2;
+    let blocks = particles.len().div_ceil(BLOCK) * above / bands;
+    let middle = particles.start + blocks * BLOCK;
+    let (sums_above, sums_below) = sums.split_at_mut(2 * blocks);
+    let columns_above = split_off(&mut columns, blocks * BLOCK);
+    rayon::join(
+        || {
+            each_block(
+                above,
+                particles.start..middle,
+                columns_above,
+                sums_above,
+                run,
+            )
+        },
+        || {
+            each_block(
+                bands - above,
+                middle..particles.end,
+                columns,
+                sums_below,
+                run,
+            )
+        },
+    );
+}
+
+/// Visits the parts of z = B^-1 r on a block of particles: axis, number in the block, and value.
+#[inline]
+fn preconditioned(
+    inverses: &[Vec<f64>; 6],
+    block: &Range<usize>,
+    [rx, ry, rz]: [&[f64]; 3],
+    mut visit: impl FnMut(usize, usize, f64),
+) {
+    for (axis, k) in [[0, 3, 4], [3, 1, 5], [4, 5, 2]].into_iter().enumerate() {
+        let [a, b, c] = k.map(|k| &inverses[k][block.clone()]);
+        let of_r = rx.iter().zip(ry).zip(rz);
+        let rows = of_r.zip(a.iter().zip(b).zip(c));
+        for (k, (((x, y), z), ((a, b), c))) in rows.enumerate() {
+            visit(axis, k, a * x + b * y + c * z);
         }
     }
-    (rr, rz)
 }
 
 /// The scalar product, in sixteen sums that do not wait for one another.
@@ -181,7 +292,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// The inverse of a symmetric block; if that is not positive definite, of the absolute values on
 /// its diagonal.
-fn inverse([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [f64; 6] {
+pub(super) fn inverse([xx, yy, zz, xy, xz, yz]: Block) -> Block {
     let minor = xx * yy - xy * xy;
     let (a, b, c) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
     let determinant = xx * a + xy * b + xz * c;
@@ -199,4 +310,10 @@ fn inverse([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [f64; 6] {
         let size = |k: f64| 1.0 / k.abs().max(f64::MIN_POSITIVE);
         [size(xx), size(yy), size(zz), 0.0, 0.0, 0.0]
     }
+}
+
+/// The symmetric part of a block.
+pub(super) fn symmetric([xx, xy, xz, yx, yy, yz, zx, zy, zz]: [f64; 9]) -> Block {
+    let mean = |a: f64, b: f64| 0.5 * (a + b);
+    [xx, yy, zz, mean(xy, yx), mean(xz, zx), mean(yz, zy)]
 }

@@ -29,6 +29,7 @@ pub(super) fn sparse_factorisation(operations: f64) -> f64 {
 /// Factorisation of a matrix whose pattern was analysed.
 pub(super) struct Direct {
     factor: Factor,
+    pattern: u64,
     /// Price of a factorisation, in evaluations of forces spring by spring.
     pub factorisation: f64,
     /// Price of a solve with the factor, in evaluations of forces spring by spring.
@@ -46,10 +47,12 @@ impl Direct {
     /// The pattern of a tangent; `None` if the factor takes more memory than there is.
     pub fn new(tangent: &Tangent) -> Option<Self> {
         let couplings = tangent.couplings().max(1) as f64;
+        let pattern = tangent.pattern();
         if let Some(blocks) = BlockCholesky::new(tangent) {
             return Some(Self {
                 factorisation: BLOCK_PRODUCT * blocks.products / (couplings + OVERHEAD),
                 solution: BLOCK_SOLVE * blocks.size / (couplings + OVERHEAD),
+                pattern,
                 factor: Factor::Blocks(Box::new(blocks)),
             });
         }
@@ -57,6 +60,7 @@ impl Direct {
         Some(Self {
             factorisation: sparse_factorisation(sparse.operations / couplings),
             solution: SPARSE_SOLVE[0] + SPARSE_SOLVE[1] * sparse.size / couplings,
+            pattern,
             factor: Factor::Sparse(Box::new(sparse)),
         })
     }
@@ -69,10 +73,7 @@ impl Direct {
 
     /// Whether the couplings are still those of the pattern.
     pub fn fits(&self, tangent: &Tangent) -> bool {
-        match &self.factor {
-            Factor::Blocks(blocks) => blocks.fits(tangent),
-            Factor::Sparse(sparse) => sparse.fits(tangent),
-        }
+        self.pattern == tangent.pattern()
     }
 
     /// Factorises A. Returns whether it is positive definite.

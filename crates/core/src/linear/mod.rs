@@ -1,14 +1,16 @@
-//! Linear systems of implicit steps: conjugate gradients or a sparse factorisation, whichever costs
-//! less.
+//! Linear systems of implicit steps: conjugate gradients, with multigrid or without, or a sparse
+//! factorisation, whichever costs least.
 
 mod blocks;
 mod conjugate_gradients;
 mod direct;
+mod multigrid;
 mod sparse;
 mod tangent;
 
 use conjugate_gradients::ConjugateGradients;
 use direct::Direct;
+use multigrid::Multigrid;
 pub(crate) use tangent::Tangent;
 
 use crate::system::Linearized;
@@ -20,6 +22,11 @@ use crate::work::Work;
 const ITERATION: f64 = 2.4;
 /// Iterations that conjugate gradients take, over sqrt(1 + a2 w2) ln(2/tolerance).
 const SPREAD: f64 = 0.3;
+/// Price of an iteration with multigrid, and of taking up a matrix for it, in evaluations of the
+/// system's forces.
+const MULTIGRID: [f64; 2] = [5.0, 10.0];
+/// Iterations with multigrid, over the root of those that there are without.
+const MULTIGRID_SPREAD: f64 = 0.45;
 /// Least operations of a factorisation for each coupling of particles in two dimensions, over the
 /// root of their number: no need to analyse the pattern where that is too dear.
 const PLANAR: f64 = 150.0;
@@ -31,12 +38,16 @@ pub(crate) struct Solver {
     pub tangent: Tangent,
     /// Whether to factorise at any price, or at none.
     direct_always: Option<bool>,
+    /// Whether to use multigrid at any price, or at none.
+    multigrid_always: Option<bool>,
     iterative: ConjugateGradients,
     /// The factorisation, once it is worth an analysis of the pattern; `None` also if it would be
     /// too large.
     direct: Option<Direct>,
     /// Whether the pattern was analysed.
     analysed: bool,
+    /// Coarser levels, once they are worth an analysis of the pattern.
+    multigrid: Option<Multigrid>,
     /// Evaluations of the system's forces in the time of one spring by spring.
     speed: f64,
     scratch: Vec<f64>,
@@ -55,15 +66,17 @@ impl Solver {
             iterative: ConjugateGradients::new(n),
             direct: None,
             analysed: false,
+            multigrid: None,
             speed: system.speed(),
             scratch: vec![0.0; n],
             tangent,
             direct_always: None,
+            multigrid_always: None,
             stiffness: 0.0,
             factorised: false,
         };
         if !system.couples_always_the_same() {
-            solver.direct_always = Some(false);
+            (solver.direct_always, solver.multigrid_always) = (Some(false), Some(false));
         } else if solver.least_operations() == 0.0 {
             solver.analyse();
         }
@@ -91,7 +104,7 @@ impl Solver {
     pub fn renew(&mut self, system: &dyn Linearized) {
         self.speed = system.speed();
         if !system.couples_always_the_same() {
-            self.direct_always = Some(false);
+            (self.direct_always, self.multigrid_always) = (Some(false), Some(false));
         }
     }
 
@@ -120,15 +133,31 @@ impl Solver {
         self.stiffness
     }
 
+    /// Prices of a solve by conjugate gradients to a relative residual, without multigrid and with
+    /// it, in evaluations of the forces.
+    fn prices(&self, tolerance: f64) -> [f64; 2] {
+        let spread = (1.0 + self.stiffness).sqrt();
+        let digits = libm::log(2.0 / tolerance);
+        let [iteration, matrix] = MULTIGRID;
+        let alone = ITERATION * SPREAD * spread * digits;
+        let with = matrix + iteration * MULTIGRID_SPREAD * spread.sqrt() * digits;
+        match self.multigrid_always {
+            Some(true) => [f64::INFINITY, with],
+            Some(false) => [alone, f64::INFINITY],
+            None => [alone, with],
+        }
+    }
+
     /// Whether a solve to a relative residual is cheaper by a factorisation than by conjugate
     /// gradients. Analyses the pattern where that may be so.
     fn goes_direct(&mut self, tolerance: f64) -> bool {
-        let iterations = SPREAD * (1.0 + self.stiffness).sqrt() * libm::log(2.0 / tolerance);
+        let [alone, with] = self.prices(tolerance);
+        let iterative = alone.min(with);
         let least = match self.least_operations() {
             0.0 => 0.0,
             operations => direct::sparse_factorisation(operations),
         };
-        let worth_analysing = self.factorised || least * self.speed < ITERATION * iterations;
+        let worth_analysing = self.factorised || least * self.speed < iterative;
         if self.direct_always.unwrap_or(worth_analysing) && !self.analysed {
             self.analyse();
         }
@@ -141,7 +170,7 @@ impl Solver {
             factorisation + direct.solution
         });
         self.direct_always
-            .unwrap_or(worth_analysing && price * self.speed < ITERATION * iterations)
+            .unwrap_or(worth_analysing && price * self.speed < iterative)
     }
 
     /// Factorises A if solves to a relative residual are cheaper so. Returns the work, and whether
@@ -183,11 +212,22 @@ impl Solver {
                 (work, Some(0.0))
             }
             _ => {
+                let [alone, with] = self.prices(tolerance);
+                let mut price = ITERATION;
+                let mut multigrid = None;
+                if with < alone {
+                    let fits = self.multigrid.take().filter(|m| m.fits(&self.tangent));
+                    let used = fits.unwrap_or_else(|| Multigrid::new(&self.tangent));
+                    multigrid = Some(self.multigrid.insert(used));
+                    work.algebra += MULTIGRID[1];
+                    price = MULTIGRID[0];
+                }
+                let matrix = (&self.tangent, multigrid);
                 let solution = self
                     .iterative
-                    .solve(system, &self.tangent, b, x, tolerance, MOST);
+                    .solve(system, matrix, b, x, (tolerance, MOST));
                 work.iterations = solution.iterations;
-                work.algebra += ITERATION * solution.iterations as f64;
+                work.algebra += price * solution.iterations as f64;
                 if !solution.indefinite {
                     work.residual = solution.residual;
                 }

@@ -14,8 +14,6 @@ use super::tangent::Tangent;
 
 /// The matrix in columns, unknowns by particle, its factor, and scratch.
 pub(crate) struct Cholesky {
-    /// Ends of the couplings of the pattern.
-    pairs: Vec<(u32, u32)>,
     /// Place of the block of each coupling: the particle whose columns it is in, and its place
     /// among their blocks.
     places: Vec<(u32, u32)>,
@@ -80,7 +78,6 @@ impl Cholesky {
             factor: vec![0.0; symbolic.len_val()],
             values: vec![0.0; rows.len()],
             rhs: vec![0.0; 3 * n],
-            pairs,
             places,
             column_starts,
             rows,
@@ -89,11 +86,6 @@ impl Cholesky {
             operations,
             size,
         })
-    }
-
-    /// Whether the couplings are still those of the pattern.
-    pub fn fits(&self, tangent: &Tangent) -> bool {
-        tangent.pairs().eq(self.pairs.iter().copied())
     }
 
     /// Factorises A. Returns whether it is positive definite.

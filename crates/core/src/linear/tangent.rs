@@ -16,6 +16,8 @@ pub(crate) struct Tangent {
     free: Vec<f64>,
     /// Whether couplings are clamped.
     clamped: bool,
+    /// Number of times that other particles were coupled than before.
+    pattern: u64,
     /// Positions (m) and step (s) of the last gathering.
     x: Vec<f64>,
     a: f64,
@@ -32,6 +34,7 @@ impl Tangent {
             masses: vec![0.0; n],
             free: vec![0.0; n],
             clamped: false,
+            pattern: 0,
             x: vec![0.0; 3 * n],
             a: 0.0,
         };
@@ -44,13 +47,29 @@ impl Tangent {
 
     fn collect(&mut self, system: &dyn Linearized, t: f64, x: &[f64]) {
         let (axial, blocks) = (&mut self.axial, &mut self.blocks);
-        axial.clear();
-        blocks.clear();
-        system.couplings(t, x, self.clamped, &mut |coupling| match coupling {
-            Coupling::Axial(coupling) => axial.push(coupling),
-            Coupling::Block(coupling) => blocks.push(coupling.into()),
-            Coupling::General(coupling) => blocks.push(coupling),
+        let counts = [axial.len(), blocks.len()];
+        let (mut axial_count, mut block_count, mut same) = (0, 0, true);
+        system.couplings(t, x, self.clamped, &mut |coupling| {
+            let block = match coupling {
+                Coupling::Axial(new) => {
+                    same &= put(axial, axial_count, new, |c| [c.i, c.j]);
+                    axial_count += 1;
+                    return;
+                }
+                Coupling::Block(coupling) => coupling.into(),
+                Coupling::General(coupling) => coupling,
+            };
+            same &= put(blocks, block_count, block, |c| [c.i, c.j]);
+            block_count += 1;
         });
+        axial.truncate(axial_count);
+        blocks.truncate(block_count);
+        self.pattern += u64::from(!same || counts != [axial_count, block_count]);
+    }
+
+    /// Changes as soon as other particles are coupled.
+    pub fn pattern(&self) -> u64 {
+        self.pattern
     }
 
     /// Number of particles.
@@ -101,6 +120,11 @@ impl Tangent {
     /// The mass of each particle in A (kg); 0 where it is pinned.
     pub fn masses(&self) -> &[f64] {
         &self.masses
+    }
+
+    /// 0 for each particle that is pinned, 1 for others.
+    pub fn free(&self) -> &[f64] {
+        &self.free
     }
 
     /// The block of a coupling in A.
@@ -204,6 +228,19 @@ impl Tangent {
                 }
             }
         }
+    }
+}
+
+/// Puts a coupling in its place in a list. Returns whether there was one of the same ends.
+#[inline]
+fn put<C>(list: &mut Vec<C>, place: usize, new: C, ends: impl Fn(&C) -> [usize; 2]) -> bool {
+    if let Some(old) = list.get_mut(place) {
+        let same = ends(old) == ends(&new);
+        *old = new;
+        same
+    } else {
+        list.push(new);
+        false
     }
 }
 

@@ -7,7 +7,7 @@ use crate::spring::{Spring, SpringKind, SpringLaw};
 use crate::{Grid, Network, Path, Sheet, Vector3};
 
 /// A flat square of springs of one stiffness, a corner pinned and everything a little out of place.
-fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
+pub(super) fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let grid = Grid::new(side, side).unwrap();
     let spacing = 1.0 / (side - 1) as f64;
     let mut network = Network::new(vec![1.0 / grid.particles() as f64; grid.particles()]).unwrap();
@@ -31,7 +31,7 @@ fn cloth(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
 }
 
 /// A line of springs, its first particle pinned.
-fn chain(count: usize, stiffness: f64) -> (Network, Vec<f64>) {
+pub(super) fn chain(count: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let mut network = Network::new(vec![1.0 / count as f64; count]).unwrap();
     let spacing = 1.0 / count as f64;
     let law = SpringLaw::new(stiffness, spacing, 0.0).unwrap();
@@ -47,7 +47,39 @@ fn chain(count: usize, stiffness: f64) -> (Network, Vec<f64>) {
     (network, x)
 }
 
-fn right_hand_side(network: &Network) -> Vec<f64> {
+/// A cube of single springs between neighbours in all directions, a corner pinned.
+pub(super) fn jelly(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
+    let n = side * side * side;
+    let mut network = Network::new(vec![1.0 / n as f64; n]).unwrap();
+    let spacing = 1.0 / (side - 1) as f64;
+    let place = |i: usize| [i % side, i / side % side, i / side / side];
+    for i in 0..n {
+        for (dx, dy, dz) in [
+            (1, 0, 0),
+            (0, 1, 0),
+            (0, 0, 1),
+            (1, 1, 0),
+            (0, 1, 1),
+            (1, 0, 1),
+        ] {
+            let j = i + dx + side * (dy + side * dz);
+            let [p, d] = [place(i), [dx, dy, dz]];
+            if (0..3).all(|axis| p[axis] + d[axis] < side) {
+                let length = spacing * ((dx + dy + dz) as f64).sqrt();
+                let law = SpringLaw::new(stiffness, length, 0.0).unwrap();
+                let kind = SpringKind::Structural;
+                network.add_spring(Spring { kind, i, j, law }).unwrap();
+            }
+        }
+    }
+    network.pin(0, Path::Still(Vector3::zeros())).unwrap();
+    let mut random = SplitMix(9);
+    let at = |k: usize| place(k % n)[k / n] as f64 * spacing;
+    let x = (0..3 * n).map(|k| at(k) + 0.05 * spacing * random.between(-1.0, 1.0));
+    (network, x.collect())
+}
+
+pub(super) fn right_hand_side(network: &Network) -> Vec<f64> {
     let n = network.particles();
     let mut random = SplitMix(5);
     (0..3 * n)
@@ -58,7 +90,7 @@ fn right_hand_side(network: &Network) -> Vec<f64> {
         .collect()
 }
 
-fn residual(network: &Network, tangent: &Tangent, b: &[f64], x: &[f64]) -> f64 {
+pub(super) fn residual(network: &Network, tangent: &Tangent, b: &[f64], x: &[f64]) -> f64 {
     let mut product = vec![0.0; b.len()];
     tangent.product(network, x, &mut product);
     let norm = |a: &mut dyn Iterator<Item = f64>| a.map(|a| a * a).sum::<f64>().sqrt();
@@ -107,7 +139,7 @@ fn what_is_pinned_stays_however_many_iterations_there_are() {
     let mut iterative = ConjugateGradients::new(n);
     for most in 0..20 {
         let mut dv = vec![1.0; 3 * n];
-        let solution = iterative.solve(&network, &tangent, &b, &mut dv, 0.0, most);
+        let solution = iterative.solve(&network, (&tangent, None), &b, &mut dv, (0.0, most));
         assert_eq!(solution.iterations, most);
         for (k, dv) in dv.iter().enumerate() {
             assert!(!network.is_pinned(k % n) || *dv == 0.0);
@@ -157,7 +189,7 @@ fn time(mut run: impl FnMut()) -> f64 {
 #[ignore = "measures"]
 fn solves_measured() {
     println!(
-        "case                    a w     F us  gather/F  iter/F  iterations (guess)  PCG/F  factor/F  solve/F  factor price  solve price   picked  best"
+        "case                    a w     F us  gather/F | iter/F  iterations (guess)  PCG/F | with multigrid | factor/F  solve/F  factor price  solve price   picked  best"
     );
     for (name, (network, x)) in [
         ("chain 5", chain(5, 1e2)),
@@ -167,6 +199,8 @@ fn solves_measured() {
         ("cloth 20", cloth(20, 1e2)),
         ("cloth 64", cloth(64, 1e2)),
         ("cloth 128", cloth(128, 1e2)),
+        ("cloth 256", cloth(256, 1e2)),
+        ("jelly 24", jelly(24, 1e2)),
     ] {
         let b = right_hand_side(&network);
         let mut f = vec![0.0; b.len()];
@@ -183,13 +217,29 @@ fn solves_measured() {
             let mut dv = vec![0.0; b.len()];
             let tolerance = FORCING;
             solver.direct_always = Some(false);
-            let mut iterations = 0;
-            let pcg = time(|| {
-                iterations = solver
-                    .solve(&network, black_box(&b), &mut dv, tolerance)
-                    .0
-                    .iterations;
+            let [alone, with] = [false, true].map(|multigrid| {
+                solver.multigrid_always = Some(multigrid);
+                let [alone, with] = solver.prices(tolerance);
+                let mut iterations = 0;
+                let time = time(|| {
+                    iterations = solver
+                        .solve(&network, black_box(&b), &mut dv, tolerance)
+                        .0
+                        .iterations;
+                });
+                let once = if multigrid { MULTIGRID[1] } else { 0.0 };
+                let each = (time / force - once) / iterations as f64;
+                (
+                    time,
+                    format!(
+                        "{each:>7.2} {iterations:>5} {:>6.0} ({:>6.0})",
+                        time / force,
+                        alone.min(with)
+                    ),
+                )
             });
+            solver.multigrid_always = None;
+            let pcg = alone.0.min(with.0);
             solver.analyse();
             let direct = solver.direct.as_mut().unwrap();
             let prices = (direct.factorisation, direct.solution);
@@ -204,18 +254,17 @@ fn solves_measured() {
                 .0
                 .factorizations
                 == 1;
-            let guess = SPREAD * (1.0 + solver.stiffness()).sqrt() * (2.0 / tolerance).ln();
             println!(
-                "{name:<18} {a_w:>8} {:>8.2} {:>9.2} {:>7.2} {iterations:>11} ({guess:>5.0}) {:>6.0} {:>9.1} {:>8.2} {:>13.1} {:>14.1}  {}  {:.2}",
+                "{name:<18} {a_w:>8} {:>8.2} {:>9.2} | {} | {} | {:>9.1} {:>8.2} {:>13.1} {:>14.1}  {}  {:.2}",
                 1e6 * force,
                 gather / force,
-                pcg / force / iterations as f64,
-                pcg / force,
+                alone.1,
+                with.1,
                 factor / force,
                 solve / force,
                 prices.0,
                 prices.1,
-                if picked { "direct" } else { "pcg   " },
+                if picked { "direct" } else { "cg    " },
                 if picked {
                     (factor + solve) / pcg
                 } else {

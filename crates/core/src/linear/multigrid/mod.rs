@@ -1,0 +1,137 @@
+//! Multigrid by aggregates: neighbouring particles that move together, neighbouring aggregates that
+//! do, and so on. What conjugate gradients with a preconditioner for each particle by itself take
+//! many iterations for, motion over long distances, is solved for on the coarser levels. It knows
+//! couplings alone, so that it serves grids, jellies, meshes and lists alike.
+
+mod aggregates;
+mod level;
+mod lists;
+
+use super::conjugate_gradients::symmetric;
+use super::tangent::Tangent;
+use aggregates::Graph;
+use level::Level;
+
+/// Number of aggregates that need no coarser level.
+const FEW: usize = 16;
+
+/// The coarser levels of a matrix whose pattern was analysed.
+pub(super) struct Multigrid {
+    levels: Vec<Level>,
+    /// Pattern of the couplings, and what is free.
+    pattern: u64,
+    free: Vec<f64>,
+}
+
+impl Multigrid {
+    /// Levels for the pattern of a tangent; there are none where particles form no aggregates.
+    pub fn new(tangent: &Tangent) -> Self {
+        let (mut ends, mut strengths) = (vec![], vec![]);
+        tangent.blocks(|i, j, block| {
+            ends.push([i as u32, j as u32]);
+            strengths.push(block[0] + block[4] + block[8]);
+        });
+        let mut graph = Graph {
+            particles: tangent.particles(),
+            ends,
+            strengths,
+        };
+        let mut levels: Vec<Level> = vec![];
+        while graph.particles > FEW {
+            let is_free = |i: u32| !levels.is_empty() || tangent.masses()[i as usize] != 0.0;
+            let Some((level, coarser)) = Level::new(&graph, is_free) else {
+                break;
+            };
+            levels.push(level);
+            graph = coarser;
+        }
+        Self {
+            levels,
+            pattern: tangent.pattern(),
+            free: tangent.free().to_vec(),
+        }
+    }
+
+    /// Whether the same particles are still coupled, and pinned.
+    pub fn fits(&self, tangent: &Tangent) -> bool {
+        self.pattern == tangent.pattern() && self.free == tangent.free()
+    }
+
+    /// Takes up the matrix.
+    pub fn prepare(&mut self, tangent: &Tangent) {
+        let Some((first, rest)) = self.levels.split_first_mut() else {
+            return;
+        };
+        first.clear();
+        for (i, m) in tangent.masses().iter().enumerate() {
+            first.add_own(i, &[*m, *m, *m, 0.0, 0.0, 0.0]);
+        }
+        let mut coupling = 0;
+        tangent.blocks(|i, j, block| {
+            first.add_coupling(coupling, [i as u32, j as u32], &symmetric(block));
+            coupling += 1;
+        });
+        first.finish();
+        let mut finer = first;
+        for level in rest {
+            level.clear();
+            for (i, own) in finer.own.iter().enumerate() {
+                level.add_own(i, own);
+            }
+            for (k, (ends, coupling)) in finer.ends.iter().zip(&finer.couplings).enumerate() {
+                level.add_coupling(k, *ends, coupling);
+            }
+            level.finish();
+            finer = level;
+        }
+    }
+
+    /// Solves for the motion of aggregates about, from residuals r, n x 3. Returns the product of r
+    /// and the solution.
+    pub fn solve(&mut self, r: &[f64]) -> f64 {
+        let Some(first) = self.levels.first_mut() else {
+            return 0.0;
+        };
+        let n = r.len() / 3;
+        first.restrict(|i| [r[i], r[n + i], r[2 * n + i]]);
+        cycle(&mut self.levels);
+        let first = &self.levels[0];
+        first
+            .r
+            .as_flattened()
+            .iter()
+            .zip(first.z.as_flattened())
+            .map(|(r, z)| r * z)
+            .sum()
+    }
+
+    /// The solution at a particle.
+    #[inline]
+    pub fn solution(&self, i: usize) -> [f64; 3] {
+        self.levels
+            .first()
+            .map_or([0.0; 3], |first| first.prolong(i))
+    }
+}
+
+/// One cycle from fine to coarse and back (a V-cycle).
+fn cycle(levels: &mut [Level]) {
+    let Some((level, coarser)) = levels.split_first_mut() else {
+        return;
+    };
+    level.descend();
+    if let Some(next) = coarser.first_mut() {
+        next.restrict(|i| level.left[i]);
+        cycle(coarser);
+        for (i, z) in level.z.iter_mut().enumerate() {
+            let found = coarser[0].prolong(i);
+            for (z, found) in z.iter_mut().zip(found) {
+                *z += found;
+            }
+        }
+    }
+    level.ascend();
+}
+
+#[cfg(test)]
+mod tests;
