@@ -244,7 +244,7 @@ fn each_block<const N: usize>(
                 columns_above,
                 sums_above,
                 run,
-            )
+            );
         },
         || {
             each_block(
@@ -253,7 +253,7 @@ fn each_block<const N: usize>(
                 columns,
                 sums_below,
                 run,
-            )
+            );
         },
     );
 }
