@@ -7,6 +7,7 @@ use super::drag::Drag;
 use super::fluid::Fluid;
 use super::force::Force;
 use super::gravity::Gravity;
+use super::packed::Packed;
 use super::sheet::Sheet;
 use super::solid::Solid;
 use super::springs::Springs;
@@ -93,6 +94,14 @@ impl Element {
         };
         let of_sheet = self.sheet().into_iter().flat_map(Sheet::springs);
         of_sheet.chain(single.iter().copied())
+    }
+
+    /// Its springs in blocks, if they are single and many.
+    pub(crate) fn packed(&self) -> Option<&Packed> {
+        match self {
+            Self::Springs(springs) => springs.packed(),
+            _ => None,
+        }
     }
 
     /// The fluid, if it is one.

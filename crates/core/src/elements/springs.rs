@@ -50,7 +50,8 @@ impl Springs {
         &mut self.all
     }
 
-    fn packed(&self) -> Option<&Packed> {
+    /// They in blocks, if there are many.
+    pub(super) fn packed(&self) -> Option<&Packed> {
         self.packed.get_or_init(|| Packed::new(&self.all)).as_ref()
     }
 }

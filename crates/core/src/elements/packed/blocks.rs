@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-use super::laws::{self, BLOCK, Each, Laws, Products};
+use super::laws::{self, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity};
 use crate::spring::Spring;
 
 /// Three numbers of a particle and a zero.
@@ -48,8 +48,8 @@ pub(super) struct Sum<'a> {
     pub which: Range<usize>,
     pub fields: [&'a [Numbers]; 4],
     pub f: &'a mut [Numbers],
+    pub quantity: Quantity,
     pub is_damped: bool,
-    pub is_differential: bool,
 }
 
 impl WithSimd for Sum<'_> {
@@ -57,84 +57,90 @@ impl WithSimd for Sum<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        match (self.is_differential, self.is_damped) {
-            (false, false) => forces::<false>(self),
-            (false, true) => forces::<true>(self),
-            (true, false) => differential::<false>(self),
-            (true, true) => differential::<true>(self),
-        }
+        let (quantity, is_damped) = (self.quantity, self.is_damped);
+        self.run(quantity, is_damped);
     }
 }
 
-#[inline(always)]
-fn forces<const DAMPED: bool>(sum: Sum) {
-    let Sum {
-        blocks, which, f, ..
-    } = sum;
-    let [x, v, ..] = sum.fields;
-    let mut d = [[0.0; 4]; BLOCK];
-    let (mut s, mut rate) = ([0.0; BLOCK], [0.0; BLOCK]);
-    for block in which {
-        let (ends, law) = (&blocks.ends[block], blocks.laws.of(block));
-        for m in 0..BLOCK {
-            let ends = pair(ends[m]);
-            d[m] = apart(x, ends);
-            s[m] = dot(d[m], d[m]);
-            if DAMPED {
-                rate[m] = dot(apart(v, ends), d[m]);
+impl Kernels for Sum<'_> {
+    #[inline(always)]
+    fn forces<const DAMPED: bool>(self) {
+        let Sum {
+            blocks,
+            which,
+            fields,
+            f,
+            ..
+        } = self;
+        let [x, v, ..] = fields;
+        let mut d = [[0.0; 4]; BLOCK];
+        let (mut s, mut rate) = ([0.0; BLOCK], [0.0; BLOCK]);
+        for block in which {
+            let (ends, law) = (&blocks.ends[block], blocks.laws.of(block));
+            for m in 0..BLOCK {
+                let ends = pair(ends[m]);
+                d[m] = apart(x, ends);
+                s[m] = dot(d[m], d[m]);
+                if DAMPED {
+                    rate[m] = dot(apart(v, ends), d[m]);
+                }
             }
-        }
-        for m in 0..BLOCK {
-            let of = Products {
-                dd: s[m],
-                wd: rate[m],
-                ..Products::default()
-            };
-            s[m] = laws::force::<DAMPED>(law, m, of);
-        }
-        for m in 0..BLOCK {
-            let [i, j] = pair(ends[m]);
-            f[i] = plus(f[i], -s[m], d[m]);
-            f[j] = plus(f[j], s[m], d[m]);
+            for m in 0..BLOCK {
+                let of = Products {
+                    dd: s[m],
+                    wd: rate[m],
+                    ..Products::default()
+                };
+                s[m] = laws::force::<DAMPED>(law, m, of);
+            }
+            for m in 0..BLOCK {
+                let [i, j] = pair(ends[m]);
+                f[i] = plus(f[i], -s[m], d[m]);
+                f[j] = plus(f[j], s[m], d[m]);
+            }
         }
     }
-}
 
-#[inline(always)]
-fn differential<const DAMPED: bool>(sum: Sum) {
-    let Sum {
-        blocks, which, f, ..
-    } = sum;
-    let [x, v, dx, dv] = sum.fields;
-    let (mut d, mut e) = ([[0.0; 4]; BLOCK], [[0.0; 4]; BLOCK]);
-    let [mut dd, mut de, mut wd, mut we, mut gd] = [[0.0; BLOCK]; 5];
-    for block in which {
-        let (ends, law) = (&blocks.ends[block], blocks.laws.of(block));
-        for m in 0..BLOCK {
-            let ends = pair(ends[m]);
-            (d[m], e[m]) = (apart(x, ends), apart(dx, ends));
-            (dd[m], de[m]) = (dot(d[m], d[m]), dot(d[m], e[m]));
-            if DAMPED {
-                let w = apart(v, ends);
-                (wd[m], we[m]) = (dot(w, d[m]), dot(w, e[m]));
-                gd[m] = dot(apart(dv, ends), d[m]);
+    #[inline(always)]
+    fn changes<const DAMPED: bool, const PRODUCT: bool>(self, factors: Factors) {
+        let Sum {
+            blocks,
+            which,
+            fields,
+            f,
+            ..
+        } = self;
+        let [x, v, dx, dv] = fields;
+        let (mut d, mut e) = ([[0.0; 4]; BLOCK], [[0.0; 4]; BLOCK]);
+        let [mut dd, mut de, mut wd, mut we, mut gd] = [[0.0; BLOCK]; 5];
+        for block in which {
+            let (ends, law) = (&blocks.ends[block], blocks.laws.of(block));
+            for m in 0..BLOCK {
+                let ends = pair(ends[m]);
+                (d[m], e[m]) = (apart(x, ends), apart(dx, ends));
+                (dd[m], de[m]) = (dot(d[m], d[m]), dot(d[m], e[m]));
+                if DAMPED && !PRODUCT {
+                    let w = apart(v, ends);
+                    (wd[m], we[m]) = (dot(w, d[m]), dot(w, e[m]));
+                    gd[m] = dot(apart(dv, ends), d[m]);
+                }
             }
-        }
-        for m in 0..BLOCK {
-            let of = Products {
-                dd: dd[m],
-                de: de[m],
-                wd: wd[m],
-                we: we[m],
-                gd: gd[m],
-            };
-            [dd[m], de[m]] = laws::differential::<DAMPED>(law, m, of);
-        }
-        for m in 0..BLOCK {
-            let [i, j] = pair(ends[m]);
-            let change = plus(d[m].map(|d| de[m] * d), dd[m], e[m]);
-            f[i] = plus(f[i], -1.0, change);
-            f[j] = plus(f[j], 1.0, change);
+            for m in 0..BLOCK {
+                let of = Products {
+                    dd: dd[m],
+                    de: de[m],
+                    wd: wd[m],
+                    we: we[m],
+                    gd: gd[m],
+                };
+                [dd[m], de[m]] = laws::change::<DAMPED, PRODUCT>(law, m, of, factors);
+            }
+            for m in 0..BLOCK {
+                let [i, j] = pair(ends[m]);
+                let change = plus(d[m].map(|d| de[m] * d), dd[m], e[m]);
+                f[i] = plus(f[i], -1.0, change);
+                f[j] = plus(f[j], 1.0, change);
+            }
         }
     }
 }

@@ -9,9 +9,66 @@ use pulp::Scalar;
 
 use crate::elements::inverse_root::inverse_root;
 use crate::spring::Spring;
+use crate::system::Matrix;
 
 /// Springs of a block: what is kept of them between the passes over it stays in the nearest cache.
 pub(super) const BLOCK: usize = 64;
+
+/// What is summed over springs.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Quantity {
+    /// Forces.
+    Forces,
+    /// Change of the forces.
+    Differential,
+    /// Product with the matrix of an implicit step, without its masses.
+    Product(Factors),
+}
+
+/// Factors of stiffness and of damping in a product, and the least stiffness across a spring.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Factors {
+    stiffness: f64,
+    damping: f64,
+    least: f64,
+}
+
+impl Quantity {
+    /// The product with A.
+    pub fn product(matrix: &Matrix) -> Self {
+        // Changes of forces have the opposite sign.
+        Self::Product(Factors {
+            stiffness: -matrix.a * matrix.a,
+            damping: -matrix.a,
+            least: if matrix.clamped {
+                0.0
+            } else {
+                f64::NEG_INFINITY
+            },
+        })
+    }
+}
+
+/// What is computed for springs in some order: forces, or changes as those of forces are.
+pub(super) trait Kernels: Sized {
+    fn forces<const DAMPED: bool>(self);
+
+    fn changes<const DAMPED: bool, const PRODUCT: bool>(self, factors: Factors);
+
+    /// Calls the one that computes a quantity.
+    #[inline(always)]
+    fn run(self, quantity: Quantity, is_damped: bool) {
+        let none = Factors::default();
+        match (quantity, is_damped) {
+            (Quantity::Forces, false) => self.forces::<false>(),
+            (Quantity::Forces, true) => self.forces::<true>(),
+            (Quantity::Differential, false) => self.changes::<false, false>(none),
+            (Quantity::Differential, true) => self.changes::<true, false>(none),
+            (Quantity::Product(factors), false) => self.changes::<false, true>(factors),
+            (Quantity::Product(factors), true) => self.changes::<true, true>(factors),
+        }
+    }
+}
 
 /// A number of each spring of a block.
 pub(super) type Each<T> = [T; BLOCK];
@@ -83,24 +140,53 @@ pub(super) fn force<const DAMPED: bool>(law: Law, m: usize, of: Products) -> f64
     }
 }
 
-/// With p = (e - d (d . e) / L^2) / L, the change of the force on i of spring m is
-/// -(s e + (k - s) d (d . e) / L^2) - c (((g . d) / L + w . p) d + (w . d) p) / L, where s is
-/// k - k r / L; that is -(a e + b d). A spring without a length has no direction.
+/// The change of the force on i of spring m, or its part in a product, is -(a e + b d): a and b.
 #[inline(always)]
-pub(super) fn differential<const DAMPED: bool>(law: Law, m: usize, of: Products) -> [f64; 2] {
-    let Products { dd, de, wd, we, gd } = of;
-    let root = inverse_root(Scalar::new(), dd);
-    let inverse = if dd == 0.0 { 0.0 } else { root };
+pub(super) fn change<const DAMPED: bool, const PRODUCT: bool>(
+    law: Law,
+    m: usize,
+    of: Products,
+    factors: Factors,
+) -> [f64; 2] {
+    let root = inverse_root(Scalar::new(), of.dd);
+    // A spring without a length has no direction.
+    let inverse = if of.dd == 0.0 { 0.0 } else { root };
     let k = law.stiffness[m];
-    let s = (-law.push[m]).mul_add(inverse, k);
-    let share = de * inverse * inverse;
-    let [a, b] = [s, (k - s) * share];
-    if DAMPED {
-        let c = law.damping[m] * inverse * inverse;
-        let turned = (-wd).mul_add(share, we);
-        let b = c.mul_add((-wd).mul_add(share, gd + turned), b);
-        [c.mul_add(wd, a), b]
+    let across = (-law.push[m]).mul_add(inverse, k);
+    let share = of.de * inverse * inverse;
+    if PRODUCT {
+        let across = across.max(factors.least);
+        let along = factors.stiffness * (k - across);
+        let along = if DAMPED {
+            law.damping[m].mul_add(factors.damping, along)
+        } else {
+            along
+        };
+        [factors.stiffness * across, along * share]
+    } else if DAMPED {
+        differential_of_damped(
+            law.damping[m],
+            [across, (k - across) * share],
+            inverse,
+            share,
+            of,
+        )
     } else {
-        [a, b]
+        [across, (k - across) * share]
     }
+}
+
+/// With p = (e - d (d . e) / L^2) / L, damping adds c (((g . d) / L + w . p) d + (w . d) p) / L.
+#[inline(always)]
+fn differential_of_damped(
+    damping: f64,
+    [a, b]: [f64; 2],
+    inverse: f64,
+    share: f64,
+    Products { wd, we, gd, .. }: Products,
+) -> [f64; 2] {
+    let c = damping * inverse * inverse;
+    let turned = (-wd).mul_add(share, we);
+    let b = c.mul_add((-wd).mul_add(share, gd + turned), b);
+    [c.mul_add(wd, a), b]
 }

@@ -21,8 +21,10 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelI
 
 use super::force::At;
 use crate::spring::Spring;
+use crate::system::Matrix;
 use crate::threads::threads;
 use blocks::Numbers;
+use laws::Quantity;
 use order::{Order, Stretch};
 
 /// Number of springs from which on it pays to pack them.
@@ -33,7 +35,8 @@ pub(super) const SPEED: f64 = 2.0;
 
 /// Springs in runs and in blocks.
 #[derive(Debug)]
-pub(super) struct Packed {
+pub(crate) struct Packed {
+    len: usize,
     order: Order,
     is_damped: bool,
     /// Scratch, no part of the value.
@@ -54,41 +57,54 @@ impl Packed {
     /// Springs in blocks, unless there are too few.
     pub fn new(springs: &[Spring]) -> Option<Self> {
         (springs.len() >= LEAST).then(|| Self {
+            len: springs.len(),
             order: Order::of(springs),
             is_damped: springs.iter().any(|spring| spring.law.damping > 0.0),
             bands: Mutex::default(),
         })
     }
 
+    /// Number of springs.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
     /// Adds the forces to f.
     pub fn add_forces(&self, at: &At, f: &mut [f64]) {
         let v = self.is_damped.then_some(at.v);
-        self.add([Some(at.x), v, None, None], f);
+        self.add(Quantity::Forces, [Some(at.x), v, None, None], f);
     }
 
     /// Adds the change of the forces by dx and dv to df.
     pub fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
         let [v, dv] = [at.v, dv].map(|speeds| self.is_damped.then_some(speeds));
-        self.add([Some(at.x), v, Some(dx), dv], df);
+        let fields = [Some(at.x), v, Some(dx), dv];
+        self.add(Quantity::Differential, fields, df);
     }
 
-    fn add(&self, fields: [Option<&[f64]>; 4], f: &mut [f64]) {
+    /// Adds the springs' part in the product of a matrix with p to `out`.
+    pub fn add_product(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) {
+        let fields = [Some(matrix.x), None, Some(p), None];
+        self.add(Quantity::product(matrix), fields, out);
+    }
+
+    fn add(&self, quantity: Quantity, fields: [Option<&[f64]>; 4], f: &mut [f64]) {
         let most = threads(self.order.particles.len());
-        self.add_in(self.order.bands(most), fields, f);
+        self.add_in(self.order.bands(most), quantity, fields, f);
     }
 
     /// Adds to f in so many bands.
-    fn add_in(&self, count: usize, fields: [Option<&[f64]>; 4], f: &mut [f64]) {
+    fn add_in(&self, count: usize, quantity: Quantity, fields: [Option<&[f64]>; 4], f: &mut [f64]) {
         self.lend(|bands| {
             if bands.len() < count {
                 bands.resize_with(count, Band::default);
             }
             let bands = &mut bands[..count];
             if count == 1 {
-                self.sum(&mut bands[0], &self.order.stretch(0, 1), fields);
+                self.sum(&mut bands[0], &self.order.stretch(0, 1), quantity, fields);
             } else {
                 bands.par_iter_mut().enumerate().for_each(|(k, band)| {
-                    self.sum(band, &self.order.stretch(k, count), fields);
+                    self.sum(band, &self.order.stretch(k, count), quantity, fields);
                 });
             }
             for (k, band) in bands.iter().enumerate() {
@@ -97,15 +113,20 @@ impl Packed {
         });
     }
 
-    /// Sums the forces on a band of particles.
-    fn sum(&self, band: &mut Band, stretch: &Stretch, fields: [Option<&[f64]>; 4]) {
+    /// Sums a quantity on a band of particles.
+    fn sum(
+        &self,
+        band: &mut Band,
+        stretch: &Stretch,
+        quantity: Quantity,
+        fields: [Option<&[f64]>; 4],
+    ) {
         self.take(band, stretch, fields);
-        let is_differential = fields[2].is_some();
         if !stretch.runs.is_empty() {
-            Arch::new().dispatch(self.sum_of_runs(band, stretch, is_differential));
+            Arch::new().dispatch(self.sum_of_runs(band, stretch, quantity));
         }
         if !stretch.blocks.is_empty() {
-            Arch::new().dispatch(self.sum_of_blocks(band, stretch, is_differential));
+            Arch::new().dispatch(self.sum_of_blocks(band, stretch, quantity));
         }
     }
 
@@ -113,7 +134,7 @@ impl Packed {
         &'a self,
         band: &'a mut Band,
         of: &Stretch,
-        is_differential: bool,
+        quantity: Quantity,
     ) -> runs::Sum<'a> {
         let [fields @ .., f] = &mut band.columns;
         runs::Sum {
@@ -123,7 +144,7 @@ impl Packed {
             fields: fields.each_ref().map(Vec::as_slice),
             f,
             is_damped: self.is_damped,
-            is_differential,
+            quantity,
         }
     }
 
@@ -131,7 +152,7 @@ impl Packed {
         &'a self,
         band: &'a mut Band,
         of: &Stretch,
-        is_differential: bool,
+        quantity: Quantity,
     ) -> blocks::Sum<'a> {
         let [fields @ .., f] = &mut band.rows;
         blocks::Sum {
@@ -140,7 +161,7 @@ impl Packed {
             fields: fields.each_ref().map(Vec::as_slice),
             f,
             is_damped: self.is_damped,
-            is_differential,
+            quantity,
         }
     }
 

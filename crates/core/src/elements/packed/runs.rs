@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-use super::laws::{self, BLOCK, Each, Laws, Products};
+use super::laws::{self, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity};
 use crate::spring::Spring;
 
 /// Springs between consecutive particles. Where a spring is missing, there is one without
@@ -46,8 +46,8 @@ pub(super) struct Sum<'a> {
     pub stride: usize,
     pub fields: [&'a [f64]; 4],
     pub f: &'a mut [f64],
+    pub quantity: Quantity,
     pub is_damped: bool,
-    pub is_differential: bool,
 }
 
 impl WithSimd for Sum<'_> {
@@ -55,12 +55,8 @@ impl WithSimd for Sum<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        match (self.is_differential, self.is_damped) {
-            (false, false) => forces::<false>(self),
-            (false, true) => forces::<true>(self),
-            (true, false) => differential::<false>(self),
-            (true, true) => differential::<true>(self),
-        }
+        let (quantity, is_damped) = (self.quantity, self.is_damped);
+        self.run(quantity, is_damped);
     }
 }
 
@@ -99,78 +95,80 @@ fn give(g: &[Each<f64>; 3], [i, j]: [u32; 2], stride: usize, f: &mut [f64]) {
     }
 }
 
-#[inline(always)]
-fn forces<const DAMPED: bool>(sum: Sum) {
-    let (runs, stride) = (sum.runs, sum.stride);
-    let [x, v, ..] = sum.fields;
-    let mut g = [[0.0; BLOCK]; 3];
-    for block in sum.which {
-        let law = runs.laws.of(block);
-        let [i, j] = runs.places[block];
-        let places = [at(x, stride, i), at(x, stride, j)];
-        // Without damping, there are no speeds.
-        let speeds = if DAMPED {
-            [at(v, stride, i), at(v, stride, j)]
-        } else {
-            places
-        };
-        for m in 0..BLOCK {
-            let d = apart(places, m);
-            let of = Products {
-                dd: dot(d, d),
-                wd: if DAMPED {
-                    dot(apart(speeds, m), d)
-                } else {
-                    0.0
-                },
-                ..Products::default()
+impl Kernels for Sum<'_> {
+    #[inline(always)]
+    fn forces<const DAMPED: bool>(self) {
+        let (runs, stride) = (self.runs, self.stride);
+        let [x, v, ..] = self.fields;
+        let mut g = [[0.0; BLOCK]; 3];
+        for block in self.which {
+            let law = runs.laws.of(block);
+            let [i, j] = runs.places[block];
+            let places = [at(x, stride, i), at(x, stride, j)];
+            // Without damping, there are no speeds.
+            let speeds = if DAMPED {
+                [at(v, stride, i), at(v, stride, j)]
+            } else {
+                places
             };
-            let s = laws::force::<DAMPED>(law, m, of);
-            for axis in 0..3 {
-                g[axis][m] = s * d[axis];
+            for m in 0..BLOCK {
+                let d = apart(places, m);
+                let of = Products {
+                    dd: dot(d, d),
+                    wd: if DAMPED {
+                        dot(apart(speeds, m), d)
+                    } else {
+                        0.0
+                    },
+                    ..Products::default()
+                };
+                let s = laws::force::<DAMPED>(law, m, of);
+                for axis in 0..3 {
+                    g[axis][m] = s * d[axis];
+                }
             }
+            give(&g, [i, j], stride, self.f);
         }
-        give(&g, [i, j], stride, sum.f);
     }
-}
 
-#[inline(always)]
-fn differential<const DAMPED: bool>(sum: Sum) {
-    let (runs, stride) = (sum.runs, sum.stride);
-    let mut g = [[0.0; BLOCK]; 3];
-    for block in sum.which {
-        let law = runs.laws.of(block);
-        let [i, j] = runs.places[block];
-        let [places, moves] = [0, 2].map(|k| {
-            let a = sum.fields[k];
-            [at(a, stride, i), at(a, stride, j)]
-        });
-        // Without damping, there are no speeds.
-        let [speeds, changes] = if DAMPED {
-            [1, 3].map(|k| {
-                let a = sum.fields[k];
+    #[inline(always)]
+    fn changes<const DAMPED: bool, const PRODUCT: bool>(self, factors: Factors) {
+        let (runs, stride) = (self.runs, self.stride);
+        let mut g = [[0.0; BLOCK]; 3];
+        for block in self.which {
+            let law = runs.laws.of(block);
+            let [i, j] = runs.places[block];
+            let [places, moves] = [0, 2].map(|k| {
+                let a = self.fields[k];
                 [at(a, stride, i), at(a, stride, j)]
-            })
-        } else {
-            [places, moves]
-        };
-        for m in 0..BLOCK {
-            let (d, e) = (apart(places, m), apart(moves, m));
-            let mut of = Products {
-                dd: dot(d, d),
-                de: dot(d, e),
-                ..Products::default()
+            });
+            // Without damping, there are no speeds.
+            let [speeds, changes] = if DAMPED && !PRODUCT {
+                [1, 3].map(|k| {
+                    let a = self.fields[k];
+                    [at(a, stride, i), at(a, stride, j)]
+                })
+            } else {
+                [places, moves]
             };
-            if DAMPED {
-                let w = apart(speeds, m);
-                (of.wd, of.we) = (dot(w, d), dot(w, e));
-                of.gd = dot(apart(changes, m), d);
+            for m in 0..BLOCK {
+                let (d, e) = (apart(places, m), apart(moves, m));
+                let mut of = Products {
+                    dd: dot(d, d),
+                    de: dot(d, e),
+                    ..Products::default()
+                };
+                if DAMPED && !PRODUCT {
+                    let w = apart(speeds, m);
+                    (of.wd, of.we) = (dot(w, d), dot(w, e));
+                    of.gd = dot(apart(changes, m), d);
+                }
+                let [a, b] = laws::change::<DAMPED, PRODUCT>(law, m, of, factors);
+                for axis in 0..3 {
+                    g[axis][m] = a.mul_add(e[axis], b * d[axis]);
+                }
             }
-            let [a, b] = laws::differential::<DAMPED>(law, m, of);
-            for axis in 0..3 {
-                g[axis][m] = a.mul_add(e[axis], b * d[axis]);
-            }
+            give(&g, [i, j], stride, self.f);
         }
-        give(&g, [i, j], stride, sum.f);
     }
 }

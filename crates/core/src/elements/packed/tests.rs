@@ -3,9 +3,10 @@
 use pulp::{Scalar, WithSimd};
 
 use super::*;
-use crate::elements::axial::{add_all, add_differential};
+use crate::elements::axial::{add_all, add_differential, coupling};
 use crate::random::SplitMix;
 use crate::spring::{SpringKind, SpringLaw};
+use crate::system::Coupling;
 
 /// Springs between random particles of which the numbers differ by at most so many.
 fn springs(count: usize, particles: usize, reach: usize, damping: f64) -> Vec<Spring> {
@@ -66,14 +67,48 @@ fn off(a: &[f64], b: &[f64]) -> f64 {
     apart.fold(0.0, f64::max) / size
 }
 
-/// Forces and their differential, in as many bands as asked for.
-fn in_bands(packed: &Packed, bands: usize, all: &[Vec<f64>; 4]) -> [Vec<f64>; 2] {
+/// Forces, their differential, and products with a matrix that is clamped, and one that is not, in
+/// as many bands as asked for.
+fn in_bands(packed: &Packed, bands: usize, all: &[Vec<f64>; 4]) -> [Vec<f64>; 4] {
     let [x, v, dx, dv] = all.each_ref().map(|a| Some(a.as_slice()));
-    [[x, v, None, None], [x, v, dx, dv]].map(|fields| {
+    let product = |clamped| Quantity::product(&matrix(&all[0], clamped));
+    [
+        (Quantity::Forces, [x, v, None, None]),
+        (Quantity::Differential, [x, v, dx, dv]),
+        (product(true), [x, None, dx, None]),
+        (product(false), [x, None, dx, None]),
+    ]
+    .map(|(quantity, fields)| {
         let mut f = vec![0.0; all[0].len()];
-        packed.add_in(bands, fields, &mut f);
+        packed.add_in(bands, quantity, fields, &mut f);
         f
     })
+}
+
+fn matrix(x: &[f64], clamped: bool) -> Matrix<'_> {
+    Matrix {
+        x,
+        a: 0.7,
+        clamped,
+        masses: &[],
+        free: &[],
+    }
+}
+
+/// The part of a spring in a product, from its coupling.
+fn add_product(spring: &Spring, matrix: &Matrix, p: &[f64], out: &mut [f64]) {
+    let Coupling::Axial(c) = coupling(spring, matrix.x, matrix.clamped) else {
+        unreachable!("a spring couples along its direction");
+    };
+    let (n, a) = (p.len() / 3, matrix.a);
+    let apart: [f64; 3] = std::array::from_fn(|axis| p[axis * n + c.i] - p[axis * n + c.j]);
+    let along: f64 = (0..3).map(|axis| c.direction[axis] * apart[axis]).sum();
+    let turned = (a * a * (c.along - c.across) + a * c.damping) * along;
+    for axis in 0..3 {
+        let part = a * a * c.across * apart[axis] + turned * c.direction[axis];
+        out[axis * n + c.i] += part;
+        out[axis * n + c.j] -= part;
+    }
 }
 
 #[test]
@@ -106,10 +141,13 @@ fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
                 masses: &[],
                 triangles: &[],
             };
-            let mut expected = [vec![0.0; 3 * particles], vec![0.0; 3 * particles]];
+            let mut expected = [(); 4].map(|()| vec![0.0; 3 * particles]);
             add_all(&springs, at.x, at.v, &mut expected[0]);
             for spring in &springs {
                 add_differential(spring, &at, [&all[2], &all[3]], &mut expected[1]);
+                for (k, clamped) in [(2, true), (3, false)] {
+                    add_product(spring, &matrix(at.x, clamped), &all[2], &mut expected[k]);
+                }
             }
             let packed = Packed::new(&springs).unwrap();
             let found = in_bands(&packed, 1, &all);
@@ -122,18 +160,18 @@ fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
             let whole = packed.order.stretch(0, 1);
             let mut band = Band::default();
             let fields = all.each_ref().map(|a| Some(a.as_slice()));
-            packed.sum(&mut band, &whole, fields);
+            packed.sum(&mut band, &whole, Quantity::Differential, fields);
             let (columns, rows) = (band.columns[4].clone(), band.rows[4].clone());
             packed.take(&mut band, &whole, fields);
             assert_eq!(whole.runs.is_empty(), dense == 0, "{what}");
             if !whole.runs.is_empty() {
                 packed
-                    .sum_of_runs(&mut band, &whole, true)
+                    .sum_of_runs(&mut band, &whole, Quantity::Differential)
                     .with_simd(Scalar::new());
             }
             if !whole.blocks.is_empty() {
                 packed
-                    .sum_of_blocks(&mut band, &whole, true)
+                    .sum_of_blocks(&mut band, &whole, Quantity::Differential)
                     .with_simd(Scalar::new());
             }
             assert!(
