@@ -26,6 +26,8 @@ pub(crate) struct ConjugateGradients {
     q: Vec<f64>,
     /// The inverse block of each particle, in columns.
     inverses: [Vec<f64>; 6],
+    /// Version of the tangent that they are of.
+    version: u64,
     /// Two sums for each block of particles: they are added up in the same order by any number of
     /// threads.
     sums: Vec<f64>,
@@ -50,6 +52,7 @@ impl ConjugateGradients {
             p: zeros(),
             q: zeros(),
             inverses: array::from_fn(|_| vec![0.0; particles]),
+            version: 0,
             sums: vec![0.0; 2 * particles.div_ceil(BLOCK)],
         }
     }
@@ -64,9 +67,6 @@ impl ConjugateGradients {
         (tolerance, most): (f64, u64),
     ) -> Solution {
         self.prepare(tangent);
-        if let Some(multigrid) = &mut multigrid {
-            multigrid.prepare(tangent);
-        }
         x.fill(0.0);
         self.p.fill(0.0);
         self.q.fill(0.0);
@@ -96,8 +96,12 @@ impl ConjugateGradients {
         solution
     }
 
-    /// Inverts the blocks on the diagonal.
+    /// Inverts the blocks on the diagonal, if they are not those of before.
     fn prepare(&mut self, tangent: &Tangent) {
+        if self.version == tangent.version() {
+            return;
+        }
+        self.version = tangent.version();
         let [xx, yy, zz, ..] = &mut self.inverses;
         for diagonal in [xx, yy, zz] {
             diagonal.copy_from_slice(tangent.masses());

@@ -218,8 +218,11 @@ impl Solver {
                 if with < alone {
                     let fits = self.multigrid.take().filter(|m| m.fits(&self.tangent));
                     let used = fits.unwrap_or_else(|| Multigrid::new(&self.tangent));
-                    multigrid = Some(self.multigrid.insert(used));
-                    work.algebra += MULTIGRID[1];
+                    let used = self.multigrid.insert(used);
+                    if used.prepare(&self.tangent) {
+                        work.algebra += MULTIGRID[1];
+                    }
+                    multigrid = Some(used);
                     price = MULTIGRID[0];
                 }
                 let matrix = (&self.tangent, multigrid);

@@ -18,6 +18,8 @@ pub(crate) struct Tangent {
     clamped: bool,
     /// Number of times that other particles were coupled than before.
     pattern: u64,
+    /// Number of times that couplings were gathered.
+    version: u64,
     /// Positions (m) and step (s) of the last gathering.
     x: Vec<f64>,
     a: f64,
@@ -35,6 +37,7 @@ impl Tangent {
             free: vec![0.0; n],
             clamped: false,
             pattern: 0,
+            version: 0,
             x: vec![0.0; 3 * n],
             a: 0.0,
         };
@@ -70,6 +73,11 @@ impl Tangent {
     /// Changes as soon as other particles are coupled.
     pub fn pattern(&self) -> u64 {
         self.pattern
+    }
+
+    /// Changes as soon as couplings are gathered anew.
+    pub fn version(&self) -> u64 {
+        self.version
     }
 
     /// Number of particles.
@@ -115,6 +123,7 @@ impl Tangent {
         }
         self.x.copy_from_slice(x);
         self.a = a;
+        self.version += 1;
     }
 
     /// The mass of each particle in A (kg); 0 where it is pinned.

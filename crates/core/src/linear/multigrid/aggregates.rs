@@ -18,7 +18,7 @@ pub(super) struct Graph {
     pub particles: usize,
     /// Ends of each coupling.
     pub ends: Vec<[u32; 2]>,
-    /// Strength of each coupling: its stiffness.
+    /// Strength of each coupling: the number of couplings between particles that are part of it.
     pub strengths: Vec<f64>,
 }
 

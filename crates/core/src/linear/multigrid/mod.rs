@@ -21,20 +21,20 @@ pub(super) struct Multigrid {
     /// Pattern of the couplings, and what is free.
     pattern: u64,
     free: Vec<f64>,
+    /// Version of the tangent whose matrix was taken up.
+    version: u64,
 }
 
 impl Multigrid {
     /// Levels for the pattern of a tangent; there are none where particles form no aggregates.
     pub fn new(tangent: &Tangent) -> Self {
-        let (mut ends, mut strengths) = (vec![], vec![]);
-        tangent.blocks(|i, j, block| {
-            ends.push([i as u32, j as u32]);
-            strengths.push(block[0] + block[4] + block[8]);
-        });
+        let ends: Vec<_> = tangent.pairs().map(|(i, j)| [i, j]).collect();
         let mut graph = Graph {
             particles: tangent.particles(),
+            // By the pattern alone: the stiffness of a coupling may depend on where particles are,
+            // and a run that is resumed elsewhere has to find the same aggregates.
+            strengths: vec![1.0; ends.len()],
             ends,
-            strengths,
         };
         let mut levels: Vec<Level> = vec![];
         while graph.particles > FEW {
@@ -49,6 +49,7 @@ impl Multigrid {
             levels,
             pattern: tangent.pattern(),
             free: tangent.free().to_vec(),
+            version: 0,
         }
     }
 
@@ -57,10 +58,14 @@ impl Multigrid {
         self.pattern == tangent.pattern() && self.free == tangent.free()
     }
 
-    /// Takes up the matrix.
-    pub fn prepare(&mut self, tangent: &Tangent) {
+    /// Takes up the matrix. Returns whether it is another than before.
+    pub fn prepare(&mut self, tangent: &Tangent) -> bool {
+        if self.version == tangent.version() {
+            return false;
+        }
+        self.version = tangent.version();
         let Some((first, rest)) = self.levels.split_first_mut() else {
-            return;
+            return true;
         };
         first.clear();
         for (i, m) in tangent.masses().iter().enumerate() {
@@ -84,6 +89,7 @@ impl Multigrid {
             level.finish();
             finer = level;
         }
+        true
     }
 
     /// Solves for the motion of aggregates about, from residuals r, n x 3. Returns the product of r
