@@ -26,6 +26,7 @@ mod output;
 mod painter;
 mod progress;
 mod render;
+mod rounding;
 mod scene_file;
 mod session;
 mod setup;

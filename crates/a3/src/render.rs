@@ -15,7 +15,7 @@ pub fn run(options: &Render) -> Result<(), Failure> {
     // There may be no ffmpeg, and the device may not support pictures of this size: both are
     // checked before the work begins.
     let film = film::begin(options)?;
-    let mut show = Show::new(presentation, options.wireframe, options.springs_of);
+    let mut show = Show::new(presentation, options.manner.of(options.springs_of));
     show.transparent = options.transparent;
     let mut painter = Painter::new(&show, &simulation, size)?;
     if let Some(i) = options.springs_of {

@@ -23,9 +23,8 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     let simulation = simulate(what, &setup, solver, options.step)?;
     check_particle(&simulation, options.springs_of)?;
     let beginning = Beginning {
-        wireframe: options.look.wireframe,
+        manner: options.look.manner.of(options.springs_of),
         paused: options.look.paused,
-        springs_of: options.springs_of,
     };
     Session::new(origin(what), setup, vec![simulation], &beginning)
 }
@@ -46,9 +45,8 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         .map(|(solver, step)| simulate(what, &setup, solver, *step))
         .collect::<Result<_, Failure>>()?;
     let beginning = Beginning {
-        wireframe: options.look.wireframe,
+        manner: options.look.manner.of(None),
         paused: options.look.paused,
-        springs_of: None,
     };
     Session::new(origin(what), setup, simulations, &beginning)
 }

@@ -12,6 +12,7 @@ mod mesh;
 mod offscreen;
 mod picture;
 mod pipelines;
+mod ramp;
 mod renderer;
 mod shapes;
 mod targets;
@@ -21,6 +22,7 @@ pub use camera::Camera;
 pub use gpu::{Gpu, GpuError};
 pub use offscreen::{OFFSCREEN_FORMAT, Offscreen};
 pub use picture::{Ball, LOOKS, Line, Liquid, Picture, STEEL_LOOK, Solid, Style, Tile, Topology};
+pub use ramp::{ramp, shaded_by};
 pub use renderer::Renderer;
 pub use targets::Targets;
 

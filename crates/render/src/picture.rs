@@ -107,7 +107,7 @@ pub struct Picture<'a> {
     /// Pixels per point: 1 on a screen of ordinary density, 2 on a dense one.
     pub scale: f32,
     /// Positions of the particles (m), each with the number of the look of its surface, below
-    /// [`LOOKS`].
+    /// [`LOOKS`], or with what [`shaded_by`](crate::shaded_by) makes of a value that colours it.
     pub points: &'a [[f32; 4]],
     /// Balls, such as particles of small systems, pins and obstacles.
     pub balls: &'a [Ball],

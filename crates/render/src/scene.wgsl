@@ -41,6 +41,20 @@ const INSIDE = array(
     vec3(0.30, 0.36, 0.44),
 );
 
+// The colours of values from 0 to 1, at equal distances.
+const RAMP = array(
+    vec3(0.058, 0.0, 0.089), vec3(0.061, 0.032, 0.209), vec3(0.037, 0.107, 0.266), vec3(0.02, 0.212,
+    0.27), vec3(0.014, 0.356, 0.242), vec3(0.068, 0.533, 0.153), vec3(0.352, 0.701, 0.041), vec3(0.982,
+    0.799, 0.019),
+);
+
+fn ramp(value: f32) -> vec3<f32> {
+    var stops = RAMP;
+    let at = clamp(value, 0.0, 1.0) * 7.0;
+    let below = min(u32(at), 6u);
+    return mix(stops[below], stops[below + 1u], at - f32(below));
+}
+
 // ---- Background: paper, darker towards the corners, drawn where nothing else is.
 
 @vertex fn background_vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
@@ -143,6 +157,8 @@ struct Mesh {
     @location(0) world: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) @interpolate(flat) look: u32,
+    // Value from 0 to 1, where the surface is coloured by one; -1 elsewhere.
+    @location(3) value: f32,
 };
 
 @vertex fn mesh_vertex(@builtin(vertex_index) i: u32) -> Mesh {
@@ -155,7 +171,8 @@ struct Mesh {
     out.clip = globals.view_proj * vec4(p, 1.0);
     out.world = p;
     out.normal = n;
-    out.look = u32(points[i].w);
+    out.look = u32(max(points[i].w, 0.0));
+    out.value = select(-1.0, -1.0 - points[i].w, points[i].w < 0.0);
     return out;
 }
 
@@ -169,9 +186,20 @@ fn jelly(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
     return lit(0.75 * color, n, world, 0.55, 0.5) + through * color;
 }
 
+// The colour of a value, with a thin dark line at each tenth of the scale.
+fn banded(value: f32) -> vec3<f32> {
+    let tenths = 10.0 * value;
+    let width = max(fwidth(tenths), 1e-5);
+    let off = abs(tenths - round(tenths)) / width / globals.depth.z;
+    let inside = step(0.5, tenths) * step(tenths, 9.5);
+    let line = (1.0 - smoothstep(0.5, 1.2, off)) * inside * (1.0 - smoothstep(0.1, 0.3, width));
+    return mix(ramp(value), INK, 0.55 * line);
+}
+
 @fragment fn mesh_fragment(in: Mesh, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     // A degenerate triangle has no normal; it must not become NaN.
     let n = in.normal / max(length(in.normal), 1e-20) * select(-1.0, 1.0, front);
+    if in.value >= 0.0 { return vec4(lit(banded(in.value), n, in.world, 0.0, 0.1), 1.0); }
     var outside = OUTSIDE;
     var inside = INSIDE;
     let color = select(inside[in.look], outside[in.look], front);
@@ -302,6 +330,8 @@ fn line(a: vec3<f32>, b: vec3<f32>, points_wide: f32, color: vec4<f32>, i: u32) 
     let b = points[ends.y].xyz;
     let far = distance(globals.eye.xyz, 0.5 * (a + b));
     let depth = clamp((far - globals.depth.x) / max(globals.depth.y - globals.depth.x, 1e-6), 0.0, 1.0);
+    let value = -1.0 - select(points[ends.x].w, points[ends.y].w, i >= 2u);
+    if value >= 0.0 { return line(a, b, 2.0, vec4(ramp(value), 1.0), i); }
     return line(a, b, 1.35, vec4(INK, mix(0.95, 0.38, depth)), i);
 }
 

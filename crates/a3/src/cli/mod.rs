@@ -11,6 +11,7 @@ use clap_complete::Shell;
 
 use crate::failure::Failure;
 use crate::scene_file::Source;
+use crate::show::{Arrows, Manner, Quantity};
 use values::{
     beginning, budget, error, factor, grid, horizon, particle, pause, picture_size, rate, size,
     solver, solver_and_step, step, threads, until,
@@ -117,12 +118,37 @@ pub struct WindowOptions {
     pub resume: Option<PathBuf>,
 }
 
+/// How a scene is drawn.
+#[derive(Args, Clone, Copy)]
+pub struct Drawing {
+    /// Draw the wireframe instead of the surface
+    #[arg(long)]
+    pub wireframe: bool,
+    /// Colour particles by a quantity
+    #[arg(long, value_name = "QUANTITY", value_enum, alias = "color")]
+    pub colour: Option<Quantity>,
+    /// Draw arrows on particles
+    #[arg(long, value_name = "VECTOR", value_enum)]
+    pub arrows: Option<Arrows>,
+}
+
+impl Drawing {
+    /// With the springs of one particle highlighted, or of none.
+    pub fn of(self, springs_of: Option<usize>) -> Manner {
+        Manner {
+            wireframe: self.wireframe,
+            springs_of,
+            colour: self.colour,
+            arrows: self.arrows,
+        }
+    }
+}
+
 /// How a window begins.
 #[derive(Args)]
 pub struct Look {
-    /// Begin with the wireframe
-    #[arg(long)]
-    pub wireframe: bool,
+    #[command(flatten)]
+    pub manner: Drawing,
     /// Begin paused
     #[arg(long)]
     pub paused: bool,
@@ -209,9 +235,8 @@ pub struct Render {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, allow_hyphen_values = true)]
     pub size: (u32, u32),
-    /// Draw the wireframe instead of the surface
-    #[arg(long)]
-    pub wireframe: bool,
+    #[command(flatten)]
+    pub manner: Drawing,
     /// Show the springs attached to particle I
     #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
     pub springs_of: Option<usize>,

@@ -59,7 +59,7 @@ mod tests {
 
     use crate::hud::{pane, read};
     use crate::session::{Pane, Readings};
-    use crate::show::Show;
+    use crate::show::{Manner, Show};
 
     #[test]
     fn a_blow_up_says_which_limit_was_passed() {
@@ -86,7 +86,7 @@ mod tests {
         let setup = setup.build(None, &mut |_| unreachable!()).unwrap();
         let method = integrators::find("v").unwrap();
         let simulation = Simulation::new(setup.scene, method, Control::Step(0.001)).unwrap();
-        let mut pane = Pane::new(simulation, Show::new(setup.presentation, false, None));
+        let mut pane = Pane::new(simulation, Show::new(setup.presentation, Manner::default()));
         while pane.simulation.take_steps(1).is_ok() {}
         let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
         let words = words.replace('\n', " ");

@@ -3,6 +3,7 @@
 mod blow_up;
 mod help;
 pub mod layout;
+mod legend;
 mod overlay;
 pub mod panel;
 mod panes;
@@ -31,7 +32,7 @@ mod tests {
     use super::show;
     use super::style::PAPER;
     use crate::session::{Pane, Readings};
-    use crate::show::Show;
+    use crate::show::{Manner, Show};
 
     /// All that is written, in a window of that size, and the rectangles of the sheets.
     pub fn read(panes: &[Pane], readings: &Readings, size: [f32; 2]) -> (String, Vec<egui::Rect>) {
@@ -81,6 +82,6 @@ mod tests {
         let setup = a3_scenes::find(scene).unwrap().build(None).unwrap();
         let method = integrators::find(method).unwrap();
         let simulation = Simulation::new(setup.scene, method, method.control(step)).unwrap();
-        Pane::new(simulation, Show::new(setup.presentation, false, None))
+        Pane::new(simulation, Show::new(setup.presentation, Manner::default()))
     }
 }

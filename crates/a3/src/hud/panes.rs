@@ -4,6 +4,7 @@ use egui::{Area, Context, Frame, Id, Margin, Pos2, Rect, Ui};
 
 use super::blow_up::blow_up;
 use super::layout;
+use super::legend::legend;
 use super::style::{PAPER, faint, sheet, text, title};
 use super::words::{self, digits, each, energy, frames, scene, speed, states, time};
 use crate::session::{Pane, Readings};
@@ -158,6 +159,9 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
             }
         }
         ui.label(job);
+    }
+    if !low {
+        legend(ui, &pane.show);
     }
 }
 

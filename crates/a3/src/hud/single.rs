@@ -4,6 +4,7 @@ use a3_core::Simulation;
 use egui::{Align2, Context, RichText, Ui};
 
 use super::blow_up::{blow_up, way_out};
+use super::legend::legend;
 use super::style::{MARGIN, column, faint, sheet, text, title};
 use super::words::{self, digits};
 use crate::session::{Pane, Readings};
@@ -82,6 +83,7 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             row("each", text(words::each(readings)));
         });
     ui.label(words::states(simulation, readings));
+    legend(ui, &pane.show);
 }
 
 /// Lists the springs of a particle, and how far they are stretched now.

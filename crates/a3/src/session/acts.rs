@@ -67,6 +67,8 @@ impl Session {
                     };
                 }
             }
+            Action::Colour => self.next_colour(),
+            Action::Arrows => self.next_arrows(),
             Action::Pause => {
                 self.readings.paused = !self.readings.paused;
                 self.start_anew();

@@ -7,6 +7,10 @@ pub enum Action {
     Reset,
     Swing,
     Wireframe,
+    /// Colour by the next quantity, or by none.
+    Colour,
+    /// Draw the next arrows, or none.
+    Arrows,
     Wind,
     /// Let surfaces touch one another and themselves, or pass through.
     Touch,
@@ -49,6 +53,8 @@ pub static KEYS: &[Binding] = &[
     bind(&["r"], Action::Reset, "reset"),
     bind(&["s"], Action::Swing, "swing the pins"),
     bind(&["w"], Action::Wireframe, "wireframe or surface"),
+    bind(&["v"], Action::Colour, "colour by values"),
+    bind(&["a"], Action::Arrows, "arrows"),
     bind(&["d"], Action::Wind, "wind"),
     bind(&["x"], Action::Touch, "self-collision"),
     bind(&["Space"], Action::Pause, "pause"),

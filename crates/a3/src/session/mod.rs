@@ -14,6 +14,7 @@ mod reference;
 mod rewind;
 mod samples;
 mod save;
+mod seeing;
 mod state;
 mod timeline;
 mod tuning;

@@ -161,7 +161,7 @@ fn distance(a: &Simulation, b: &Simulation) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::show::Show;
+    use crate::show::{Manner, Show};
 
     #[test]
     fn one_that_never_keeps_up_is_stopped_until_the_next_reset() {
@@ -172,7 +172,7 @@ mod tests {
                 Simulation::new(setup.scene.clone(), method, Control::Step(0.01)).unwrap();
             Pane::new(
                 simulation,
-                Show::new(setup.presentation.clone(), false, None),
+                Show::new(setup.presentation.clone(), Manner::default()),
             )
         };
         assert!(ReferenceRun::new(&[pane("t")]).ok().unwrap().is_none());

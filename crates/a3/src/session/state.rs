@@ -16,7 +16,7 @@ use super::timeline::Timeline;
 use super::tuning::{PanelState, Tuning};
 use crate::failure::Failure;
 use crate::scene_file::Source;
-use crate::show::{self, Show};
+use crate::show::{self, Manner, Show};
 
 /// Time that a message stays.
 const MESSAGE_TIME: Duration = Duration::from_secs(4);
@@ -24,12 +24,10 @@ const MESSAGE_TIME: Duration = Duration::from_secs(4);
 /// How a session begins.
 #[derive(Clone, Copy, Default)]
 pub struct Beginning {
-    /// Whether wires are drawn instead of the surface.
-    pub wireframe: bool,
-    /// Whether the runs are paused.
+    /// How the runs are shown.
+    pub manner: Manner,
+    /// Whether they are paused.
     pub paused: bool,
-    /// The particle whose springs are highlighted.
-    pub springs_of: Option<usize>,
 }
 
 /// One run on the screen, or several of one scene side by side.
@@ -81,7 +79,7 @@ impl Session {
             .into_iter()
             .map(|run| {
                 let presentation = setup.presentation.clone();
-                let show = Show::new(presentation, beginning.wireframe, beginning.springs_of);
+                let show = Show::new(presentation, beginning.manner);
                 Pane::new(run, show)
             })
             .collect();

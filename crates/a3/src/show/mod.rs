@@ -1,12 +1,15 @@
 //! The look of a run: from particles, springs and obstacles to balls, lines and triangles.
 
+mod arrows;
 mod bodies;
 mod coil;
+mod colouring;
 mod colours;
 mod liquid;
 mod obstacles;
 mod parts;
 mod picture;
+mod quantity;
 mod springs;
 pub mod tessellation;
 mod trail;
@@ -17,7 +20,8 @@ mod wires;
 pub use liquid::Liquid;
 pub use obstacles::drawn_radius;
 pub use parts::whole_triangles;
-pub use picture::Show;
+pub use picture::{Manner, Show};
+pub use quantity::{Arrows, Quantity};
 pub use springs::{kind_name, list_springs_of, springs_of};
 pub use vectors::to_f32;
 pub use view::camera;

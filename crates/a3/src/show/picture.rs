@@ -6,10 +6,13 @@ use a3_core::{Network, Simulation, SpringKind, Vector3};
 use a3_render::{Ball, Camera, Line, Picture, Solid, Style, Topology};
 use a3_scenes::{Presentation, TANK_LAYERS};
 
+use super::arrows::Field;
 use super::coil::coil;
+use super::colouring::{Colouring, Scale};
 use super::colours::{ALARM, AMBER, BLUE, INK, RED, STEEL, TEAL, VIOLET};
 use super::liquid::Liquid;
 use super::parts::{self, Parts};
+use super::quantity::{Arrows, Quantity};
 use super::springs::springs_of;
 use super::trail::Trail;
 use super::vectors::to_f32;
@@ -22,6 +25,19 @@ const MANY: usize = 60;
 /// Length of a pull that is drawn as the strongest, as a share of the scene's radius.
 const STRONG: f64 = 0.5;
 
+/// The manner in which a run is shown at first.
+#[derive(Clone, Copy, Default)]
+pub struct Manner {
+    /// Whether wires are drawn instead of the surface.
+    pub wireframe: bool,
+    /// The particle whose springs are highlighted.
+    pub springs_of: Option<usize>,
+    /// What particles are coloured by.
+    pub colour: Option<Quantity>,
+    /// Arrows on particles.
+    pub arrows: Option<Arrows>,
+}
+
 /// How a run is shown, and the buffers of its picture.
 pub struct Show {
     /// What of the scene is shown, and from where.
@@ -30,6 +46,10 @@ pub struct Show {
     pub style: Style,
     /// The particle whose springs are highlighted.
     pub springs_of: Option<usize>,
+    /// Colours by a quantity.
+    pub colouring: Colouring,
+    /// Arrows on particles.
+    pub field: Field,
     /// Whether floor and background are left out.
     pub transparent: bool,
     /// Point to which the hand pulls (m).
@@ -46,20 +66,22 @@ pub struct Show {
 }
 
 impl Show {
-    /// Surfaces or wires, with the springs of one particle highlighted or of none.
-    pub fn new(
-        presentation: Arc<Presentation>,
-        wireframe: bool,
-        springs_of: Option<usize>,
-    ) -> Self {
+    /// A scene, shown in some manner.
+    pub fn new(presentation: Arc<Presentation>, manner: Manner) -> Self {
+        let mut colouring = Colouring::default();
+        colouring.set_quantity(manner.colour);
+        let mut field = Field::default();
+        field.set_arrows(manner.arrows);
         Self {
             presentation,
-            style: if wireframe {
+            style: if manner.wireframe {
                 Style::Wireframe
             } else {
                 Style::Shaded
             },
-            springs_of,
+            springs_of: manner.springs_of,
+            colouring,
+            field,
             transparent: false,
             hand: None,
             trail: Trail::default(),
@@ -77,6 +99,8 @@ impl Show {
     pub fn set_presentation(&mut self, presentation: Arc<Presentation>) {
         self.presentation = presentation;
         self.springs_of = None;
+        self.colouring.forget();
+        self.field.scale = Scale::default();
         self.clear_trail();
     }
 
@@ -130,6 +154,8 @@ impl Show {
         );
         self.parts.update(&self.presentation, simulation);
         self.parts.paint(&mut self.points);
+        self.colouring.update(simulation);
+        self.colouring.paint(&mut self.points);
         self.balls.clear();
         self.solids.clear();
         self.lines.clear();
@@ -151,6 +177,7 @@ impl Show {
             let (balls, solids) = (&mut self.balls, &mut self.solids);
             bodies::draw(network, simulation.state(), balls, solids, &mut self.lines);
         }
+        self.field.draw(simulation, &self.points, &mut self.lines);
         if let Some(i) = self.springs_of {
             self.draw_springs_of(simulation, i);
         }
@@ -209,16 +236,18 @@ impl Show {
             let ends = [spring.i, spring.j];
             if many {
                 let [a, b] = ends.map(|i| self.at(i));
-                self.lines.push(Line::new(a, b, 1.6, STEEL));
+                let color = self.colouring.of(spring.i, STEEL);
+                self.lines.push(Line::new(a, b, 1.6, color));
                 continue;
             }
             let [a, b] = ends.map(|i| simulation.position(i));
             let points = coil(a, b, spring);
-            self.lines.extend(
-                points
-                    .windows(2)
-                    .map(|ends| Line::new(ends[0], ends[1], 2.4, STEEL)),
-            );
+            let half = points.len() / 2;
+            for (k, part) in points.windows(2).enumerate() {
+                let end = if k < half { spring.i } else { spring.j };
+                let color = self.colouring.of(end, STEEL);
+                self.lines.push(Line::new(part[0], part[1], 2.4, color));
+            }
         }
         if let Some(network) = network {
             let points = &self.points;
@@ -238,6 +267,11 @@ impl Show {
                 (false, false) => (0.085, RED),
                 (false, true) => (0.028, RED),
             };
+            let color = if pinned {
+                color
+            } else {
+                self.colouring.of(i, color)
+            };
             self.ball(i, radius, color);
         }
     }
@@ -247,7 +281,8 @@ impl Show {
         let fluid = simulation.model().network().and_then(Network::fluid);
         let in_wall = self.presentation.tanks.iter().any(|tank| tank.contains(&i));
         if let (Some(fluid), Style::Wireframe, false) = (fluid, self.style, in_wall) {
-            self.ball(i, 0.3 * fluid.law().spacing as f32, BLUE);
+            let color = self.colouring.of(i, BLUE);
+            self.ball(i, 0.3 * fluid.law().spacing as f32, color);
         }
     }
 

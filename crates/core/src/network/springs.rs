@@ -165,6 +165,27 @@ impl Network {
         self.sum(springs, &self.at(0.0, x, v), f, &Finish::default());
     }
 
+    /// The strain at each particle at x (m), n x 3: the most by which the length of one of its
+    /// springs over that at rest, or a principal stretch of one of its tetrahedra, differs from 1;
+    /// 0 where there are neither. Springs of rest length 0 have none.
+    #[must_use]
+    pub fn strains(&self, x: &[f64]) -> Vec<f64> {
+        let mut strains = vec![0.0_f64; self.particles()];
+        for s in self.all_springs().filter(|s| s.law.rest_length > 0.0) {
+            let strain = (distance(x, s.i, s.j) / s.law.rest_length - 1.0).abs();
+            for i in [s.i, s.j] {
+                strains[i] = strains[i].max(strain);
+            }
+        }
+        let solids = self.elements.iter().filter_map(Element::solid);
+        for (corners, strain) in solids.flat_map(|solid| solid.strains(x)) {
+            for i in corners {
+                strains[i as usize] = strains[i as usize].max(strain);
+            }
+        }
+        strains
+    }
+
     /// Length over rest length of the structural spring that is stretched most; 1 if there is none.
     #[must_use]
     pub fn largest_stretch(&self, x: &[f64]) -> f64 {

@@ -5,11 +5,13 @@ use a3_core::{Network, Vector3};
 use a3_render::Style;
 
 use super::dial::{Dial, DialScale, Turn};
+use super::seen::{arrows, colour, full_colour};
 use super::values::{
     damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
     stiffness, strain_limit, strain_limits, switch,
 };
 use crate::session::{Action, Session, Tuning};
+use crate::show::{Arrows, Quantity};
 
 /// A knob: a row of the table.
 #[derive(Clone, Copy)]
@@ -185,6 +187,16 @@ pub static KNOBS: &[Knob] = &[
             pane.show.springs_of = (i >= 0.0).then_some(i as usize);
         }
     })),
+    knob("colour by", colour, |session, _, k| {
+        session.set_colour(Quantity::ALL.get(k as usize).copied());
+    }),
+    knob("full colour", full_colour, |session, at, end| {
+        let fits = end == session.panes[at].show.colouring.scale.fitting;
+        session.fix_scale((!fits).then_some(end));
+    }),
+    knob("arrows", arrows, |session, _, k| {
+        session.set_arrows(Arrows::ALL.get(k as usize).copied());
+    }),
     knob(
         "wires",
         |session, _| {

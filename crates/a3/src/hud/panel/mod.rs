@@ -5,6 +5,7 @@ mod knobs;
 mod plots;
 mod request;
 mod row;
+mod seen;
 mod values;
 mod view;
 

@@ -5,8 +5,9 @@ use std::ops::Range;
 use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Control, Network, Sheet, integrators};
 
-use super::dial::{Dial, DialScale, round_up, short};
+use super::dial::{Dial, DialScale};
 use crate::bounds;
+use crate::rounding::{round_up, short};
 use crate::session::Session;
 
 /// The network of the first run, if its scene has one.

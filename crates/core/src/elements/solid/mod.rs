@@ -118,6 +118,17 @@ impl Solid {
         (0..self.count).map(|k| self.blocks[k / LANES].volume[k % LANES])
     }
 
+    /// Corners of each tetrahedron, and its strain at x: the most by which a principal stretch
+    /// differs from 1.
+    pub(crate) fn strains(&self, x: &[f64]) -> impl Iterator<Item = ([u32; 4], f64)> {
+        self.deformed(x).map(|tetrahedron| {
+            let f = Matrix3::from_fn(|row, column| tetrahedron.deformation[row][column]);
+            let stretches = f.singular_values();
+            let strain = stretches.iter().map(|stretch| (stretch - 1.0).abs());
+            (tetrahedron.corners, strain.fold(0.0, f64::max))
+        })
+    }
+
     /// Each neighbour of particle i in a tetrahedron, with its distance at rest (m).
     pub(crate) fn neighbours(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
         let each = self

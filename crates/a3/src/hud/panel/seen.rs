@@ -1,0 +1,67 @@
+//! The values of the knobs for what is seen.
+
+use super::dial::{Dial, DialScale};
+use crate::rounding::short;
+use crate::session::Session;
+use crate::show::{Arrows, Quantity};
+
+/// A choice among what has a name, or none of it.
+fn one_of<T: Copy + PartialEq>(
+    session: &Session,
+    all: &[T],
+    chosen: Option<T>,
+    has: impl Fn(&Session, T) -> bool,
+    name: impl Fn(T) -> &'static str,
+) -> Option<Dial> {
+    let none = all.len() as f64;
+    let there = (0..all.len()).filter(|k| has(session, all[*k]));
+    let mut values: Vec<f64> = there.map(|k| k as f64).collect();
+    if values.is_empty() {
+        return None;
+    }
+    values.push(none);
+    let place = chosen.and_then(|chosen| all.iter().position(|one| *one == chosen));
+    Some(Dial {
+        value: place.map_or(none, |k| k as f64),
+        own: none,
+        scale: DialScale::Choice(values),
+        words: chosen.map_or("none", name).into(),
+    })
+}
+
+pub fn colour(session: &Session, at: usize) -> Option<Dial> {
+    let chosen = session.panes.get(at)?.show.colouring.quantity;
+    let has = |session: &Session, quantity: Quantity| !quantity.values(session.first()).is_empty();
+    one_of(session, &Quantity::ALL, chosen, has, Quantity::name)
+}
+
+pub fn full_colour(session: &Session, at: usize) -> Option<Dial> {
+    let colouring = &session.panes.get(at)?.show.colouring;
+    let (quantity, scale) = (colouring.quantity?, colouring.scale);
+    let fitting = if scale.fitting > 0.0 {
+        scale.fitting
+    } else {
+        1.0
+    };
+    let end = scale.fixed.unwrap_or(fitting);
+    let words = format!("{}{}", short(end, 3), quantity.unit());
+    Some(Dial {
+        value: end,
+        own: fitting,
+        scale: DialScale::Log {
+            from: 1e-3 * fitting,
+            to: 1e2 * fitting,
+        },
+        words: if scale.fixed.is_some() {
+            words
+        } else {
+            format!("fits, {words}")
+        },
+    })
+}
+
+pub fn arrows(session: &Session, at: usize) -> Option<Dial> {
+    let chosen = session.panes.get(at)?.show.field.arrows;
+    let has = |session: &Session, arrows: Arrows| !arrows.vectors(session.first()).is_empty();
+    one_of(session, &Arrows::ALL, chosen, has, Arrows::name)
+}

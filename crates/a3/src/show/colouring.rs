@@ -1,0 +1,123 @@
+//! Colours by a quantity, and the scale of what is drawn to scale.
+
+use a3_core::Simulation;
+use a3_render::ramp;
+
+use super::quantity::Quantity;
+use crate::rounding::round_up;
+
+/// The end of a scale shrinks where all that it measures is less than this share of it.
+const SHRINKS: f64 = 0.2;
+
+/// A scale from 0 to a number of one digit: that of the largest value lately, or a fixed one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Scale {
+    /// The end that was chosen, if one was.
+    pub fixed: Option<f64>,
+    /// The end that fits what was measured last; 0 if that was nothing.
+    pub fitting: f64,
+}
+
+impl Scale {
+    /// Follows the largest value. Little changes do not move the end.
+    pub fn follow(&mut self, largest: f64) {
+        let fits = largest <= self.fitting && largest >= SHRINKS * self.fitting;
+        if !fits && largest.is_finite() {
+            // What is smaller is the rounding of nothing.
+            self.fitting = if largest > 1e-9 {
+                round_up(largest)
+            } else {
+                0.0
+            };
+        }
+    }
+
+    /// Its end.
+    pub fn end(&self) -> f64 {
+        self.fixed.unwrap_or(self.fitting)
+    }
+
+    /// The share of the scale at which a value is, from 0 to 1.
+    pub fn share(&self, value: f64) -> f32 {
+        if value > 0.0 && value < self.end() {
+            (value / self.end()) as f32
+        } else {
+            f32::from(value.is_nan() || value > 0.0)
+        }
+    }
+}
+
+/// The colours of particles by a quantity.
+#[derive(Debug, Default)]
+pub struct Colouring {
+    /// The quantity, if they are coloured by one.
+    pub quantity: Option<Quantity>,
+    /// Its scale.
+    pub scale: Scale,
+    values: Vec<f64>,
+}
+
+impl Colouring {
+    /// Colours by another quantity, or by none.
+    pub fn set_quantity(&mut self, quantity: Option<Quantity>) {
+        self.quantity = quantity;
+        self.forget();
+    }
+
+    /// Forgets the scale, as for another scene.
+    pub fn forget(&mut self) {
+        self.scale = Scale::default();
+    }
+
+    /// Takes the values of a run.
+    pub fn update(&mut self, simulation: &Simulation) {
+        self.values = self
+            .quantity
+            .map(|quantity| quantity.values(simulation))
+            .unwrap_or_default();
+        let largest = self.values.iter().copied().fold(0.0, f64::max);
+        self.scale.follow(largest);
+    }
+
+    /// Colours the points of the particles by their values.
+    pub fn paint(&self, points: &mut [[f32; 4]]) {
+        for (point, value) in points.iter_mut().zip(&self.values) {
+            point[3] = a3_render::shaded_by(self.scale.share(*value));
+        }
+    }
+
+    /// The colour of a particle, or that which it has otherwise.
+    pub fn of(&self, i: usize, otherwise: [f32; 4]) -> [f32; 4] {
+        let value = self.values.get(i);
+        value.map_or(otherwise, |value| ramp(self.scale.share(*value)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scale_follows_what_is_measured_unless_it_is_fixed() {
+        let mut scale = Scale::default();
+        assert_eq!(
+            (scale.end(), scale.share(0.0), scale.share(1.0)),
+            (0.0, 0.0, 1.0)
+        );
+        for (largest, end) in [(1.3, 2.0), (1.9, 2.0), (0.5, 2.0), (0.39, 0.5), (7.0, 10.0)] {
+            scale.follow(largest);
+            assert_eq!(scale.end(), end, "{largest}");
+        }
+        scale.follow(f64::NAN);
+        scale.follow(f64::INFINITY);
+        assert_eq!(scale.end(), 10.0);
+        assert_eq!(
+            [0.0, 5.0, 10.0, 99.0, f64::NAN].map(|v| scale.share(v)),
+            [0.0, 0.5, 1.0, 1.0, 1.0]
+        );
+        scale.fixed = Some(4.0);
+        assert_eq!((scale.end(), scale.share(1.0)), (4.0, 0.25));
+        scale.follow(0.0);
+        assert_eq!((scale.end(), scale.fitting), (4.0, 0.0));
+    }
+}

@@ -1,0 +1,156 @@
+//! What particles are coloured by, and the arrows on them.
+
+use a3_core::{Mechanics, Simulation};
+use clap::ValueEnum;
+
+/// A number of each particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Quantity {
+    /// Speed (m/s)
+    Speed,
+    /// Largest strain of the springs at a particle, or of its tetrahedra
+    Strain,
+    /// Sum of the forces on a particle (N)
+    Force,
+}
+
+/// A vector of each particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Arrows {
+    /// Velocity (m/s)
+    Velocity,
+    /// Sum of the forces on a particle (N)
+    Force,
+}
+
+impl Quantity {
+    /// All of them, in the order of their key.
+    pub const ALL: [Self; 3] = [Self::Speed, Self::Strain, Self::Force];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Speed => "speed",
+            Self::Strain => "strain",
+            Self::Force => "force",
+        }
+    }
+
+    /// Its unit, after a space.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Speed => " m/s",
+            Self::Strain => "",
+            Self::Force => " N",
+        }
+    }
+
+    /// Its value at each particle, or nothing where the scene knows none.
+    pub fn values(self, simulation: &Simulation) -> Vec<f64> {
+        let network = simulation.model().network();
+        match self {
+            Self::Speed => lengths(&simulation.velocities()),
+            Self::Strain => network
+                .filter(|network| network.is_elastic())
+                .map(|network| network.strains(network.halves(simulation.state()).0))
+                .unwrap_or_default(),
+            Self::Force => lengths(&forces(simulation)),
+        }
+    }
+}
+
+impl Arrows {
+    /// Both, in the order of their key.
+    pub const ALL: [Self; 2] = [Self::Velocity, Self::Force];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Velocity => "velocity",
+            Self::Force => "force",
+        }
+    }
+
+    /// Its unit, after a space.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Velocity => " m/s",
+            Self::Force => " N",
+        }
+    }
+
+    /// The vectors, n x 3, or nothing where the scene knows none.
+    pub fn vectors(self, simulation: &Simulation) -> Vec<f64> {
+        match self {
+            Self::Velocity => simulation.velocities(),
+            Self::Force => forces(simulation),
+        }
+    }
+}
+
+/// The sum of all forces on each particle (N), n x 3; nothing for a scene without forces.
+fn forces(simulation: &Simulation) -> Vec<f64> {
+    let Some(network) = simulation.model().network() else {
+        return vec![];
+    };
+    let (x, v) = network.halves(simulation.state());
+    let mut f = vec![0.0; x.len()];
+    network.forces(simulation.time(), x, v, &mut f);
+    f
+}
+
+/// The lengths of the rows of an n x 3 matrix.
+fn lengths(a: &[f64]) -> Vec<f64> {
+    let n = a.len() / 3;
+    let square = |i: usize| (0..3).map(|axis| a[axis * n + i].powi(2)).sum::<f64>();
+    (0..n).map(|i| square(i).sqrt()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use a3_core::{Control, integrators};
+
+    fn run(scene: &str) -> Simulation {
+        let scene = a3_scenes::find(scene).unwrap().build(None).unwrap().scene;
+        let method = integrators::find("rk4").unwrap();
+        Simulation::new(scene, method, Control::Step(0.002)).unwrap()
+    }
+
+    #[test]
+    fn values_are_those_of_the_run() {
+        let mut run = run("chain");
+        run.take_steps(100).unwrap();
+        let (n, v) = (run.particles(), run.velocities());
+        let speeds = Quantity::Speed.values(&run);
+        assert_eq!(speeds.len(), n);
+        let [vx, vy, vz] = [v[2], v[n + 2], v[2 * n + 2]];
+        assert!((speeds[2] - vx.hypot(vy).hypot(vz)).abs() < 1e-14);
+        let spring = run.model().network().unwrap().springs().next().unwrap();
+        let length = (run.position(spring.i) - run.position(spring.j)).norm();
+        let strain = (length / spring.law.rest_length - 1.0).abs();
+        let strains = Quantity::Strain.values(&run);
+        assert!(strains[spring.i].max(strains[spring.j]) >= strain && strain > 0.0);
+        // The force on the last particle is its mass times its acceleration.
+        let forces = Arrows::Force.vectors(&run);
+        let mass = run.model().network().unwrap().masses()[n - 1];
+        let mut rates = vec![0.0; 6 * n];
+        run.model()
+            .system()
+            .eval_f(run.time(), run.state(), &mut rates);
+        let a = rates[3 * n + 2 * n - 1];
+        assert!((forces[2 * n - 1] - mass * a).abs() < 1e-12 && a.abs() > 0.1);
+    }
+
+    #[test]
+    fn a_circle_has_a_speed_alone_and_a_solid_has_strain() {
+        let circle = run("simple");
+        assert!((Quantity::Speed.values(&circle)[0] - 1.0).abs() < 1e-12);
+        assert!(Quantity::Strain.values(&circle).is_empty());
+        assert!(Quantity::Force.values(&circle).is_empty());
+        let mut bar = run("cantilever");
+        assert!(Quantity::Strain.values(&bar).iter().all(|s| *s < 1e-9));
+        bar.take_steps(50).unwrap();
+        assert!(Quantity::Strain.values(&bar).iter().any(|s| *s > 1e-4));
+    }
+}

@@ -1,0 +1,60 @@
+//! The colours of values: from dark blue through green to yellow, ever brighter, so that those who
+//! cannot tell red from green see them too (viridis, of matplotlib).
+
+/// Colours at equal distances, as linear red, green and blue. The shader has the same.
+pub(crate) const RAMP: [[f32; 3]; 8] = [
+    [0.058, 0.0, 0.089],
+    [0.061, 0.032, 0.209],
+    [0.037, 0.107, 0.266],
+    [0.02, 0.212, 0.27],
+    [0.014, 0.356, 0.242],
+    [0.068, 0.533, 0.153],
+    [0.352, 0.701, 0.041],
+    [0.982, 0.799, 0.019],
+];
+
+/// The colour of a value from 0 to 1, as linear red, green and blue, and 1. Beyond these ends it is
+/// that of the end.
+#[must_use]
+pub fn ramp(value: f32) -> [f32; 4] {
+    let last = RAMP.len() - 1;
+    let at = value.clamp(0.0, 1.0) * last as f32;
+    let below = (at as usize).min(last - 1);
+    let share = at - below as f32;
+    let [from, to] = [RAMP[below], RAMP[below + 1]];
+    let mixed = |k: usize| from[k] + share * (to[k] - from[k]);
+    [mixed(0), mixed(1), mixed(2), 1.0]
+}
+
+/// The fourth number of a point whose surface is coloured by a value from 0 to 1, in place of the
+/// number of a look.
+#[must_use]
+pub fn shaded_by(value: f32) -> f32 {
+    -1.0 - value.clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipelines::SOURCE;
+
+    #[test]
+    fn the_shader_has_the_same_colours() {
+        let stops = RAMP.map(|[r, g, b]| format!("vec3({r}, {g}, {b})"));
+        let listed: String = SOURCE.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(listed.contains(&stops.join(", ")), "{stops:?}");
+    }
+
+    #[test]
+    fn values_have_colours_between_the_stops_ever_brighter() {
+        assert_eq!(ramp(0.0)[..3], RAMP[0]);
+        assert_eq!(ramp(7.0)[..3], RAMP[RAMP.len() - 1]);
+        assert_eq!(ramp(-1.0), ramp(0.0));
+        let bright = |k: i32| {
+            let [r, g, b, _] = ramp(k as f32 / 100.0);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        assert!((0..100).all(|k| bright(k) < bright(k + 1)));
+        assert_eq!([shaded_by(0.25), shaded_by(9.0)], [-1.25, -2.0]);
+    }
+}
