@@ -1,6 +1,6 @@
 //! What particles are coloured by, and the arrows on them.
 
-use a3_core::{Mechanics, Simulation};
+use a3_core::{Mechanics, Network, Simulation};
 use clap::ValueEnum;
 
 /// A number of each particle.
@@ -10,7 +10,7 @@ pub enum Quantity {
     Speed,
     /// Largest strain of the springs at a particle, or of its tetrahedra
     Strain,
-    /// Sum of the forces on a particle (N)
+    /// Sum of the forces on a particle that is free (N)
     Force,
 }
 
@@ -54,7 +54,14 @@ impl Quantity {
                 .filter(|network| network.is_elastic())
                 .map(|network| network.strains(network.halves(simulation.state()).0))
                 .unwrap_or_default(),
-            Self::Force => lengths(&forces(simulation)),
+            Self::Force => {
+                let mut forces = lengths(&forces(simulation));
+                // Pins hold much more than what moves is moved by.
+                for (i, _) in network.into_iter().flat_map(Network::pins) {
+                    forces[i] = 0.0;
+                }
+                forces
+            }
         }
     }
 }

@@ -173,22 +173,32 @@ impl Solver {
             .unwrap_or(worth_analysing && price * self.speed < iterative)
     }
 
-    /// Factorises A if solves to a relative residual are cheaper so. Returns the work, and whether
-    /// A may be positive definite.
+    /// Factorises A, or takes it up for multigrid, if solves to a relative residual are cheaper so.
+    /// Returns the work, and whether A may be positive definite.
     pub fn prepare(&mut self, tolerance: f64) -> (Work, bool) {
-        let goes_direct = self.goes_direct(tolerance);
-        match &mut self.direct {
-            Some(direct) if goes_direct && !self.factorised => {
+        let mut work = Work::default();
+        if self.goes_direct(tolerance) {
+            if let Some(direct) = &mut self.direct
+                && !self.factorised
+            {
                 self.factorised = direct.factorise(&self.tangent);
-                let work = Work {
-                    factorizations: 1,
-                    algebra: direct.factorisation * self.speed,
-                    ..Work::default()
-                };
-                (work, self.factorised)
+                work.factorizations = 1;
+                work.algebra = direct.factorisation * self.speed;
+                return (work, self.factorised);
             }
-            _ => (Work::default(), true),
+        } else if self.goes_multigrid(tolerance) {
+            let fits = self.multigrid.take().filter(|m| m.fits(&self.tangent));
+            let used = fits.unwrap_or_else(|| Multigrid::new(&self.tangent));
+            if self.multigrid.insert(used).prepare(&self.tangent) {
+                work.algebra = MULTIGRID[1];
+            }
         }
+        (work, true)
+    }
+
+    fn goes_multigrid(&self, tolerance: f64) -> bool {
+        let [alone, with] = self.prices(tolerance);
+        with < alone
     }
 
     /// Solves A x = b to a relative residual. Returns the work and the residual; `None` if A is not
@@ -212,19 +222,9 @@ impl Solver {
                 (work, Some(0.0))
             }
             _ => {
-                let [alone, with] = self.prices(tolerance);
-                let mut price = ITERATION;
-                let mut multigrid = None;
-                if with < alone {
-                    let fits = self.multigrid.take().filter(|m| m.fits(&self.tangent));
-                    let used = fits.unwrap_or_else(|| Multigrid::new(&self.tangent));
-                    let used = self.multigrid.insert(used);
-                    if used.prepare(&self.tangent) {
-                        work.algebra += MULTIGRID[1];
-                    }
-                    multigrid = Some(used);
-                    price = MULTIGRID[0];
-                }
+                let pays = self.goes_multigrid(tolerance);
+                let multigrid = self.multigrid.as_mut().filter(|_| pays);
+                let price = if pays { MULTIGRID[0] } else { ITERATION };
                 let matrix = (&self.tangent, multigrid);
                 let solution = self
                     .iterative
