@@ -114,6 +114,12 @@ impl ApplicationHandler for App {
                 self.let_go();
                 self.redraw();
             }
+            WindowEvent::DroppedFile(path) => {
+                if self.session.open(&path) {
+                    self.scene_changed();
+                }
+                self.redraw();
+            }
             WindowEvent::CursorMoved { position, .. } => self.move_to(position),
             WindowEvent::MouseWheel { delta, .. } if !taken => {
                 self.scroll(delta);

@@ -50,7 +50,8 @@ pub fn way_out(lost: &BlowUp) -> String {
     if is_squeezed(lost) {
         return "Press , to go back, or x to let surfaces pass through one another, then r.".into();
     }
-    "Press - for a shorter step, or a digit for another solver, then r.".into()
+    "Press < to go back, - for a shorter step, or a digit for another solver; or r to begin anew."
+        .into()
 }
 
 #[cfg(test)]

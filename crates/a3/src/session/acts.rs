@@ -1,18 +1,13 @@
 //! The actions of keys on a session.
 
-use a3_core::{Error, Method, Simulation, integrators};
+use a3_core::{Method, integrators};
 use a3_render::Style;
-use a3_scenes::Setup;
 
 use super::clock::KEY_BUDGET;
 use super::keys::Action;
-use super::origin::Origin;
 use super::pane::{PORTION, Pane};
-use super::reference::ReferenceRun;
 use super::state::Session;
-use super::tuning::Tuning;
-use crate::scene_file::Source;
-use crate::{bounds, show};
+use crate::bounds;
 
 /// The slowest motion is 1 / 2^6 of real time.
 const SLOWEST: i32 = 6;
@@ -107,6 +102,7 @@ impl Session {
     fn set_method(&mut self, method: &'static Method, at: usize) {
         let at = at.min(self.panes.len() - 1);
         let pane = &mut self.panes[at];
+        pane.wanted_step = None;
         let run = &pane.simulation;
         let control = if method.is_adaptive() == run.method().is_adaptive() {
             run.control()
@@ -126,6 +122,7 @@ impl Session {
     fn set_steps(&mut self, longer: bool) {
         for k in 0..self.panes.len() {
             let pane = &mut self.panes[k];
+            pane.wanted_step = None;
             let control = pane.simulation.control();
             let range = bounds::of(control);
             let next = next_step(control.value(), longer).clamp(*range.start(), *range.end());
@@ -140,6 +137,7 @@ impl Session {
 
     /// Sets the step (s) or the tolerance of one pane.
     pub fn set_step_of(&mut self, at: usize, value: f64) {
+        self.panes[at].wanted_step = None;
         let run = &mut self.panes[at].simulation;
         match run.set_control(run.control().with_value(value)) {
             Ok(()) => self.panes[at].restart_cost(),
@@ -148,116 +146,9 @@ impl Session {
         self.adapt();
     }
 
-    fn adapt(&mut self) {
+    pub(super) fn adapt(&mut self) {
         if let Some(reference) = &mut self.reference {
             reference.adapt(&self.panes);
-        }
-    }
-
-    /// Shows the next scene of the table, or that of the user.
-    fn next_scene(&mut self) {
-        let own = usize::from(self.asked.source.path.is_some());
-        let next = (self.scene_number + 1) % (a3_scenes::SCENES.len() + own);
-        let name = match next.checked_sub(own) {
-            None => &self.asked.source.typed,
-            Some(k) => a3_scenes::SCENES[k].name,
-        };
-        let asked = name == self.asked.source.typed;
-        let grid = self.asked.grid.filter(|_| asked);
-        let source = if asked {
-            Ok(self.asked.source.clone())
-        } else {
-            Source::find(name)
-        };
-        let setup = source.and_then(|source| Ok((source.build(grid)?, source)));
-        match setup {
-            Ok((setup, source)) => {
-                self.shown = Origin { source, grid };
-                self.camera = show::camera(&setup.presentation);
-                self.set_scene(&setup);
-                self.scene_number = next;
-            }
-            Err(why) => self.say(why),
-        }
-    }
-
-    /// Loads the scene again from its file, and returns whether that was possible; if not, a
-    /// message says why, and all goes on. Camera, solvers and steps stay as they are, unless the
-    /// file says others than before.
-    pub fn reload(&mut self) -> bool {
-        let loaded = Source::find(&self.asked.source.typed);
-        let loaded = loaded.and_then(|source| Ok((source.build(self.asked.grid)?, source)));
-        let (setup, source) = match loaded {
-            Ok(loaded) => loaded,
-            Err(why) => {
-                self.warn(why);
-                return false;
-            }
-        };
-        let (new, old) = (&source.description, &self.asked.source.description);
-        if new.camera != old.camera {
-            self.camera = show::camera(&setup.presentation);
-        }
-        let run = (new.solver != old.solver || new.step != old.step)
-            .then_some(setup.defaults.solver)
-            .flatten();
-        self.say(format!("loaded {} again", source.typed));
-        self.asked.source = source;
-        self.shown = self.asked.clone();
-        self.scene_number = 0;
-        let before = self.first();
-        let (windy, swinging) = (before.windy(), before.swinging());
-        let touching = before.touching();
-        self.set_scene(&setup);
-        self.do_to_all(|run| {
-            run.set_wind(windy);
-            run.set_swinging(swinging);
-            // What crosses in the file as it is now begins as the file has it.
-            let _ = run.set_touching(touching);
-        });
-        if let Some(method) = run {
-            let control = setup.defaults.control_of(method);
-            for pane in &mut self.panes {
-                if let Err(why) = pane.simulation.set_method(method, control) {
-                    self.readings.message = Some(why.to_string());
-                }
-                pane.wanted = method;
-            }
-            self.adapt();
-        }
-        true
-    }
-
-    /// Begins another scene, with the same solvers and steps where they serve it.
-    fn set_scene(&mut self, setup: &Setup) {
-        let mut said = None;
-        let mut start = |pane: &Pane| {
-            let start =
-                |method| Simulation::new(setup.scene.clone(), method, pane.simulation.control());
-            // Heun serves every scene.
-            start(pane.wanted).or_else(|why| {
-                said = Some(format!("{why}: the explicit trapezoid steps in"));
-                start(integrators::find("trapezoid").unwrap_or(pane.wanted))
-            })
-        };
-        let simulations: Result<Vec<_>, Error> = self.panes.iter().map(&mut start).collect();
-        match simulations {
-            Ok(simulations) => {
-                self.tuning = Tuning::of(setup.scene.clone());
-                self.defaults = setup.defaults;
-                for (pane, simulation) in self.panes.iter_mut().zip(simulations) {
-                    pane.set_simulation(simulation, setup.presentation.clone());
-                }
-                // The panes could be built, so the reference can.
-                self.reference = ReferenceRun::new(&self.panes).ok().flatten();
-                self.clear_timeline();
-                self.readings.no_error = None;
-                self.start_anew();
-            }
-            Err(why) => said = Some(why.to_string()),
-        }
-        if let Some(said) = said {
-            self.say(said);
         }
     }
 }

@@ -99,6 +99,27 @@ pub fn step_that_holds(run: &Simulation) -> Option<f64> {
     would_hold(run, &modes)
 }
 
+/// A step (s) for a run whose own fixed step does not hold on its scene; `None` where that was not
+/// seen to fail. Scenes with contact or rigid bodies are judged by their modes alone: runs of them
+/// take too long.
+pub fn shorter_step(run: &Simulation) -> Option<f64> {
+    let step = run.control().step()?;
+    let scene = run.scene();
+    let modes = spectrum(scene.model.system(), 0.0, &scene.state);
+    let limit = largest_step(run.method(), &modes).ok().flatten();
+    let past = limit.is_some_and(|limit| step > limit.step);
+    let network = run.model().network();
+    let slow = network.is_some_and(|n| n.contact_layer().is_some() || !n.bodies().is_empty());
+    let mut left = MOST_WORK / run.model().work();
+    let fails = past || !slow && !holds(run, step, &mut left);
+    let shorter = if slow {
+        limit.map(|limit| rounded(0.9 * limit.step))
+    } else {
+        would_hold(run, &modes)
+    };
+    shorter.filter(|shorter| fails && *shorter < step)
+}
+
 /// The longest step (s) that was seen to hold, from just below the limit of all motion at the start
 /// of the scene. It depends on the scene and the method alone: not on the state that was lost, nor
 /// on the step that was too long. `None` for a run to a tolerance.

@@ -7,6 +7,7 @@ mod hands;
 mod keys;
 mod limit;
 mod meter;
+mod opening;
 mod origin;
 mod pane;
 mod readings;

@@ -23,6 +23,8 @@ pub struct Pane {
     pub show: Show,
     /// The solver that was asked for, also while a scene is shown that it cannot serve.
     pub wanted: &'static Method,
+    /// The step (s) that was asked for, while a scene is shown that it does not hold.
+    pub wanted_step: Option<f64>,
     /// Total energy (J), if the scene has any.
     pub energy: Option<f64>,
     /// The largest length over rest length, if the scene has springs.
@@ -55,6 +57,7 @@ impl Pane {
     pub fn new(simulation: Simulation, show: Show) -> Self {
         Self {
             wanted: simulation.method(),
+            wanted_step: None,
             show,
             energy: None,
             limit: LimitWatch::default(),

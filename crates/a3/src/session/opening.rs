@@ -1,0 +1,232 @@
+//! Another scene, or the same one from its file again.
+
+use std::path::Path;
+
+use a3_core::{Control, Error, Simulation, integrators};
+use a3_scenes::Setup;
+
+use super::limit::shorter_step;
+use super::origin::Origin;
+use super::pane::Pane;
+use super::reference::ReferenceRun;
+use super::state::Session;
+use super::tuning::Tuning;
+use crate::scene_file::Source;
+use crate::show;
+
+impl Session {
+    /// Shows the next scene of the table, or that of the user.
+    pub(super) fn next_scene(&mut self) {
+        let own = usize::from(self.asked.source.path.is_some());
+        let next = (self.scene_number + 1) % (a3_scenes::SCENES.len() + own);
+        let name = match next.checked_sub(own) {
+            None => &self.asked.source.typed,
+            Some(k) => a3_scenes::SCENES[k].name,
+        };
+        let asked = name == self.asked.source.typed;
+        let grid = self.asked.grid.filter(|_| asked);
+        let source = if asked {
+            Ok(self.asked.source.clone())
+        } else {
+            Source::find(name)
+        };
+        let setup = source.and_then(|source| Ok((source.build(grid)?, source)));
+        match setup {
+            Ok((setup, source)) => {
+                self.shown = Origin { source, grid };
+                self.camera = show::camera(&setup.presentation);
+                self.set_scene(&setup);
+                self.scene_number = next;
+            }
+            Err(why) => self.say(why),
+        }
+    }
+
+    /// Shows the scene of a file, with the same solvers and steps where they serve it, and returns
+    /// whether that was possible; if not, a message says why, and all goes on.
+    pub fn open(&mut self, file: &Path) -> bool {
+        let source = Source::find(&file.to_string_lossy());
+        match source.and_then(|source| Ok((source.build(None)?, source))) {
+            Ok((setup, source)) => {
+                self.asked = Origin { source, grid: None };
+                self.shown = self.asked.clone();
+                self.scene_number = 0;
+                self.camera = show::camera(&setup.presentation);
+                self.say(format!("opened {}", self.asked.source.typed));
+                self.set_scene(&setup);
+                true
+            }
+            Err(why) => {
+                self.warn(why);
+                false
+            }
+        }
+    }
+
+    /// Loads the scene again from its file, and returns whether that was possible; if not, a
+    /// message says why, and all goes on. Camera, solvers and steps stay as they are, unless the
+    /// file says others than before.
+    pub fn reload(&mut self) -> bool {
+        let loaded = Source::find(&self.asked.source.typed);
+        let loaded = loaded.and_then(|source| Ok((source.build(self.asked.grid)?, source)));
+        let (setup, source) = match loaded {
+            Ok(loaded) => loaded,
+            Err(why) => {
+                self.warn(why);
+                return false;
+            }
+        };
+        let (new, old) = (&source.description, &self.asked.source.description);
+        if new.camera != old.camera {
+            self.camera = show::camera(&setup.presentation);
+        }
+        let run = (new.solver != old.solver || new.step != old.step)
+            .then_some(setup.defaults.solver)
+            .flatten();
+        self.say(format!("loaded {} again", source.typed));
+        self.asked.source = source;
+        self.shown = self.asked.clone();
+        self.scene_number = 0;
+        let before = self.first();
+        let (windy, swinging) = (before.windy(), before.swinging());
+        let touching = before.touching();
+        self.set_scene(&setup);
+        self.do_to_all(|run| {
+            run.set_wind(windy);
+            run.set_swinging(swinging);
+            // What crosses in the file as it is now begins as the file has it.
+            let _ = run.set_touching(touching);
+        });
+        if let Some(method) = run {
+            let control = setup.defaults.control_of(method);
+            for pane in &mut self.panes {
+                if let Err(why) = pane.simulation.set_method(method, control) {
+                    self.readings.message = Some(why.to_string());
+                }
+                pane.wanted = method;
+            }
+            self.adapt();
+        }
+        true
+    }
+
+    /// Begins another scene, with the same solvers and steps where they serve it.
+    fn set_scene(&mut self, setup: &Setup) {
+        let mut said = None;
+        let mut start = |pane: &Pane| {
+            let own = pane.simulation.control();
+            let control = pane.wanted_step.map_or(own, Control::Step);
+            let start = |method| Simulation::new(setup.scene.clone(), method, control);
+            // Heun serves every scene.
+            start(pane.wanted).or_else(|why| {
+                said = Some(format!("{why}: the explicit trapezoid steps in"));
+                start(integrators::find("trapezoid").unwrap_or(pane.wanted))
+            })
+        };
+        let simulations: Result<Vec<_>, Error> = self.panes.iter().map(&mut start).collect();
+        match simulations {
+            Ok(simulations) => {
+                self.tuning = Tuning::of(setup.scene.clone());
+                self.defaults = setup.defaults;
+                for (pane, mut simulation) in self.panes.iter_mut().zip(simulations) {
+                    let asked = simulation.control().step();
+                    let shorter = shorter_step(&simulation)
+                        .filter(|shorter| simulation.set_control(Control::Step(*shorter)).is_ok());
+                    pane.wanted_step = asked.filter(|_| shorter.is_some());
+                    if let (Some(asked), Some(shorter)) = (pane.wanted_step, shorter) {
+                        let solver = simulation.method().title;
+                        said = Some(format!(
+                            "{solver}: the step is {shorter} s here, since {asked} s would blow up"
+                        ));
+                    }
+                    pane.set_simulation(simulation, setup.presentation.clone());
+                }
+                // The panes could be built, so the reference can.
+                self.reference = ReferenceRun::new(&self.panes).ok().flatten();
+                self.clear_timeline();
+                self.readings.no_error = None;
+                self.start_anew();
+            }
+            Err(why) => said = Some(why.to_string()),
+        }
+        if let Some(said) = said {
+            self.say(said);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::{Action, compared, session};
+
+    const FLAG: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/strip.toml");
+
+    #[test]
+    fn a_step_that_a_scene_does_not_hold_is_shortened_and_comes_back() {
+        let mut session = compared(&["t:0.02", "i:0.02", "--scene", "pendulum"], 0.1);
+        let (mut shortened, mut kept) = (0, 0);
+        for _ in 0..a3_scenes::SCENES.len() {
+            session.readings.message = None;
+            assert!(session.act(Action::NextScene, 0));
+            let [heun, implicit] = [0, 1].map(|k| {
+                let run = &session.panes[k].simulation;
+                (run.scene().name.clone(), run.control().step().unwrap())
+            });
+            if heun.1 < 0.02 {
+                shortened += 1;
+                let said = session.readings.message.clone().unwrap();
+                let step = format!("the step is {} s here, since 0.02 s would blow up", heun.1);
+                assert!(said.contains(&step), "{}: {said}", heun.0);
+                if !["boxes", "dominoes", "ball-on-cloth", "t-handle", "drop"].contains(&&*heun.0) {
+                    let run = &session.panes[0].simulation;
+                    let scene = run.scene().clone();
+                    let mut again = Simulation::new(scene, run.method(), run.control()).unwrap();
+                    again.advance_to(10.0).unwrap();
+                }
+            } else {
+                kept += 1;
+            }
+            assert_eq!(implicit.1, 0.02, "{}", implicit.0);
+        }
+        assert!(shortened > 2 && kept > 2, "{shortened} {kept}");
+        // A step that is set by hand is wanted from then on.
+        while session.panes[0].wanted_step.is_none() {
+            session.act(Action::NextScene, 0);
+        }
+        session.act(Action::ShorterStep, 0);
+        assert_eq!(session.panes[0].wanted_step, None);
+    }
+
+    #[test]
+    fn a_file_is_opened_and_one_that_is_none_is_refused() {
+        let mut session = session(&["v", "0.001"]);
+        assert!(session.open(Path::new(FLAG)));
+        let name = session.first().scene().name.clone();
+        assert!(
+            session
+                .readings
+                .message
+                .clone()
+                .unwrap()
+                .contains("strip.toml")
+        );
+        assert!(!session.open(Path::new("/nowhere/flag.toml")));
+        assert!(
+            session
+                .readings
+                .message
+                .clone()
+                .unwrap()
+                .contains("/nowhere/flag.toml")
+        );
+        assert_eq!(session.first().scene().name, name);
+        // It is one of the scenes from now on.
+        session.act(Action::NextScene, 0);
+        assert_eq!(session.first().scene().name, a3_scenes::SCENES[0].name);
+        for _ in 0..a3_scenes::SCENES.len() {
+            session.act(Action::NextScene, 0);
+        }
+        assert_eq!(session.first().scene().name, name);
+    }
+}
