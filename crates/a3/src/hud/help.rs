@@ -81,7 +81,7 @@ mod tests {
             assert!(words.contains(method.title));
         }
         assert!(
-            sheets[0].height() < 510.0 && sheets[0].width() < 780.0,
+            sheets[0].height() < 540.0 && sheets[0].width() < 780.0,
             "{sheets:?}"
         );
     }

@@ -22,6 +22,7 @@ const BLOCK: usize = 256;
 /// Scratch for a system of one size.
 pub(crate) struct ConjugateGradients {
     r: Vec<f64>,
+    z: Vec<f64>,
     p: Vec<f64>,
     q: Vec<f64>,
     /// The inverse block of each particle, in columns.
@@ -49,6 +50,7 @@ impl ConjugateGradients {
         let zeros = || vec![0.0; 3 * particles];
         Self {
             r: zeros(),
+            z: zeros(),
             p: zeros(),
             q: zeros(),
             inverses: array::from_fn(|_| vec![0.0; particles]),
@@ -142,27 +144,28 @@ impl ConjugateGradients {
     fn descend(&mut self, step: f64, multigrid: Option<&mut Multigrid>) -> [f64; 2] {
         let Self {
             r,
+            z,
             q,
             inverses,
             sums,
             ..
         } = self;
+        let ([a, b, c], [d, e, f]) = (columns_mut(r), columns_mut(z));
         let [rr, rz] = add_up(
-            r.len() / 3,
-            columns_mut(r),
+            q.len() / 3,
+            [a, b, c, d, e, f],
             sums,
-            &|particles, mut r, sums| {
+            &|particles, [a, b, c, d, e, f], sums| {
+                let (mut r, mut z) = ([a, b, c], [d, e, f]);
                 for (r, q) in r.iter_mut().zip(columns(q, &particles)) {
                     for (r, q) in r.iter_mut().zip(q) {
                         *r -= step * q;
                     }
                 }
                 let r = r.each_ref().map(|r| &**r);
+                precondition(inverses, &particles, r, &mut z);
                 sums[0] = r.iter().map(|r| dot(r, r)).sum();
-                sums[1] = 0.0;
-                preconditioned(inverses, &particles, r, |axis, k, z| {
-                    sums[1] += r[axis][k] * z;
-                });
+                sums[1] = r.iter().zip(&z).map(|(r, z)| dot(r, z)).sum();
             },
         );
         [
@@ -173,28 +176,20 @@ impl ConjugateGradients {
 
     /// Takes a step, x += step p, and turns to a new direction, p = z + turn p.
     fn turn(&mut self, [step, turn]: [f64; 2], x: &mut [f64], multigrid: Option<&Multigrid>) {
-        let Self {
-            r,
-            p,
-            inverses,
-            sums,
-            ..
-        } = self;
+        let Self { z, p, sums, .. } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(x), columns_mut(p));
         add_up(
-            r.len() / 3,
+            z.len() / 3,
             [a, b, c, d, e, f],
             sums,
             &|particles, [a, b, c, d, e, f], _| {
-                let (x, mut p) = ([a, b, c], [d, e, f]);
-                for (x, p) in x.into_iter().zip(&mut p) {
-                    for (x, p) in x.iter_mut().zip(&mut **p) {
+                let (x, mut p, z) = ([a, b, c], [d, e, f], columns(z, &particles));
+                for ((x, p), z) in x.into_iter().zip(&mut p).zip(z) {
+                    for ((x, p), z) in x.iter_mut().zip(&mut **p).zip(z) {
                         *x += step * *p;
-                        *p *= turn;
+                        *p = z + turn * *p;
                     }
                 }
-                let of_r = columns(r, &particles);
-                preconditioned(inverses, &particles, of_r, |axis, k, z| p[axis][k] += z);
                 if let Some(multigrid) = multigrid {
                     for (k, i) in particles.enumerate() {
                         for (p, z) in p.iter_mut().zip(multigrid.solution(i)) {
@@ -262,20 +257,19 @@ fn each_block<const N: usize>(
     );
 }
 
-/// Visits the parts of z = B^-1 r on a block of particles: axis, number in the block, and value.
+/// Writes z = B^-1 r on a block of particles.
 #[inline]
-fn preconditioned(
+fn precondition(
     inverses: &[Vec<f64>; 6],
     block: &Range<usize>,
     [rx, ry, rz]: [&[f64]; 3],
-    mut visit: impl FnMut(usize, usize, f64),
+    z: &mut [&mut [f64]; 3],
 ) {
-    for (axis, k) in [[0, 3, 4], [3, 1, 5], [4, 5, 2]].into_iter().enumerate() {
+    for (z, k) in z.iter_mut().zip([[0, 3, 4], [3, 1, 5], [4, 5, 2]]) {
         let [a, b, c] = k.map(|k| &inverses[k][block.clone()]);
         let of_r = rx.iter().zip(ry).zip(rz);
-        let rows = of_r.zip(a.iter().zip(b).zip(c));
-        for (k, (((x, y), z), ((a, b), c))) in rows.enumerate() {
-            visit(axis, k, a * x + b * y + c * z);
+        for ((z, ((x, y), w)), ((a, b), c)) in z.iter_mut().zip(of_r).zip(a.iter().zip(b).zip(c)) {
+            *z = a * x + b * y + c * w;
         }
     }
 }
