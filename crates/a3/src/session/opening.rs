@@ -182,12 +182,14 @@ mod tests {
                     let run = &session.panes[0].simulation;
                     let scene = run.scene().clone();
                     let mut again = Simulation::new(scene, run.method(), run.control()).unwrap();
-                    again.advance_to(10.0).unwrap();
+                    again.advance_to(3.0).unwrap();
                 }
             } else {
                 kept += 1;
             }
-            assert_eq!(implicit.1, 0.02, "{}", implicit.0);
+            if session.panes[1].simulation.method().implicit {
+                assert_eq!(implicit.1, 0.02, "{}", implicit.0);
+            }
         }
         assert!(shortened > 2 && kept > 2, "{shortened} {kept}");
         // A step that is set by hand is wanted from then on.
