@@ -6,6 +6,7 @@ mod constrained;
 mod energies;
 mod fluid;
 mod layer;
+mod matrix;
 mod mechanics;
 mod obstacles;
 mod price;

@@ -5,7 +5,7 @@ mod common;
 
 use std::path::PathBuf;
 
-use a3_render::{Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer, Style};
+use a3_render::{Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer, Style, shaded_by};
 use common::{Sheet, gpu};
 use image::RgbaImage;
 
@@ -50,8 +50,19 @@ fn pictures_match_the_golden_ones() {
     let Some(gpu) = gpu() else { return };
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden");
     let mut wrong = vec![];
-    for (name, style) in [("shaded", Style::Shaded), ("wireframe", Style::Wireframe)] {
-        let picture = draw(&gpu, &Sheet::new(), style);
+    for (name, style) in [
+        ("shaded", Style::Shaded),
+        ("wireframe", Style::Wireframe),
+        ("coloured", Style::Shaded),
+        ("coloured-wireframe", Style::Wireframe),
+    ] {
+        let mut sheet = Sheet::new();
+        if name.starts_with("coloured") {
+            for point in &mut sheet.points {
+                point[3] = shaded_by(0.55 * (point[0] + 1.0) * point[1]);
+            }
+        }
+        let picture = draw(&gpu, &sheet, style);
         let path = folder.join(format!("{name}.png"));
         if std::env::var_os("UPDATE_GOLDEN").is_some() {
             picture.save(&path).unwrap();

@@ -7,6 +7,7 @@ use a3_render::Tile;
 use super::graphics::Graphics;
 use crate::output;
 use crate::session::{Pane, Session};
+use crate::show::{Arrows, Quantity};
 
 /// The lines of status so far.
 #[derive(Default)]
@@ -45,7 +46,7 @@ impl Status {
         };
         let state = format!(
             "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} blown={} grabbed={grabbed} \
-             slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
+             colour={} arrows={} slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
             run.control().value(),
@@ -56,6 +57,8 @@ impl Status {
             readings.help,
             session.panel.open,
             run.blow_up().is_some(),
+            panes[0].show.colouring.quantity.map_or("-", Quantity::name),
+            panes[0].show.field.arrows.map_or("-", Arrows::name),
             readings.slowness,
             readings.rewound.is_some(),
             run.model().network().map_or(0, |n| n.pins().count()),

@@ -1,5 +1,6 @@
 //! The command line: its commands, arguments and help.
 
+mod drawing;
 mod explain;
 mod values;
 
@@ -11,7 +12,7 @@ use clap_complete::Shell;
 
 use crate::failure::Failure;
 use crate::scene_file::Source;
-use crate::show::{Arrows, Manner, Quantity};
+use drawing::Drawing;
 use values::{
     beginning, budget, error, factor, grid, horizon, particle, pause, picture_size, rate, size,
     solver, solver_and_step, step, threads, until,
@@ -116,32 +117,6 @@ pub struct WindowOptions {
     /// Go on from a checkpoint of this scene, by its solver and step
     #[arg(long, value_name = "FILE.checkpoint", conflicts_with = "solver")]
     pub resume: Option<PathBuf>,
-}
-
-/// How a scene is drawn.
-#[derive(Args, Clone, Copy)]
-pub struct Drawing {
-    /// Draw the wireframe instead of the surface
-    #[arg(long)]
-    pub wireframe: bool,
-    /// Colour particles by a quantity
-    #[arg(long, value_name = "QUANTITY", value_enum, alias = "color")]
-    pub colour: Option<Quantity>,
-    /// Draw arrows on particles
-    #[arg(long, value_name = "VECTOR", value_enum)]
-    pub arrows: Option<Arrows>,
-}
-
-impl Drawing {
-    /// With the springs of one particle highlighted, or of none.
-    pub fn of(self, springs_of: Option<usize>) -> Manner {
-        Manner {
-            wireframe: self.wireframe,
-            springs_of,
-            colour: self.colour,
-            arrows: self.arrows,
-        }
-    }
 }
 
 /// How a window begins.

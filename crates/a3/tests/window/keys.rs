@@ -59,6 +59,13 @@ fn keys() {
     app.press_for("s", "swing", "false");
     app.press_for("d", "wind", "false");
 
+    for colour in ["speed", "strain", "force", "-"] {
+        app.press_for("v", "colour", colour);
+    }
+    for arrows in ["velocity", "force", "-"] {
+        app.press_for("a", "arrows", arrows);
+    }
+
     app.press_for("plus", "step", "0.012");
     app.press_for("minus", "step", "0.01");
     app.press_for("4", "solver", "rk4");

@@ -1,6 +1,7 @@
 //! Linear systems of implicit steps: conjugate gradients, with multigrid or without, or a sparse
 //! factorisation, whichever costs least.
 
+mod block;
 mod blocks;
 mod conjugate_gradients;
 mod direct;

@@ -97,7 +97,7 @@ impl Network {
     }
 
     /// Sets f to zero on the particles of no sheet.
-    fn clear_single(&self, f: &mut [f64]) {
+    pub(super) fn clear_single(&self, f: &mut [f64]) {
         for column in f.chunks_exact_mut(self.particles()) {
             for particles in &self.single {
                 column[particles.clone()].fill(0.0);
@@ -106,7 +106,7 @@ impl Network {
     }
 
     /// Finishes f on the particles of no sheet.
-    fn finish_single(&self, v: &[f64], f: &mut [f64], finish: &Finish) {
+    pub(super) fn finish_single(&self, v: &[f64], f: &mut [f64], finish: &Finish) {
         for particles in &self.single {
             finish.apply(particles, v, f);
         }
@@ -254,31 +254,7 @@ impl Linearized for Network {
     }
 
     fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
-        let in_sheets: usize = self.sheets().map(Sheet::len).sum();
-        let packed = self.elements.iter().find_map(Element::packed);
-        if in_sheets == 0 && packed.is_none() {
-            return 0;
-        }
-        let (a, clamped) = (matrix.a, matrix.clamped);
-        let finish = Finish {
-            inertia: Some(matrix.masses),
-            inverse_masses: Some(matrix.free),
-            ..Finish::default()
-        };
-        self.clear_single(out);
-        for sheet in self.sheets() {
-            let quantity = Quantity::Tangent { clamped };
-            let sheet = sheet.scaled(a * a, a);
-            set(quantity, &sheet, [matrix.x, p], out, false, &finish);
-        }
-        self.finish_single(p, out, &finish);
-        let Some(packed) = packed else {
-            return in_sheets;
-        };
-        packed.add_product(matrix, p, out);
-        // Nothing is left on pinned particles.
-        divide_by_masses(matrix.free, out);
-        in_sheets + packed.len()
+        self.multiply_fast(matrix, p, out)
     }
 
     fn lists_all_couplings(&self) -> bool {

@@ -7,7 +7,7 @@ mod aggregates;
 mod level;
 mod lists;
 
-use super::conjugate_gradients::symmetric;
+use super::block::symmetric;
 use super::tangent::Tangent;
 use aggregates::Graph;
 use level::Level;

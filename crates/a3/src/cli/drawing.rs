@@ -1,0 +1,31 @@
+//! The options for how a scene is drawn.
+
+use clap::Args;
+
+use crate::show::{Arrows, Manner, Quantity};
+
+/// How a scene is drawn.
+#[derive(Args, Clone, Copy)]
+pub struct Drawing {
+    /// Draw the wireframe instead of the surface
+    #[arg(long)]
+    pub wireframe: bool,
+    /// Colour particles by a quantity
+    #[arg(long, value_name = "QUANTITY", value_enum, alias = "color")]
+    pub colour: Option<Quantity>,
+    /// Draw arrows on particles
+    #[arg(long, value_name = "VECTOR", value_enum)]
+    pub arrows: Option<Arrows>,
+}
+
+impl Drawing {
+    /// With the springs of one particle highlighted, or of none.
+    pub fn of(self, springs_of: Option<usize>) -> Manner {
+        Manner {
+            wireframe: self.wireframe,
+            springs_of,
+            colour: self.colour,
+            arrows: self.arrows,
+        }
+    }
+}
