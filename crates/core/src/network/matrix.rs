@@ -6,7 +6,7 @@ use crate::elements::{Element, Finish, Sheet};
 use crate::system::{Matrix, divide_by_masses};
 
 impl Network {
-    /// [`Linearized::multiply`](crate::Linearized::multiply), for the springs of sheets and for single
+    /// Implements [`multiply`](crate::Linearized::multiply) for springs of sheets, and for single
     /// ones if there are many.
     pub(super) fn multiply_fast(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
         let in_sheets: usize = self.sheets().map(Sheet::len).sum();
