@@ -64,6 +64,33 @@ impl Camera {
         }
     }
 
+    /// As [`zoom`](Self::zoom), with the point that is seen at a place in the picture, at the
+    /// distance of the target, staying there.
+    pub fn zoom_at(&mut self, factor: f32, at: [f32; 2], aspect: f32) {
+        let stays = Point3::from(self.unproject(at, self.distance, aspect));
+        let before = self.distance;
+        self.zoom(factor);
+        let moved = stays + (self.target - stays) * (self.distance / before);
+        if moved.coords.iter().all(|c| c.abs() < 1e6) {
+            self.target = moved;
+        }
+    }
+
+    /// Turns the eye to a yaw around the vertical, from the z-axis towards the x-axis, and a pitch
+    /// (rad).
+    pub fn turn_to(&mut self, yaw: f32, pitch: f32) {
+        (self.yaw, self.pitch) = (0.0, 0.0);
+        self.orbit(yaw, pitch);
+    }
+
+    /// Moves the camera so that a ball (m) fills the picture, seen from the same side.
+    pub fn see(&mut self, center: [f32; 3], radius: f32) {
+        if center.iter().all(|c| c.abs() < 1e6) && radius < 1e3 {
+            self.target = Point3::from(center);
+            self.distance = (radius / (0.5 * FIELD_OF_VIEW).sin()).clamp(0.05, 1000.0);
+        }
+    }
+
     /// The position of the eye (m).
     #[must_use]
     pub fn eye(&self) -> Point3<f32> {
@@ -137,6 +164,45 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn zooming_leaves_what_is_under_the_pointer() {
+        for (at, aspect) in [([0.5, 0.5], 1.7), ([0.2, 0.9], 1.7), ([0.8, 0.1], 0.5)] {
+            let mut camera = Camera::look_at([3.0, 2.0, 5.0], [0.1, 1.0, -0.2]);
+            let (distance, stays) = (
+                camera.distance,
+                camera.unproject(at, camera.distance, aspect),
+            );
+            camera.zoom_at(0.7, at, aspect);
+            assert!((camera.distance / distance - 0.7).abs() < 1e-6);
+            let (found, _) = camera.project(stays, aspect).unwrap();
+            assert!(
+                (found[0] - at[0]).hypot(found[1] - at[1]) < 1e-5,
+                "{found:?}"
+            );
+            camera.zoom_at(f32::NAN, at, aspect);
+            assert!(camera.eye().coords.iter().all(|c| c.is_finite()));
+        }
+    }
+
+    #[test]
+    fn a_ball_that_is_to_be_seen_fills_the_picture() {
+        for (aspect, yaw, pitch) in [(1.7, 0.0, 0.0), (1.0, 1.6, 0.3), (0.6, -2.0, 1.5)] {
+            let mut camera = Camera::look_at([90.0, 2.0, 5.0], [80.0, 1.0, -0.2]);
+            camera.turn_to(yaw, pitch);
+            camera.see([1.0, -2.0, 3.0], 0.5);
+            let (x, y, z) = camera.axes();
+            assert!((z.y - pitch.sin()).abs() < 1e-5);
+            let mut most = 0.0_f32;
+            for k in 0..64 {
+                let (sin, cos) = (k as f32 * 0.1).sin_cos();
+                let point = Point3::new(1.0, -2.0, 3.0) + 0.5 * (x * cos + y * sin);
+                let ([u, v], _) = camera.project(point.coords.into(), aspect).unwrap();
+                most = most.max((u - 0.5).abs()).max((v - 0.5).abs());
+            }
+            assert!((0.42..0.5).contains(&most), "{most}");
+        }
+    }
 
     #[test]
     fn projecting_and_back() {

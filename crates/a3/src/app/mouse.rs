@@ -127,12 +127,15 @@ impl App {
         self.redraw();
     }
 
-    /// Zooms by the notches of the wheel.
+    /// Zooms to the pointer by the notches of the wheel.
     pub fn scroll(&mut self, delta: MouseScrollDelta) {
         let notches = match delta {
             MouseScrollDelta::LineDelta(_, y) => y,
             MouseScrollDelta::PixelDelta(p) => p.y as f32 / NOTCH,
         };
-        self.session.camera.zoom(0.9f32.powf(notches));
+        let tile = self.tile(self.pointed());
+        let at = tile.place(self.mouse.pointer);
+        let factor = 0.9f32.powf(notches);
+        self.session.camera.zoom_at(factor, at, tile.aspect());
     }
 }

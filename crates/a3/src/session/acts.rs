@@ -88,6 +88,8 @@ impl Session {
             Action::LongerStep => self.set_steps(true),
             Action::ShorterStep => self.set_steps(false),
             Action::Camera => self.camera = self.panes[0].show.camera(),
+            Action::SeeAll => self.see_all(),
+            Action::NextView => self.next_view(),
             Action::Panel => self.panel.open = !self.panel.open,
             Action::WriteScene => match self.write_scene(at) {
                 Ok(name) => self.say(format!("wrote {name}")),

@@ -25,6 +25,10 @@ pub enum Action {
     /// Go so many kept frames on, or back if it is negative.
     Scrub(isize),
     Camera,
+    /// See all particles, from the same side.
+    SeeAll,
+    /// See from the front, from the side, or from above.
+    NextView,
     Picture,
     Panel,
     WriteScene,
@@ -67,6 +71,8 @@ pub static KEYS: &[Binding] = &[
     bind(&["+", "="], Action::LongerStep, "longer step"),
     bind(&["-"], Action::ShorterStep, "shorter step"),
     bind(&["c"], Action::Camera, "camera home"),
+    bind(&["g"], Action::SeeAll, "see all"),
+    bind(&["b"], Action::NextView, "front, side, top"),
     bind(&["p"], Action::Picture, "save a picture"),
     bind(&["Tab"], Action::Panel, "tune and plot"),
     bind(&["f"], Action::WriteScene, "write a scene file"),
@@ -83,7 +89,7 @@ pub static MOUSE: &[(&str, &str)] = &[
     ("right or middle", "move"),
     ("right click", "pin, or let go"),
     ("double click", "list springs"),
-    ("wheel", "zoom"),
+    ("wheel", "zoom to the pointer"),
 ];
 
 /// The action of a key by its name, if it has one. Letters mean the same in either case.

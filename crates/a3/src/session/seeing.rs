@@ -1,9 +1,51 @@
-//! What is seen of the runs: colours by a quantity, and arrows.
+//! What is seen of the runs: colours by a quantity, arrows, and from where.
+
+use std::f32::consts::FRAC_PI_2;
 
 use super::state::Session;
 use crate::show::{Arrows, Quantity};
 
+/// Yaw and pitch (rad) of the views of a key, and their names.
+const VIEWS: [([f32; 2], &str); 3] = [
+    ([0.0, 0.0], "from the front"),
+    ([FRAC_PI_2, 0.0], "from the right"),
+    // Almost: the camera does not pass over the poles.
+    ([0.0, FRAC_PI_2], "from above"),
+];
+
 impl Session {
+    /// Moves the camera so that all particles of all panes are seen, from the same side.
+    pub(super) fn see_all(&mut self) {
+        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for pane in &self.panes {
+            let run = &pane.simulation;
+            for point in (0..run.particles()).map(|i| run.position(i)) {
+                for axis in 0..3 {
+                    low[axis] = low[axis].min(point[axis] as f32);
+                    high[axis] = high[axis].max(point[axis] as f32);
+                }
+            }
+        }
+        let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
+        let [x, y, z] = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
+        // What is drawn around particles is seen too.
+        let radius = x.hypot(y).hypot(z) + 0.1;
+        self.camera.see(middle, radius);
+    }
+
+    /// Turns the camera to the next view: from the front, from the right, or from above.
+    pub(super) fn next_view(&mut self) {
+        let seen = |[yaw, pitch]: [f32; 2]| {
+            let mut turned = self.camera;
+            turned.turn_to(yaw, pitch);
+            turned == self.camera
+        };
+        let now = VIEWS.iter().position(|(view, _)| seen(*view));
+        let ([yaw, pitch], name) = VIEWS[now.map_or(0, |now| (now + 1) % VIEWS.len())];
+        self.camera.turn_to(yaw, pitch);
+        self.say(name);
+    }
+
     /// Colours by the next quantity that the scene has, and after the last by none.
     pub(super) fn next_colour(&mut self) {
         let run = self.first();
@@ -56,4 +98,52 @@ impl Session {
 fn after<T: Copy + PartialEq>(all: &[T], now: Option<T>) -> Option<T> {
     let place = now.and_then(|now| all.iter().position(|one| *one == now));
     all.get(place.map_or(0, |place| place + 1)).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::{Action, session};
+
+    #[test]
+    fn colours_and_arrows_come_round_as_far_as_the_scene_has_them() {
+        let mut cloth = session(&["v", "0.005"]);
+        let colours = [0; 4].map(|_| {
+            cloth.act(Action::Colour, 0);
+            cloth.panes[0].show.colouring.quantity
+        });
+        assert_eq!(colours[..3], Quantity::ALL.map(Some));
+        assert_eq!(colours[3], None);
+        let mut circle = session(&["t", "0.01", "--scene", "simple"]);
+        let colours = [0; 2].map(|_| {
+            circle.act(Action::Colour, 0);
+            circle.panes[0].show.colouring.quantity
+        });
+        assert_eq!(colours, [Some(Quantity::Speed), None]);
+        circle.act(Action::Arrows, 0);
+        assert_eq!(circle.panes[0].show.field.arrows, Some(Arrows::Velocity));
+    }
+
+    #[test]
+    fn all_is_seen_from_every_side() {
+        let mut session = session(&["v", "0.005", "--scene", "mit"]);
+        for _ in 0..4 {
+            session.act(Action::NextView, 0);
+            session.camera.pan(30.0, 5.0);
+            session.act(Action::SeeAll, 0);
+            let run = session.first();
+            for i in 0..run.particles() {
+                let p = run.position(i);
+                let point = [p.x as f32, p.y as f32, p.z as f32];
+                let ([x, y], _) = session.camera.project(point, 1.6).unwrap();
+                assert!(
+                    (0.0..1.0).contains(&x) && (0.0..1.0).contains(&y),
+                    "{i}: {x} {y}"
+                );
+            }
+        }
+        // From the front again, after the right and the top.
+        let (_, _, towards) = session.camera.axes();
+        assert!(towards.z > 0.999);
+    }
 }

@@ -109,9 +109,10 @@ impl ConjugateGradients {
         for column in &mut self.inverses[3..] {
             column.fill(0.0);
         }
+        let mut columns = self.inverses.each_mut().map(Vec::as_mut_slice);
         tangent.blocks(|i, j, block| {
             // The blocks of a particle have a symmetric sum.
-            for (column, part) in self.inverses.iter_mut().zip(symmetric(block)) {
+            for (column, part) in columns.iter_mut().zip(symmetric(block)) {
                 column[i] += part;
                 if j != i {
                     column[j] += part;

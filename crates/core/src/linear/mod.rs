@@ -26,7 +26,7 @@ const SPREAD: f64 = 0.3;
 /// Price of an iteration with multigrid, and of taking up a matrix for it, in evaluations of the
 /// system's forces.
 const MULTIGRID: [f64; 2] = [5.0, 10.0];
-/// Iterations with multigrid, over the root of those that there are without.
+/// Iterations with multigrid, over (1 + a2 w2)^(1/4) ln(2/tolerance).
 const MULTIGRID_SPREAD: f64 = 0.45;
 /// Least operations of a factorisation for each coupling of particles in two dimensions, over the
 /// root of their number: no need to analyse the pattern where that is too dear.
@@ -224,14 +224,20 @@ impl Solver {
             }
             _ => {
                 let pays = self.goes_multigrid(tolerance);
-                let multigrid = self.multigrid.as_mut().filter(|_| pays);
-                let price = if pays { MULTIGRID[0] } else { ITERATION };
-                let matrix = (&self.tangent, multigrid);
-                let solution = self
-                    .iterative
-                    .solve(system, matrix, b, x, (tolerance, MOST));
-                work.iterations = solution.iterations;
-                work.algebra += price * solution.iterations as f64;
+                let mut solve = |multigrid: Option<&mut Multigrid>, price: f64| {
+                    let (matrix, ends) = ((&self.tangent, multigrid), (tolerance, MOST));
+                    let solution = self.iterative.solve(system, matrix, b, x, ends);
+                    work.iterations += solution.iterations;
+                    work.algebra += price * solution.iterations as f64;
+                    solution
+                };
+                let with = self.multigrid.as_mut().filter(|_| pays);
+                let with = with.map(|multigrid| solve(Some(multigrid), MULTIGRID[0]));
+                // What multigrid makes of a matrix need not be positive definite where that is.
+                let solution = match with {
+                    Some(solution) if !solution.indefinite => solution,
+                    _ => solve(None, ITERATION),
+                };
                 if !solution.indefinite {
                     work.residual = solution.residual;
                 }
