@@ -20,7 +20,7 @@ const LIMITS: [(&str, u64); 9] = [
     ("step of verlet", 450),
     ("step of pefrl", 3700),
     ("step of dopri5", 1670),
-    ("step of implicit", 4900),
+    ("step of implicit", 5600),
 ];
 
 /// Runs of a kernel between which instructions are counted.
