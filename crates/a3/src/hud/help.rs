@@ -39,14 +39,8 @@ pub fn help(ui: &mut Ui, several: bool) {
     let (first, second) = keys.split_at(keys.len().div_ceil(2));
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 28.0;
-        ui.vertical(|ui| {
-            ui.horizontal_top(|ui| {
-                rows(ui, "Keys", first);
-                rows(ui, "More keys", second);
-            });
-            ui.add_space(10.0);
-            rows(ui, "Mouse", &mouse);
-        });
+        rows(ui, "Keys", first);
+        rows(ui, "More keys", second);
         ui.vertical(|ui| {
             let heading = if several {
                 "Solvers, under the pointer"
@@ -54,6 +48,8 @@ pub fn help(ui: &mut Ui, several: bool) {
                 "Solvers"
             };
             rows(ui, heading, &solvers);
+            ui.add_space(10.0);
+            rows(ui, "Mouse", &mouse);
         });
     });
 }
@@ -81,7 +77,7 @@ mod tests {
             assert!(words.contains(method.title));
         }
         assert!(
-            sheets[0].height() < 540.0 && sheets[0].width() < 780.0,
+            sheets[0].height() < 510.0 && sheets[0].width() < 780.0,
             "{sheets:?}"
         );
     }
