@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn the_shader_has_the_same_colours() {
-        let stops = RAMP.map(|[r, g, b]| format!("vec3({r}, {g}, {b})"));
+        let stops = RAMP.map(|[r, g, b]| format!("vec3({r:?}, {g:?}, {b:?})"));
         let listed: String = SOURCE.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(listed.contains(&stops.join(", ")), "{stops:?}");
     }
