@@ -6,7 +6,7 @@ use a3_core::{Control, Method, Scene, Simulation, integrators};
 use a3_scenes::{Presentation, Setup};
 
 use crate::bounds;
-use crate::cli::{Compare, RunOptions, What, WindowOptions};
+use crate::cli::{Compare, Drawing, RunOptions, What, WindowOptions};
 use crate::failure::Failure;
 use crate::session::{Beginning, Origin, Session};
 
@@ -22,6 +22,7 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     let setup = build(what)?;
     let simulation = simulate(what, &setup, solver, options.step)?;
     check_particle(&simulation, options.springs_of)?;
+    check_drawing(&simulation, options.look.manner)?;
     let beginning = Beginning {
         manner: options.look.manner.of(options.springs_of),
         paused: options.look.paused,
@@ -43,7 +44,8 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         .methods
         .iter()
         .map(|(solver, step)| simulate(what, &setup, solver, *step))
-        .collect::<Result<_, Failure>>()?;
+        .collect::<Result<Vec<_>, Failure>>()?;
+    check_drawing(&simulations[0], options.look.manner)?;
     let beginning = Beginning {
         manner: options.look.manner.of(None),
         paused: options.look.paused,
@@ -146,6 +148,20 @@ pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Resul
         (Some(_), None) => Err(Failure::usage("--springs-of: this scene has no springs")),
         (None, _) => Ok(()),
     }
+}
+
+/// `Ok` if the scene has what it is to be coloured by, and the arrows.
+pub fn check_drawing(simulation: &Simulation, drawing: Drawing) -> Result<(), Failure> {
+    let colour = drawing.colour.filter(|c| c.values(simulation).is_empty());
+    let arrows = drawing.arrows.filter(|a| a.vectors(simulation).is_empty());
+    let wrong = colour.map(|c| ("colour", c.name()));
+    let Some((option, name)) = wrong.or(arrows.map(|a| ("arrows", a.name()))) else {
+        return Ok(());
+    };
+    let scene = &simulation.scene().name;
+    Err(Failure::usage(format!(
+        "the scene {scene} has no {name} to show: leave out --{option}"
+    )))
 }
 
 /// `Ok` if the step or the tolerance is within its range.

@@ -12,12 +12,12 @@ use clap_complete::Shell;
 
 use crate::failure::Failure;
 use crate::scene_file::Source;
-use drawing::Drawing;
 use values::{
     beginning, budget, error, factor, grid, horizon, particle, pause, picture_size, rate, size,
     solver, solver_and_step, step, threads, until,
 };
 
+pub use drawing::Drawing;
 pub use explain::explain;
 
 /// Simulate cloth and other mass-spring systems, and measure how fast and how accurate each

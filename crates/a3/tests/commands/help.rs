@@ -28,6 +28,8 @@ fn help_and_version() {
         "--scene",
         "--grid",
         "--springs-of",
+        "--colour",
+        "--arrows",
         "a3 t 0.01",
     ] {
         assert!(text(&help.stdout).contains(word), "{word}");

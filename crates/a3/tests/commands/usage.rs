@@ -52,6 +52,20 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
             "has no grid",
         ),
         (vec!["t", "0.01", "--springs-of", "400"], "0 to 399"),
+        (
+            vec!["t", "0.01", "--scene", "simple", "--colour", "strain"],
+            "has no strain to show: leave out --colour",
+        ),
+        (
+            vec![
+                "compare", "e", "t", "--scene", "simple", "--arrows", "force",
+            ],
+            "has no force to show: leave out --arrows",
+        ),
+        (
+            vec!["t", "0.01", "--colour", "heat"],
+            "speed, strain, force",
+        ),
         (vec!["t", "0.01", "--springs-of", "-1"], "whole number"),
         (vec!["v", "0.01", "--scene", "simple"], "first order"),
         (vec!["t", "0.01", "--wire"], "--wireframe"),
