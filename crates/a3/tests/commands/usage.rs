@@ -52,20 +52,6 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
             "has no grid",
         ),
         (vec!["t", "0.01", "--springs-of", "400"], "0 to 399"),
-        (
-            vec!["t", "0.01", "--scene", "simple", "--colour", "strain"],
-            "has no strain to show: leave out --colour",
-        ),
-        (
-            vec![
-                "compare", "e", "t", "--scene", "simple", "--arrows", "force",
-            ],
-            "has no force to show: leave out --arrows",
-        ),
-        (
-            vec!["t", "0.01", "--colour", "heat"],
-            "speed, strain, force",
-        ),
         (vec!["t", "0.01", "--springs-of", "-1"], "whole number"),
         (vec!["v", "0.01", "--scene", "simple"], "first order"),
         (vec!["t", "0.01", "--wire"], "--wireframe"),
@@ -118,6 +104,30 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
     ] {
         let line = refused(folder.path(), &words, 2);
         println!("a3 {}\n{line}", words.join(" "));
+        assert!(line.contains(says), "{words:?}: {line}");
+    }
+}
+
+#[test]
+fn what_a_scene_cannot_show_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (words, says) in [
+        (
+            vec!["t", "0.01", "--scene", "simple", "--colour", "strain"],
+            "has no strain to show: leave out --colour",
+        ),
+        (
+            vec![
+                "compare", "e", "t", "--scene", "simple", "--arrows", "force",
+            ],
+            "has no force to show: leave out --arrows",
+        ),
+        (
+            vec!["t", "0.01", "--colour", "heat"],
+            "speed, strain, force",
+        ),
+    ] {
+        let line = refused(folder.path(), &words, 2);
         assert!(line.contains(says), "{words:?}: {line}");
     }
 }
