@@ -152,8 +152,8 @@ pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Resul
 
 /// `Ok` if the scene has what it is to be coloured by, and the arrows.
 pub fn check_drawing(simulation: &Simulation, drawing: Drawing) -> Result<(), Failure> {
-    let colour = drawing.colour.filter(|c| c.values(simulation).is_empty());
-    let arrows = drawing.arrows.filter(|a| a.vectors(simulation).is_empty());
+    let colour = drawing.colour.filter(|c| !c.is_in(simulation));
+    let arrows = drawing.arrows.filter(|a| !a.is_in(simulation));
     let wrong = colour.map(|c| ("colour", c.name()));
     let Some((option, name)) = wrong.or(arrows.map(|a| ("arrows", a.name()))) else {
         return Ok(());

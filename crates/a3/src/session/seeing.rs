@@ -49,7 +49,7 @@ impl Session {
     /// Colours by the next quantity that the scene has, and after the last by none.
     pub(super) fn next_colour(&mut self) {
         let run = self.first();
-        let has = |quantity: &Quantity| !quantity.values(run).is_empty();
+        let has = |quantity: &Quantity| quantity.is_in(run);
         let all: Vec<_> = Quantity::ALL.into_iter().filter(has).collect();
         let next = after(&all, self.panes[0].show.colouring.quantity);
         self.set_colour(next);
@@ -62,7 +62,7 @@ impl Session {
     /// Draws the next arrows that the scene has, and after the last none.
     pub(super) fn next_arrows(&mut self) {
         let run = self.first();
-        let has = |arrows: &Arrows| !arrows.vectors(run).is_empty();
+        let has = |arrows: &Arrows| arrows.is_in(run);
         let all: Vec<_> = Arrows::ALL.into_iter().filter(has).collect();
         let next = after(&all, self.panes[0].show.field.arrows);
         self.set_arrows(next);

@@ -45,13 +45,23 @@ impl Quantity {
         }
     }
 
-    /// Its value at each particle, or nothing where the scene knows none.
+    /// Whether the scene has it.
+    pub fn is_in(self, simulation: &Simulation) -> bool {
+        let network = simulation.model().network();
+        match self {
+            Self::Speed => true,
+            Self::Strain => network.is_some_and(Network::is_elastic),
+            Self::Force => network.is_some(),
+        }
+    }
+
+    /// Its value at each particle, or nothing where the scene does not have it.
     pub fn values(self, simulation: &Simulation) -> Vec<f64> {
         let network = simulation.model().network();
         match self {
             Self::Speed => lengths(&simulation.velocities()),
             Self::Strain => network
-                .filter(|network| network.is_elastic())
+                .filter(|_| self.is_in(simulation))
                 .map(|network| network.strains(network.halves(simulation.state()).0))
                 .unwrap_or_default(),
             Self::Force => {
@@ -86,7 +96,12 @@ impl Arrows {
         }
     }
 
-    /// The vectors, n x 3, or nothing where the scene knows none.
+    /// Whether the scene has it.
+    pub fn is_in(self, simulation: &Simulation) -> bool {
+        self == Self::Velocity || simulation.model().network().is_some()
+    }
+
+    /// The vectors, n x 3, or nothing where the scene does not have it.
     pub fn vectors(self, simulation: &Simulation) -> Vec<f64> {
         match self {
             Self::Velocity => simulation.velocities(),
@@ -153,8 +168,14 @@ mod tests {
     fn a_circle_has_a_speed_alone_and_a_solid_has_strain() {
         let circle = run("simple");
         assert!((Quantity::Speed.values(&circle)[0] - 1.0).abs() < 1e-12);
-        assert!(Quantity::Strain.values(&circle).is_empty());
-        assert!(Quantity::Force.values(&circle).is_empty());
+        for quantity in Quantity::ALL {
+            assert_eq!(
+                quantity.values(&circle).is_empty(),
+                !quantity.is_in(&circle)
+            );
+        }
+        assert!(!Quantity::Strain.is_in(&circle) && !Quantity::Force.is_in(&circle));
+        assert!(Arrows::Force.vectors(&circle).is_empty() && !Arrows::Force.is_in(&circle));
         let mut bar = run("cantilever");
         assert!(Quantity::Strain.values(&bar).iter().all(|s| *s < 1e-9));
         bar.take_steps(50).unwrap();

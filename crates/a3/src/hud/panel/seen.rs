@@ -31,7 +31,7 @@ fn one_of<T: Copy + PartialEq>(
 
 pub fn colour(session: &Session, at: usize) -> Option<Dial> {
     let chosen = session.panes.get(at)?.show.colouring.quantity;
-    let has = |session: &Session, quantity: Quantity| !quantity.values(session.first()).is_empty();
+    let has = |session: &Session, quantity: Quantity| quantity.is_in(session.first());
     one_of(session, &Quantity::ALL, chosen, has, Quantity::name)
 }
 
@@ -62,6 +62,6 @@ pub fn full_colour(session: &Session, at: usize) -> Option<Dial> {
 
 pub fn arrows(session: &Session, at: usize) -> Option<Dial> {
     let chosen = session.panes.get(at)?.show.field.arrows;
-    let has = |session: &Session, arrows: Arrows| !arrows.vectors(session.first()).is_empty();
+    let has = |session: &Session, arrows: Arrows| arrows.is_in(session.first());
     one_of(session, &Arrows::ALL, chosen, has, Arrows::name)
 }
