@@ -9,6 +9,7 @@ mod chart;
 mod checkpoint;
 mod choose;
 mod cli;
+mod command_line;
 mod compare;
 mod export;
 mod failure;

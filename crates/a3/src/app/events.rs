@@ -24,6 +24,15 @@ impl App {
             graphics.lose_device();
             self.redraw();
         }
+        if self.session.list.is_some() {
+            if let Some(key) = keyboard::list_key(event)
+                && self.session.press_list(key)
+            {
+                self.scene_changed();
+            }
+            self.redraw();
+            return;
+        }
         let key = keyboard::panel_key(&event.logical_key);
         if key.is_some_and(|key| panel::press(&mut self.session, key, self.shift)) {
             self.redraw();
@@ -73,7 +82,7 @@ impl ApplicationHandler for App {
         };
         // Keys are for the table of keys: egui gets none.
         let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
-        let taken = !is_key && graphics.on_event(&event)
+        let taken = !is_key && (graphics.on_event(&event) || self.session.list.is_some())
             || panel::leaves(&self.session, graphics.size(), graphics.scale()).0 as f32
                 <= self.mouse.pointer[0];
         match event {

@@ -10,6 +10,7 @@ use super::graphics::FrameOutcome;
 use super::pointer::Drag;
 use super::state::App;
 use super::watch::Watch;
+use crate::hud::panel;
 
 /// Time after which a frame that could not be drawn is tried again.
 const RETRY: Duration = Duration::from_millis(50);
@@ -37,8 +38,16 @@ impl App {
         };
         let begun = Instant::now();
         match graphics.frame(&mut self.session) {
-            Ok(FrameOutcome::Drawn(again)) => {
+            Ok(FrameOutcome::Drawn(again, request)) => {
                 self.session.drawn(begun.elapsed());
+                let again = if request.is_some() {
+                    Some(Duration::ZERO)
+                } else {
+                    again
+                };
+                if request.is_some_and(|request| panel::apply(&mut self.session, request)) {
+                    self.scene_changed();
+                }
                 if let Some(status) = &mut self.status {
                     status.frames += 1;
                 }

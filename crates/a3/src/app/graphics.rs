@@ -18,7 +18,8 @@ use crate::session::{Readings, Session};
 /// The outcome of drawing a frame.
 pub enum FrameOutcome {
     /// The frame was drawn. The text must be drawn again after this time, if at all: it fades in.
-    Drawn(Option<Duration>),
+    /// The mouse may ask for something.
+    Drawn(Option<Duration>, Option<Request>),
     /// The frame could not be drawn now. It may be at the next event, or soon.
     Skipped,
 }
@@ -217,11 +218,7 @@ impl Graphics {
         self.window.pre_present_notify();
         self.gpu.queue.present(frame);
         self.gpu.check()?;
-        if let Some(request) = request {
-            panel::apply(session, request);
-            return Ok(FrameOutcome::Drawn(Some(Duration::ZERO)));
-        }
-        Ok(FrameOutcome::Drawn(again))
+        Ok(FrameOutcome::Drawn(again, request))
     }
 
     /// Writes the text in a second pass over the picture. Returns the commands to submit before it,
@@ -242,6 +239,7 @@ impl Graphics {
         let mut output = self.overlay.lay_out(&self.gpu, input, |ctx| {
             hud::show(ctx, &session.panes, &session.readings);
             request = panel::show(ctx, session).or(request);
+            request = hud::show_list(ctx, session).or(request);
         });
         self.egui_winit
             .handle_platform_output(&self.window, std::mem::take(&mut output.platform_output));

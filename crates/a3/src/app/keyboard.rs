@@ -1,9 +1,10 @@
 //! Keys as winit names them, in the words of the table of keys and of the panel.
 
+use winit::event::KeyEvent;
 use winit::keyboard::{Key, NamedKey};
 
 use crate::hud::panel::PanelKey;
-use crate::session::{self, Action};
+use crate::session::{self, Action, ListKey};
 
 /// The action of a key, if it has one.
 pub fn action(key: &Key) -> Option<Action> {
@@ -11,6 +12,8 @@ pub fn action(key: &Key) -> Option<Action> {
         Key::Named(NamedKey::Space) => session::action("Space"),
         Key::Named(NamedKey::Escape) => session::action("Esc"),
         Key::Named(NamedKey::Tab) => session::action("Tab"),
+        Key::Named(NamedKey::PageUp) => session::action("PgUp"),
+        Key::Named(NamedKey::PageDown) => session::action("PgDn"),
         Key::Character(text) if text == " " => session::action("Space"),
         Key::Character(text) if text.chars().count() == 1 => session::action(text),
         _ => None,
@@ -29,6 +32,23 @@ pub fn panel_key(key: &Key) -> Option<PanelKey> {
     }
 }
 
+/// The meaning of a key in a list that is open, if it has one there.
+pub fn list_key(event: &KeyEvent) -> Option<ListKey> {
+    Some(match &event.logical_key {
+        Key::Named(NamedKey::ArrowUp) => ListKey::Move(-1),
+        Key::Named(NamedKey::ArrowDown) => ListKey::Move(1),
+        Key::Named(NamedKey::PageUp) => ListKey::Move(-10),
+        Key::Named(NamedKey::PageDown) => ListKey::Move(10),
+        Key::Named(NamedKey::Enter) => ListKey::Take,
+        Key::Named(NamedKey::Escape) => ListKey::Close,
+        Key::Named(NamedKey::Backspace) => ListKey::Erase,
+        _ => {
+            let text = event.text.as_ref()?;
+            ListKey::Type(text.chars().next().filter(|c| !c.is_control())?)
+        }
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -42,6 +62,8 @@ mod tests {
                     "Space" => Key::Named(NamedKey::Space),
                     "Esc" => Key::Named(NamedKey::Escape),
                     "Tab" => Key::Named(NamedKey::Tab),
+                    "PgUp" => Key::Named(NamedKey::PageUp),
+                    "PgDn" => Key::Named(NamedKey::PageDown),
                     key => Key::Character(key.into()),
                 };
                 assert_eq!(action(&typed), Some(binding.action));

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use a3_render::Tile;
+use arboard::Clipboard;
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
 use winit::window::Window;
 
@@ -13,8 +14,8 @@ use super::pointer::Mouse;
 use super::status::Status;
 use super::watch::Watch;
 use crate::failure::Failure;
-use crate::keep;
 use crate::session::{Action, Session};
+use crate::{command_line, keep, output};
 
 /// The window, from the first event to the last.
 pub struct App {
@@ -31,6 +32,8 @@ pub struct App {
     pub mouse: Mouse,
     /// Whether the shift key is held.
     pub shift: bool,
+    /// The clipboard, once it was needed: what was copied is lost with it.
+    clipboard: Option<Clipboard>,
     /// Whether the window can be seen.
     pub visible: bool,
     /// Number of devices opened so far.
@@ -60,6 +63,7 @@ impl App {
             last: Instant::now(),
             mouse: Mouse::new(),
             shift: false,
+            clipboard: None,
             visible: true,
             devices: 0,
             status: status.then(Status::default),
@@ -133,6 +137,13 @@ impl App {
                 };
                 self.session.say(message);
             }
+            Action::CommandLine => {
+                let message = match command_line::of(&self.session, self.pointed()) {
+                    Ok(line) => self.copy(&line),
+                    Err(failure) => failure.message(),
+                };
+                self.session.say(message);
+            }
             Action::Keep => {
                 let at = self.pointed();
                 let message = match keep::keep(&mut self.session, at) {
@@ -164,6 +175,20 @@ impl App {
             }
         }
         self.redraw();
+    }
+
+    /// Writes a line to the terminal and to the clipboard, and returns what is said of that.
+    fn copy(&mut self, line: &str) -> String {
+        // A closed terminal is no reason to lose the line.
+        let _ = output::say(&format!("{line}\n"));
+        if self.clipboard.is_none() {
+            self.clipboard = Clipboard::new().ok();
+        }
+        let copied = self.clipboard.as_mut().map(|board| board.set_text(line));
+        match copied {
+            Some(Ok(())) => format!("copied: {line}"),
+            _ => format!("on the terminal: {line}"),
+        }
     }
 
     /// Shows another scene.

@@ -45,7 +45,7 @@ impl Status {
             values.join(",")
         };
         let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} blown={} grabbed={grabbed} \
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} list={} blown={} grabbed={grabbed} \
              colour={} arrows={} slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
@@ -56,6 +56,7 @@ impl Status {
             readings.paused,
             readings.help,
             session.panel.open,
+            session.list.is_some(),
             run.blow_up().is_some(),
             panes[0].show.colouring.quantity.map_or("-", Quantity::name),
             panes[0].show.field.arrows.map_or("-", Arrows::name),

@@ -4,6 +4,7 @@ mod blow_up;
 mod help;
 pub mod layout;
 mod legend;
+mod list;
 mod overlay;
 pub mod panel;
 mod panes;
@@ -14,6 +15,7 @@ mod text;
 mod timeline;
 mod words;
 
+pub use list::show as show_list;
 pub use overlay::Overlay;
 pub use picture::draw;
 pub use text::show;

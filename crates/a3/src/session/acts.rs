@@ -5,6 +5,7 @@ use a3_render::Style;
 
 use super::clock::KEY_BUDGET;
 use super::keys::Action;
+use super::list::Topic;
 use super::pane::{PORTION, Pane};
 use super::state::Session;
 use crate::bounds;
@@ -20,10 +21,12 @@ impl Session {
     /// shown. A solver is for the pane `at`, all else for every pane.
     pub fn act(&mut self, action: Action, at: usize) -> bool {
         match action {
-            Action::NextScene => {
-                self.next_scene();
+            Action::NextScene | Action::PreviousScene => {
+                self.go_to_scene(if action == Action::NextScene { 1 } else { -1 });
                 return true;
             }
+            Action::Scenes => self.toggle_list(Topic::Scenes),
+            Action::Solvers => self.toggle_list(Topic::Solvers { pane: at }),
             Action::Reset => {
                 let touching = self.first().touching();
                 self.panes.iter_mut().for_each(Pane::reset);
@@ -96,7 +99,11 @@ impl Session {
                 Err(why) => self.say(why),
             },
             Action::Help => self.readings.help = !self.readings.help,
-            Action::Picture | Action::Keep | Action::TakeUp | Action::Quit => {}
+            Action::Picture
+            | Action::CommandLine
+            | Action::Keep
+            | Action::TakeUp
+            | Action::Quit => {}
         }
         false
     }

@@ -4,6 +4,11 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     NextScene,
+    PreviousScene,
+    /// Open the list of scenes, or close it.
+    Scenes,
+    /// Open the list of solvers, or close it.
+    Solvers,
     Reset,
     Swing,
     Wireframe,
@@ -32,6 +37,8 @@ pub enum Action {
     Picture,
     Panel,
     WriteScene,
+    /// Copy the command line that makes what is shown.
+    CommandLine,
     /// Keep the run in a file.
     Keep,
     /// Go on from the last such file.
@@ -53,7 +60,10 @@ const fn bind(keys: &'static [&'static str], action: Action, help: &'static str)
 
 /// All keys but the digits, which stand for the solvers in the order of their table.
 pub static KEYS: &[Binding] = &[
-    bind(&["t"], Action::NextScene, "next scene"),
+    bind(&["t", "PgDn"], Action::NextScene, "next scene"),
+    bind(&["PgUp"], Action::PreviousScene, "previous scene"),
+    bind(&["o"], Action::Scenes, "list of scenes"),
+    bind(&["e"], Action::Solvers, "list of solvers"),
     bind(&["r"], Action::Reset, "reset"),
     bind(&["s"], Action::Swing, "swing the pins"),
     bind(&["w"], Action::Wireframe, "wireframe or surface"),
@@ -76,6 +86,7 @@ pub static KEYS: &[Binding] = &[
     bind(&["p"], Action::Picture, "save a picture"),
     bind(&["Tab"], Action::Panel, "tune and plot"),
     bind(&["f"], Action::WriteScene, "write a scene file"),
+    bind(&["y"], Action::CommandLine, "copy the command line"),
     bind(&["k"], Action::Keep, "keep the run in a file"),
     bind(&["l"], Action::TakeUp, "load what was kept"),
     bind(&["h", "?"], Action::Help, "this help"),

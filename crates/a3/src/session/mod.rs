@@ -2,10 +2,12 @@
 //! common time, the hands that pull at them, the reference, the timeline, and the actions of keys.
 
 mod acts;
+mod choosing;
 mod clock;
 mod hands;
 mod keys;
 mod limit;
+mod list;
 mod meter;
 mod opening;
 mod origin;
@@ -22,6 +24,7 @@ mod tuning;
 
 pub use keys::{Action, KEYS, MOUSE, action};
 pub use limit::step_that_holds;
+pub use list::{Entry, ListKey, Topic};
 pub use origin::Origin;
 pub use pane::Pane;
 pub use readings::Readings;

@@ -15,30 +15,47 @@ use crate::scene_file::Source;
 use crate::show;
 
 impl Session {
-    /// Shows the next scene of the table, or that of the user.
-    pub(super) fn next_scene(&mut self) {
-        let own = usize::from(self.asked.source.path.is_some());
-        let next = (self.scene_number + 1) % (a3_scenes::SCENES.len() + own);
-        let name = match next.checked_sub(own) {
-            None => &self.asked.source.typed,
-            Some(k) => a3_scenes::SCENES[k].name,
+    /// The names of all scenes: the files that were asked for or opened, then those of the table.
+    pub(super) fn scene_names(&self) -> Vec<String> {
+        let files = self.asked.iter().map(|origin| &origin.source);
+        let files = files.filter(|source| source.path.is_some());
+        let table = a3_scenes::SCENES.iter().map(|entry| entry.name.to_owned());
+        files
+            .map(|source| source.typed.clone())
+            .chain(table)
+            .collect()
+    }
+
+    /// Shows the scene `by` places after the one that is shown, or before it if that is negative.
+    pub(super) fn go_to_scene(&mut self, by: isize) {
+        let count = self.scene_names().len();
+        let next = (self.scene_number as isize + by).rem_euclid(count as isize);
+        self.show_scene(next as usize);
+    }
+
+    /// Shows the scene of this number among all names. Where that is not possible, a message says
+    /// why.
+    pub(super) fn show_scene(&mut self, number: usize) {
+        let Some(name) = self.scene_names().get(number).cloned() else {
+            return;
         };
-        let asked = name == self.asked.source.typed;
-        let grid = self.asked.grid.filter(|_| asked);
-        let source = if asked {
-            Ok(self.asked.source.clone())
-        } else {
-            Source::find(name)
-        };
-        let setup = source.and_then(|source| Ok((source.build(grid)?, source)));
-        match setup {
-            Ok((setup, source)) => {
-                self.shown = Origin { source, grid };
+        let asked = self
+            .asked
+            .iter()
+            .find(|origin| origin.source.typed == name)
+            .cloned();
+        let origin = asked.map_or_else(
+            || Source::find(&name).map(|source| Origin { source, grid: None }),
+            Ok,
+        );
+        match origin.and_then(|origin| Ok((origin.source.build(origin.grid)?, origin))) {
+            Ok((setup, origin)) => {
+                self.shown = origin;
+                self.scene_number = number;
                 self.camera = show::camera(&setup.presentation);
                 self.set_scene(&setup);
-                self.scene_number = next;
             }
-            Err(why) => self.say(why),
+            Err(why) => self.warn(why),
         }
     }
 
@@ -48,11 +65,13 @@ impl Session {
         let source = Source::find(&file.to_string_lossy());
         match source.and_then(|source| Ok((source.build(None)?, source))) {
             Ok((setup, source)) => {
-                self.asked = Origin { source, grid: None };
-                self.shown = self.asked.clone();
+                self.say(format!("opened {}", source.typed));
+                self.shown = Origin { source, grid: None };
+                let same = |origin: &Origin| origin.source.typed == self.shown.source.typed;
+                self.asked.retain(|origin| !same(origin));
+                self.asked.insert(0, self.shown.clone());
                 self.scene_number = 0;
                 self.camera = show::camera(&setup.presentation);
-                self.say(format!("opened {}", self.asked.source.typed));
                 self.set_scene(&setup);
                 true
             }
@@ -67,8 +86,13 @@ impl Session {
     /// message says why, and all goes on. Camera, solvers and steps stay as they are, unless the
     /// file says others than before.
     pub fn reload(&mut self) -> bool {
-        let loaded = Source::find(&self.asked.source.typed);
-        let loaded = loaded.and_then(|source| Ok((source.build(self.asked.grid)?, source)));
+        let begun = |origin: &Origin| origin.source.typed == self.begun;
+        let Some(number) = self.asked.iter().position(begun) else {
+            return false;
+        };
+        let Origin { source: old, grid } = self.asked[number].clone();
+        let loaded = Source::find(&old.typed);
+        let loaded = loaded.and_then(|source| Ok((source.build(grid)?, source)));
         let (setup, source) = match loaded {
             Ok(loaded) => loaded,
             Err(why) => {
@@ -76,7 +100,7 @@ impl Session {
                 return false;
             }
         };
-        let (new, old) = (&source.description, &self.asked.source.description);
+        let (new, old) = (&source.description, &old.description);
         if new.camera != old.camera {
             self.camera = show::camera(&setup.presentation);
         }
@@ -84,9 +108,9 @@ impl Session {
             .then_some(setup.defaults.solver)
             .flatten();
         self.say(format!("loaded {} again", source.typed));
-        self.asked.source = source;
-        self.shown = self.asked.clone();
-        self.scene_number = 0;
+        self.asked[number].source = source;
+        self.shown = self.asked[number].clone();
+        self.scene_number = number;
         let before = self.first();
         let (windy, swinging) = (before.windy(), before.swinging());
         let touching = before.touching();

@@ -3,6 +3,7 @@
 use std::fmt::{Debug, Write};
 use std::path::{Path, PathBuf};
 
+use a3_core::Simulation;
 use a3_scenes::{Camera, Description};
 
 use super::origin::Origin;
@@ -17,7 +18,11 @@ impl Session {
     /// Writes the run of pane `at` under the first free name, beside the file of its scene if there
     /// is one, and returns that name.
     pub fn write_scene(&self, at: usize) -> Result<String, String> {
-        let run = &self.panes[at.min(self.panes.len() - 1)].simulation;
+        self.write_scene_of(&self.panes[at.min(self.panes.len() - 1)].simulation)
+    }
+
+    /// Writes a run of the scene that is shown, as `write_scene` does.
+    pub fn write_scene_of(&self, run: &Simulation) -> Result<String, String> {
         let particles = run.particles();
         if particles > MOST {
             return Err(format!(
@@ -27,7 +32,7 @@ impl Session {
         let folder = self.shown.source.path.as_deref().and_then(Path::parent);
         let name = &run.scene().name;
         let write = || -> Result<PathBuf, Failure> {
-            let text = self.scene_text(at).map_err(Failure::run)?;
+            let text = self.scene_text(run).map_err(Failure::run)?;
             let folder = folder.unwrap_or("".as_ref());
             output::write_new(folder, name, "toml", text.as_bytes())
         };
@@ -37,9 +42,8 @@ impl Session {
     }
 
     /// The text of the scene file.
-    fn scene_text(&self, at: usize) -> Result<String, a3_core::Error> {
-        let run = &self.panes[at.min(self.panes.len() - 1)].simulation;
-        let mut description = self.description(at);
+    fn scene_text(&self, run: &Simulation) -> Result<String, a3_core::Error> {
+        let mut description = self.description(run);
         let state = description.state.take();
         let mut text = format!(
             "# The scene {} as it was at t = {} s, written by a3 {}. Its clock begins at 0 again.\n\n{}",
@@ -60,8 +64,7 @@ impl Session {
     }
 
     /// The description of the run: the scene as it is tuned, and the state as it is now.
-    fn description(&self, at: usize) -> Description {
-        let run = &self.panes[at.min(self.panes.len() - 1)].simulation;
+    fn description(&self, run: &Simulation) -> Description {
         let Origin { source, grid } = &self.shown;
         let mut description = Description::clone(&source.description);
         if let (Some(grid), Some(cloth)) = (grid, description.cloth.first_mut()) {
@@ -95,7 +98,7 @@ mod tests {
     use super::*;
     use crate::session::session;
     use a3_core::contact::Shape;
-    use a3_core::{Network, Simulation, Vector3};
+    use a3_core::{Network, Vector3};
 
     use crate::scene_file::Source;
 
@@ -147,7 +150,7 @@ mod tests {
 
     fn written(session: &Session, folder: &Path) -> PathBuf {
         let path = folder.join("scene.toml");
-        std::fs::write(&path, session.scene_text(0).unwrap()).unwrap();
+        std::fs::write(&path, session.scene_text(session.first()).unwrap()).unwrap();
         path
     }
 

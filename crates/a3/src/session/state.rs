@@ -7,6 +7,7 @@ use a3_core::Simulation;
 use a3_render::Camera;
 use a3_scenes::{Defaults, Setup};
 
+use super::list::List;
 use super::meter::Meter;
 use super::origin::Origin;
 use super::pane::Pane;
@@ -44,13 +45,17 @@ pub struct Session {
     pub defaults: Defaults,
     /// Changes that the panel made to the scene.
     pub tuning: Tuning,
+    /// The list that is open to choose from.
+    pub list: Option<List>,
     /// The checkpoint that was written or opened last.
     pub kept: Option<PathBuf>,
-    /// The scene that was asked for, to come back to.
-    pub(super) asked: Origin,
+    /// The scenes that were asked for or opened, to come back to, the last one first.
+    pub(super) asked: Vec<Origin>,
+    /// The name or the file that the session began with.
+    pub(super) begun: String,
     /// The scene that is shown.
     pub(super) shown: Origin,
-    /// Number of the scene that is shown: the user's file comes first, then those of the table.
+    /// Number of the scene that is shown: the user's files come first, then those of the table.
     pub(super) scene_number: usize,
     /// The run that the errors are taken from, if there are several panes.
     pub(super) reference: Option<ReferenceRun>,
@@ -92,13 +97,15 @@ impl Session {
             panel: PanelState::default(),
             defaults: setup.defaults,
             tuning: Tuning::of(setup.scene),
+            list: None,
             kept: None,
             shown: origin.clone(),
             scene_number: a3_scenes::SCENES
                 .iter()
                 .position(|entry| entry.name == origin.source.typed)
                 .unwrap_or(0),
-            asked: origin,
+            begun: origin.source.typed.clone(),
+            asked: vec![origin],
             reference: ReferenceRun::new(&panes)?,
             clock: 0.0,
             timeline: Timeline::default(),

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::fs;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Child, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex};
@@ -18,6 +18,20 @@ pub struct App<'d> {
     child: Child,
     pub window: String,
     lines: Arc<Mutex<Vec<String>>>,
+    /// What it wrote to its standard output.
+    said: Arc<Mutex<Vec<String>>>,
+}
+
+/// Collects the lines of a stream as they come.
+fn collect(stream: impl Read + Send + 'static) -> Arc<Mutex<Vec<String>>> {
+    let lines = Arc::new(Mutex::new(vec![]));
+    let sink = lines.clone();
+    std::thread::spawn(move || {
+        for line in BufReader::new(stream).lines().map_while(Result::ok) {
+            sink.lock().unwrap().push(line);
+        }
+    });
+    lines
 }
 
 impl<'d> App<'d> {
@@ -36,16 +50,12 @@ impl<'d> App<'d> {
             .arg("--status")
             .current_dir(folder)
             .env("XDG_RUNTIME_DIR", folder)
+            .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        let lines = Arc::new(Mutex::new(vec![]));
-        let (sink, stderr) = (lines.clone(), child.stderr.take().unwrap());
-        std::thread::spawn(move || {
-            for line in BufReader::new(stderr).lines().map_while(Result::ok) {
-                sink.lock().unwrap().push(line);
-            }
-        });
+        let lines = collect(child.stderr.take().unwrap());
+        let said = collect(child.stdout.take().unwrap());
         let begun = Instant::now();
         let window = loop {
             let found = display.xdotool(&["search", "--onlyvisible", "--name", "^a3: "]);
@@ -73,11 +83,17 @@ impl<'d> App<'d> {
             child,
             window,
             lines,
+            said,
         };
         until("a first frame", || {
             (app.number("frames")? > 2.0).then_some(())
         });
         Some(app)
+    }
+
+    /// What it wrote to its standard output so far.
+    pub fn said(&self) -> String {
+        self.said.lock().unwrap().join("\n")
     }
 
     pub fn status(&self) -> Option<HashMap<String, String>> {

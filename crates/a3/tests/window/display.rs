@@ -47,7 +47,7 @@ pub struct Display {
 
 impl Display {
     pub fn open() -> Option<Self> {
-        let missing: Vec<_> = ["Xvfb", "openbox", "xdotool", "wmctrl"]
+        let missing: Vec<_> = ["Xvfb", "openbox", "xdotool", "wmctrl", "xclip"]
             .into_iter()
             .filter(|tool| {
                 quiet("which")

@@ -13,6 +13,10 @@ pub enum Request {
     Turn(usize, Turn),
     /// Write a scene file.
     Write,
+    /// Take the entry of this number from the list that is open.
+    Take(usize),
+    /// Close that list.
+    CloseList,
 }
 
 /// A key with a meaning in the panel.
@@ -75,8 +79,8 @@ pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
     true
 }
 
-/// Makes the change that was asked for.
-pub fn apply(session: &mut Session, request: Request) {
+/// Makes the change that was asked for, and returns whether another scene is shown.
+pub fn apply(session: &mut Session, request: Request) -> bool {
     let at = pane(session);
     match request {
         Request::Choose(row) => session.panel.row = row,
@@ -87,5 +91,8 @@ pub fn apply(session: &mut Session, request: Request) {
         Request::Write => {
             session.act(Action::WriteScene, at);
         }
+        Request::Take(number) => return session.take(number),
+        Request::CloseList => session.list = None,
     }
+    false
 }

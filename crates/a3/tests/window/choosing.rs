@@ -1,0 +1,80 @@
+//! Lists of scenes and solvers, by typing and by the mouse; and the command line of now.
+
+use std::fs;
+use std::process::Stdio;
+
+use crate::app::App;
+use crate::display::{Display, until};
+
+#[test]
+fn lists() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+    // Letters are typed, and mean no keys: t would show the next scene, and Esc would quit.
+    app.press_for("o", "list", "true");
+    for letter in ["d", "o", "u", "b", "t"] {
+        app.press(letter);
+    }
+    app.press("BackSpace");
+    app.press_for("Return", "list", "false");
+    app.expect("scene", "double-pendulum");
+    app.press_for("Prior", "scene", "mit-sphere");
+    app.press_for("Next", "scene", "double-pendulum");
+    app.press_for("o", "list", "true");
+    app.press_for("Escape", "list", "false");
+    // By arrows: the solver below the one that runs.
+    app.press_for("e", "list", "true");
+    app.press("Down");
+    app.press_for("Return", "solver", "midpoint");
+    // By the mouse: an entry, and nothing.
+    app.press_for("space", "paused", "true");
+    app.press_for("o", "list", "true");
+    app.settled();
+    display.xdotool(&["mousemove", "--window", &app.window, "640", "400"]);
+    display.xdotool(&["click", "1"]);
+    app.expect("list", "false");
+    assert_ne!(app.get("scene"), "double-pendulum");
+    app.press_for("o", "list", "true");
+    display.xdotool(&["mousemove", "--window", &app.window, "1200", "700"]);
+    display.xdotool(&["click", "1"]);
+    app.expect("list", "false");
+    app.press("Escape");
+    assert!(app.exit().success());
+}
+
+#[test]
+fn the_command_line_of_now() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["v", "0.005", "--scene", "chain", "--paused"];
+    // The clipboard belongs to the program while it runs.
+    let app = App::open(&display, folder.path(), &words);
+    app.press("y");
+    until("a line on the terminal", || {
+        let text = app.said();
+        text.contains("a3 verlet 0.005 --scene chain --paused")
+            .then_some(())
+    });
+    app.press_for("v", "colour", "speed");
+    app.press("period");
+    app.press("y");
+    let file = folder.path().join("a3-chain-1.toml");
+    until("a scene file", || file.exists().then_some(()));
+    until("a line that names it", || {
+        let text = app.said();
+        text.contains("a3 verlet 0.005 --scene a3-chain-1.toml --colour speed --paused")
+            .then_some(())
+    });
+    let mut xclip = display.command("xclip");
+    let board = xclip.args(["-o", "-selection", "clipboard"]);
+    let board = board.stdout(Stdio::piped()).output().unwrap().stdout;
+    assert!(app.said().ends_with(&String::from_utf8(board).unwrap()));
+    assert!(fs::read_to_string(&file).unwrap().contains("[state]"));
+    app.press("Escape");
+    assert!(app.exit().success());
+}
