@@ -4,7 +4,7 @@ use a3_render::{Gpu, Offscreen};
 
 use crate::cli::Compare;
 use crate::failure::Failure;
-use crate::hud::{self, digits};
+use crate::hud::{Studio, digits};
 use crate::session::{Pane, Session};
 use crate::{output, painter, setup};
 
@@ -28,7 +28,7 @@ pub fn run(options: &Compare) -> Result<(), Failure> {
     let offscreen = Offscreen::new(&gpu, options.size.unwrap_or(SIZE)).map_err(Failure::usage)?;
     session.run_to(until);
     output::say(&table(&session))?;
-    output::write(path, &picture(&gpu, &offscreen, &mut session)?)
+    output::write(path, &picture(&gpu, offscreen, &mut session)?)
 }
 
 /// A table of the methods: what the picture says about each.
@@ -63,15 +63,12 @@ fn line(pane: &Pane) -> String {
 }
 
 /// A picture of the session as it is now, as PNG.
-pub fn picture(
-    gpu: &Gpu,
-    offscreen: &Offscreen,
-    session: &mut Session,
-) -> Result<Vec<u8>, Failure> {
+pub fn picture(gpu: &Gpu, offscreen: Offscreen, session: &mut Session) -> Result<Vec<u8>, Failure> {
     let size = offscreen.size();
     // Text does not shrink with the picture: it could not be read.
     let scale = painter::scale(size).max(1.0);
     let (panes, readings) = (&mut session.panes, &session.readings);
-    let pixels = hud::draw(gpu, offscreen, panes, session.camera, scale, readings)?;
+    let mut studio = Studio::new(gpu, offscreen, panes);
+    let pixels = studio.draw(gpu, panes, session.camera, scale, readings)?;
     output::png(&pixels, size)
 }

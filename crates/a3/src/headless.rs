@@ -27,7 +27,7 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     match pollster::block_on(Gpu::headless()) {
         Ok(gpu) => {
             let offscreen = Offscreen::new(&gpu, SIZE).map_err(Failure::run)?;
-            let picture = compare::picture(&gpu, &offscreen, &mut session)?;
+            let picture = compare::picture(&gpu, offscreen, &mut session)?;
             let path = output::write_new("".as_ref(), &scene, "png", &picture)?;
             output::say(&format!("picture: {}\n", path.display()))?;
         }

@@ -26,6 +26,7 @@ mod manual;
 mod output;
 mod painter;
 mod progress;
+mod recorder;
 mod render;
 mod rounding;
 mod scene_file;

@@ -69,6 +69,10 @@ impl ApplicationHandler for App {
         self.last = Instant::now();
     }
 
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.complete_film();
+    }
+
     fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
         if let StartCause::ResumeTimeReached { .. } = cause {
             event_loop.set_control_flow(ControlFlow::Wait);

@@ -10,7 +10,7 @@ use super::graphics::FrameOutcome;
 use super::pointer::Drag;
 use super::state::App;
 use super::watch::Watch;
-use crate::hud::panel;
+use crate::hud::panel::{self, Request};
 
 /// Time after which a frame that could not be drawn is tried again.
 const RETRY: Duration = Duration::from_millis(50);
@@ -30,6 +30,10 @@ impl App {
                 .map(f64::from);
             self.session.pull(Vector3::new(x, y, z));
         }
+        let real = match &self.recorder {
+            Some(recorder) => recorder.pace(&self.session, real),
+            None => real,
+        };
         self.session.tick(real);
         self.session.read_state();
         let message_ends = self.session.message_ends();
@@ -40,13 +44,17 @@ impl App {
         match graphics.frame(&mut self.session) {
             Ok(FrameOutcome::Drawn(again, request)) => {
                 self.session.drawn(begun.elapsed());
-                let again = if request.is_some() {
+                let again = if self.film() || request.is_some() {
                     Some(Duration::ZERO)
                 } else {
                     again
                 };
-                if request.is_some_and(|request| panel::apply(&mut self.session, request)) {
-                    self.scene_changed();
+                match request {
+                    Some(Request::Act(action)) => self.act(event_loop, action),
+                    Some(request) if panel::apply(&mut self.session, request) => {
+                        self.scene_changed();
+                    }
+                    _ => {}
                 }
                 if let Some(status) = &mut self.status {
                     status.frames += 1;

@@ -11,7 +11,7 @@ use winit::window::Window;
 
 use crate::failure::Failure;
 use crate::hud::panel::{self, Request};
-use crate::hud::{self, Overlay, layout};
+use crate::hud::{self, Overlay, Studio, layout};
 use crate::output;
 use crate::session::{Readings, Session};
 
@@ -95,6 +95,11 @@ impl Graphics {
     /// Pixels per point.
     pub fn scale(&self) -> f32 {
         self.window.scale_factor() as f32
+    }
+
+    /// The adapter, for pictures that are drawn beside the window.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
     }
 
     /// Name of the adapter.
@@ -262,15 +267,9 @@ impl Graphics {
             no_error: session.readings.no_error,
             ..Readings::default()
         };
-        let panes = &mut session.panes;
-        let pixels = hud::draw(
-            &self.gpu,
-            &offscreen,
-            panes,
-            session.camera,
-            self.scale(),
-            &readings,
-        )?;
+        let (panes, scale) = (&mut session.panes, self.scale());
+        let mut studio = Studio::new(&self.gpu, offscreen, panes);
+        let pixels = studio.draw(&self.gpu, panes, session.camera, scale, &readings)?;
         let scene = &session.first().scene().name;
         let path = output::write_new("".as_ref(), scene, "png", &output::png(&pixels, size)?)?;
         Ok(path.display().to_string())

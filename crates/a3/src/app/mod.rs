@@ -1,6 +1,7 @@
 //! The window: events in, frames out. Nothing else knows winit.
 
 mod events;
+mod filming;
 mod frame;
 mod graphics;
 mod keyboard;

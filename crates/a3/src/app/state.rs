@@ -14,6 +14,7 @@ use super::pointer::Mouse;
 use super::status::Status;
 use super::watch::Watch;
 use crate::failure::Failure;
+use crate::recorder::Recorder;
 use crate::session::{Action, Session};
 use crate::{command_line, keep, output};
 
@@ -34,6 +35,8 @@ pub struct App {
     pub shift: bool,
     /// The clipboard, once it was needed: what was copied is lost with it.
     clipboard: Option<Clipboard>,
+    /// The film that is being made.
+    pub recorder: Option<Recorder>,
     /// Whether the window can be seen.
     pub visible: bool,
     /// Number of devices opened so far.
@@ -64,6 +67,7 @@ impl App {
             mouse: Mouse::new(),
             shift: false,
             clipboard: None,
+            recorder: None,
             visible: true,
             devices: 0,
             status: status.then(Status::default),
@@ -111,6 +115,8 @@ impl App {
         let Some(window) = self.window.clone() else {
             return;
         };
+        // What was filmed is drawn by the device that goes.
+        self.end_film();
         // The old surface has to go before the window can have another.
         self.graphics = None;
         match Graphics::new(window, &self.display, &self.session) {
@@ -137,6 +143,8 @@ impl App {
                 };
                 self.session.say(message);
             }
+            Action::Record => self.record(),
+            Action::FilmLast => self.film_last(),
             Action::CommandLine => {
                 let message = match command_line::of(&self.session, self.pointed()) {
                     Ok(line) => self.copy(&line),
@@ -194,6 +202,9 @@ impl App {
     /// Shows another scene.
     pub fn scene_changed(&mut self) {
         self.mouse.let_go();
+        if self.recorder.as_ref().is_some_and(Recorder::is_live) {
+            self.end_film();
+        }
         if let Some(graphics) = &mut self.graphics {
             graphics.set_scene(&self.session);
         }

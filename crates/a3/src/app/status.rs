@@ -45,7 +45,7 @@ impl Status {
             values.join(",")
         };
         let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} list={} blown={} grabbed={grabbed} \
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} list={} film={} blown={} grabbed={grabbed} \
              colour={} arrows={} slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
@@ -57,6 +57,7 @@ impl Status {
             readings.help,
             session.panel.open,
             session.list.is_some(),
+            readings.film.is_some(),
             run.blow_up().is_some(),
             panes[0].show.colouring.quantity.map_or("-", Quantity::name),
             panes[0].show.field.arrows.map_or("-", Arrows::name),

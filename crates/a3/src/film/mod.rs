@@ -4,7 +4,7 @@ mod gif;
 mod mp4;
 mod palette;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use a3_core::Simulation;
 
@@ -13,6 +13,7 @@ use crate::failure::Failure;
 use crate::frames::{FrameTimes, Sequence};
 use crate::painter::Painter;
 use crate::progress::{self, Bar};
+use crate::session::Ending;
 use crate::show::Show;
 use crate::{interrupt, output, verdict};
 
@@ -20,7 +21,7 @@ use crate::{interrupt, output, verdict};
 const RATE: (f64, f64) = (25.0, 30.0);
 
 /// A film in the making. Its frames are rows from the top, four bytes a pixel.
-pub trait Film {
+pub trait Film: Send {
     /// Adds a frame.
     fn add(&mut self, pixels: &[u8]) -> Result<(), Failure>;
 
@@ -99,6 +100,31 @@ pub fn begin(options: &Render) -> Result<Option<TimedFilm>, Failure> {
         ));
     }
     Ok(None)
+}
+
+/// A film of this size (px) in the working folder, under the first name that is free, and that
+/// name.
+pub fn begin_new(
+    scene: &str,
+    ending: Ending,
+    size: (u32, u32),
+) -> Result<(PathBuf, Box<dyn Film>), Failure> {
+    let rate = ending.rate();
+    let path = output::free_name(scene, ending.of_files())?;
+    let film: Box<dyn Film> = match ending {
+        Ending::Gif => Box::new(gif::Gif::new(&path, size, gif::delay(rate), false)?),
+        Ending::Mp4 => Box::new(mp4::Mp4::new(&path, size, rate)?),
+        Ending::Png => {
+            let numbered = Failure::run(format!("{}: no # for numbers", path.display()));
+            let sequence = Sequence::of(&path).ok_or(numbered)?;
+            Box::new(Pictures {
+                sequence,
+                size,
+                count: 0,
+            })
+        }
+    };
+    Ok((path, film))
 }
 
 /// Films the run. If it blows up or is interrupted, the frames so far are kept.

@@ -17,7 +17,7 @@ mod words;
 
 pub use list::show as show_list;
 pub use overlay::Overlay;
-pub use picture::draw;
+pub use picture::Studio;
 pub use text::show;
 pub use words::digits;
 

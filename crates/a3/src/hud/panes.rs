@@ -72,6 +72,9 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
             ui.set_width(width - 24.0);
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(14.0, 1.0);
+                if let Some(film) = &readings.film {
+                    words::film(ui, film);
+                }
                 // Words stay whole: they go to the next line if need be.
                 let mut say = |words| ui.add(egui::Label::new(words).extend());
                 say(title(scene(run)).size(15.0));

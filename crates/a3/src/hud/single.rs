@@ -25,6 +25,9 @@ pub fn show(ctx: &Context, pane: &Pane, readings: &Readings) {
                 ui.label(text(way_out(&lost)));
             });
         }
+        if let Some(film) = &readings.film {
+            sheet(ui, |ui| words::film(ui, film));
+        }
         if let Some(message) = &readings.message {
             sheet(ui, |ui| {
                 ui.label(text(message));

@@ -2,10 +2,10 @@
 
 use a3_core::Simulation;
 use a3_core::stability::tenfold_time;
-use egui::{Color32, RichText};
+use egui::{Color32, RichText, Sense, Ui, vec2};
 
 use super::style::{ALARM, SAFE, WARNING, faint, text};
-use crate::session::{Pane, Readings};
+use crate::session::{FilmProgress, Pane, Readings};
 
 /// A number with three digits, however small it is.
 pub fn digits(number: f64) -> String {
@@ -131,6 +131,15 @@ pub fn frames(readings: &Readings) -> String {
 pub fn each(readings: &Readings) -> String {
     let (simulating, drawing) = (readings.simulating, readings.drawing);
     format!("{simulating:.1} ms steps + {drawing:.1} ms drawing")
+}
+
+/// What is said of a film that is being made, behind a red dot.
+pub fn film(ui: &mut Ui, film: &FilmProgress) {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+        ui.painter().circle_filled(rect.center(), 4.5, ALARM);
+        ui.label(text(&film.said));
+    });
 }
 
 /// The states that are on: pause, wind, swing, a hand.

@@ -52,6 +52,21 @@ pub fn ends_in(path: &Path, extension: &str) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
+/// The first path of the names a3-SCENE-1, a3-SCENE-2, ... with this ending that is free in the
+/// working folder: of a sequence, that of its first file.
+pub fn free_name(scene: &str, ending: &str) -> Result<PathBuf, Failure> {
+    let scene = part_of_name(scene);
+    (1..=MOST_NAMES)
+        .map(|k| format!("a3-{scene}-{k}{ending}"))
+        .find(|name| fs::symlink_metadata(name.replace("####", "0001")).is_err())
+        .map(PathBuf::from)
+        .ok_or_else(|| {
+            Failure::run(format!(
+                "there are {MOST_NAMES} files a3-{scene}-*{ending} already"
+            ))
+        })
+}
+
 /// Writes `bytes` to the first of the names a3-SCENE-1, a3-SCENE-2, ... with an extension that is
 /// free in the folder, and returns it.
 pub fn write_new(

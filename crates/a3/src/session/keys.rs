@@ -37,6 +37,10 @@ pub enum Action {
     Picture,
     Panel,
     WriteScene,
+    /// Film from now on, or complete that film.
+    Record,
+    /// Film the last seconds.
+    FilmLast,
     /// Copy the command line that makes what is shown.
     CommandLine,
     /// Keep the run in a file.
@@ -86,6 +90,8 @@ pub static KEYS: &[Binding] = &[
     bind(&["p"], Action::Picture, "save a picture"),
     bind(&["Tab"], Action::Panel, "tune and plot"),
     bind(&["f"], Action::WriteScene, "write a scene file"),
+    bind(&["m"], Action::Record, "record, or stop"),
+    bind(&["n"], Action::FilmLast, "film the last seconds"),
     bind(&["y"], Action::CommandLine, "copy the command line"),
     bind(&["k"], Action::Keep, "keep the run in a file"),
     bind(&["l"], Action::TakeUp, "load what was kept"),

@@ -4,6 +4,7 @@
 mod acts;
 mod choosing;
 mod clock;
+mod ending;
 mod hands;
 mod keys;
 mod limit;
@@ -22,16 +23,17 @@ mod state;
 mod timeline;
 mod tuning;
 
+pub use ending::Ending;
 pub use keys::{Action, KEYS, MOUSE, action};
 pub use limit::step_that_holds;
 pub use list::{Entry, ListKey, Topic};
 pub use origin::Origin;
 pub use pane::Pane;
-pub use readings::Readings;
+pub use readings::{FilmProgress, Readings};
 pub use samples::{SPAN, Sample, Samples};
 pub use state::{Beginning, Session};
 pub use timeline::TimelinePosition;
-pub use tuning::Tuning;
+pub use tuning::{FILM_OF, Tuning};
 
 #[cfg(test)]
 pub use pane::Cost;

@@ -2,6 +2,15 @@
 
 use super::timeline::TimelinePosition;
 
+/// What is said of a film that is being made.
+#[derive(Clone, Debug)]
+pub struct FilmProgress {
+    /// Whether it is of the session from now on, until it is stopped.
+    pub live: bool,
+    /// What is said of it.
+    pub said: String,
+}
+
 /// Values that the text shows, taken twice a second or when something happens.
 #[derive(Clone, Debug, Default)]
 pub struct Readings {
@@ -19,6 +28,8 @@ pub struct Readings {
     pub drawing: f32,
     /// Message about what just happened, shown for a few seconds.
     pub message: Option<String>,
+    /// A film that is being made.
+    pub film: Option<FilmProgress>,
     /// Whether there is a window, with keys to press.
     pub in_window: bool,
     /// Reason why the panes' errors are not known, if they are not.

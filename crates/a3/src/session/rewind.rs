@@ -53,6 +53,12 @@ impl Session {
         self.start_anew();
     }
 
+    /// The states of all runs over the last seconds that are kept, as
+    /// [`Timeline::last`](super::timeline::Timeline::last) has them.
+    pub fn kept_moments(&self, seconds: f64, interval: f64) -> Vec<Vec<Option<Checkpoint>>> {
+        self.timeline.last(seconds, interval)
+    }
+
     /// Takes the first run up where it was kept in a checkpoint. A hand lets go.
     pub fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
         let pane = &mut self.panes[0];

@@ -131,6 +131,11 @@ impl Session {
         &self.shown
     }
 
+    /// Simulated time that the runs have been brought to (s).
+    pub fn clock(&self) -> f64 {
+        self.clock
+    }
+
     /// Whether the next frame will look different by itself.
     pub fn animated(&self) -> bool {
         !self.readings.paused && self.panes.iter().any(Pane::alive)

@@ -105,6 +105,30 @@ impl Timeline {
         self.go(to - self.shown.unwrap_or(newest) as isize)
     }
 
+    /// The moments nearest to times that are `interval` (s) apart, over the last `seconds` before
+    /// the moment that is shown, the oldest first: those of each run that is not lost.
+    pub fn last(&self, seconds: f64, interval: f64) -> Vec<Vec<Option<Checkpoint>>> {
+        let count = self.shown.map_or(self.moments.len(), |k| k + 1);
+        let moments: Vec<_> = self.moments.iter().take(count).collect();
+        let (Some(first), Some(last)) = (moments.first(), moments.last()) else {
+            return vec![];
+        };
+        let span = seconds.min(last.clock - first.clock);
+        let frames = (span / interval + 1e-6).floor() as u32;
+        let nearest = |time: f64| {
+            let k = moments.partition_point(|moment| moment.clock < time);
+            let near = &moments[k.saturating_sub(1)..(k + 1).min(moments.len())];
+            let distance = |moment: &Entry| (moment.clock - time).abs();
+            near.iter()
+                .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+                .map_or(vec![], |moment| moment.moments.clone())
+        };
+        (0..=frames)
+            .rev()
+            .map(|k| nearest(last.clock - f64::from(k) * interval))
+            .collect()
+    }
+
     /// Gives the runs the states of the moment that is shown.
     pub fn show<'r>(&self, runs: impl Iterator<Item = &'r mut Simulation>) {
         let newest = self.moments.len().saturating_sub(1);
@@ -168,6 +192,42 @@ mod tests {
         timeline.keep(1.5, false, [&run].into_iter());
         let clocks: Vec<_> = timeline.moments.iter().map(|entry| entry.clock).collect();
         assert_eq!(clocks, [0.0, 1.0, 1.5]);
+    }
+
+    #[test]
+    fn the_last_seconds_are_evenly_spaced() {
+        let (mut run, mut timeline) = (run(3), Timeline::default());
+        // Every 10 ms, but for a time in which the display stood still.
+        for k in (0..=100).filter(|k| !(40..60).contains(k)) {
+            run.advance_to(0.02 * f64::from(k)).unwrap();
+            timeline.keep(run.time(), false, [&run].into_iter());
+        }
+        let times = |seconds, interval| -> Vec<f64> {
+            let moments = timeline.last(seconds, interval).into_iter();
+            moments
+                .map(|runs| runs[0].as_ref().unwrap().time())
+                .collect()
+        };
+        let near = |times: &[f64], right: &[f64]| {
+            assert_eq!(times.len(), right.len(), "{times:?}");
+            for (a, b) in times.iter().zip(right) {
+                assert!((a - b).abs() < 1e-9, "{times:?}");
+            }
+        };
+        near(&times(0.4, 0.1), &[1.6, 1.7, 1.8, 1.9, 2.0]);
+        near(&times(1.3, 0.26), &[0.7, 0.78, 1.22, 1.48, 1.74, 2.0]);
+        assert_eq!(times(99.0, 0.5).len(), 5);
+        assert_eq!(Timeline::default().last(1.0, 0.1).len(), 0);
+        // What was gone back to is the end.
+        assert!(timeline.go(-1));
+        near(
+            &timeline
+                .last(0.0, 0.1)
+                .iter()
+                .map(|runs| runs[0].as_ref().unwrap().time())
+                .collect::<Vec<_>>(),
+            &[1.98],
+        );
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 use a3_core::Scene;
 
+use super::ending::Ending;
+
 /// Changes to a scene that cannot be read off its model.
 #[derive(Clone)]
 pub struct Tuning {
@@ -27,13 +29,31 @@ impl Tuning {
     }
 }
 
+/// Simulated time that a film of what was kept covers, if nothing else was chosen (s).
+pub const FILM_OF: f64 = 5.0;
+
 /// The panel beside the picture, as far as it is no setting of a run.
-#[derive(Default)]
 pub struct PanelState {
     /// Whether the panel is open.
     pub open: bool,
     /// The chosen row, as its number in the table of knobs: keys turn it.
     pub row: usize,
+    /// The format of films.
+    pub film: Ending,
+    /// Simulated time that a film of what was kept covers (s).
+    pub film_of: f64,
     /// The pane that the panel is about: the last that the pointer was over.
     pub pane: usize,
+}
+
+impl Default for PanelState {
+    fn default() -> Self {
+        Self {
+            open: false,
+            row: 0,
+            film: Ending::default(),
+            film_of: FILM_OF,
+            pane: 0,
+        }
+    }
 }

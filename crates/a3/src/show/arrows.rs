@@ -15,7 +15,7 @@ const LONGEST: f64 = 0.25;
 const PIECES: [(f32, f32, f32); 3] = [(0.0, 0.8, 1.4), (0.8, 0.92, 4.2), (0.92, 1.0, 2.2)];
 
 /// The arrows that are drawn, and their scale.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Field {
     /// What they show, if there are any.
     pub arrows: Option<Arrows>,

@@ -48,7 +48,7 @@ impl Scale {
 }
 
 /// The colours of particles by a quantity.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Colouring {
     /// The quantity, if they are coloured by one.
     pub quantity: Option<Quantity>,

@@ -10,7 +10,7 @@ use a3_scenes::{Presentation, Surface};
 use super::{bodies, obstacles};
 
 /// Parts that change only with the scene or when something tears.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Parts {
     presentation: Arc<Presentation>,
     /// Number of broken springs when the parts were found, once they were.

@@ -39,6 +39,7 @@ pub struct Manner {
 }
 
 /// How a run is shown, and the buffers of its picture.
+#[derive(Clone)]
 pub struct Show {
     /// What of the scene is shown, and from where.
     presentation: Arc<Presentation>,

@@ -10,7 +10,7 @@ const MOST: usize = 3600;
 const WIDTH: f32 = 2.2;
 
 /// Points on the way of a particle, with their times.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Trail(VecDeque<(f64, [f32; 3])>);
 
 impl Trail {

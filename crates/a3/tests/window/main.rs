@@ -11,6 +11,7 @@ mod app;
 mod choosing;
 mod comparing;
 mod display;
+mod filming;
 mod keys;
 mod mouse;
 mod panel;

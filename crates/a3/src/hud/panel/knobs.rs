@@ -5,12 +5,12 @@ use a3_core::{Network, Vector3};
 use a3_render::Style;
 
 use super::dial::{Dial, DialScale, Turn};
-use super::seen::{arrows, colour, full_colour};
+use super::seen::{arrows, colour, film, film_of, full_colour};
 use super::values::{
     damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
     stiffness, strain_limit, strain_limits, switch,
 };
-use crate::session::{Action, Session, Tuning};
+use crate::session::{Action, Ending, Session, Tuning};
 use crate::show::{Arrows, Quantity};
 
 /// A knob: a row of the table.
@@ -208,6 +208,16 @@ pub static KNOBS: &[Knob] = &[
         },
         |session, at, _| {
             session.act(Action::Wireframe, at);
+        },
+    ),
+    apart(knob("film as", film, |session, _, k| {
+        session.panel.film = Ending::ALL.get(k as usize).copied().unwrap_or_default();
+    })),
+    knob(
+        "film of",
+        |session, _| Some(film_of(session)),
+        |session, _, seconds| {
+            session.panel.film_of = seconds;
         },
     ),
 ];

@@ -11,8 +11,8 @@ pub enum Request {
     Choose(usize),
     /// Turn the knob of that number.
     Turn(usize, Turn),
-    /// Write a scene file.
-    Write,
+    /// Do what a key does.
+    Act(Action),
     /// Take the entry of this number from the list that is open.
     Take(usize),
     /// Close that list.
@@ -88,9 +88,7 @@ pub fn apply(session: &mut Session, request: Request) -> bool {
             session.panel.row = row;
             KNOBS[row].turn(session, at, turn);
         }
-        Request::Write => {
-            session.act(Action::WriteScene, at);
-        }
+        Request::Act(action) => return session.act(action, at),
         Request::Take(number) => return session.take(number),
         Request::CloseList => session.list = None,
     }

@@ -184,7 +184,8 @@ pub fn button(ui: &Ui, rect: Rect, response: &Response, words: &str, key: &str) 
         egui::StrokeKind::Inside,
     );
     let font = || FontId::proportional(13.0);
-    painter.text(rect.center(), Align2::CENTER_CENTER, words, font(), TEXT);
+    let at = pos2(rect.left() + 10.0, rect.center().y);
+    painter.text(at, Align2::LEFT_CENTER, words, font(), TEXT);
     let at = pos2(rect.right() - 10.0, rect.center().y);
     painter.text(
         at,

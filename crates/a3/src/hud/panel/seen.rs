@@ -2,7 +2,7 @@
 
 use super::dial::{Dial, DialScale};
 use crate::rounding::short;
-use crate::session::Session;
+use crate::session::{Ending, FILM_OF, SPAN, Session};
 use crate::show::{Arrows, Quantity};
 
 /// A choice among what has a name, or none of it.
@@ -58,6 +58,28 @@ pub fn full_colour(session: &Session, at: usize) -> Option<Dial> {
             format!("fits, {words}")
         },
     })
+}
+
+pub fn film(session: &Session, _: usize) -> Option<Dial> {
+    let place = Ending::ALL.iter().position(|e| *e == session.panel.film)?;
+    Some(Dial {
+        value: place as f64,
+        own: 0.0,
+        scale: DialScale::Choice((0..Ending::ALL.len()).map(|k| k as f64).collect()),
+        words: session.panel.film.name().into(),
+    })
+}
+
+pub fn film_of(session: &Session) -> Dial {
+    Dial {
+        value: session.panel.film_of,
+        own: FILM_OF,
+        scale: DialScale::Whole {
+            from: 1.0,
+            to: SPAN,
+        },
+        words: format!("last {} s", session.panel.film_of),
+    }
 }
 
 pub fn arrows(session: &Session, at: usize) -> Option<Dial> {

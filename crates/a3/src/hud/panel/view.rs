@@ -5,7 +5,7 @@ use egui::{Align2, Area, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
 use super::super::style::{FAINT, TEXT};
 use super::request::{self, Request, is_shown, rows};
 use super::{plots, row};
-use crate::session::Session;
+use crate::session::{Action, Session};
 
 /// Width of the panel in a window that is wide enough (points).
 pub(super) const WIDTH: f32 = 304.0;
@@ -79,7 +79,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                 request = row::show(ui, place, *k, knob.name, dial, n == chosen).or(request);
                 top += row::HEIGHT;
             }
-            request = foot(ui, inner).or(request);
+            request = foot(ui, inner, session).or(request);
             let room = Rect::from_min_max(
                 pos2(inner.left(), top + 12.0),
                 pos2(inner.right(), inner.bottom() - FOOT),
@@ -119,13 +119,31 @@ fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
     );
 }
 
-/// Draws the button that writes a scene file.
-fn foot(ui: &egui::Ui, inner: Rect) -> Option<Request> {
-    let rect = Rect::from_min_max(
-        pos2(inner.left(), inner.bottom() - FOOT + 8.0),
-        pos2(inner.right(), inner.bottom() - 10.0),
-    );
-    let response = ui.interact(rect, Id::unique("write scene"), Sense::click());
-    row::button(ui, rect, &response, "write scene", "f");
-    response.clicked().then_some(Request::Write)
+/// Draws the buttons: they write a scene file, film from now on, and film the last seconds.
+fn foot(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
+    let last = format!("last {} s", session.panel.film_of);
+    let live = session.readings.film.as_ref().is_some_and(|film| film.live);
+    let record = if live { "stop" } else { "record" };
+    let buttons = [
+        ("scene file", "f", Action::WriteScene),
+        (record, "m", Action::Record),
+        (&last, "n", Action::FilmLast),
+    ];
+    let gap = 6.0;
+    let width = (inner.width() - 2.0 * gap) / 3.0;
+    let mut request = None;
+    for (k, (words, key, action)) in buttons.into_iter().enumerate() {
+        let left = inner.left() + k as f32 * (width + gap);
+        let rect = Rect::from_min_max(
+            pos2(left, inner.bottom() - FOOT + 8.0),
+            pos2(left + width, inner.bottom() - 10.0),
+        );
+        let response = ui.interact(rect, Id::unique(("button", k)), Sense::click());
+        row::button(ui, rect, &response, words, key);
+        request = response
+            .clicked()
+            .then_some(Request::Act(action))
+            .or(request);
+    }
+    request
 }

@@ -1,0 +1,70 @@
+//! The formats of films that the window writes.
+
+/// A format, by the ending of its files.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ending {
+    #[default]
+    Gif,
+    Mp4,
+    /// Numbered pictures.
+    Png,
+}
+
+impl Ending {
+    /// All formats.
+    pub const ALL: [Self; 3] = [Self::Gif, Self::Mp4, Self::Png];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gif => "GIF",
+            Self::Mp4 => "MP4",
+            Self::Png => "PNG files",
+        }
+    }
+
+    /// The end of the names of its files.
+    pub fn of_files(self) -> &'static str {
+        match self {
+            Self::Gif => ".gif",
+            Self::Mp4 => ".mp4",
+            Self::Png => "-####.png",
+        }
+    }
+
+    /// Frames a second: a whole number of them fits between two of a window at 60 Hz, and the
+    /// delays of a GIF are whole hundredths of a second.
+    pub fn rate(self) -> f64 {
+        match self {
+            Self::Gif => 20.0,
+            Self::Mp4 | Self::Png => 30.0,
+        }
+    }
+
+    /// The largest size (px) in which this format is written of a picture of `size` (px), in the
+    /// same proportions and with even sides, as an MP4 needs them. A GIF has few colours and is
+    /// long: it is smaller.
+    pub fn fit(self, (width, height): (u32, u32)) -> (u32, u32) {
+        let most = match self {
+            Self::Gif => 640.0,
+            Self::Mp4 | Self::Png => 1920.0,
+        };
+        let shrink = (most / f64::from(width.max(height))).min(1.0);
+        let side = |side: u32| ((f64::from(side) * shrink / 2.0).round() as u32 * 2).max(2);
+        (side(width), side(height))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_keep_their_proportions_and_have_even_sides() {
+        assert_eq!(Ending::Mp4.fit((1280, 720)), (1280, 720));
+        assert_eq!(Ending::Gif.fit((1280, 720)), (640, 360));
+        assert_eq!(Ending::Png.fit((3840, 2160)), (1920, 1080));
+        assert_eq!(Ending::Gif.fit((63, 1001)), (40, 640));
+        assert_eq!(Ending::Mp4.fit((1, 1)), (2, 2));
+    }
+}

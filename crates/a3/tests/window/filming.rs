@@ -1,0 +1,85 @@
+//! Films of what the window shows: of the seconds that it keeps, from now on, and completed when it
+//! closes.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use image::AnimationDecoder;
+use image::codecs::gif::GifDecoder;
+
+use crate::app::App;
+use crate::display::{Display, until};
+
+/// The frames of a GIF.
+fn frames(path: &Path) -> Vec<image::Frame> {
+    let file = BufReader::new(File::open(path).unwrap());
+    let frames = GifDecoder::new(file).unwrap().into_frames();
+    frames.collect_frames().unwrap()
+}
+
+/// Checks a film: so many frames at least, of 50 ms, of which hardly any is as the one before.
+fn check(path: &Path, least: usize) {
+    until("a film", || path.exists().then_some(()));
+    let frames = frames(path);
+    assert!(frames.len() >= least, "{} frames", frames.len());
+    let mut same = 0;
+    for pair in frames.windows(2) {
+        assert_eq!(pair[0].delay().numer_denom_ms(), (50, 1));
+        same += usize::from(pair[0].buffer() == pair[1].buffer());
+    }
+    assert!(
+        3 * same < frames.len(),
+        "{same} of {} as the one before",
+        frames.len()
+    );
+}
+
+#[test]
+fn filming() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["v", "0.005", "--scene", "chain"];
+    let app = App::open(&display, folder.path(), &words);
+    let later = |by: f64| {
+        let time = app.number("time").unwrap();
+        until("some time", || {
+            (app.number("time")? > time + by).then_some(())
+        });
+    };
+    let file = |name: &str| folder.path().join(name);
+    later(1.5);
+    // What was kept, while the window goes on.
+    app.press_for("n", "film", "true");
+    later(0.1);
+    app.expect("film", "false");
+    check(&file("a3-chain-1.gif"), 25);
+    // From now on, until the key is pressed again.
+    app.press_for("m", "film", "true");
+    later(1.0);
+    assert_eq!(app.get("film"), "true");
+    app.press_for("m", "film", "false");
+    check(&file("a3-chain-2.gif"), 18);
+    // As numbered pictures: the last row of the panel but one.
+    app.press_for("Tab", "panel", "true");
+    for key in ["Up", "Up", "Left"] {
+        app.press(key);
+    }
+    app.press_for("Tab", "panel", "false");
+    app.press_for("m", "film", "true");
+    later(0.5);
+    // Another scene ends it.
+    app.press_for("t", "film", "false");
+    let pictures = (1..).take_while(|k| file(&format!("a3-chain-1-{k:04}.png")).exists());
+    assert!(pictures.count() >= 12);
+    // The window closes: the film is complete all the same.
+    app.press_for("Prior", "scene", "chain");
+    later(1.0);
+    app.press_for("n", "film", "true");
+    app.press("Escape");
+    assert!(app.exit().success());
+    let pictures = (1..).take_while(|k| file(&format!("a3-chain-2-{k:04}.png")).exists());
+    assert!(pictures.count() >= 25);
+}
