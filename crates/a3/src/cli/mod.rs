@@ -76,7 +76,7 @@ pub enum Command {
 /// What is simulated.
 #[derive(Args, Clone)]
 pub struct What {
-    /// Scene: a name that `a3 scenes` lists, or a file of your own
+    /// Scene: a name that `a3 scenes` lists, or a file of your own: TOML, JSON, or a mesh
     #[arg(long, value_name = "NAME|FILE", default_value = "cloth", value_parser = Source::find)]
     pub scene: Source,
     /// Rows and columns of the cloth, such as 30x40

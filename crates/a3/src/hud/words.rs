@@ -1,7 +1,7 @@
 //! The readings of a run in words.
 
-use a3_core::Simulation;
 use a3_core::stability::tenfold_time;
+use a3_core::{Control, Simulation};
 use egui::{Color32, RichText, Sense, Ui, vec2};
 
 use super::style::{ALARM, SAFE, WARNING, faint, text};
@@ -31,7 +31,20 @@ pub fn scene(simulation: &Simulation) -> String {
 
 /// The method, and its step or tolerance.
 pub fn method(simulation: &Simulation) -> String {
-    format!("{},  {}", simulation.method().title, simulation.control())
+    let control = match simulation.control() {
+        Control::Step(step) => format!("step {} s", seconds(step)),
+        control @ Control::Tolerance(_) => control.to_string(),
+    };
+    format!("{},  {control}", simulation.method().title)
+}
+
+/// A step (s) as one would type it: 1/60 rather than all of its digits.
+fn seconds(step: f64) -> String {
+    let (decimal, rate) = (step.to_string(), 1.0 / step);
+    if decimal.len() > 10 && (rate - rate.round()).abs() < 1e-9 * rate {
+        return format!("1/{}", rate.round());
+    }
+    decimal
 }
 
 /// The steps of an adaptive method: their length now, and how many were rejected.
@@ -185,6 +198,19 @@ pub fn slow_motion(readings: &Readings) -> Option<String> {
 mod tests {
     use super::*;
     use crate::hud::{pane, read};
+
+    #[test]
+    fn steps_are_written_as_one_would_type_them() {
+        for (step, words) in [
+            (0.005, "0.005"),
+            (1.0 / 60.0, "1/60"),
+            (0.016_666_666_666_666_7, "1/60"),
+            (0.001_234_567_890_123, "0.001234567890123"),
+            (1e-7, "0.0000001"),
+        ] {
+            assert_eq!(seconds(step), words);
+        }
+    }
 
     #[test]
     fn three_digits() {

@@ -72,10 +72,12 @@ impl Recorder {
         }
         let copy = |pane: &Pane| {
             let run = &pane.simulation;
-            let copy = Simulation::new(run.scene().clone(), run.method(), run.control());
-            copy.map(|run| Pane::new(run, pane.show.clone()))
+            let mut copy = Simulation::new(run.scene().clone(), run.method(), run.control())?;
+            // A run that is lost has no moments: it stands as it was last.
+            copy.restore(&run.moment())?;
+            Ok(Pane::new(copy, pane.show.clone()))
         };
-        let panes: Result<_, _> = session.panes.iter().map(copy).collect();
+        let panes: Result<_, a3_core::Error> = session.panes.iter().map(copy).collect();
         let source = Source::Kept {
             panes: panes.map_err(Failure::run)?,
             camera: session.camera,

@@ -1,7 +1,8 @@
-//! Scenes by name, or from files: TOML, or the JSON of particles and springs.
+//! Scenes by name, or from files: TOML, the JSON of particles and springs, or a mesh alone.
 
 mod files;
 mod hash;
+mod hung;
 mod mesh;
 mod source;
 

@@ -9,6 +9,7 @@ use a3_scenes::{Description, Setup};
 
 use super::files::{beside, read_text};
 use super::hash::Hash;
+use super::hung;
 use super::mesh;
 
 /// A scene, by name or in a file.
@@ -43,12 +44,13 @@ impl Source {
             .extension()
             .and_then(|e| e.to_str())
             .map(str::to_lowercase);
-        let json = match extension.as_deref() {
-            Some("toml") => false,
-            Some("json") => true,
+        let read = || read_text(path).map_err(|why| format!("{typed}: {why}"));
+        let (text, json) = match extension.as_deref() {
+            Some("toml") => (read()?, false),
+            Some("json") => (read()?, true),
+            Some(extension) if hung::is_mesh(extension) => (hung::scene(path)?, false),
             _ => return Err(unknown(typed)),
         };
-        let text = read_text(path).map_err(|why| format!("{typed}: {why}"))?;
         let parsed = if json {
             Description::parse_json(&text)
         } else {
@@ -78,7 +80,13 @@ impl Source {
         let built = self.description.build(grid, &mut mesh);
         self.meshes.store(reader.hash.value(), Ordering::Relaxed);
         built.map_err(|fault| {
-            let fault = fault.locate(&self.text);
+            let extension = self.path.as_deref().and_then(Path::extension);
+            let extension = extension.map(|e| e.to_string_lossy().to_lowercase());
+            let fault = match extension {
+                // Its text is not in the file.
+                Some(extension) if hung::is_mesh(&extension) => fault,
+                _ => fault.locate(&self.text),
+            };
             match &self.path {
                 Some(_) => place(&self.typed, &fault.to_string()),
                 None => fault.to_string(),
@@ -133,7 +141,7 @@ fn unknown(typed: &str) -> String {
     let hint = near.map_or(String::new(), |(_, name)| format!("; did you mean {name}?"));
     let names: Vec<_> = names().collect();
     format!(
-        "the scenes are {}, or a file that ends in .toml or .json{hint}",
+        "the scenes are {}, or a file that ends in .toml or .json, or a mesh{hint}",
         names.join(", ")
     )
 }

@@ -65,7 +65,9 @@ impl Session {
         let source = Source::find(&file.to_string_lossy());
         match source.and_then(|source| Ok((source.build(None)?, source))) {
             Ok((setup, source)) => {
-                self.say(format!("opened {}", source.typed));
+                let summary = source.description.summary.as_deref();
+                let what = summary.map_or(String::new(), |what| format!(": {what}"));
+                self.say(format!("opened {}{what}", source.typed));
                 self.shown = Origin { source, grid: None };
                 let same = |origin: &Origin| origin.source.typed == self.shown.source.typed;
                 self.asked.retain(|origin| !same(origin));
