@@ -24,12 +24,15 @@ impl App {
             graphics.lose_device();
             self.redraw();
         }
+        let typed = keyboard::text_key(event);
         if self.session.list.is_some() {
-            if let Some(key) = keyboard::list_key(event)
-                && self.session.press_list(key)
-            {
+            if typed.is_some_and(|key| self.session.press_list(key)) {
                 self.scene_changed();
             }
+            self.redraw();
+            return;
+        }
+        if typed.is_some_and(|key| panel::press_text(&mut self.session, key)) {
             self.redraw();
             return;
         }

@@ -4,7 +4,7 @@ use winit::event::KeyEvent;
 use winit::keyboard::{Key, NamedKey};
 
 use crate::hud::panel::PanelKey;
-use crate::session::{self, Action, ListKey};
+use crate::session::{self, Action, TextKey};
 
 /// The action of a key, if it has one.
 pub fn action(key: &Key) -> Option<Action> {
@@ -12,6 +12,7 @@ pub fn action(key: &Key) -> Option<Action> {
         Key::Named(NamedKey::Space) => session::action("Space"),
         Key::Named(NamedKey::Escape) => session::action("Esc"),
         Key::Named(NamedKey::Tab) => session::action("Tab"),
+        Key::Named(NamedKey::F11) => session::action("F11"),
         Key::Named(NamedKey::PageUp) => session::action("PgUp"),
         Key::Named(NamedKey::PageDown) => session::action("PgDn"),
         Key::Character(text) if text == " " => session::action("Space"),
@@ -32,19 +33,19 @@ pub fn panel_key(key: &Key) -> Option<PanelKey> {
     }
 }
 
-/// The meaning of a key in a list that is open, if it has one there.
-pub fn list_key(event: &KeyEvent) -> Option<ListKey> {
+/// The meaning of a key where something is typed, if it has one there.
+pub fn text_key(event: &KeyEvent) -> Option<TextKey> {
     Some(match &event.logical_key {
-        Key::Named(NamedKey::ArrowUp) => ListKey::Move(-1),
-        Key::Named(NamedKey::ArrowDown) => ListKey::Move(1),
-        Key::Named(NamedKey::PageUp) => ListKey::Move(-10),
-        Key::Named(NamedKey::PageDown) => ListKey::Move(10),
-        Key::Named(NamedKey::Enter) => ListKey::Take,
-        Key::Named(NamedKey::Escape) => ListKey::Close,
-        Key::Named(NamedKey::Backspace) => ListKey::Erase,
+        Key::Named(NamedKey::ArrowUp) => TextKey::Move(-1),
+        Key::Named(NamedKey::ArrowDown) => TextKey::Move(1),
+        Key::Named(NamedKey::PageUp) => TextKey::Move(-10),
+        Key::Named(NamedKey::PageDown) => TextKey::Move(10),
+        Key::Named(NamedKey::Enter) => TextKey::Take,
+        Key::Named(NamedKey::Escape) => TextKey::Close,
+        Key::Named(NamedKey::Backspace) => TextKey::Erase,
         _ => {
             let text = event.text.as_ref()?;
-            ListKey::Type(text.chars().next().filter(|c| !c.is_control())?)
+            TextKey::Type(text.chars().next().filter(|c| !c.is_control())?)
         }
     })
 }
@@ -62,6 +63,7 @@ mod tests {
                     "Space" => Key::Named(NamedKey::Space),
                     "Esc" => Key::Named(NamedKey::Escape),
                     "Tab" => Key::Named(NamedKey::Tab),
+                    "F11" => Key::Named(NamedKey::F11),
                     "PgUp" => Key::Named(NamedKey::PageUp),
                     "PgDn" => Key::Named(NamedKey::PageDown),
                     key => Key::Character(key.into()),

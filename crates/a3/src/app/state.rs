@@ -7,13 +7,14 @@ use std::time::Instant;
 use a3_render::Tile;
 use arboard::Clipboard;
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
-use winit::window::Window;
+use winit::window::{Fullscreen, Window};
 
 use super::graphics::Graphics;
 use super::pointer::Mouse;
 use super::status::Status;
 use super::watch::Watch;
 use crate::failure::Failure;
+use crate::hud::panel;
 use crate::recorder::Recorder;
 use crate::session::{Action, Session};
 use crate::{command_line, keep, output};
@@ -143,6 +144,19 @@ impl App {
                 };
                 self.session.say(message);
             }
+            Action::FullScreen => {
+                if let Some(window) = &self.window {
+                    let whole = window.fullscreen().is_none();
+                    window.set_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
+                }
+            }
+            Action::WritePlots => {
+                let message = match self.write_plots() {
+                    Ok(path) => format!("wrote {}", path.display()),
+                    Err(failure) => failure.message(),
+                };
+                self.session.say(message);
+            }
             Action::Record => self.record(),
             Action::FilmLast => self.film_last(),
             Action::CommandLine => {
@@ -183,6 +197,13 @@ impl App {
             }
         }
         self.redraw();
+    }
+
+    /// Writes the samples of all panes under the first name that is free.
+    fn write_plots(&self) -> Result<PathBuf, Failure> {
+        let table = panel::csv(&self.session.panes).map_err(Failure::run)?;
+        let scene = &self.session.first().scene().name;
+        output::write_new("".as_ref(), scene, "csv", &table)
     }
 
     /// Writes a line to the terminal and to the clipboard, and returns what is said of that.

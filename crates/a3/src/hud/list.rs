@@ -33,6 +33,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                 .fill(PAPER.to_opaque())
                 .corner_radius(7)
                 .inner_margin(Margin::symmetric(12, 10));
+            ui.style_mut().interaction.selectable_labels = false;
             sheet.show(ui, |ui| {
                 ui.set_width(WIDTH.min(window.width() - 24.0));
                 ui.horizontal(|ui| {

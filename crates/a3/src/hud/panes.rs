@@ -88,13 +88,15 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                     .map(|pane| &pane.simulation)
                     .max_by(|a, b| a.time().total_cmp(&b.time()));
                 say(text(time(latest.unwrap_or(run))));
-                if readings.rate > 0.0 || readings.paused {
+                // The states say it where they have room.
+                let stands = readings.paused && width > 600.0;
+                if (readings.rate > 0.0 || readings.paused) && !stands {
                     say(text(speed(readings)));
                 }
                 if let Some(slow) = words::slow_motion(readings) {
                     say(faint(format!("slow  {slow}")));
                 }
-                if readings.rate > 0.0 && width > 900.0 {
+                if readings.rate > 0.0 && !readings.paused && width > 900.0 {
                     say(text(format!("{},  {}", frames(readings), each(readings))));
                 }
                 if width > 600.0 {

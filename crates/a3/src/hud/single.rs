@@ -61,7 +61,9 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
                 ui.end_row();
             };
             row("time", text(words::time(simulation)));
-            row("speed", text(words::speed(readings)));
+            if !readings.paused {
+                row("speed", text(words::speed(readings)));
+            }
             if let Some(slow) = words::slow_motion(readings) {
                 row("slow", text(slow));
             }
@@ -82,8 +84,10 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             if let Some(contact) = words::contact(simulation) {
                 row("contact", text(contact));
             }
-            row("frames", text(words::frames(readings)));
-            row("each", text(words::each(readings)));
+            if !readings.paused {
+                row("frames", text(words::frames(readings)));
+                row("each", text(words::each(readings)));
+            }
         });
     ui.label(words::states(simulation, readings));
     legend(ui, &pane.show);
@@ -163,11 +167,11 @@ mod tests {
             paused: true,
             ..readings
         };
-        assert!(
-            read(&panes, &readings, [1280.0, 720.0])
-                .0
-                .contains("paused   wind")
-        );
+        let (words, _) = read(&panes, &readings, [1280.0, 720.0]);
+        assert!(words.contains("paused   wind"), "{words}");
+        // Rates are of what moves.
+        assert_eq!(words.matches("paused").count(), 1, "{words}");
+        assert!(!words.contains("per second") && !words.contains("drawing"));
         let circle = [crate::hud::pane("simple", "e", 1e-7)];
         let slow = Readings {
             factor: 0.0005,

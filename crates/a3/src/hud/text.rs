@@ -1,9 +1,8 @@
 //! The text over the picture.
 
-use egui::{Align2, Context};
+use egui::Context;
 
 use super::help::help;
-use super::style::{column, sheet};
 use super::{panes, single, timeline};
 use crate::session::{Pane, Readings};
 
@@ -16,9 +15,7 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
         panes => panes::show(ctx, panes, readings),
     }
     if readings.help {
-        column(ctx, "help", Align2::CENTER_CENTER, [0.0, 0.0], |ui| {
-            sheet(ui, |ui| help(ui, panes.len() > 1));
-        });
+        help(ctx, panes.len() > 1);
     } else if let Some(position) = &readings.rewound {
         timeline::show(ctx, position);
     }

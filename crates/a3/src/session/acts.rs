@@ -101,6 +101,8 @@ impl Session {
             Action::Help => self.readings.help = !self.readings.help,
             Action::Picture
             | Action::CommandLine
+            | Action::FullScreen
+            | Action::WritePlots
             | Action::Record
             | Action::FilmLast
             | Action::Keep

@@ -4,7 +4,7 @@
 use a3_core::integrators;
 
 use super::keys::Action;
-use super::list::{Entry, List, ListKey, Topic};
+use super::list::{Entry, List, TextKey, Topic};
 use super::state::Session;
 
 impl Session {
@@ -63,19 +63,19 @@ impl Session {
     }
 
     /// Does what a key means in the list that is open, and returns whether another scene is shown.
-    pub fn press_list(&mut self, key: ListKey) -> bool {
+    pub fn press_list(&mut self, key: TextKey) -> bool {
         let Some(list) = &mut self.list else {
             return false;
         };
         match key {
-            ListKey::Move(by) => {
+            TextKey::Move(by) => {
                 let last = list.entries().count().saturating_sub(1);
                 list.chosen = list.chosen.saturating_add_signed(by).min(last);
             }
-            ListKey::Type(letter) => list.edit(Some(letter)),
-            ListKey::Erase => list.edit(None),
-            ListKey::Close => self.list = None,
-            ListKey::Take => {
+            TextKey::Type(letter) => list.edit(Some(letter)),
+            TextKey::Erase => list.edit(None),
+            TextKey::Close => self.list = None,
+            TextKey::Take => {
                 let chosen = list.entries().nth(list.chosen);
                 return chosen
                     .map(|entry| entry.number)
@@ -107,13 +107,13 @@ mod tests {
 
     const STRIP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/strip.toml");
 
-    fn keys(session: &mut Session, keys: &[ListKey]) -> bool {
+    fn keys(session: &mut Session, keys: &[TextKey]) -> bool {
         keys.iter().any(|key| session.press_list(*key))
     }
 
     fn type_words(session: &mut Session, words: &str) {
         for letter in words.chars() {
-            session.press_list(ListKey::Type(letter));
+            session.press_list(TextKey::Type(letter));
         }
     }
 
@@ -123,17 +123,17 @@ mod tests {
         let name = |session: &Session| session.first().scene().name.clone();
         session.act(Action::Scenes, 0);
         type_words(&mut session, "Jel");
-        assert!(keys(&mut session, &[ListKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Take]));
         assert!(session.list.is_none());
         assert_eq!(name(&session), "jelly");
         // The list begins at what is shown.
         session.act(Action::Scenes, 0);
-        assert!(keys(&mut session, &[ListKey::Move(1), ListKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Move(1), TextKey::Take]));
         assert_eq!(name(&session), a3_scenes::SCENES[9].name);
         session.act(Action::PreviousScene, 0);
         assert_eq!(name(&session), "jelly");
         session.act(Action::Scenes, 0);
-        assert!(keys(&mut session, &[ListKey::Move(-99), ListKey::Take]));
+        assert!(keys(&mut session, &[TextKey::Move(-99), TextKey::Take]));
         assert_eq!(name(&session), "cloth");
         // Before the first comes the last.
         session.act(Action::PreviousScene, 0);
@@ -141,10 +141,10 @@ mod tests {
         // Nothing matches: Enter does nothing, and Esc closes the list.
         session.act(Action::Scenes, 0);
         type_words(&mut session, "zz");
-        assert!(!keys(&mut session, &[ListKey::Take]) && session.list.is_some());
-        keys(&mut session, &[ListKey::Erase, ListKey::Erase]);
+        assert!(!keys(&mut session, &[TextKey::Take]) && session.list.is_some());
+        keys(&mut session, &[TextKey::Erase, TextKey::Erase]);
         assert!(session.list.as_ref().unwrap().entries().count() > 10);
-        keys(&mut session, &[ListKey::Close]);
+        keys(&mut session, &[TextKey::Close]);
         assert!(session.list.is_none());
     }
 
@@ -168,7 +168,7 @@ mod tests {
         let mut session = compared(&["e:0.01", "r:0.01", "--scene", "chain"], 0.1);
         session.act(Action::Solvers, 1);
         type_words(&mut session, "dop853");
-        keys(&mut session, &[ListKey::Take]);
+        keys(&mut session, &[TextKey::Take]);
         let names: Vec<_> = session
             .panes
             .iter()

@@ -37,6 +37,8 @@ pub enum Action {
     Picture,
     Panel,
     WriteScene,
+    /// Write what the plots show as CSV.
+    WritePlots,
     /// Film from now on, or complete that film.
     Record,
     /// Film the last seconds.
@@ -48,6 +50,8 @@ pub enum Action {
     /// Go on from the last such file.
     TakeUp,
     Help,
+    /// Fill the screen, or a window again.
+    FullScreen,
     Quit,
 }
 
@@ -80,8 +84,8 @@ pub static KEYS: &[Binding] = &[
     bind(&[","], Action::Scrub(-1), "one frame back"),
     bind(&["<"], Action::Scrub(-10), "ten frames back"),
     bind(&[">"], Action::Scrub(10), "ten frames on"),
-    bind(&["["], Action::Slower, "slow motion"),
-    bind(&["]"], Action::Faster, "faster again"),
+    bind(&["[", "("], Action::Slower, "slow motion"),
+    bind(&["]", ")"], Action::Faster, "faster again"),
     bind(&["+", "="], Action::LongerStep, "longer step"),
     bind(&["-"], Action::ShorterStep, "shorter step"),
     bind(&["c"], Action::Camera, "camera home"),
@@ -90,11 +94,13 @@ pub static KEYS: &[Binding] = &[
     bind(&["p"], Action::Picture, "save a picture"),
     bind(&["Tab"], Action::Panel, "tune and plot"),
     bind(&["f"], Action::WriteScene, "write a scene file"),
+    bind(&["u"], Action::WritePlots, "write the plots as CSV"),
     bind(&["m"], Action::Record, "record, or stop"),
     bind(&["n"], Action::FilmLast, "film the last seconds"),
     bind(&["y"], Action::CommandLine, "copy the command line"),
     bind(&["k"], Action::Keep, "keep the run in a file"),
     bind(&["l"], Action::TakeUp, "load what was kept"),
+    bind(&["F11"], Action::FullScreen, "full screen"),
     bind(&["h", "?"], Action::Help, "this help"),
     bind(&["Esc"], Action::Quit, "quit"),
 ];

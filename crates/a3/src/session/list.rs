@@ -33,9 +33,9 @@ pub struct Entry {
     pub current: bool,
 }
 
-/// A key with a meaning in a list that is open.
+/// A key with a meaning where something is typed: in a list that is open, or for a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ListKey {
+pub enum TextKey {
     /// Goes so many entries down, or up if it is negative.
     Move(isize),
     Type(char),

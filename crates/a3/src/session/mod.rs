@@ -26,7 +26,7 @@ mod tuning;
 pub use ending::Ending;
 pub use keys::{Action, KEYS, MOUSE, action};
 pub use limit::step_that_holds;
-pub use list::{Entry, ListKey, Topic};
+pub use list::{Entry, TextKey, Topic};
 pub use origin::Origin;
 pub use pane::Pane;
 pub use readings::{FilmProgress, Readings};

@@ -74,6 +74,16 @@ impl Samples {
         self.samples.clear();
     }
 
+    /// The sample nearest to a time (s), if it is within a few of their intervals.
+    pub fn nearest(&self, time: f64) -> Option<&Sample> {
+        let distance = |sample: &&Sample| (sample.time - time).abs();
+        let nearest = self
+            .samples
+            .iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.filter(|sample| distance(sample) < 5.0 * INTERVAL)
+    }
+
     /// The samples, the oldest first.
     pub fn iter(&self) -> impl Iterator<Item = &Sample> {
         self.samples.iter()

@@ -38,6 +38,8 @@ pub struct PanelState {
     pub open: bool,
     /// The chosen row, as its number in the table of knobs: keys turn it.
     pub row: usize,
+    /// What was typed so far for the value of the chosen row, while one is typed.
+    pub typed: Option<String>,
     /// The format of films.
     pub film: Ending,
     /// Simulated time that a film of what was kept covers (s).
@@ -51,6 +53,7 @@ impl Default for PanelState {
         Self {
             open: false,
             row: 0,
+            typed: None,
             film: Ending::default(),
             film_of: FILM_OF,
             pane: 0,

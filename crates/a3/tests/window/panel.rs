@@ -31,6 +31,28 @@ fn tuning() {
     app.frames_go_on();
     slide(&["1250", "70", "click", "--repeat", "2", "--delay", "60", "1"]);
     app.expect("step", "0.01");
+    // Typed: letters and Esc are no keys then.
+    slide(&["1250", "70"]);
+    std::thread::sleep(std::time::Duration::from_millis(600));
+    display.xdotool(&["click", "1"]);
+    app.frames_go_on();
+    display.xdotool(&["type", "0.t"]);
+    app.press("BackSpace");
+    display.xdotool(&["type", "02"]);
+    app.press_for("Return", "step", "0.02");
+    assert_eq!(app.get("scene"), "cloth");
+    slide(&["1250", "70", "click", "--repeat", "2", "--delay", "60", "1"]);
+    app.expect("step", "0.01");
+    app.press("u");
+    let table = folder.path().join("a3-cloth-1.csv");
+    until("the plots in a file", || table.exists().then_some(()));
+    let table = std::fs::read_to_string(table).unwrap();
+    assert!(
+        table.starts_with("solver,time (s),") && table.contains("\nrk4,0.1"),
+        "{table}"
+    );
+    app.press_for("F11", "size", "1400x900");
+    app.press_for("F11", "size", "1280x720");
     app.press("f");
     let file = folder.path().join("a3-cloth-1.toml");
     until("a scene file", || file.exists().then_some(()));

@@ -41,6 +41,8 @@ pub enum Turn {
     Toggle,
     /// To the scene's own value.
     Own,
+    /// To a value that was typed, and is within the scale.
+    Exactly(f64),
 }
 
 impl DialScale {
@@ -82,6 +84,16 @@ impl DialScale {
             Self::Log { from, to } => short(value, 3).clamp(*from, *to),
             Self::Whole { from, to } => value.round().clamp(*from, *to),
             Self::Choice(_) | Self::Switch => value,
+        }
+    }
+
+    /// The ends of the scale, if it has numbers between them.
+    pub fn ends(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Linear { from, to, .. } | Self::Log { from, to } | Self::Whole { from, to } => {
+                Some([*from, *to])
+            }
+            Self::Choice(_) | Self::Switch => None,
         }
     }
 

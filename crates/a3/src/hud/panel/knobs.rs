@@ -18,6 +18,8 @@ use crate::show::{Arrows, Quantity};
 pub struct Knob {
     /// The name of its row.
     pub name: &'static str,
+    /// What it is, and its unit.
+    pub about: &'static str,
     /// Whether its row stands apart from the one above it.
     pub apart: bool,
     /// Whether it tunes the scene itself, of which a checkpoint knows nothing.
@@ -30,11 +32,13 @@ pub struct Knob {
 
 const fn knob(
     name: &'static str,
+    about: &'static str,
     read: fn(&Session, usize) -> Option<Dial>,
     set: fn(&mut Session, usize, f64),
 ) -> Knob {
     Knob {
         name,
+        about,
         apart: false,
         tunes: false,
         read,
@@ -60,52 +64,85 @@ const fn tunes(knob: Knob) -> Knob {
 
 /// All knobs, from top to bottom.
 pub static KNOBS: &[Knob] = &[
-    knob("solver", solver, |session, at, i| {
+    knob("solver", "The integrator.", solver, |session, at, i| {
         session.act(Action::Solver(i as usize), at);
     }),
-    knob("step", step, |session, at, value| {
-        session.set_step_of(at, value);
-    }),
-    apart(tunes(knob("stiffness", stiffness, |session, _, factor| {
-        session.tuning.stiffness = factor;
-        set_springs(session);
-    }))),
-    tunes(knob("damping", damping, |session, _, factor| {
-        session.tuning.damping = factor;
-        set_springs(session);
-    })),
-    tunes(knob("strain limit", strain_limit, |session, _, value| {
-        let limits: Vec<_> = own(session).into_iter().flat_map(strain_limits).collect();
-        let Some(&(_, first)) = limits.first() else {
-            return;
-        };
-        session.adjust(|network| {
-            for (particles, own) in &limits {
-                // Each is as far above 1 in proportion to its own as the first is.
-                let limit = match (first, own) {
-                    (Some(first), Some(own)) => 1.0 + (own - 1.0) * (value - 1.0) / (first - 1.0),
-                    _ => value,
-                };
-                let limit = (value > 1.0).then_some(limit);
+    knob(
+        "step",
+        "The step in seconds, or the relative tolerance of an adaptive solver.",
+        step,
+        |session, at, value| {
+            session.set_step_of(at, value);
+        },
+    ),
+    apart(tunes(knob(
+        "stiffness",
+        "Stiffness of all springs, as a multiple of the scene's own.",
+        stiffness,
+        |session, _, factor| {
+            session.tuning.stiffness = factor;
+            set_springs(session);
+        },
+    ))),
+    tunes(knob(
+        "damping",
+        "Damping of all springs, as a multiple of the scene's own.",
+        damping,
+        |session, _, factor| {
+            session.tuning.damping = factor;
+            set_springs(session);
+        },
+    )),
+    tunes(knob(
+        "strain limit",
+        "Springs that a step leaves longer than so many rest lengths are shortened to that.",
+        strain_limit,
+        |session, _, value| {
+            let limits: Vec<_> = own(session).into_iter().flat_map(strain_limits).collect();
+            let Some(&(_, first)) = limits.first() else {
+                return;
+            };
+            session.adjust(|network| {
+                for (particles, own) in &limits {
+                    // Each is as far above 1 in proportion to its own as the first is.
+                    let limit = match (first, own) {
+                        (Some(first), Some(own)) => {
+                            1.0 + (own - 1.0) * (value - 1.0) / (first - 1.0)
+                        }
+                        _ => value,
+                    };
+                    let limit = (value > 1.0).then_some(limit);
+                    // The value is within its scale, so it is not refused.
+                    let _ = network.set_strain_limit(particles.clone(), limit);
+                }
+            });
+        },
+    )),
+    tunes(knob(
+        "drag",
+        "Drag of the air on each particle over its velocity, in kg/s.",
+        drag,
+        |session, _, drag| {
+            session.adjust(|network| {
                 // The value is within its scale, so it is not refused.
-                let _ = network.set_strain_limit(particles.clone(), limit);
-            }
-        });
-    })),
-    tunes(knob("drag", drag, |session, _, drag| {
-        session.adjust(|network| {
-            // The value is within its scale, so it is not refused.
-            let _ = network.set_drag(drag);
-        });
-    })),
-    tunes(knob("gravity", gravity, |session, _, g| {
-        session.adjust(|network| {
-            let sideways = network.gravity().unwrap_or_default();
-            network.set_gravity(Vector3::new(sideways.x, -g, sideways.z));
-        });
-    })),
+                let _ = network.set_drag(drag);
+            });
+        },
+    )),
+    tunes(knob(
+        "gravity",
+        "Acceleration downwards, in m/s².",
+        gravity,
+        |session, _, g| {
+            session.adjust(|network| {
+                let sideways = network.gravity().unwrap_or_default();
+                network.set_gravity(Vector3::new(sideways.x, -g, sideways.z));
+            });
+        },
+    )),
     apart(knob(
         "wind",
+        "Whether the wind blows.",
         |session, _| {
             session.first().scene().wind?;
             Some(switch(session.first().windy(), false))
@@ -114,14 +151,20 @@ pub static KNOBS: &[Knob] = &[
             session.act(Action::Wind, at);
         },
     )),
-    tunes(knob("gusts", gusts, |session, _, factor| {
-        session.tuning.gusts = factor;
-        if let Some(wind) = session.tuning.own.wind {
-            session.change_all(|run| run.change_wind(wind.scaled(factor)));
-        }
-    })),
+    tunes(knob(
+        "gusts",
+        "Force or velocity of the wind, as a multiple of the scene's own.",
+        gusts,
+        |session, _, factor| {
+            session.tuning.gusts = factor;
+            if let Some(wind) = session.tuning.own.wind {
+                session.change_all(|run| run.change_wind(wind.scaled(factor)));
+            }
+        },
+    )),
     knob(
         "swing",
+        "Whether the pins swing.",
         |session, _| {
             session.first().scene().swing?;
             Some(switch(session.first().swinging(), false))
@@ -132,6 +175,7 @@ pub static KNOBS: &[Knob] = &[
     ),
     knob(
         "pins",
+        "Whether the scene's pins hold.",
         |session, _| {
             own(session)?.pins().next()?;
             Some(switch(session.first().pinned(), true))
@@ -140,6 +184,7 @@ pub static KNOBS: &[Knob] = &[
     ),
     knob(
         "self-collision",
+        "Whether surfaces touch one another and themselves, or pass through.",
         |session, _| {
             session.first().scene().touch.as_ref()?;
             let own = own(session).and_then(Network::touch);
@@ -150,20 +195,26 @@ pub static KNOBS: &[Knob] = &[
             session.act(Action::Touch, at);
         },
     ),
-    tunes(knob("sphere", sphere, |session, _, radius| {
-        let radii: Vec<_> = own(session).into_iter().flat_map(radii).collect();
-        let Some(&(_, first)) = radii.first() else {
-            return;
-        };
-        session.adjust(|network| {
-            for &(k, own) in &radii {
-                let radius = own * (radius / first);
-                let _ = network.reshape_obstacle(k, Shape::Sphere { radius });
-            }
-        });
-    })),
+    tunes(knob(
+        "sphere",
+        "Radius of the sphere, in m. Other spheres grow in proportion.",
+        sphere,
+        |session, _, radius| {
+            let radii: Vec<_> = own(session).into_iter().flat_map(radii).collect();
+            let Some(&(_, first)) = radii.first() else {
+                return;
+            };
+            session.adjust(|network| {
+                for &(k, own) in &radii {
+                    let radius = own * (radius / first);
+                    let _ = network.reshape_obstacle(k, Shape::Sphere { radius });
+                }
+            });
+        },
+    )),
     tunes(knob(
         "floor",
+        "Whether there is a floor.",
         |session, _| {
             floor(own(session)?)?;
             let there = floor(network(session)?).is_some();
@@ -182,23 +233,44 @@ pub static KNOBS: &[Knob] = &[
             });
         },
     )),
-    apart(knob("springs of", springs_of, |session, _, i| {
-        for pane in &mut session.panes {
-            pane.show.springs_of = (i >= 0.0).then_some(i as usize);
-        }
-    })),
-    knob("colour by", colour, |session, _, k| {
-        session.set_colour(Quantity::ALL.get(k as usize).copied());
-    }),
-    knob("full colour", full_colour, |session, at, end| {
-        let fits = end == session.panes[at].show.colouring.scale.fitting;
-        session.fix_scale((!fits).then_some(end));
-    }),
-    knob("arrows", arrows, |session, _, k| {
-        session.set_arrows(Arrows::ALL.get(k as usize).copied());
-    }),
+    apart(knob(
+        "springs of",
+        "The particle whose springs are listed and highlighted, by its number.",
+        springs_of,
+        |session, _, i| {
+            for pane in &mut session.panes {
+                pane.show.springs_of = (i >= 0.0).then_some(i as usize);
+            }
+        },
+    )),
+    knob(
+        "colour by",
+        "The quantity that colours show.",
+        colour,
+        |session, _, k| {
+            session.set_colour(Quantity::ALL.get(k as usize).copied());
+        },
+    ),
+    knob(
+        "full colour",
+        "The value at the end of the scale of colours. It fits the largest value until it is set.",
+        full_colour,
+        |session, at, end| {
+            let fits = end == session.panes[at].show.colouring.scale.fitting;
+            session.fix_scale((!fits).then_some(end));
+        },
+    ),
+    knob(
+        "arrows",
+        "The vectors that arrows show.",
+        arrows,
+        |session, _, k| {
+            session.set_arrows(Arrows::ALL.get(k as usize).copied());
+        },
+    ),
     knob(
         "wires",
+        "Whether wires are drawn instead of the surface.",
         |session, _| {
             let drawn = session.panes[0]
                 .show
@@ -210,11 +282,17 @@ pub static KNOBS: &[Knob] = &[
             session.act(Action::Wireframe, at);
         },
     ),
-    apart(knob("film as", film, |session, _, k| {
-        session.panel.film = Ending::ALL.get(k as usize).copied().unwrap_or_default();
-    })),
+    apart(knob(
+        "film as",
+        "The format of films by the keys n and m.",
+        film,
+        |session, _, k| {
+            session.panel.film = Ending::ALL.get(k as usize).copied().unwrap_or_default();
+        },
+    )),
     knob(
         "film of",
+        "Simulated time that key n films, in s.",
         |session, _| Some(film_of(session)),
         |session, _, seconds| {
             session.panel.film_of = seconds;
@@ -257,6 +335,7 @@ impl Knob {
             Turn::By { up, other } => dial.scale.next(dial.value, up, other),
             Turn::Toggle if dial.scale == DialScale::Switch => 1.0 - dial.value,
             Turn::Toggle | Turn::Own => dial.own,
+            Turn::Exactly(value) => value,
         };
         if to != dial.value {
             (self.set)(session, at, to);

@@ -10,7 +10,8 @@ mod values;
 mod view;
 
 pub use knobs::{tune, tuned};
-pub use request::{PanelKey, Request, apply, press};
+pub use plots::csv;
+pub use request::{PanelKey, Request, apply, press, press_text};
 pub use view::{inset, leaves, show};
 
 #[cfg(test)]

@@ -4,12 +4,13 @@ use a3_plot::Axis;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2};
 
 use super::super::style::{FAINT, TEXT};
-use crate::session::{SPAN, Sample, Samples};
+use super::super::words::digits;
+use crate::session::{Pane, SPAN, Sample, Samples};
 
 /// Least height of a plot (points).
 const LEAST: f32 = 56.0;
-/// Largest height of a plot (points).
-const MOST: f32 = 110.0;
+/// Largest height of a plot over its width.
+const MOST: f32 = 0.6;
 /// Height of the line with the title (points).
 const HEAD: f32 = 17.0;
 /// Height of the numbers below the last plot (points).
@@ -27,6 +28,8 @@ const GRID: Color32 = Color32::from_rgb(196, 197, 200);
 /// A curve of a plot.
 struct Curve {
     name: &'static str,
+    /// Its name in a file, with its unit.
+    column: &'static str,
     colour: Color32,
     of: fn(&Sample) -> Option<f64>,
 }
@@ -37,36 +40,77 @@ struct Plot {
     curves: &'static [Curve],
 }
 
-const fn curve(name: &'static str, colour: Color32, of: fn(&Sample) -> Option<f64>) -> Curve {
-    Curve { name, colour, of }
+const fn curve(
+    name: &'static str,
+    column: &'static str,
+    colour: Color32,
+    of: fn(&Sample) -> Option<f64>,
+) -> Curve {
+    Curve {
+        name,
+        column,
+        colour,
+        of,
+    }
 }
 
 static PLOTS: &[Plot] = &[
     Plot {
         title: "energy (J)",
         curves: &[
-            curve("kinetic", TEAL, |s| Some(s.energy?.kinetic)),
-            curve("elastic", AMBER, |s| Some(s.energy?.elastic)),
-            curve("gravity", VIOLET, |s| Some(s.energy?.gravitational)),
-            curve("total", TEXT, |s| Some(s.energy?.total())),
+            curve("kinetic", "kinetic energy (J)", TEAL, |s| {
+                Some(s.energy?.kinetic)
+            }),
+            curve("elastic", "elastic energy (J)", AMBER, |s| {
+                Some(s.energy?.elastic)
+            }),
+            curve("gravity", "gravitational energy (J)", VIOLET, |s| {
+                Some(s.energy?.gravitational)
+            }),
+            curve("total", "total energy (J)", TEXT, |s| {
+                Some(s.energy?.total())
+            }),
         ],
     },
     Plot {
         title: "largest stretch",
-        curves: &[curve("", AMBER, |s| s.stretch)],
+        curves: &[curve("", "largest stretch", AMBER, |s| s.stretch)],
     },
     Plot {
         title: "computing (ms per simulated s)",
-        curves: &[curve("", TEAL, |s| Some(s.cost?[1]))],
+        curves: &[curve("", "computing (ms per simulated s)", TEAL, |s| {
+            Some(s.cost?[1])
+        })],
     },
     Plot {
         title: "evaluations per simulated s",
-        curves: &[curve("", VIOLET, |s| Some(s.cost?[0]))],
+        curves: &[curve("", "evaluations per simulated s", VIOLET, |s| {
+            Some(s.cost?[0])
+        })],
     },
 ];
 
-/// Draws the plots that have something to show, as many as there is room for.
-pub fn draw(painter: &Painter, room: Rect, samples: &Samples) {
+/// The samples of all panes as CSV: a row for each sample.
+pub fn csv(panes: &[Pane]) -> Result<Vec<u8>, csv::Error> {
+    let curves = || PLOTS.iter().flat_map(|plot| plot.curves);
+    let mut writer = csv::Writer::from_writer(vec![]);
+    let names = curves().map(|curve| curve.column);
+    writer.write_record(["solver", "time (s)"].into_iter().chain(names))?;
+    for pane in panes {
+        for sample in pane.samples.iter() {
+            let values = curves().map(|curve| (curve.of)(sample));
+            let values = values.map(|value| value.map_or(String::new(), |v| v.to_string()));
+            let solver = pane.simulation.method().name.to_owned();
+            let first = [solver, sample.time.to_string()];
+            writer.write_record(first.into_iter().chain(values))?;
+        }
+    }
+    writer.into_inner().map_err(|e| e.into_error().into())
+}
+
+/// Draws the plots that have something to show, as many as there is room for. Where the pointer is
+/// over them, they say the values there.
+pub fn draw(painter: &Painter, room: Rect, samples: &Samples, pointer: Option<Pos2>) {
     let Some(last) = samples.iter().last() else {
         return;
     };
@@ -82,29 +126,49 @@ pub fn draw(painter: &Painter, room: Rect, samples: &Samples) {
     if count == 0 {
         return;
     }
-    let height = (high / count as f32).min(MOST);
+    let plots = Rect::from_x_y_ranges(room.left() + NUMBERS..=room.right() - 2.0, room.y_range());
+    let pointed = pointer
+        .filter(|pointer| plots.contains(*pointer))
+        .and_then(|pointer| {
+            let share = (pointer.x - plots.left()) / plots.width();
+            samples.nearest(time[0] + f64::from(share) * SPAN)
+        });
+    let height = (high / count as f32).min(MOST * room.width());
     for (k, plot) in shown[..count].iter().enumerate() {
         let top = room.top() + k as f32 * height;
         let rect = Rect::from_min_max(pos2(room.left(), top), pos2(room.right(), top + height));
-        plot.draw(painter, rect, samples, time, k + 1 == count);
+        plot.draw(painter, rect, samples, time, k + 1 == count, pointed);
     }
 }
 
 impl Plot {
-    fn draw(&self, painter: &Painter, rect: Rect, samples: &Samples, time: [f64; 2], last: bool) {
+    fn draw(
+        &self,
+        painter: &Painter,
+        rect: Rect,
+        samples: &Samples,
+        time: [f64; 2],
+        last: bool,
+        pointed: Option<&Sample>,
+    ) {
         let words = |at: Pos2, anchor, words: &str, size, colour| {
             painter.text(at, anchor, words, FontId::proportional(size), colour)
         };
-        words(rect.left_top(), Align2::LEFT_TOP, self.title, 11.5, FAINT);
+        // The values where the pointer is take the places of the names.
+        let title = match pointed {
+            Some(sample) => format!("at {:.2} s", sample.time),
+            None => self.title.into(),
+        };
+        words(rect.left_top(), Align2::LEFT_TOP, &title, 11.5, FAINT);
         let mut right = rect.right();
-        for curve in self
-            .curves
-            .iter()
-            .rev()
-            .filter(|curve| !curve.name.is_empty())
-        {
+        for curve in self.curves.iter().rev() {
+            let signed = |v: f64| format!("{}{}", if v < 0.0 { "-" } else { "" }, digits(v.abs()));
+            let value = pointed.and_then(curve.of).map(signed);
+            let Some(said) = value.or((!curve.name.is_empty()).then(|| curve.name.into())) else {
+                continue;
+            };
             let at = pos2(right, rect.top());
-            right = words(at, Align2::RIGHT_TOP, curve.name, 11.5, curve.colour).left() - 7.0;
+            right = words(at, Align2::RIGHT_TOP, &said, 11.5, curve.colour).left() - 7.0;
         }
         let area = Rect::from_min_max(
             rect.left_top() + egui::vec2(NUMBERS, HEAD),
@@ -142,6 +206,15 @@ impl Plot {
                 words(place, anchor, &label, SMALL, FAINT);
             }
         }
+        if let Some(sample) = pointed {
+            let at = x.at(sample.time) as f32;
+            painter.vline(at, area.y_range(), Stroke::new(1.0, FAINT));
+            for curve in self.curves {
+                if let Some(value) = (curve.of)(sample) {
+                    painter.circle_filled(pos2(at, y.at(value) as f32), 2.6, curve.colour);
+                }
+            }
+        }
         for curve in self.curves {
             let points = samples.iter().filter_map(|sample| {
                 let value = (curve.of)(sample)?;
@@ -175,5 +248,52 @@ fn label(value: f64, label: String) -> String {
         format!("{value:.1e}")
     } else {
         label
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::session::{compared, session};
+
+    #[test]
+    fn a_file_has_the_samples_of_all_panes() {
+        let mut session = compared(&["e:0.01", "r:0.01", "--scene", "chain"], 0.0);
+        for k in 1..=5 {
+            session.run_to(0.1 * f64::from(k));
+        }
+        let text = String::from_utf8(super::csv(&session.panes).unwrap()).unwrap();
+        let mut lines = text.lines();
+        let heading = lines.next().unwrap();
+        assert!(
+            heading.starts_with("solver,time (s),kinetic energy (J),"),
+            "{heading}"
+        );
+        let rows: Vec<Vec<_>> = lines.map(|line| line.split(',').collect()).collect();
+        let samples: Vec<_> = session
+            .panes
+            .iter()
+            .map(|pane| pane.samples.iter().count())
+            .collect();
+        assert_eq!(rows.len(), samples.iter().sum::<usize>());
+        assert!(
+            rows.iter()
+                .all(|row| row.len() == heading.split(',').count())
+        );
+        let last = session.panes[1].samples.iter().last().unwrap();
+        let row = rows.last().unwrap();
+        assert_eq!((row[0], row[1]), ("rk4", &*last.time.to_string()));
+        assert_eq!(row[5].parse(), Ok(last.energy.unwrap().total()));
+    }
+
+    #[test]
+    fn the_sample_nearest_to_the_pointer_is_found() {
+        let mut session = session(&["r", "0.01", "--scene", "chain"]);
+        for k in 1..=20 {
+            session.run_to(0.1 * f64::from(k));
+        }
+        let samples = &session.panes[0].samples;
+        assert!((samples.nearest(1.04).unwrap().time - 1.0).abs() < 1e-9);
+        assert!((samples.nearest(2.2).unwrap().time - 2.0).abs() < 1e-9);
+        assert!(samples.nearest(7.0).is_none());
     }
 }

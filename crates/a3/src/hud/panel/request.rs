@@ -2,13 +2,15 @@
 
 use super::dial::{Dial, Turn};
 use super::knobs::{KNOBS, Knob};
-use crate::session::{Action, Session};
+use crate::session::{Action, Session, TextKey};
 
 /// A change that the user asks for in the panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Request {
     /// Choose a row, by its number in the table of knobs.
     Choose(usize),
+    /// Type a value for the knob of that number.
+    Type(usize),
     /// Turn the knob of that number.
     Turn(usize, Turn),
     /// Do what a key does.
@@ -82,7 +84,13 @@ pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
 /// Makes the change that was asked for, and returns whether another scene is shown.
 pub fn apply(session: &mut Session, request: Request) -> bool {
     let at = pane(session);
+    // What was typed and not taken is given up.
+    session.panel.typed = None;
     match request {
+        Request::Type(row) => {
+            session.panel.row = row;
+            session.panel.typed = Some(String::new());
+        }
         Request::Choose(row) => session.panel.row = row,
         Request::Turn(row, turn) => {
             session.panel.row = row;
@@ -93,4 +101,47 @@ pub fn apply(session: &mut Session, request: Request) -> bool {
         Request::CloseList => session.list = None,
     }
     false
+}
+
+/// Does what a key means while a value is typed for the chosen row, and says whether one is.
+pub fn press_text(session: &mut Session, key: TextKey) -> bool {
+    if !is_shown(session) {
+        session.panel.typed = None;
+    }
+    let Some(typed) = &mut session.panel.typed else {
+        return false;
+    };
+    match key {
+        TextKey::Type(letter) => typed.push(letter),
+        TextKey::Erase => drop(typed.pop()),
+        TextKey::Close => session.panel.typed = None,
+        TextKey::Move(_) => {}
+        TextKey::Take => {
+            let (typed, row) = (typed.clone(), session.panel.row);
+            match value(session, row, &typed) {
+                Ok(value) => {
+                    apply(session, Request::Turn(row, Turn::Exactly(value)));
+                }
+                Err(why) => session.say(format!("{}: {why}", KNOBS[row].name)),
+            }
+        }
+    }
+    true
+}
+
+/// The value that was typed for a knob: a number, or a fraction such as 1/60.
+fn value(session: &Session, row: usize, typed: &str) -> Result<f64, String> {
+    let dial = (KNOBS[row].read)(session, pane(session));
+    let [from, to] = dial.and_then(|dial| dial.scale.ends()).ok_or("gone")?;
+    if typed.contains(',') {
+        let point = typed.replace(',', ".");
+        return Err(format!("use a decimal point: {point}"));
+    }
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    let value = match typed.split_once('/') {
+        Some((above, below)) => number(above).zip(number(below)).map(|(a, b)| a / b),
+        None => number(typed),
+    };
+    let value = value.filter(|value| (from..=to).contains(value));
+    value.ok_or_else(|| format!("must be a number from {from} to {to}"))
 }

@@ -6,7 +6,9 @@ use egui::{
 
 use super::super::style::{FAINT, TEXT};
 use super::dial::{Dial, DialScale, Turn};
+use super::knobs::Knob;
 use super::request::Request;
+use crate::rounding::short;
 
 /// Height of a row (points).
 pub const HEIGHT: f32 = 23.0;
@@ -28,63 +30,98 @@ const NAME: f32 = 76.0;
 /// Width of the value (points).
 const VALUE: f32 = 76.0;
 
-/// Draws the row of knob k, and returns what the mouse asks for.
-pub fn show(
-    ui: &Ui,
-    rect: Rect,
-    k: usize,
-    name: &str,
-    dial: &Dial,
-    chosen: bool,
-) -> Option<Request> {
-    let id = |part| Id::unique((part, k));
-    let whole = ui.interact(rect.expand2(vec2(6.0, 0.0)), id("row"), Sense::click());
-    let painter = ui.painter();
-    if chosen || whole.hovered() {
-        let colour = if chosen { CHOSEN } else { HOVERED };
-        painter.rect_filled(rect.expand2(vec2(6.0, -0.5)), 5.0, colour);
-    }
-    let middle = rect.center().y;
-    let colour = if chosen { TEXT } else { FAINT };
-    let at = pos2(rect.left(), middle);
-    painter.text(
-        at,
-        Align2::LEFT_CENTER,
-        name,
-        FontId::proportional(12.5),
-        colour,
-    );
-    let mut turn = None;
-    if let DialScale::Choice(_) = dial.scale {
-        let room = Rect::from_x_y_ranges(rect.left() + NAME - 18.0..=rect.right(), rect.y_range());
-        turn = choice(ui, room, id, dial);
-    } else {
-        let value = Rect::from_x_y_ranges(rect.right() - VALUE..=rect.right(), rect.y_range());
-        let room = Rect::from_x_y_ranges(rect.left() + NAME..=value.left() - 4.0, rect.y_range());
-        let changed = if dial.value == dial.own { TEXT } else { INK };
-        let at = pos2(value.right(), middle);
-        painter.text(
-            at,
-            Align2::RIGHT_CENTER,
-            &dial.words,
-            FontId::proportional(13.0),
-            changed,
-        );
-        if ui
-            .interact(value, id("value"), Sense::click())
-            .double_clicked()
-        {
-            turn = Some(Turn::Own);
+/// A row: a knob with its number in the table, and its dial.
+pub struct Row<'a> {
+    pub number: usize,
+    pub knob: &'a Knob,
+    pub dial: &'a Dial,
+    /// Whether keys turn it.
+    pub chosen: bool,
+    /// What was typed for its value so far.
+    pub typed: Option<&'a str>,
+}
+
+impl Row<'_> {
+    /// Draws the row, and returns what the mouse asks for.
+    pub fn show(&self, ui: &Ui, rect: Rect) -> Option<Request> {
+        let Self { number, dial, .. } = *self;
+        let id = |part| Id::unique((part, number));
+        let whole = ui.interact(rect.expand2(vec2(6.0, 0.0)), id("row"), Sense::click());
+        let painter = ui.painter();
+        if self.chosen || whole.hovered() {
+            let colour = if self.chosen { CHOSEN } else { HOVERED };
+            painter.rect_filled(rect.expand2(vec2(6.0, -0.5)), 5.0, colour);
         }
-        let set = if dial.scale == DialScale::Switch {
-            switch(ui, room, id("dial"), dial)
+        let middle = rect.center().y;
+        let colour = if self.chosen { TEXT } else { FAINT };
+        let at = pos2(rect.left(), middle);
+        let font = FontId::proportional(12.5);
+        painter.text(at, Align2::LEFT_CENTER, self.knob.name, font, colour);
+        let whole = whole.on_hover_text(self.about());
+        let mut request = None;
+        if let DialScale::Choice(_) = dial.scale {
+            let left = rect.left() + NAME - 18.0;
+            let room = Rect::from_x_y_ranges(left..=rect.right(), rect.y_range());
+            request = choice(ui, room, id, dial).map(|turn| Request::Turn(number, turn));
         } else {
-            slider(ui, room, id("dial"), dial)
-        };
-        turn = set.or(turn);
+            let value = Rect::from_x_y_ranges(rect.right() - VALUE..=rect.right(), rect.y_range());
+            let left = rect.left() + NAME;
+            let room = Rect::from_x_y_ranges(left..=value.left() - 4.0, rect.y_range());
+            let set = if dial.scale == DialScale::Switch {
+                switch(ui, room, id("dial"), dial)
+            } else {
+                slider(ui, room, id("dial"), dial)
+            };
+            let set = set.map(|turn| Request::Turn(number, turn));
+            request = set.or(self.value(ui, value, id("value"))).or(request);
+        }
+        request.or_else(|| whole.clicked().then_some(Request::Choose(number)))
     }
-    turn.map(|turn| Request::Turn(k, turn))
-        .or_else(|| whole.clicked().then_some(Request::Choose(k)))
+
+    /// Draws the value, or what is typed for it. A click begins to type, and a double click brings
+    /// back the scene's own.
+    fn value(&self, ui: &Ui, rect: Rect, id: Id) -> Option<Request> {
+        let dial = self.dial;
+        let response = ui.interact(rect, id, Sense::click());
+        let typeable = dial.scale.ends().is_some();
+        if typeable && response.hovered() {
+            ui.set_cursor_icon(CursorIcon::Text);
+        }
+        let painter = ui.painter();
+        let colour = if dial.value == dial.own { TEXT } else { INK };
+        let write = |words: &str, colour| {
+            let at = pos2(rect.right(), rect.center().y);
+            let font = FontId::proportional(13.0);
+            painter.text(at, Align2::RIGHT_CENTER, words, font, colour);
+        };
+        if let Some(typed) = self.typed {
+            let field = rect.expand2(vec2(4.0, -1.0));
+            let stroke = Stroke::new(1.2, INK);
+            painter.rect(field, 3.0, Color32::WHITE, stroke, egui::StrokeKind::Inside);
+            write(&format!("{typed}_"), Color32::BLACK);
+        } else {
+            write(&dial.words, colour);
+        }
+        let response = response.on_hover_text(self.about());
+        if response.double_clicked() {
+            return Some(Request::Turn(self.number, Turn::Own));
+        }
+        (typeable && response.clicked()).then_some(Request::Type(self.number))
+    }
+
+    /// What the knob is, and how it is set.
+    fn about(&self) -> String {
+        let dial = self.dial;
+        let Some([from, to]) = dial.scale.ends() else {
+            return self.knob.about.into();
+        };
+        let [from, to, own] = [from, to, dial.own].map(|value| short(value, 4));
+        format!(
+            "{}\nFrom {from} to {to}; at first {own}.\nA click on the value types another, a double click brings back \
+             the first.",
+            self.knob.about
+        )
+    }
 }
 
 /// Draws a track with a thumb, and a mark at the scene's own value.
@@ -184,9 +221,9 @@ pub fn button(ui: &Ui, rect: Rect, response: &Response, words: &str, key: &str) 
         egui::StrokeKind::Inside,
     );
     let font = || FontId::proportional(13.0);
-    let at = pos2(rect.left() + 10.0, rect.center().y);
+    let at = pos2(rect.left() + 8.0, rect.center().y);
     painter.text(at, Align2::LEFT_CENTER, words, font(), TEXT);
-    let at = pos2(rect.right() - 10.0, rect.center().y);
+    let at = pos2(rect.right() - 7.0, rect.center().y);
     painter.text(
         at,
         Align2::RIGHT_CENTER,

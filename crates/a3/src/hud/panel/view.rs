@@ -3,14 +3,16 @@
 use egui::{Align2, Area, Context, FontId, Id, Rect, Sense, Stroke, pos2, vec2};
 
 use super::super::style::{FAINT, TEXT};
+use super::plots;
 use super::request::{self, Request, is_shown, rows};
-use super::{plots, row};
+use super::row::{self, Row};
 use crate::session::{Action, Session};
 
-/// Width of the panel in a window that is wide enough (points).
-pub(super) const WIDTH: f32 = 304.0;
-/// The largest share of a window's width that the panel takes.
-const MOST: f32 = 0.6;
+/// Least and largest width of the panel (points), and the share of a window's width between them.
+const WIDTH: (f32, f32, f32) = (304.0, 460.0, 0.2);
+/// Width of a window that has room for a picture beside the panel (points). In a narrower one the
+/// panel covers the picture, until it is closed.
+const BESIDE: f32 = 480.0;
 /// Distance of the rows from the edges of the panel (points).
 pub(super) const MARGIN: f32 = 14.0;
 /// Height of the title (points).
@@ -22,7 +24,12 @@ const GAP: f32 = 7.0;
 
 /// Width of the panel in a window of that width (points).
 pub(super) fn width(window: f32) -> f32 {
-    WIDTH.min((MOST * window).round())
+    let (least, most, share) = WIDTH;
+    if window < BESIDE {
+        window
+    } else {
+        (share * window).round().clamp(least, most)
+    }
 }
 
 /// Size that the panel leaves of a window of `size` (px) at `scale` pixels per point.
@@ -30,7 +37,11 @@ pub fn leaves(session: &Session, size: (u32, u32), scale: f32) -> (u32, u32) {
     if !is_shown(session) {
         return size;
     }
-    let taken = (width(size.0 as f32 / scale) * scale).round() as u32;
+    let window = size.0 as f32 / scale;
+    if window < BESIDE {
+        return size;
+    }
+    let taken = (width(window) * scale).round() as u32;
     (size.0.saturating_sub(taken).max(1), size.1)
 }
 
@@ -76,7 +87,14 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                 }
                 let place =
                     Rect::from_min_size(pos2(inner.left(), top), vec2(inner.width(), row::HEIGHT));
-                request = row::show(ui, place, *k, knob.name, dial, n == chosen).or(request);
+                let row = Row {
+                    number: *k,
+                    knob,
+                    dial,
+                    chosen: n == chosen,
+                    typed: session.panel.typed.as_deref().filter(|_| n == chosen),
+                };
+                request = row.show(ui, place).or(request);
                 top += row::HEIGHT;
             }
             request = foot(ui, inner, session).or(request);
@@ -85,7 +103,8 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                 pos2(inner.right(), inner.bottom() - FOOT),
             );
             let pane = &session.panes[request::pane(session)];
-            plots::draw(ui.painter(), room, &pane.samples);
+            let pointer = ui.ctx().pointer_latest_pos();
+            plots::draw(ui.painter(), room, &pane.samples, pointer);
         });
     request
 }
@@ -119,18 +138,20 @@ fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
     );
 }
 
-/// Draws the buttons: they write a scene file, film from now on, and film the last seconds.
+/// Draws the buttons: they write a scene file and the plots, film from now on, and film the last
+/// seconds.
 fn foot(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
     let last = format!("last {} s", session.panel.film_of);
     let live = session.readings.film.as_ref().is_some_and(|film| film.live);
-    let record = if live { "stop" } else { "record" };
+    let record = if live { "stop" } else { "film" };
     let buttons = [
-        ("scene file", "f", Action::WriteScene),
+        ("scene", "f", Action::WriteScene),
+        ("plots", "u", Action::WritePlots),
         (record, "m", Action::Record),
         (&last, "n", Action::FilmLast),
     ];
-    let gap = 6.0;
-    let width = (inner.width() - 2.0 * gap) / 3.0;
+    let gap = 5.0;
+    let width = (inner.width() - 3.0 * gap) / 4.0;
     let mut request = None;
     for (k, (words, key, action)) in buttons.into_iter().enumerate() {
         let left = inner.left() + k as f32 * (width + gap);

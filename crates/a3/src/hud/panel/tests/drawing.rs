@@ -4,7 +4,7 @@ use super::screen::Screen;
 use super::{changed, dials, every_scene, opened};
 use crate::hud::panel::dial::DialScale;
 use crate::hud::panel::request::rows;
-use crate::hud::panel::view::{WIDTH, leaves};
+use crate::hud::panel::view::{leaves, width};
 use crate::session::Action;
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
@@ -63,7 +63,7 @@ fn nothing_is_cut_or_overlaps() {
         for screen in &mut screens {
             let size = screen.size;
             let texts = screen.read(&session);
-            let edge = size[0] - WIDTH;
+            let edge = size[0] - width(size[0]);
             for (k, (words, rect)) in texts.iter().enumerate() {
                 let inside = rect.left() > edge + 4.0 && rect.right() < size[0] - 4.0;
                 assert!(inside || rect.right() < edge, "{words} in {name}, {size:?}");
@@ -76,7 +76,7 @@ fn nothing_is_cut_or_overlaps() {
             for (_, knob, dial) in rows(&session) {
                 assert!(said(knob.name) && said(&dial.words), "{}", knob.name);
             }
-            assert!(said("scene file") && said("record") && said("last 5 s"));
+            assert!(said("scene") && said("plots") && said("film") && said("last 5 s"));
             let plotted = name != "simple" && size[1] > 700.0;
             assert!(said("energy (J)") || !plotted, "{texts:?}");
         }

@@ -4,7 +4,7 @@ use egui::{Context, Event, PointerButton, Pos2, RawInput, Rect, Shape, pos2};
 
 use crate::hud;
 use crate::hud::panel::request::{Request, apply};
-use crate::hud::panel::view::{MARGIN, WIDTH, inset, show, width};
+use crate::hud::panel::view::{MARGIN, inset, show, width};
 use crate::session::Session;
 
 /// A window, as egui sees it.
@@ -111,6 +111,7 @@ impl Screen {
             .unwrap();
         let y = row.center().y;
         let at = |x: f32| pos2(left + MARGIN + x, y);
-        (at(WIDTH - 2.0 * MARGIN - 10.0), [at(82.0), at(190.0)])
+        let wide = width(self.size[0]) - 2.0 * MARGIN;
+        (at(wide - 10.0), [at(82.0), at(wide - 86.0)])
     }
 }

@@ -1,11 +1,12 @@
 use a3_core::contact::Shape;
-use a3_core::{Control, Path, Vector3};
+use a3_core::{Control, Network, Path, Vector3};
 
+use super::screen::Screen;
 use super::{changed, dials, every_scene, opened, type_key};
 use crate::hud::panel::dial::Turn;
 use crate::hud::panel::knobs::KNOBS;
-use crate::hud::panel::request::{PanelKey, Request, apply, press, rows};
-use crate::session::{Action, Session, compared};
+use crate::hud::panel::request::{PanelKey, Request, apply, press, press_text, rows};
+use crate::session::{Action, Session, TextKey, compared};
 
 #[test]
 fn keys_reach_every_row_and_turn_that_only() {
@@ -199,4 +200,41 @@ fn turning_goes_by_rungs_and_stays_within() {
     assert_eq!(go("damping", left, false, 9), 0.0);
     assert_eq!(go("springs of", right, true, 2), 19.0);
     assert_eq!(go("springs of", left, false, 1), 18.0);
+}
+
+#[test]
+fn values_are_typed() {
+    let mut session = opened(&["r", "0.005"]);
+    let mut screen = Screen::new([1280.0, 720.0]);
+    let mut type_value = |session: &mut Session, name: &str, words: &str| {
+        let (value, _) = screen.place(session, name);
+        screen.time += 1.0;
+        screen.click(session, value, value);
+        assert_eq!(session.panel.typed.as_deref(), Some(""));
+        for letter in words.chars() {
+            assert!(press_text(session, TextKey::Type(letter)));
+        }
+        press_text(session, TextKey::Take);
+        let typing = session.panel.typed.is_some();
+        press_text(session, TextKey::Close);
+        assert!(!press_text(session, TextKey::Type('1')));
+        typing
+    };
+    assert!(!type_value(&mut session, "gravity", "3.21"));
+    let gravity = session.first().model().network().and_then(Network::gravity);
+    assert_eq!(gravity.unwrap().y, -3.21);
+    assert!(!type_value(&mut session, "step", "1/120"));
+    assert_eq!(session.first().control(), Control::Step(1.0 / 120.0));
+    // Numbers that cannot be are refused, and may be mended.
+    for (words, why) in [
+        ("1,5", "stiffness: use a decimal point: 1.5"),
+        ("much", "stiffness: must be a number from 0.1 to 10"),
+        ("11", "stiffness: must be a number from 0.1 to 10"),
+        ("", "stiffness: must be a number from 0.1 to 10"),
+        ("nan", "stiffness: must be a number from 0.1 to 10"),
+    ] {
+        assert!(type_value(&mut session, "stiffness", words), "{words}");
+        assert_eq!(session.readings.message.as_deref(), Some(why));
+        assert_eq!(session.tuning.stiffness, 1.0);
+    }
 }
