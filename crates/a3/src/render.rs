@@ -10,7 +10,7 @@ use crate::{film, output, progress, setup, verdict};
 pub fn run(options: &Render) -> Result<(), Failure> {
     let (mut simulation, presentation) = setup::simulation(&options.run)?;
     setup::check_particle(&simulation, options.springs_of)?;
-    setup::check_drawing(&simulation, options.manner)?;
+    setup::check_drawing(&simulation, options.manner, false)?;
     let (path, size) = (&options.output, options.size);
     output::check(path, &["png", "gif", "mp4"])?;
     // There may be no ffmpeg, and the device may not support pictures of this size: both are

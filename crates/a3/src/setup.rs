@@ -9,6 +9,7 @@ use crate::bounds;
 use crate::cli::{Compare, Drawing, RunOptions, What, WindowOptions};
 use crate::failure::Failure;
 use crate::session::{Beginning, Origin, Session};
+use crate::show::{self, Quantity};
 
 /// The session of a window on one run.
 pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
@@ -22,7 +23,7 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     let setup = build(what)?;
     let simulation = simulate(what, &setup, solver, options.step)?;
     check_particle(&simulation, options.springs_of)?;
-    check_drawing(&simulation, options.look.manner)?;
+    check_drawing(&simulation, options.look.manner, false)?;
     let beginning = Beginning {
         manner: options.look.manner.of(options.springs_of),
         paused: options.look.paused,
@@ -45,7 +46,7 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         .iter()
         .map(|(solver, step)| simulate(what, &setup, solver, *step))
         .collect::<Result<Vec<_>, Failure>>()?;
-    check_drawing(&simulations[0], options.look.manner)?;
+    check_drawing(&simulations[0], options.look.manner, true)?;
     let beginning = Beginning {
         manner: options.look.manner.of(None),
         paused: options.look.paused,
@@ -150,18 +151,36 @@ pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Resul
     }
 }
 
-/// `Ok` if the scene has what it is to be coloured by, and the arrows.
-pub fn check_drawing(simulation: &Simulation, drawing: Drawing) -> Result<(), Failure> {
-    let colour = drawing.colour.filter(|c| !c.is_in(simulation));
-    let arrows = drawing.arrows.filter(|a| !a.is_in(simulation));
-    let wrong = colour.map(|c| ("colour", c.name()));
-    let Some((option, name)) = wrong.or(arrows.map(|a| ("arrows", a.name()))) else {
-        return Ok(());
-    };
+/// `Ok` if the run, which is one of several that are compared or not, has what it is to be coloured
+/// by, the arrows, and the springs.
+pub fn check_drawing(
+    simulation: &Simulation,
+    drawing: Drawing,
+    compared: bool,
+) -> Result<(), Failure> {
     let scene = &simulation.scene().name;
-    Err(Failure::usage(format!(
-        "the scene {scene} has no {name} to show: leave out --{option}"
-    )))
+    let has_none = |what: &str, option: &str| {
+        format!("the scene {scene} has no {what} to show: leave out --{option}")
+    };
+    let colour = drawing.colour.filter(|c| !c.is_in(simulation, compared));
+    let arrows = drawing.arrows.filter(|a| !a.is_in(simulation));
+    let why = match (colour, arrows) {
+        (Some(Quantity::Contact), _) => format!(
+            "nothing can touch in the scene {scene}: leave out --colour, or let surfaces touch \
+             by --self-collision"
+        ),
+        (Some(Quantity::Error), _) => {
+            "errors are shown where there is a reference, which a3 compare runs: leave out --colour"
+                .into()
+        }
+        (Some(colour), _) => has_none(colour.name(), "colour"),
+        (None, Some(arrows)) => has_none(arrows.name(), "arrows"),
+        (None, None) if drawing.springs && !show::has_springs(simulation) => {
+            has_none("springs", "springs")
+        }
+        (None, None) => return Ok(()),
+    };
+    Err(Failure::usage(why))
 }
 
 /// `Ok` if the step or the tolerance is within its range.

@@ -21,7 +21,9 @@ mod view;
 pub use camera::Camera;
 pub use gpu::{Gpu, GpuError};
 pub use offscreen::{OFFSCREEN_FORMAT, Offscreen};
-pub use picture::{Ball, LOOKS, Line, Liquid, Picture, STEEL_LOOK, Solid, Style, Tile, Topology};
+pub use picture::{
+    Ball, Corner, LOOKS, Line, Liquid, Picture, STEEL_LOOK, Solid, Spring, Style, Tile, Topology,
+};
 pub use ramp::{ramp, shaded_by};
 pub use renderer::Renderer;
 pub use targets::Targets;

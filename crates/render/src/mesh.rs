@@ -1,4 +1,4 @@
-//! Meshes on the GPU: the triangles and wires of a topology.
+//! Meshes on the GPU: the triangles, wires and springs of a topology.
 
 use wgpu::BufferUsages;
 
@@ -19,6 +19,8 @@ pub(crate) struct Mesh {
     /// The number of corners of all triangles.
     pub(crate) indices: u32,
     pub(crate) wire_count: u32,
+    pub(crate) springs: wgpu::Buffer,
+    pub(crate) spring_count: u32,
 }
 
 impl Mesh {
@@ -45,6 +47,12 @@ impl Mesh {
             points: topology.points,
             indices: 3 * topology.triangles.len() as u32,
             wire_count: topology.wires.len() as u32,
+            springs: filled(
+                "springs",
+                BufferUsages::VERTEX,
+                bytemuck::cast_slice(&topology.springs),
+            ),
+            spring_count: topology.springs.len() as u32,
         }
     }
 
@@ -87,7 +95,7 @@ mod tests {
         let (first, around) = triangles_around(&Topology {
             points: 6,
             triangles,
-            wires: vec![],
+            ..Topology::default()
         });
         assert_eq!(first, [0, 1, 4, 6, 8, 9, 9]);
         let of = |i: usize| &around[first[i] as usize..first[i + 1] as usize];

@@ -12,16 +12,19 @@ pub const LOOKS: usize = 9;
 pub const STEEL_LOOK: usize = 8;
 
 /// The way in which surfaces are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Style {
+    /// Smooth meshes. A scene without triangles is drawn by its wires all the same.
+    #[default]
+    Shaded,
     /// Wires.
     Wireframe,
-    /// Smooth meshes. A scene without triangles is drawn by its wires all the same.
-    Shaded,
+    /// Springs, each kind in its own colour.
+    Springs,
 }
 
 /// The connections between particles, which stay the same from frame to frame.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Topology {
     /// Number of particles.
     pub points: usize,
@@ -30,6 +33,20 @@ pub struct Topology {
     pub triangles: Vec<[u32; 3]>,
     /// Ends of the wires.
     pub wires: Vec<[u32; 2]>,
+    /// What is drawn instead of the wires in the style of that name: the last ones over the others.
+    pub springs: Vec<Spring>,
+}
+
+/// A spring between two particles.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Spring {
+    /// Particles at its ends.
+    pub ends: [u32; 2],
+    /// Width in points.
+    pub width: f32,
+    /// Linear red, green and blue, where no value colours it.
+    pub color: [f32; 3],
 }
 
 /// A shaded ball.
@@ -56,9 +73,12 @@ pub struct Solid {
     pub axes: [[f32; 4]; 3],
     /// Linear red, green and blue, and 1.
     pub color: [f32; 4],
+    /// Values from 0 to 1 that colour it, or -1 for its own colour: one for each corner, whose
+    /// number is the sum of 1, 2 and 4 for those of the three axes along which it lies.
+    pub values: [[f32; 4]; 2],
 }
 
-/// A straight line that is drawn in both styles.
+/// A straight line that is drawn in all styles.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Line {
@@ -88,11 +108,23 @@ impl Line {
     }
 }
 
+/// Vertex of the surface of a liquid.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Corner {
+    /// Position (m).
+    pub place: [f32; 3],
+    /// Value from 0 to 1 that colours it, or -1 for the colour of the liquid.
+    pub value: f32,
+    /// Unit normal.
+    pub normal: [f32; 3],
+}
+
 /// Surface of a liquid, whose triangles are other ones in each frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Liquid<'a> {
-    /// Position (m) and unit normal of each vertex.
-    pub corners: &'a [[[f32; 3]; 2]],
+    /// Vertices.
+    pub corners: &'a [Corner],
     /// Corners of each triangle.
     pub triangles: &'a [[u32; 3]],
 }
@@ -115,7 +147,7 @@ pub struct Picture<'a> {
     pub solids: &'a [Solid],
     /// Lines, such as trails and highlighted springs.
     pub lines: &'a [Line],
-    /// Surface of a liquid, which is drawn in both styles.
+    /// Surface of a liquid, which is drawn in all styles.
     pub liquid: Liquid<'a>,
     /// Height of the floor (m), if there is one.
     pub floor: Option<f32>,

@@ -4,7 +4,7 @@
 use wgpu::{CompareFunction, PrimitiveTopology, ShaderStages, StencilOperation, VertexStepMode};
 
 use crate::gpu::DEPTH;
-use crate::picture::{Ball, Line, Solid};
+use crate::picture::{Ball, Corner, Line, Solid, Spring};
 
 /// The source of the shaders.
 pub(crate) const SOURCE: &str = include_str!("scene.wgsl");
@@ -22,6 +22,7 @@ pub(crate) struct Pipelines {
     pub(crate) solid: wgpu::RenderPipeline,
     pub(crate) liquid: wgpu::RenderPipeline,
     pub(crate) wire: wgpu::RenderPipeline,
+    pub(crate) spring: wgpu::RenderPipeline,
     pub(crate) line: wgpu::RenderPipeline,
 }
 
@@ -122,9 +123,12 @@ impl Pipelines {
         let ball = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4];
         let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
         let solid = wgpu::vertex_attr_array![
-            2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4
+            2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4,
+            7 => Float32x4, 8 => Float32x4
         ];
+        let drop = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x3];
         let ends = wgpu::vertex_attr_array![0 => Uint32x2];
+        let spring = wgpu::vertex_attr_array![0 => Uint32x2, 1 => Float32, 2 => Float32x3];
         let line = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
         let stream = |step_mode, attributes, stride: usize| {
             Some(wgpu::VertexBufferLayout {
@@ -141,15 +145,16 @@ impl Pipelines {
             stream(VertexStepMode::Vertex, &corner, size_of::<[[f32; 3]; 2]>()),
             stream(VertexStepMode::Instance, &solid, size_of::<Solid>()),
         ];
-        let liquid = [stream(
-            VertexStepMode::Vertex,
-            &corner,
-            size_of::<[[f32; 3]; 2]>(),
-        )];
+        let liquid = [stream(VertexStepMode::Vertex, &drop, size_of::<Corner>())];
         let wires = [stream(
             VertexStepMode::Instance,
             &ends,
             size_of::<[u32; 2]>(),
+        )];
+        let springs = [stream(
+            VertexStepMode::Instance,
+            &spring,
+            size_of::<Spring>(),
         )];
         let lines = [stream(VertexStepMode::Instance, &line, size_of::<Line>())];
         let (list, strip) = (
@@ -168,6 +173,7 @@ impl Pipelines {
             solid: pipeline("solid", "ball", list, Layer::Solid, &solids),
             liquid: pipeline("liquid", "liquid", list, Layer::Solid, &liquid),
             wire: pipeline("wire", "line", strip, Layer::Over, &wires),
+            spring: pipeline("spring", "line", strip, Layer::Over, &springs),
             line: pipeline("line", "line", strip, Layer::Over, &lines),
         }
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::buffers::{Instances, Shape};
 use crate::gpu::Gpu;
 use crate::mesh::Mesh;
-use crate::picture::{Picture, Tile, Topology};
+use crate::picture::{Picture, Style, Tile, Topology};
 use crate::pipelines::{Pipelines, SOURCE, layout};
 use crate::view::View;
 
@@ -102,9 +102,10 @@ impl Renderer {
     /// Draws one view into the viewport that is set.
     fn draw_view(&self, pass: &mut wgpu::RenderPass, view: &View) {
         let (p, mesh, frame) = (&self.pipelines, &view.mesh, view.frame);
+        let shaded = frame.style == Style::Shaded;
         pass.set_bind_group(0, &view.bind, &[]);
         // Opaque things come first, so that no pixel is shaded twice, and blended ones last.
-        if frame.mesh {
+        if shaded {
             pass.set_pipeline(&p.mesh);
             mesh.draw(pass);
         }
@@ -126,7 +127,7 @@ impl Renderer {
         }
         if frame.floor {
             pass.set_stencil_reference(0);
-            if frame.mesh {
+            if shaded {
                 pass.set_pipeline(&p.mesh_shadow);
                 mesh.draw(pass);
             }
@@ -139,7 +140,11 @@ impl Renderer {
             pass.set_pipeline(&p.solid_shadow);
             self.draw_solids(pass, view);
         }
-        if !frame.mesh {
+        if frame.style == Style::Springs {
+            pass.set_pipeline(&p.spring);
+            pass.set_vertex_buffer(0, mesh.springs.slice(..));
+            pass.draw(0..4, 0..mesh.spring_count);
+        } else if !shaded {
             pass.set_pipeline(&p.wire);
             pass.set_vertex_buffer(0, mesh.wires.slice(..));
             pass.draw(0..4, 0..mesh.wire_count);
@@ -181,7 +186,7 @@ mod tests {
     use std::io::Write;
 
     use super::*;
-    use crate::{Camera, Liquid, OFFSCREEN_FORMAT, Offscreen, Style};
+    use crate::{Camera, Liquid, OFFSCREEN_FORMAT, Offscreen};
 
     /// The pixels by rows of a ridge of two slopes of different sizes, drawn with these shaders.
     fn ridge(gpu: &Gpu, source: &str) -> Vec<u8> {
@@ -196,7 +201,7 @@ mod tests {
         let topology = Topology {
             points: points.len(),
             triangles,
-            wires: vec![],
+            ..Topology::default()
         };
         let samples = gpu.samples(OFFSCREEN_FORMAT);
         let mut renderer = Renderer::with_source(gpu, source, OFFSCREEN_FORMAT, samples, &topology);

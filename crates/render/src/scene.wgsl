@@ -210,21 +210,24 @@ fn banded(value: f32) -> vec3<f32> {
 
 // ---- Liquid: a surface with its own normals.
 
-@vertex fn liquid_vertex(@location(0) p: vec3<f32>, @location(1) normal: vec3<f32>) -> Ball {
+// The fourth number of a corner is the value that colours it, or -1.
+@vertex fn liquid_vertex(@location(0) corner: vec4<f32>, @location(1) normal: vec3<f32>) -> Ball {
     var out: Ball;
-    out.world = p;
-    out.clip = globals.view_proj * vec4(p, 1.0);
+    out.world = corner.xyz;
+    out.clip = globals.view_proj * vec4(corner.xyz, 1.0);
     out.normal = normal;
     out.color = WATER;
+    out.value = corner.w;
     return out;
 }
 
-@vertex fn liquid_shadow_vertex(@location(0) p: vec3<f32>, @location(1) normal: vec3<f32>) -> Shadow {
-    return shadow(p);
+@vertex fn liquid_shadow_vertex(@location(0) corner: vec4<f32>, @location(1) normal: vec3<f32>) -> Shadow {
+    return shadow(corner.xyz);
 }
 
 @fragment fn liquid_fragment(in: Ball) -> @location(0) vec4<f32> {
     let n = in.normal / max(length(in.normal), 1e-20);
+    if in.value >= 0.0 { return vec4(lit(banded(in.value), n, in.world, 0.0, 0.1), 1.0); }
     return vec4(jelly(in.color, n, in.world), 1.0);
 }
 
@@ -235,6 +238,8 @@ struct Ball {
     @location(0) world: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) color: vec3<f32>,
+    // Value from 0 to 1, where one colours it; -1 elsewhere.
+    @location(3) value: f32,
 };
 
 @vertex fn ball_vertex(
@@ -245,10 +250,14 @@ struct Ball {
     out.clip = globals.view_proj * vec4(out.world, 1.0);
     out.normal = unit;
     out.color = color.rgb;
+    out.value = -1.0;
     return out;
 }
 
 @fragment fn ball_fragment(in: Ball) -> @location(0) vec4<f32> {
+    if in.value >= 0.0 {
+        return vec4(lit(banded(in.value), normalize(in.normal), in.world, 0.0, 0.1), 1.0);
+    }
     return vec4(lit(in.color, normalize(in.normal), in.world, 0.5, 0.25), 1.0);
 }
 
@@ -264,6 +273,9 @@ struct Solid {
     @location(4) y: vec4<f32>,
     @location(5) z: vec4<f32>,
     @location(6) color: vec4<f32>,
+    // Values of the corners on the lower and on the upper side along the third axis.
+    @location(7) low: vec4<f32>,
+    @location(8) high: vec4<f32>,
 };
 
 fn solid_normal(in: Solid) -> vec3<f32> {
@@ -281,6 +293,8 @@ fn solid_position(in: Solid) -> vec3<f32> {
     out.clip = globals.view_proj * vec4(out.world, 1.0);
     out.normal = solid_normal(in);
     out.color = in.color.rgb;
+    var values = select(in.low, in.high, in.piece.z > 0.0);
+    out.value = values[select(0u, 1u, in.piece.x > 0.0) + select(0u, 2u, in.piece.y > 0.0)];
     return out;
 }
 
@@ -324,15 +338,31 @@ fn line(a: vec3<f32>, b: vec3<f32>, points_wide: f32, color: vec4<f32>, i: u32) 
     return out;
 }
 
-// A wire between two particles, which is fainter the farther away it is.
+// The opacity of a wire between two points, which is fainter the farther away it is.
+fn faded(a: vec3<f32>, b: vec3<f32>) -> f32 {
+    let far = distance(globals.eye.xyz, 0.5 * (a + b));
+    let depth = (far - globals.depth.x) / max(globals.depth.y - globals.depth.x, 1e-6);
+    return mix(0.95, 0.38, clamp(depth, 0.0, 1.0));
+}
+
 @vertex fn wire_vertex(@builtin(vertex_index) i: u32, @location(0) ends: vec2<u32>) -> Line {
     let a = points[ends.x].xyz;
     let b = points[ends.y].xyz;
-    let far = distance(globals.eye.xyz, 0.5 * (a + b));
-    let depth = clamp((far - globals.depth.x) / max(globals.depth.y - globals.depth.x, 1e-6), 0.0, 1.0);
     let value = -1.0 - select(points[ends.x].w, points[ends.y].w, i >= 2u);
     if value >= 0.0 { return line(a, b, 2.0, vec4(ramp(value), 1.0), i); }
-    return line(a, b, 1.35, vec4(INK, mix(0.95, 0.38, depth)), i);
+    return line(a, b, 1.35, vec4(INK, faded(a, b)), i);
+}
+
+// A spring between two particles, in the colour of its kind or of a value.
+@vertex fn spring_vertex(
+    @builtin(vertex_index) i: u32,
+    @location(0) ends: vec2<u32>, @location(1) points_wide: f32, @location(2) color: vec3<f32>
+) -> Line {
+    let a = points[ends.x].xyz;
+    let b = points[ends.y].xyz;
+    let value = -1.0 - select(points[ends.x].w, points[ends.y].w, i >= 2u);
+    if value >= 0.0 { return line(a, b, points_wide, vec4(ramp(value), 1.0), i); }
+    return line(a, b, points_wide, vec4(color, faded(a, b)), i);
 }
 
 @vertex fn line_vertex(

@@ -50,8 +50,8 @@ pub(crate) struct Frame {
     pub(crate) floor: bool,
     /// Whether the background is drawn.
     pub(crate) background: bool,
-    /// Whether the surface is drawn, instead of its wires.
-    pub(crate) mesh: bool,
+    /// The style of what is drawn: wires where there is no surface.
+    pub(crate) style: Style,
     /// The numbers of small balls, of small and middling ones, and of all.
     pub(crate) balls: [u32; 3],
     /// The number of solids.
@@ -123,7 +123,10 @@ impl View {
                     .floor
                     .is_some_and(|height| picture.camera.eye().y > height),
             background: !picture.transparent,
-            mesh: picture.style == Style::Shaded && self.mesh.indices > 0,
+            style: match picture.style {
+                Style::Shaded if self.mesh.indices == 0 => Style::Wireframe,
+                style => style,
+            },
             balls: [below(LARGER[0]), below(LARGER[1]), balls.len() as u32],
             solids: picture.solids.len() as u32,
             lines: picture.lines.len() as u32,

@@ -45,6 +45,43 @@ fn same(a: &RgbaImage, b: &RgbaImage) -> bool {
     off < 0.004 && mean < 0.4
 }
 
+/// Adds a box with another value at each corner, a capsule with one at either end, and a patch of
+/// liquid whose values grow to the right.
+fn add_coloured_solids(sheet: &mut Sheet) {
+    let axes = |[x, y, z]: [f32; 3]| [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]];
+    let color = [0.3, 0.36, 0.44, 1.0];
+    sheet.solids = vec![
+        a3_render::Solid {
+            center: [-0.8, 0.35, 0.9],
+            radius: 0.03,
+            axes: axes([0.4, 0.3, 0.2]),
+            color,
+            values: [[0.0, 0.3, 0.4, 0.7], [0.2, 0.5, 0.6, 1.0]],
+        },
+        a3_render::Solid {
+            center: [0.15, 0.4, 1.1],
+            radius: 0.15,
+            axes: axes([0.0, 0.3, 0.0]),
+            color,
+            values: [[0.1, 0.1, 0.9, 0.9]; 2],
+        },
+    ];
+    let corner = |x: f32, z: f32, value: f32| a3_render::Corner {
+        place: [x, 0.05, z],
+        value,
+        normal: [0.0, 1.0, 0.0],
+    };
+    sheet.liquid = (
+        vec![
+            corner(-1.2, 2.0, 0.0),
+            corner(1.2, 2.0, 1.0),
+            corner(1.2, 1.4, 1.0),
+            corner(-1.2, 1.4, 0.0),
+        ],
+        vec![[0, 1, 2], [0, 2, 3]],
+    );
+}
+
 #[test]
 fn pictures_match_the_golden_ones() {
     let Some(gpu) = gpu() else { return };
@@ -55,8 +92,14 @@ fn pictures_match_the_golden_ones() {
         ("wireframe", Style::Wireframe),
         ("coloured", Style::Shaded),
         ("coloured-wireframe", Style::Wireframe),
+        ("springs", Style::Springs),
+        ("coloured-springs", Style::Springs),
+        ("coloured-solids", Style::Shaded),
     ] {
         let mut sheet = Sheet::new();
+        if name == "coloured-solids" {
+            add_coloured_solids(&mut sheet);
+        }
         if name.starts_with("coloured") {
             for point in &mut sheet.points {
                 point[3] = shaded_by(0.55 * (point[0] + 1.0) * point[1]);
@@ -138,7 +181,7 @@ fn lines_are_as_wide_as_asked_for() {
     }
 }
 
-/// A liquid is drawn in both styles, lit by its own normals, and no longer once it is gone.
+/// A liquid is drawn in all styles, lit by its own normals, and no longer once it is gone.
 #[test]
 fn a_liquid_is_lit_by_its_normals() {
     let Some(gpu) = gpu() else { return };
@@ -153,7 +196,11 @@ fn a_liquid_is_lit_by_its_normals() {
     let offscreen = Offscreen::new(&gpu, SIZE).unwrap();
     let mut middle = |style, normal: Option<[f32; 3]>| {
         let places = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
-        let corners = places.map(|place| [place, normal.unwrap_or_default()]);
+        let corners = places.map(|place| a3_render::Corner {
+            place,
+            value: -1.0,
+            normal: normal.unwrap_or_default(),
+        });
         let picture = a3_render::Picture {
             floor: None,
             liquid: a3_render::Liquid {
@@ -167,7 +214,7 @@ fn a_liquid_is_lit_by_its_normals() {
         [0, 1, 2].map(|k| i32::from(pixels[at + k]))
     };
     let paper = middle(Style::Shaded, None);
-    for style in [Style::Shaded, Style::Wireframe] {
+    for style in [Style::Shaded, Style::Wireframe, Style::Springs] {
         let front = middle(style, Some([0.0, 0.0, 1.0]));
         assert!(front[2] > front[0] + 40, "{front:?} is not blue");
         let up = middle(style, Some([-0.62, 0.78, 0.0]));
@@ -274,6 +321,7 @@ fn solids_have_the_shape_asked_for() {
         let (s, c) = turn.sin_cos();
         let axes = [[c, s, 0.0, x], [-s, c, 0.0, y], [0.0, 0.0, 1.0, z]];
         a3_render::Solid {
+            values: [[-1.0; 4]; 2],
             center: ball.center,
             radius,
             axes,

@@ -1,5 +1,6 @@
 //! The options for how a scene is drawn.
 
+use a3_render::Style;
 use clap::Args;
 
 use crate::show::{Arrows, Manner, Quantity};
@@ -10,6 +11,10 @@ pub struct Drawing {
     /// Draw the wireframe instead of the surface
     #[arg(long)]
     pub wireframe: bool,
+    /// Draw all springs instead of the surface: structural, shear and bend springs, each in its
+    /// own colour and width
+    #[arg(long, conflicts_with = "wireframe")]
+    pub springs: bool,
     /// Colour particles by a quantity
     #[arg(long, value_name = "QUANTITY", value_enum, alias = "color")]
     pub colour: Option<Quantity>,
@@ -22,7 +27,11 @@ impl Drawing {
     /// With the springs of one particle highlighted, or of none.
     pub fn of(self, springs_of: Option<usize>) -> Manner {
         Manner {
-            wireframe: self.wireframe,
+            style: match (self.wireframe, self.springs) {
+                (false, false) => Style::Shaded,
+                (true, _) => Style::Wireframe,
+                (_, true) => Style::Springs,
+            },
             springs_of,
             colour: self.colour,
             arrows: self.arrows,

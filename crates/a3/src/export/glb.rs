@@ -59,7 +59,7 @@ struct Binary {
 pub fn size(surface: &Surface, simulation: &Simulation, frames: FrameTimes) -> f64 {
     let geometry = Geometry::of(surface, simulation);
     let (n, count) = (geometry.vertices as f64, frames.count as f64);
-    let Liquid { corners, triangles } = Liquid::of(simulation);
+    let Liquid { corners, triangles } = Liquid::of(simulation, |_| None);
     let liquid = 24.0 * corners.len() as f64 + 12.0 * triangles.len() as f64;
     (24.0 * n + liquid) * count + 12.0 * geometry.triangles.len() as f64 + 4.0 * count * count
 }
@@ -126,7 +126,7 @@ impl Glb {
             attributes["NORMAL"] = self.binary.vectors(&normals, false)?.into();
         }
         self.attributes.push(attributes);
-        let liquid = self.binary.liquid(&Liquid::of(simulation))?;
+        let liquid = self.binary.liquid(&Liquid::of(simulation, |_| None))?;
         self.liquids.push(liquid);
         Ok(())
     }
@@ -313,9 +313,10 @@ impl Binary {
         if liquid.triangles.is_empty() {
             return Ok(Value::Null);
         }
-        let part = |k: usize| -> Vec<_> { liquid.corners.iter().map(|corner| corner[k]).collect() };
-        let positions = self.vectors(&part(0), true)?;
-        let normals = self.vectors(&part(1), false)?;
+        let corners = liquid.corners.iter();
+        let (places, normals): (Vec<_>, Vec<_>) = corners.map(|c| (c.place, c.normal)).unzip();
+        let positions = self.vectors(&places, true)?;
+        let normals = self.vectors(&normals, false)?;
         let indices = self.indices(liquid.triangles.as_flattened())?;
         Ok(json!({
             "mode": TRIANGLES, "material": 1, "indices": indices,

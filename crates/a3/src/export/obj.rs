@@ -54,7 +54,7 @@ pub fn size(surface: &Surface, simulation: &Simulation) -> f64 {
     let rigid = geometry.vertices - geometry.particles;
     let (vertices, normals) = (geometry.vertices, geometry.covered + rigid);
     let (faces, lines) = (geometry.triangles.len(), geometry.lines.len());
-    let liquid = Liquid::of(simulation);
+    let liquid = Liquid::of(simulation, |_| None);
     let (vertices, normals) = (
         vertices + liquid.corners.len(),
         normals + liquid.corners.len(),
@@ -90,15 +90,15 @@ pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -
     for i in &geometry.points {
         writeln!(file, "p {}", i + 1)?;
     }
-    let liquid = Liquid::of(simulation);
+    let liquid = Liquid::of(simulation, |_| None);
     if liquid.triangles.is_empty() {
         return Ok(());
     }
     writeln!(file, "o liquid")?;
-    for [[x, y, z], _] in &liquid.corners {
+    for [x, y, z] in liquid.corners.iter().map(|corner| corner.place) {
         writeln!(file, "v {x} {y} {z}")?;
     }
-    for [_, [x, y, z]] in &liquid.corners {
+    for [x, y, z] in liquid.corners.iter().map(|corner| corner.normal) {
         writeln!(file, "vn {x} {y} {z}")?;
     }
     for triangle in &liquid.triangles {

@@ -1,7 +1,7 @@
 //! The text about a run that blew up.
 
 use a3_core::{BlowUp, Cause, Control};
-use egui::{RichText, Ui};
+use egui::Ui;
 
 use super::style::{ALARM, text};
 use super::words::digits;
@@ -9,12 +9,7 @@ use crate::session::Pane;
 
 /// Writes when the run blew up, which limit was passed, and which step would have held.
 pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
-    ui.label(
-        RichText::new(format!("It {lost}."))
-            .color(ALARM)
-            .size(14.5)
-            .strong(),
-    );
+    ui.label(ALARM.text(&format!("It {lost}.")).size(14.5).strong());
     let method = lost.method;
     let same = method == pane.simulation.method().title;
     let limit = pane.limit.limit().map(|limit| limit.step);

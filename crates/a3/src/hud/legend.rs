@@ -1,4 +1,4 @@
-//! The legend of colours and arrows.
+//! The legend of colours, arrows and springs.
 
 use a3_render::ramp;
 use egui::{
@@ -7,7 +7,7 @@ use egui::{
 
 use super::style::{FAINT, TEXT};
 use super::words::digits;
-use crate::show::Show;
+use crate::show::{self, Show};
 
 /// Width and height of the bar (points).
 const BAR: [f32; 2] = [200.0, 10.0];
@@ -15,10 +15,11 @@ const BAR: [f32; 2] = [200.0, 10.0];
 const PIECES: u32 = 35;
 
 /// Draws a bar of the colours with the ends of its scale and a mark at each tenth, as the surface
-/// has them, and says what arrows mean, where there are any.
+/// has them, and says what arrows mean and which springs are which, where there are any.
 pub fn legend(ui: &mut Ui, show: &Show) {
     let (colouring, field) = (&show.colouring, &show.field);
-    if let Some(quantity) = colouring.quantity {
+    let coloured = colouring.shown();
+    if let Some(quantity) = coloured {
         let width = BAR[0].min(ui.available_width());
         let (rect, _) = ui.allocate_exact_size(vec2(width, BAR[1] + 17.0), Sense::hover());
         let bar = Rect::from_min_size(rect.min, vec2(width, BAR[1]));
@@ -48,6 +49,25 @@ pub fn legend(ui: &mut Ui, show: &Show) {
         );
         ui.label(super::style::faint(words));
     }
+    if !show.kinds().is_empty() {
+        ui.horizontal_wrapped(|ui| springs(ui, show, coloured.is_none()));
+    }
+}
+
+/// Draws a piece of each kind of springs, in its width and, if that is seen, in its colour.
+fn springs(ui: &mut Ui, show: &Show, in_colours: bool) {
+    for kind in show.kinds().iter().rev() {
+        let ([r, g, b, _], width) = show::kind_look(*kind);
+        let (rect, _) = ui.allocate_exact_size(vec2(20.0, 14.0), Sense::hover());
+        let colour = if in_colours {
+            Color32::from(egui::Rgba::from_rgb(r, g, b))
+        } else {
+            FAINT
+        };
+        let stroke = Stroke::new(width, colour);
+        ui.painter().hline(rect.x_range(), rect.center().y, stroke);
+        ui.label(super::style::faint(show::kind_name(*kind)));
+    }
 }
 
 fn draw(ui: &Ui, bar: Rect) {
@@ -75,5 +95,42 @@ fn draw(ui: &Ui, bar: Rect) {
         let x = bar.left() + 0.1 * tenth as f32 * bar.width();
         let stroke = Stroke::new(1.0, TEXT.gamma_multiply(0.45));
         ui.painter().vline(x, bar.y_range(), stroke);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::hud::{pane, read};
+    use crate::session::Readings;
+    use crate::show::Quantity;
+    use a3_render::Style;
+
+    /// What is said of a scene that is drawn in a style and coloured by a quantity.
+    fn said(scene: &str, style: Style, quantity: Option<Quantity>) -> String {
+        let mut pane = pane(scene, "r", 1e-3);
+        pane.show.style = style;
+        pane.show.colouring.set_quantity(quantity);
+        pane.simulation.take_steps(5).unwrap();
+        pane.show.compose(&pane.simulation);
+        read(&[pane], &Readings::default(), [1280.0, 720.0]).0
+    }
+
+    #[test]
+    fn it_says_what_is_seen_and_no_more() {
+        let springs = said("mit", Style::Springs, None);
+        assert!(springs.contains("structural\nshear\nbend\n"), "{springs}");
+        let wires = said("mit", Style::Wireframe, Some(Quantity::Strain));
+        assert!(
+            !wires.contains("shear") && wires.contains("strain\n"),
+            "{wires}"
+        );
+        let none = said("mit", Style::Shaded, Some(Quantity::Contact));
+        assert!(!none.contains("contact\n"), "{none}");
+        let both = said("chain", Style::Springs, Some(Quantity::Speed));
+        assert!(
+            both.contains("structural\n") && both.contains("speed\n"),
+            "{both}"
+        );
+        assert!(!both.contains("shear"), "{both}");
     }
 }

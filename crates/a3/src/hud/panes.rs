@@ -128,7 +128,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
         Some(steps) => ("steps", text(format!("{},  {steps}", run.control()))),
         None => ("step", text(format!("{} s", run.control().value()))),
     };
-    let limit = words::limit(pane).map(|(words, colour)| ("limit", text(words).color(colour)));
+    let limit = words::limit(pane).map(|(words, mark)| ("limit", mark.text(&words)));
     let time = ("time", text(time(run)));
     let error = ("error", text(error(pane, readings)));
     let (name, value) = energy(pane);

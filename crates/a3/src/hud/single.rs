@@ -70,8 +70,8 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             if let Some(steps) = words::steps(simulation) {
                 row("steps", text(steps));
             }
-            if let Some((words, colour)) = words::limit(pane) {
-                row("limit", text(words).color(colour));
+            if let Some((words, mark)) = words::limit(pane) {
+                row("limit", mark.text(&words));
             }
             let (name, value) = words::energy(pane);
             row(name, text(value));

@@ -8,14 +8,37 @@ pub const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
 pub const FAINT: Color32 = Color32::from_rgb(92, 98, 114);
 /// Colour of sheets, a little transparent.
 pub const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
-/// Colour of a step well within its limit.
-pub const SAFE: Color32 = Color32::from_rgb(12, 106, 52);
-/// Colour of a step near its limit.
-pub const WARNING: Color32 = Color32::from_rgb(158, 84, 0);
-/// Colour of a step past its limit, and of a blow-up.
-pub const ALARM: Color32 = Color32::from_rgb(170, 22, 30);
+/// Mark of a step well within its limit.
+pub const SAFE: Mark = Mark {
+    symbol: '✔',
+    colour: Color32::from_rgb(12, 106, 52),
+};
+/// Mark of a step near its limit, and of energy from nowhere.
+pub const WARNING: Mark = Mark {
+    symbol: '⚠',
+    colour: Color32::from_rgb(158, 84, 0),
+};
+/// Mark of a step past its limit, and of a blow-up.
+pub const ALARM: Mark = Mark {
+    symbol: '✖',
+    colour: Color32::from_rgb(170, 22, 30),
+};
 /// Distance of sheets from the edge of the window (points).
 pub const MARGIN: f32 = 12.0;
+
+/// How good or bad something is: a colour, and a symbol for those who do not see it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mark {
+    symbol: char,
+    colour: Color32,
+}
+
+impl Mark {
+    /// Text of usual size, with this mark.
+    pub fn text(self, words: &str) -> RichText {
+        text(format!("{} {words}", self.symbol)).color(self.colour)
+    }
+}
 
 /// A column for sheets below one another. Clicks go through it.
 pub fn column(
@@ -60,4 +83,23 @@ pub fn text(words: impl Into<String>) -> RichText {
 /// A name or a remark.
 pub fn faint(words: impl Into<String>) -> RichText {
     RichText::new(words).color(FAINT).size(12.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_mark_has_its_own_symbol_and_the_font_has_them() {
+        let ctx = Context::default();
+        let mut output = ctx.run_ui(egui::RawInput::default(), |_| {});
+        output.textures_delta.set.clear();
+        output.textures_delta.free.clear();
+        let font = egui::FontId::proportional(13.5);
+        let has = |symbol| ctx.fonts_mut(|fonts| fonts.has_glyph(&font, symbol));
+        assert!(!has('\u{E000}'));
+        let symbols = [SAFE, WARNING, ALARM].map(|mark| mark.symbol);
+        assert!(symbols.iter().all(|symbol| has(*symbol)), "{symbols:?}");
+        assert!(symbols[0] != symbols[1] && symbols[1] != symbols[2] && symbols[0] != symbols[2]);
+    }
 }

@@ -2,9 +2,9 @@
 
 use a3_core::stability::tenfold_time;
 use a3_core::{Control, Simulation};
-use egui::{Color32, RichText, Sense, Ui, vec2};
+use egui::{RichText, Sense, Ui, vec2};
 
-use super::style::{ALARM, SAFE, WARNING, faint, text};
+use super::style::{ALARM, Mark, SAFE, WARNING, faint, text};
 use crate::session::{FilmProgress, Pane, Readings};
 
 /// A number with three digits, however small it is.
@@ -57,15 +57,16 @@ pub fn steps(simulation: &Simulation) -> Option<String> {
         .map(|_| format!("{} ms, {rejections} rejected", digits(1e3 * step)))
 }
 
-/// The largest step with which nothing grows and the share of it that the step is, in green while
-/// there is room, amber near it and where motion grows slowly, and red where it grows fast.
-pub fn limit(pane: &Pane) -> Option<(String, Color32)> {
+/// The largest step with which nothing grows and the share of it that the step is, marked as safe
+/// while there is room, with a warning near it and where motion grows slowly, and with an alarm
+/// where it grows fast.
+pub fn limit(pane: &Pane) -> Option<(String, Mark)> {
     let limit = pane.limit.limit()?;
     if limit.step.is_infinite() {
         return Some(("none: every step is stable".into(), SAFE));
     }
     let step = pane.simulation.step_size()?;
-    let colour = match step {
+    let mark = match step {
         fast if fast > limit.step => ALARM,
         near if near > 0.8 * limit.bounded => WARNING,
         _ => SAFE,
@@ -87,7 +88,7 @@ pub fn limit(pane: &Pane) -> Option<(String, Color32)> {
     } else {
         format!("{}, {tenfold}", bounded(limit.bounded))
     };
-    Some((words, colour))
+    Some((words, mark))
 }
 
 /// What the guard of surfaces did since the beginning, if it did anything: its impulses, and the
@@ -132,7 +133,7 @@ pub fn energy(pane: &Pane) -> (&'static str, String) {
 pub fn gained(simulation: &Simulation) -> Option<RichText> {
     let gain = simulation.gained()?;
     let words = format!("{} J from nowhere: shorten the step", digits(gain.energy));
-    Some(text(words).color(WARNING))
+    Some(WARNING.text(&words))
 }
 
 /// The rate of frames.
@@ -249,40 +250,41 @@ mod tests {
     }
 
     #[test]
-    fn the_limit_is_said_in_its_colour() {
+    fn the_limit_is_said_with_its_mark() {
         let said = |scene: &str, method: &str, value: f64| {
             let mut pane = pane(scene, method, value);
             pane.simulation.take_steps(1).unwrap();
             pane.read_state();
-            let colour = limit(&pane).unwrap().1;
+            let mark = limit(&pane).unwrap().1;
             let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
-            (words.replace('\n', " "), colour)
+            (words.replace('\n', " "), mark)
         };
-        for (step, colour) in [(0.01, SAFE), (0.032, WARNING), (0.04, ALARM)] {
+        for (step, mark) in [(0.01, SAFE), (0.032, WARNING), (0.04, ALARM)] {
             let (words, found) = said("mit", "r", step);
             // Within 1 % of 34.9 ms.
             let share = format!("35.2 ms (step at {:.0} %)", step / 0.0352 * 100.0);
+            let share = mark.text(&share).text().to_owned();
             assert!(words.contains(&share), "{share} in {words}");
-            assert_eq!(found, colour);
+            assert_eq!(found, mark);
         }
         assert!(
             said("mit", "i", 0.1)
                 .0
                 .contains("none: every step is stable")
         );
-        for (step, colour) in [(0.01, WARNING), (0.1, ALARM)] {
+        for (step, mark) in [(0.01, WARNING), (0.1, ALARM)] {
             let (words, found) = said("simple", "e", step);
             assert!(
                 words.contains("always grows, tenfold in 68 s at 67.9 ms"),
                 "{words}"
             );
-            assert_eq!(found, colour);
+            assert_eq!(found, mark);
         }
         // With drag, the cloth grows from 0.37 ms on, and slowly at first.
-        for (step, colour) in [(0.000_2, SAFE), (0.000_4, WARNING), (0.000_6, ALARM)] {
+        for (step, mark) in [(0.000_2, SAFE), (0.000_4, WARNING), (0.000_6, ALARM)] {
             let (words, found) = said("mit", "e", step);
             assert!(words.contains(" %), tenfold in 10 s at 0.4"), "{words}");
-            assert_eq!(found, colour);
+            assert_eq!(found, mark);
         }
         let (words, _) = said("cloth", "a", 1e-4);
         assert!(words.contains("tolerance 1e-4"), "{words}");

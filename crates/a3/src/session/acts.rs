@@ -1,7 +1,6 @@
 //! The actions of keys on a session.
 
 use a3_core::{Method, integrators};
-use a3_render::Style;
 
 use super::clock::KEY_BUDGET;
 use super::keys::Action;
@@ -57,14 +56,7 @@ impl Session {
                 self.do_to_all(|run| run.set_wind(on));
             }
             Action::Touch => self.toggle_touch(),
-            Action::Wireframe => {
-                for pane in &mut self.panes {
-                    pane.show.style = match pane.show.style {
-                        Style::Shaded => Style::Wireframe,
-                        Style::Wireframe => Style::Shaded,
-                    };
-                }
-            }
+            Action::Wireframe => self.next_style(),
             Action::Colour => self.next_colour(),
             Action::Arrows => self.next_arrows(),
             Action::Pause => {

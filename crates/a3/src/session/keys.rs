@@ -11,6 +11,7 @@ pub enum Action {
     Solvers,
     Reset,
     Swing,
+    /// Draw the surface, the wireframe, or all springs.
     Wireframe,
     /// Colour by the next quantity, or by none.
     Colour,
@@ -74,7 +75,7 @@ pub static KEYS: &[Binding] = &[
     bind(&["e"], Action::Solvers, "list of solvers"),
     bind(&["r"], Action::Reset, "reset"),
     bind(&["s"], Action::Swing, "swing the pins"),
-    bind(&["w"], Action::Wireframe, "wireframe or surface"),
+    bind(&["w"], Action::Wireframe, "surface, wires, springs"),
     bind(&["v"], Action::Colour, "colour by values"),
     bind(&["a"], Action::Arrows, "arrows"),
     bind(&["d"], Action::Wind, "wind"),

@@ -125,6 +125,14 @@ impl Pane {
         }
     }
 
+    /// Takes the distances of the particles from the reference (m); none where they are not known.
+    pub fn set_errors(&mut self, distances: Vec<f64>) {
+        let squares = distances.iter().map(|distance| distance * distance);
+        let mean = squares.sum::<f64>() / distances.len() as f64;
+        self.error = (!distances.is_empty()).then_some(mean.sqrt());
+        self.show.colouring.errors = distances;
+    }
+
     /// Takes energy, stretch, a sample and the stable step of the state as it is now.
     pub fn read_state(&mut self) {
         let energy = self.simulation.energy();
@@ -168,7 +176,7 @@ impl Pane {
     pub fn reset(&mut self) {
         self.simulation.reset();
         self.show.clear_trail();
-        self.error = None;
+        self.set_errors(vec![]);
         self.restart_cost();
     }
 
@@ -177,7 +185,8 @@ impl Pane {
         self.simulation = simulation;
         self.show.set_presentation(presentation);
         self.samples.clear();
-        (self.error, self.cost) = (None, None);
+        self.set_errors(vec![]);
+        self.cost = None;
         self.limit = LimitWatch::default();
         self.restart_cost();
     }

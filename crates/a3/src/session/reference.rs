@@ -130,7 +130,7 @@ impl ReferenceRun {
                 if !kept_up {
                     break;
                 }
-                pane.error = Some(distance(&pane.simulation, &self.simulation));
+                pane.set_errors(distances(&pane.simulation, &self.simulation));
             }
             self.late = if kept_up { 0 } else { self.late + 1 };
             if self.late > PATIENCE {
@@ -139,7 +139,7 @@ impl ReferenceRun {
         }
         for pane in panes {
             if self.stopped.is_some() || !pane.alive() {
-                pane.error = None;
+                pane.set_errors(vec![]);
             }
         }
     }
@@ -153,9 +153,12 @@ impl ReferenceRun {
     }
 }
 
-/// Root mean square of the distances between the particles of two runs (m).
-fn distance(a: &Simulation, b: &Simulation) -> f64 {
-    (a.positions() - b.positions()).norm() / (a.particles() as f64).sqrt()
+/// Distances between the particles of two runs (m).
+fn distances(a: &Simulation, b: &Simulation) -> Vec<f64> {
+    let particles = 0..a.particles();
+    particles
+        .map(|i| (a.position(i) - b.position(i)).norm())
+        .collect()
 }
 
 #[cfg(test)]

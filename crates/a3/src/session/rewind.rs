@@ -42,7 +42,7 @@ impl Session {
         let reference = self.reference.as_mut().map(ReferenceRun::any_run);
         self.timeline.show(panes.chain(reference));
         for pane in &mut self.panes {
-            pane.error = None;
+            pane.set_errors(vec![]);
             pane.restart_cost();
         }
         if let Some(reference) = &mut self.reference {

@@ -2,8 +2,10 @@
 
 use std::f32::consts::FRAC_PI_2;
 
+use a3_render::Style;
+
 use super::state::Session;
-use crate::show::{Arrows, Quantity};
+use crate::show::{Arrows, Quantity, Show};
 
 /// Yaw and pitch (rad) of the views of a key, and their names.
 const VIEWS: [([f32; 2], &str); 3] = [
@@ -46,10 +48,21 @@ impl Session {
         self.say(name);
     }
 
-    /// Colours by the next quantity that the scene has, and after the last by none.
+    /// Draws the runs in the next style in which they look different.
+    pub(super) fn next_style(&mut self) {
+        let styles = Show::styles(self.first());
+        let next = after(styles, Some(self.panes[0].show.style));
+        self.set_style(next.unwrap_or_default());
+    }
+
+    /// Whether the runs can be coloured by a quantity.
+    pub fn has(&self, quantity: Quantity) -> bool {
+        quantity.is_in(self.first(), self.panes.len() > 1)
+    }
+
+    /// Colours by the next quantity that the runs have, and after the last by none.
     pub(super) fn next_colour(&mut self) {
-        let run = self.first();
-        let has = |quantity: &Quantity| quantity.is_in(run);
+        let has = |quantity: &Quantity| self.has(*quantity);
         let all: Vec<_> = Quantity::ALL.into_iter().filter(has).collect();
         let next = after(&all, self.panes[0].show.colouring.quantity);
         self.set_colour(next);
@@ -70,6 +83,13 @@ impl Session {
             Some(arrows) => format!("arrows show the {}", arrows.name()),
             None => "no arrows".into(),
         });
+    }
+
+    /// Draws all panes in a style.
+    pub fn set_style(&mut self, style: Style) {
+        for pane in &mut self.panes {
+            pane.show.style = style;
+        }
     }
 
     /// Colours all panes by a quantity, or by none.
@@ -103,17 +123,17 @@ fn after<T: Copy + PartialEq>(all: &[T], now: Option<T>) -> Option<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Action, session};
+    use crate::session::{Action, compared, session};
 
     #[test]
     fn colours_and_arrows_come_round_as_far_as_the_scene_has_them() {
         let mut cloth = session(&["v", "0.005"]);
-        let colours = [0; 4].map(|_| {
+        let colours = [0; 5].map(|_| {
             cloth.act(Action::Colour, 0);
             cloth.panes[0].show.colouring.quantity
         });
-        assert_eq!(colours[..3], Quantity::ALL.map(Some));
-        assert_eq!(colours[3], None);
+        let [speed, strain, force, contact, _] = Quantity::ALL.map(Some);
+        assert_eq!(colours, [speed, strain, force, contact, None]);
         let mut circle = session(&["t", "0.01", "--scene", "simple"]);
         let colours = [0; 2].map(|_| {
             circle.act(Action::Colour, 0);
@@ -122,6 +142,51 @@ mod tests {
         assert_eq!(colours, [Some(Quantity::Speed), None]);
         circle.act(Action::Arrows, 0);
         assert_eq!(circle.panes[0].show.field.arrows, Some(Arrows::Velocity));
+    }
+
+    #[test]
+    fn contact_is_there_where_something_touches_and_errors_where_there_is_a_reference() {
+        let mut flag = session(&["v", "0.005", "--scene", "mit"]);
+        assert!(!flag.has(Quantity::Contact) && !flag.has(Quantity::Error));
+        flag.act(Action::Touch, 0);
+        assert!(flag.has(Quantity::Contact));
+        let mut two = compared(&["e:0.0005", "r:0.01", "--scene", "mit"], 0.0);
+        for _ in 0..4 {
+            two.act(Action::Colour, 0);
+        }
+        assert_eq!(two.panes[1].show.colouring.quantity, Some(Quantity::Error));
+        crate::session::frames(&mut two, 0.3);
+        for pane in &mut two.panes {
+            pane.show.compose(&pane.simulation);
+            let (end, error) = (pane.show.colouring.scale.end(), pane.error.unwrap());
+            // The largest error is above their root mean square, and below what all make together.
+            let most = error * (pane.simulation.particles() as f64).sqrt();
+            assert!(end >= error && end <= 1.25 * most, "{end} {error}");
+            assert_eq!(pane.show.colouring.shown(), Some(Quantity::Error));
+        }
+        two.act(Action::Reset, 0);
+        let pane = &mut two.panes[0];
+        pane.show.compose(&pane.simulation);
+        assert_eq!(pane.show.colouring.shown(), None);
+    }
+
+    #[test]
+    fn surface_wires_and_springs_come_round_as_far_as_they_differ() {
+        let styles = |scene: &str| {
+            let mut session = session(&["t", "0.001", "--scene", scene]);
+            [0; 3].map(|_| {
+                session.act(Action::Wireframe, 0);
+                session.panes[0].show.style
+            })
+        };
+        assert_eq!(
+            styles("mit"),
+            [Style::Wireframe, Style::Springs, Style::Shaded]
+        );
+        assert_eq!(
+            styles("drop"),
+            [Style::Wireframe, Style::Shaded, Style::Wireframe]
+        );
     }
 
     #[test]

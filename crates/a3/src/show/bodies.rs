@@ -1,12 +1,13 @@
 //! Rigid bodies as balls, solids and triangles.
 
 use a3_core::contact::{ClosedMesh, Shape};
-use a3_core::rigid::Part;
+use a3_core::rigid::{Body, Part};
 use a3_core::{Network, Pose, Vector3};
 use a3_render::{Ball, Line, Solid};
 
+use super::colouring::Colouring;
 use super::colours::BODIES;
-use super::obstacles::{draw_shape, great_circles};
+use super::obstacles::{Paint, draw_shape, great_circles};
 
 /// Each part of each body, with the body's number and where the part is in the state y.
 pub fn parts<'a>(
@@ -23,40 +24,48 @@ pub fn parts<'a>(
     })
 }
 
-/// Draws the bodies as they are in the state y.
+/// Draws the bodies as they are in the state y, in colours of their own or by values.
 pub fn draw(
     network: &Network,
     y: &[f64],
+    colouring: &Colouring,
     balls: &mut Vec<Ball>,
     solids: &mut Vec<Solid>,
     lines: &mut Vec<Line>,
 ) {
-    for (k, part, pose) in parts(network, y) {
-        draw_shape(
-            &part.shape,
-            &pose,
-            1.0,
-            BODIES[k % BODIES.len()],
-            balls,
-            solids,
-        );
+    let firsts = network.bodies().iter().flat_map(first_points);
+    for ((k, part, pose), (_, first)) in parts(network, y).zip(firsts) {
+        let points = first..first + part.shape.simplices().points.len();
+        let paint = Paint {
+            color: BODIES[k % BODIES.len()],
+            // None, unless each point has one.
+            values: points
+                .map(|i| colouring.share(i))
+                .collect::<Option<_>>()
+                .unwrap_or_default(),
+        };
+        draw_shape(&part.shape, &pose, 1.0, &paint, balls, solids);
         if let Shape::Sphere { radius } = part.shape {
             lines.extend(great_circles(radius, Vector3::y(), pose));
         }
     }
 }
 
+/// Parts of a body, with the numbers of the particles that are their first points.
+fn first_points(body: &Body) -> impl Iterator<Item = (&Part, usize)> {
+    let mut next = body.points().start;
+    body.parts().iter().map(move |part| {
+        let first = next;
+        next += part.shape.simplices().points.len();
+        (part, first)
+    })
+}
+
 /// Parts that are meshes, with the numbers of the particles that are their first points.
 pub fn meshes(network: &Network) -> impl Iterator<Item = (&ClosedMesh, usize)> {
-    network.bodies().iter().flat_map(|body| {
-        let mut next = body.points().start;
-        body.parts().iter().filter_map(move |part| {
-            let first = next;
-            next += part.shape.simplices().points.len();
-            match &part.shape {
-                Shape::Mesh(mesh) => Some((&**mesh, first)),
-                _ => None,
-            }
-        })
+    let parts = network.bodies().iter().flat_map(first_points);
+    parts.filter_map(|(part, first)| match &part.shape {
+        Shape::Mesh(mesh) => Some((&**mesh, first)),
+        _ => None,
     })
 }

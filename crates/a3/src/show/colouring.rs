@@ -4,12 +4,12 @@ use a3_core::Simulation;
 use a3_render::ramp;
 
 use super::quantity::Quantity;
-use crate::rounding::round_up;
+use crate::rounding::{MANY, round_up};
 
 /// The end of a scale shrinks where all that it measures is less than this share of it.
 const SHRINKS: f64 = 0.2;
 
-/// A scale from 0 to a number of one digit: that of the largest value lately, or a fixed one.
+/// A scale from 0 to a round number: that of the largest value lately, or a fixed one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scale {
     /// The end that was chosen, if one was.
@@ -25,7 +25,7 @@ impl Scale {
         if !fits && largest.is_finite() {
             // What is smaller is the rounding of nothing.
             self.fitting = if largest > 1e-9 {
-                round_up(largest)
+                round_up(largest, MANY)
             } else {
                 0.0
             };
@@ -54,6 +54,9 @@ pub struct Colouring {
     pub quantity: Option<Quantity>,
     /// Its scale.
     pub scale: Scale,
+    /// Distances of the particles from a reference (m), as far as there is one.
+    pub errors: Vec<f64>,
+    /// Value of each particle, NaN where it has none; empty where the run has none.
     values: Vec<f64>,
 }
 
@@ -73,23 +76,35 @@ impl Colouring {
     pub fn update(&mut self, simulation: &Simulation) {
         self.values = self
             .quantity
-            .map(|quantity| quantity.values(simulation))
+            .map(|quantity| quantity.values(simulation, &self.errors))
             .unwrap_or_default();
         let largest = self.values.iter().copied().fold(0.0, f64::max);
         self.scale.follow(largest);
     }
 
+    /// The quantity by which anything is coloured now.
+    pub fn shown(&self) -> Option<Quantity> {
+        self.quantity.filter(|_| !self.values.is_empty())
+    }
+
     /// Colours the points of the particles by their values.
     pub fn paint(&self, points: &mut [[f32; 4]]) {
-        for (point, value) in points.iter_mut().zip(&self.values) {
-            point[3] = a3_render::shaded_by(self.scale.share(*value));
+        for (i, point) in points.iter_mut().enumerate() {
+            if let Some(share) = self.share(i) {
+                point[3] = a3_render::shaded_by(share);
+            }
         }
+    }
+
+    /// The share of the scale at which the value of a particle is, if it has one.
+    pub fn share(&self, i: usize) -> Option<f32> {
+        let value = self.values.get(i).filter(|value| !value.is_nan())?;
+        Some(self.scale.share(*value))
     }
 
     /// The colour of a particle, or that which it has otherwise.
     pub fn of(&self, i: usize, otherwise: [f32; 4]) -> [f32; 4] {
-        let value = self.values.get(i);
-        value.map_or(otherwise, |value| ramp(self.scale.share(*value)))
+        self.share(i).map_or(otherwise, ramp)
     }
 }
 
@@ -104,7 +119,7 @@ mod tests {
             (scale.end(), scale.share(0.0), scale.share(1.0)),
             (0.0, 0.0, 1.0)
         );
-        for (largest, end) in [(1.3, 2.0), (1.9, 2.0), (0.5, 2.0), (0.39, 0.5), (7.0, 10.0)] {
+        for (largest, end) in [(1.3, 1.5), (1.4, 1.5), (0.4, 1.5), (0.29, 0.3), (8.5, 10.0)] {
             scale.follow(largest);
             assert_eq!(scale.end(), end, "{largest}");
         }

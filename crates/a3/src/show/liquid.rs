@@ -4,6 +4,7 @@
 //! *Constrained elastic surface nets*, 1998).
 
 use a3_core::Simulation;
+use a3_render::Corner;
 
 /// Radius of the bump around a particle, in spacings.
 const RADIUS: f64 = 1.8;
@@ -18,8 +19,8 @@ const MOST: f64 = 3e6;
 /// Surface of a fluid.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Liquid {
-    /// Position (m) and unit normal of each vertex.
-    pub corners: Vec<[[f32; 3]; 2]>,
+    /// Vertices.
+    pub corners: Vec<Corner>,
     /// Corners of each triangle, counterclockwise as seen from outside.
     pub triangles: Vec<[u32; 3]>,
 }
@@ -31,35 +32,41 @@ struct Field {
     origin: [f64; 3],
     cell: f64,
     values: Vec<f32>,
+    /// The same sum, each bump times the value that colours its particle; empty without colours.
+    coloured: Vec<f32>,
 }
 
 impl Liquid {
-    /// Surface of the fluid of a run as it is now; empty without a fluid.
-    pub fn of(simulation: &Simulation) -> Self {
+    /// Surface of the fluid of a run as it is now, coloured by the values from 0 to 1 that particles
+    /// have by their numbers, if all have one; empty without a fluid.
+    pub fn of(simulation: &Simulation, value: impl Fn(usize) -> Option<f32>) -> Self {
         let network = simulation.model().network();
         let Some((network, fluid)) = network.and_then(|n| Some((n, n.fluid()?))) else {
             return Self::default();
         };
         let free = fluid.particles().iter().map(|i| *i as usize);
         let free = free.filter(|i| !network.is_pinned(*i));
-        let places: Vec<[f64; 3]> = free
-            .map(|i| simulation.position(i).into())
-            .filter(|x: &[f64; 3]| x.iter().all(|x| x.is_finite()))
+        let is_placed = |i: &usize| simulation.position(*i).iter().all(|x| x.is_finite());
+        let free: Vec<_> = free.filter(is_placed).collect();
+        let places: Vec<_> = free
+            .iter()
+            .map(|i| simulation.position(*i).into())
             .collect();
-        Self::around(&places, fluid.law().spacing)
+        let values: Option<Vec<f32>> = free.into_iter().map(value).collect();
+        Self::around(&places, fluid.law().spacing, values.as_deref())
     }
 
-    /// Surface around particles at these places (m) at that spacing (m).
-    fn around(places: &[[f64; 3]], spacing: f64) -> Self {
+    /// Surface around particles at these places (m) at that spacing (m), with these values.
+    fn around(places: &[[f64; 3]], spacing: f64, values: Option<&[f32]>) -> Self {
         if places.is_empty() {
             return Self::default();
         }
-        Field::around(places, spacing).surface()
+        Field::around(places, spacing, values).surface()
     }
 }
 
 impl Field {
-    fn around(places: &[[f64; 3]], spacing: f64) -> Self {
+    fn around(places: &[[f64; 3]], spacing: f64, values: Option<&[f32]>) -> Self {
         let (mut low, mut high) = (places[0], places[0]);
         for place in places {
             for axis in 0..3 {
@@ -83,9 +90,10 @@ impl Field {
             origin: low.map(|low| low - radius - cell),
             cell,
             values: vec![0.0; counts.iter().product()],
+            coloured: vec![0.0; values.map_or(0, |_| counts.iter().product())],
         };
-        for place in places {
-            field.add(place, radius);
+        for (k, place) in places.iter().enumerate() {
+            field.add(place, radius, values.map_or(0.0, |values| values[k]));
         }
         field
     }
@@ -94,8 +102,8 @@ impl Field {
         (k * self.counts[1] + j) * self.counts[0] + i
     }
 
-    /// Adds the bump (1 - r^2 / radius^2)^3 around a place.
-    fn add(&mut self, place: &[f64; 3], radius: f64) {
+    /// Adds the bump (1 - r^2 / radius^2)^3 around a place, with a value that colours it.
+    fn add(&mut self, place: &[f64; 3], radius: f64, value: f32) {
         let at: [f64; 3] = std::array::from_fn(|a| (place[a] - self.origin[a]) / self.cell);
         let reach = radius / self.cell;
         let range = |axis: usize| {
@@ -110,7 +118,11 @@ impl Field {
                     let d = [i as f64 - at[0], j as f64 - at[1], k as f64 - at[2]];
                     let square = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / (reach * reach);
                     let node = self.index([i, j, k]);
-                    self.values[node] += (1.0 - square).max(0.0).powi(3) as f32;
+                    let bump = (1.0 - square).max(0.0).powi(3) as f32;
+                    self.values[node] += bump;
+                    if let Some(sum) = self.coloured.get_mut(node) {
+                        *sum += bump * value;
+                    }
                 }
             }
         }
@@ -118,11 +130,11 @@ impl Field {
 
     /// The vertex in a cell: the mean of the points at which the surface cuts its edges, with the
     /// direction in which the field falls; `None` if the surface does not pass through.
-    fn vertex(&self, cell: [usize; 3]) -> Option<[[f32; 3]; 2]> {
-        let values: [f32; 8] = std::array::from_fn(|corner| {
-            let node = [0, 1, 2].map(|axis| cell[axis] + (corner >> axis & 1));
-            self.values[self.index(node)] - LEVEL
+    fn vertex(&self, cell: [usize; 3]) -> Option<Corner> {
+        let nodes: [usize; 8] = std::array::from_fn(|corner| {
+            self.index([0, 1, 2].map(|axis| cell[axis] + (corner >> axis & 1)))
         });
+        let values = nodes.map(|node| self.values[node] - LEVEL);
         let inside = values.iter().filter(|value| **value > 0.0).count();
         if inside == 0 || inside == 8 {
             return None;
@@ -149,7 +161,20 @@ impl Field {
             let share = cell[axis] as f64 + f64::from(sum[axis] / cuts);
             (self.origin[axis] + self.cell * share) as f32
         });
-        Some([place, normal.map(|n| n / length)])
+        Some(Corner {
+            place,
+            value: self.colour(nodes),
+            normal: normal.map(|n| n / length),
+        })
+    }
+
+    /// The mean of the values around some nodes, weighted by the bumps; -1 without colours.
+    fn colour(&self, nodes: [usize; 8]) -> f32 {
+        if self.coloured.is_empty() {
+            return -1.0;
+        }
+        let sum = |of: &[f32]| nodes.iter().map(|node| of[*node]).sum::<f32>();
+        sum(&self.coloured) / sum(&self.values)
     }
 
     fn surface(&self) -> Liquid {
@@ -224,7 +249,7 @@ mod tests {
     #[test]
     fn the_surface_of_a_ball_is_a_sphere() {
         let spacing = 0.1;
-        let liquid = Liquid::around(&ball(1.0, spacing), spacing);
+        let liquid = Liquid::around(&ball(1.0, spacing), spacing, None);
         let mut edges: Vec<_> = liquid
             .triangles
             .iter()
@@ -235,7 +260,13 @@ mod tests {
         for [a, b] in &edges {
             assert!(edges.binary_search(&[*b, *a]).is_ok(), "an open edge");
         }
-        for [place, normal] in &liquid.corners {
+        for Corner {
+            place,
+            value,
+            normal,
+        } in &liquid.corners
+        {
+            assert_eq!(*value, -1.0);
             let radius = place.iter().map(|x| x * x).sum::<f32>().sqrt();
             assert!((1.0..1.13).contains(&radius), "{radius}");
             let along: f32 = place.iter().zip(normal).map(|(x, n)| x * n / radius).sum();
@@ -246,7 +277,7 @@ mod tests {
             .triangles
             .iter()
             .map(|t| {
-                let [a, b, c] = t.map(|i| liquid.corners[i as usize][0].map(f64::from));
+                let [a, b, c] = t.map(|i| liquid.corners[i as usize].place.map(f64::from));
                 let cross = [0, 1, 2]
                     .map(|k| b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3]);
                 (0..3).map(|k| a[k] * cross[k]).sum::<f64>() / 6.0
@@ -257,16 +288,30 @@ mod tests {
 
     #[test]
     fn drops_that_flew_far_apart_have_a_surface_too() {
-        let liquid = Liquid::around(&[[0.0; 3], [1e6, 2e6, -3e6], [1e6, 2e6, -3e6]], 0.01);
+        let places = [[0.0; 3], [1e6, 2e6, -3e6], [1e6, 2e6, -3e6]];
+        let liquid = Liquid::around(&places, 0.01, None);
         assert!(liquid.triangles.len() >= 16);
-        assert!(
-            liquid
-                .corners
-                .as_flattened()
-                .as_flattened()
-                .iter()
-                .all(|x| x.is_finite())
-        );
-        assert_eq!(Liquid::around(&[], 1.0), Liquid::default());
+        let mut corners = liquid.corners.iter();
+        assert!(corners.all(|corner| {
+            let mut numbers = corner.place.iter().chain(&corner.normal);
+            numbers.all(|x| x.is_finite())
+        }));
+        assert_eq!(Liquid::around(&[], 1.0, None), Liquid::default());
+    }
+
+    /// Values that grow along x are those of the vertices, near the ends too.
+    #[test]
+    fn the_surface_has_the_values_of_the_particles_below_it() {
+        let places = ball(1.0, 0.1);
+        let values: Vec<_> = places.iter().map(|x| (0.5 + 0.4 * x[0]) as f32).collect();
+        let liquid = Liquid::around(&places, 0.1, Some(&values));
+        for corner in &liquid.corners {
+            let exact = 0.5 + 0.4 * corner.place[0];
+            assert!(
+                (corner.value - exact).abs() < 0.06,
+                "{} {exact}",
+                corner.value
+            );
+        }
     }
 }

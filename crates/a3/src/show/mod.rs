@@ -22,6 +22,6 @@ pub use obstacles::drawn_radius;
 pub use parts::whole_triangles;
 pub use picture::{Manner, Show};
 pub use quantity::{Arrows, Quantity};
-pub use springs::{kind_name, list_springs_of, springs_of};
+pub use springs::{has_springs, kind_look, kind_name, list_springs_of, springs_of};
 pub use vectors::to_f32;
 pub use view::camera;

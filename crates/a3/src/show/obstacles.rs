@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use a3_core::contact::{ClosedMesh, Obstacle, Shape};
 use a3_core::{Network, Pose, Vector3};
-use a3_render::{Ball, Line, STEEL_LOOK, Solid};
+use a3_render::{Ball, Line, STEEL_LOOK, Solid, ramp};
 
 use super::colours::{INK, STEEL};
 use super::vectors::{perpendicular, to_f32};
@@ -35,10 +35,33 @@ pub fn draw(
             floor = Some(pose.place.position.y as f32);
         } else {
             let share = drawn_radius(network);
-            draw_shape(&obstacle.shape, &pose, share, STEEL, balls, solids);
+            let paint = Paint::plain(STEEL);
+            draw_shape(&obstacle.shape, &pose, share, &paint, balls, solids);
         }
     }
     floor
+}
+
+/// Colour of a shape, or values from 0 to 1 that colour each of its points.
+pub struct Paint {
+    pub color: [f32; 4],
+    /// Empty for the colour.
+    pub values: Vec<f32>,
+}
+
+impl Paint {
+    /// A colour alone.
+    pub fn plain(color: [f32; 4]) -> Self {
+        Self {
+            color,
+            values: vec![],
+        }
+    }
+
+    /// The value at point k of the shape, or -1 for the colour.
+    fn at(&self, k: usize) -> f32 {
+        self.values.get(k).copied().unwrap_or(-1.0)
+    }
 }
 
 /// Draws a shape at a place, round ones with that share of their radius. Meshes are triangles of
@@ -47,7 +70,7 @@ pub fn draw_shape(
     shape: &Shape,
     pose: &Pose,
     share: f32,
-    color: [f32; 4],
+    paint: &Paint,
     balls: &mut Vec<Ball>,
     solids: &mut Vec<Solid>,
 ) {
@@ -57,7 +80,7 @@ pub fn draw_shape(
         &Shape::Sphere { radius } => balls.push(Ball {
             center: to_f32(place),
             radius: inside(radius),
-            color,
+            color: paint.values.first().map_or(paint.color, |v| ramp(*v)),
         }),
         &Shape::Box { half_extents, axes } => {
             let least = half_extents.min();
@@ -68,7 +91,8 @@ pub fn draw_shape(
                 radius: round as f32,
                 axes: [0, 1, 2]
                     .map(|k| axis(pose.outwards(axes[k]), half_extents[k] - gap - round)),
-                color,
+                color: paint.color,
+                values: [0, 4].map(|low| [0, 1, 2, 3].map(|k| paint.at(low + k))),
             });
         }
         &Shape::Capsule {
@@ -86,7 +110,8 @@ pub fn draw_shape(
                     axis(y, 0.5 * along.norm()),
                     axis(side.cross(&y), 0.0),
                 ],
-                color,
+                color: paint.color,
+                values: [[0, 0, 1, 1].map(|end| paint.at(end)); 2],
             });
         }
         Shape::Mesh(_) | Shape::Floor => {}

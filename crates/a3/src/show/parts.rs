@@ -4,9 +4,11 @@
 use std::sync::Arc;
 
 use a3_core::{Network, Simulation, Spring, SpringKind};
-use a3_render::{STEEL_LOOK, Topology};
+use a3_render::{STEEL_LOOK, Spring as Drawn, Topology};
 use a3_scenes::{Presentation, Surface};
 
+use super::colours::INK;
+use super::springs::{KINDS, kind_look};
 use super::{bodies, obstacles};
 
 /// Parts that change only with the scene or when something tears.
@@ -21,6 +23,8 @@ pub struct Parts {
     loose: Vec<Spring>,
     /// Particles that are drawn one by one.
     single: Vec<usize>,
+    /// Kinds of springs that there are.
+    kinds: Vec<SpringKind>,
 }
 
 impl Parts {
@@ -35,6 +39,8 @@ impl Parts {
             self.looks = looks(surface);
         }
         (self.presentation, self.tears) = (presentation.clone(), tears);
+        let is_there = |kind: &SpringKind| springs(simulation).any(|s| s.kind == *kind);
+        self.kinds = KINDS.into_iter().filter(is_there).collect();
         let springs = springs(simulation);
         self.loose = springs.filter(|s| body(surface, s).is_none()).collect();
         let network = simulation.model().network();
@@ -51,6 +57,11 @@ impl Parts {
     /// Particles without a surface that belong to no rigid body.
     pub fn single(&self) -> &[usize] {
         &self.single
+    }
+
+    /// Kinds of springs that there are, those that are drawn over others last.
+    pub fn kinds(&self) -> &[SpringKind] {
+        &self.kinds
     }
 
     /// Gives each particle of a body its look.
@@ -99,7 +110,7 @@ fn body(surface: &Surface, spring: &Spring) -> Option<usize> {
 /// All springs.
 fn springs(simulation: &Simulation) -> impl Iterator<Item = Spring> {
     let network = simulation.model().network();
-    network.into_iter().flat_map(Network::springs)
+    network.into_iter().flat_map(Network::all_springs)
 }
 
 /// Triangles and wires, which stay the same from frame to frame until something tears. Parts
@@ -112,7 +123,9 @@ pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
             .filter(|s| s.kind == SpringKind::Structural && body(surface, s).is_some())
             .map(|s| [s.i as u32, s.j as u32])
             .collect(),
+        springs: vec![],
     };
+    let structural = topology.wires.len();
     let network = simulation.model().network();
     for (mesh, first) in network.into_iter().flat_map(bodies::meshes) {
         let of = |i: &u32| first as u32 + i;
@@ -131,7 +144,37 @@ pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
         topology.wires.extend(edges.map(|e| e.map(|i| first + i)));
         topology.points += mesh.points().len();
     }
+    add_springs(&mut topology, structural, surface, simulation);
     topology
+}
+
+/// Adds the springs of bodies with a surface, each kind after those that it is drawn over, and the
+/// wires after the first so many, which are no springs.
+fn add_springs(
+    topology: &mut Topology,
+    structural: usize,
+    surface: &Surface,
+    simulation: &Simulation,
+) {
+    let edges = topology.wires[structural..].iter();
+    topology.springs = edges
+        .map(|ends| drawn(*ends, (INK, 1.35)))
+        .chain(KINDS.into_iter().flat_map(|kind| {
+            let of_kind = move |s: &Spring| s.kind == kind && body(surface, s).is_some();
+            springs(simulation)
+                .filter(of_kind)
+                .map(move |s| drawn([s.i as u32, s.j as u32], kind_look(kind)))
+        }))
+        .collect();
+}
+
+/// A spring or an edge of that colour and width (points).
+fn drawn(ends: [u32; 2], ([r, g, b, _], width): ([f32; 4], f32)) -> Drawn {
+    Drawn {
+        ends,
+        width,
+        color: [r, g, b],
+    }
 }
 
 /// The triangles of the surface that are not torn.
@@ -163,6 +206,38 @@ mod tests {
             parts.paint(&mut points);
             assert!(points.iter().all(|p| p[3] == look), "{scene}");
             assert_eq!(parts.loose().len(), loose, "{scene}");
+        }
+    }
+
+    #[test]
+    fn all_springs_are_there_by_kind() {
+        for (scene, kinds) in [
+            ("cloth", [720, 722, 760].as_slice()),
+            ("jelly", &[]),
+            ("cantilever", &[0, 0, 0]),
+        ] {
+            let (simulation, presentation) = run(scene);
+            let Topology { springs, wires, .. } = topology(&presentation.surface, &simulation);
+            let count = |kind: SpringKind| {
+                let ([r, g, b, _], width) = kind_look(kind);
+                let look = |s: &&Drawn| s.color == [r, g, b] && s.width == width;
+                springs.iter().filter(look).count()
+            };
+            let network = simulation.model().network().unwrap();
+            let counts = KINDS.map(count);
+            assert_eq!(counts.iter().sum::<usize>(), network.all_springs().count());
+            assert_eq!(
+                counts[2],
+                wires.len(),
+                "{scene}: structural springs are the wires"
+            );
+            if !kinds.is_empty() {
+                assert_eq!(counts, kinds, "{scene}");
+            }
+            assert!(
+                springs.is_sorted_by_key(|s| s.width != 2.0 * 1.6),
+                "{scene}"
+            );
         }
     }
 

@@ -9,11 +9,11 @@ use a3_scenes::{Presentation, TANK_LAYERS};
 use super::arrows::Field;
 use super::coil::coil;
 use super::colouring::{Colouring, Scale};
-use super::colours::{ALARM, AMBER, BLUE, INK, RED, STEEL, TEAL, VIOLET};
+use super::colours::{ALARM, AMBER, BLUE, INK, RED, STEEL, TEAL};
 use super::liquid::Liquid;
 use super::parts::{self, Parts};
 use super::quantity::{Arrows, Quantity};
-use super::springs::springs_of;
+use super::springs::{KINDS, has_springs, kind_look, springs_of};
 use super::trail::Trail;
 use super::vectors::to_f32;
 use super::{bodies, obstacles, view, wires};
@@ -28,8 +28,8 @@ const STRONG: f64 = 0.5;
 /// The manner in which a run is shown at first.
 #[derive(Clone, Copy, Default)]
 pub struct Manner {
-    /// Whether wires are drawn instead of the surface.
-    pub wireframe: bool,
+    /// Surface, wires or springs.
+    pub style: Style,
     /// The particle whose springs are highlighted.
     pub springs_of: Option<usize>,
     /// What particles are coloured by.
@@ -43,7 +43,7 @@ pub struct Manner {
 pub struct Show {
     /// What of the scene is shown, and from where.
     presentation: Arc<Presentation>,
-    /// Surface or wires.
+    /// Surface, wires or springs.
     pub style: Style,
     /// The particle whose springs are highlighted.
     pub springs_of: Option<usize>,
@@ -75,11 +75,7 @@ impl Show {
         field.set_arrows(manner.arrows);
         Self {
             presentation,
-            style: if manner.wireframe {
-                Style::Wireframe
-            } else {
-                Style::Shaded
-            },
+            style: manner.style,
             springs_of: manner.springs_of,
             colouring,
             field,
@@ -115,6 +111,23 @@ impl Show {
         let network = simulation.model().network();
         let flows = network.is_some_and(|network| network.fluid().is_some());
         flows || !self.presentation.surface.triangles.is_empty()
+    }
+
+    /// The styles in which the scene looks different, in the order of their key.
+    pub fn styles(simulation: &Simulation) -> &'static [Style] {
+        if has_springs(simulation) {
+            &[Style::Shaded, Style::Wireframe, Style::Springs]
+        } else {
+            &[Style::Shaded, Style::Wireframe]
+        }
+    }
+
+    /// The kinds of springs that are drawn in their colours, if they are.
+    pub fn kinds(&self) -> &[SpringKind] {
+        match self.style {
+            Style::Springs => self.parts.kinds(),
+            Style::Shaded | Style::Wireframe => &[],
+        }
     }
 
     /// Triangles and wires, which stay the same from frame to frame until something tears.
@@ -167,8 +180,8 @@ impl Show {
         self.draw_parts(simulation);
         self.draw_tanks(simulation);
         self.liquid = match self.style {
-            Style::Shaded => Liquid::of(simulation),
-            Style::Wireframe => Liquid::default(),
+            Style::Shaded => Liquid::of(simulation, |i| self.colouring.share(i)),
+            Style::Wireframe | Style::Springs => Liquid::default(),
         };
         if let Some(network) = simulation.model().network() {
             let time = simulation.time();
@@ -176,7 +189,8 @@ impl Show {
             obstacles::add_points(network, time, &mut self.points);
             self.lines.extend(obstacles::meridians(network, time));
             let (balls, solids) = (&mut self.balls, &mut self.solids);
-            bodies::draw(network, simulation.state(), balls, solids, &mut self.lines);
+            let (state, lines) = (simulation.state(), &mut self.lines);
+            bodies::draw(network, state, &self.colouring, balls, solids, lines);
         }
         self.field.draw(simulation, &self.points, &mut self.lines);
         if let Some(i) = self.springs_of {
@@ -192,7 +206,11 @@ impl Show {
     pub fn picture(&self, camera: Camera, scale: f32) -> Picture<'_> {
         Picture {
             camera,
-            style: self.style,
+            // Without springs there would be nothing.
+            style: match self.style {
+                Style::Springs if self.parts.kinds().is_empty() => Style::Wireframe,
+                style => style,
+            },
             scale,
             points: &self.points,
             balls: &self.balls,
@@ -235,10 +253,14 @@ impl Show {
         let many = self.parts.loose().len().max(self.parts.single().len()) > MANY;
         for spring in self.parts.loose() {
             let ends = [spring.i, spring.j];
+            let (own, width) = match self.style {
+                Style::Springs => kind_look(spring.kind),
+                Style::Shaded | Style::Wireframe => (STEEL, 1.6),
+            };
             if many {
                 let [a, b] = ends.map(|i| self.at(i));
-                let color = self.colouring.of(spring.i, STEEL);
-                self.lines.push(Line::new(a, b, 1.6, color));
+                let color = self.colouring.of(spring.i, own);
+                self.lines.push(Line::new(a, b, width, color));
                 continue;
             }
             let [a, b] = ends.map(|i| simulation.position(i));
@@ -246,8 +268,9 @@ impl Show {
             let half = points.len() / 2;
             for (k, part) in points.windows(2).enumerate() {
                 let end = if k < half { spring.i } else { spring.j };
-                let color = self.colouring.of(end, STEEL);
-                self.lines.push(Line::new(part[0], part[1], 2.4, color));
+                let color = self.colouring.of(end, own);
+                let width = 1.5 * width;
+                self.lines.push(Line::new(part[0], part[1], width, color));
             }
         }
         if let Some(network) = network {
@@ -281,7 +304,7 @@ impl Show {
     fn draw_drop(&mut self, simulation: &Simulation, i: usize) {
         let fluid = simulation.model().network().and_then(Network::fluid);
         let in_wall = self.presentation.tanks.iter().any(|tank| tank.contains(&i));
-        if let (Some(fluid), Style::Wireframe, false) = (fluid, self.style, in_wall) {
+        if let Some(fluid) = fluid.filter(|_| self.style != Style::Shaded && !in_wall) {
             let color = self.colouring.of(i, BLUE);
             self.ball(i, 0.3 * fluid.law().spacing as f32, color);
         }
@@ -347,21 +370,12 @@ impl Show {
 
     /// Highlights the springs of particle i.
     fn draw_springs_of(&mut self, simulation: &Simulation, i: usize) {
-        // Bend springs lie over structural ones: the wide lines come first.
         let mut springs = springs_of(simulation, i);
-        springs.sort_by_key(|spring| spring.kind != SpringKind::Bend);
+        springs.sort_by_key(|spring| KINDS.iter().position(|kind| *kind == spring.kind));
         for spring in springs {
-            let (width, color) = match spring.kind {
-                SpringKind::Structural => (4.0, AMBER),
-                SpringKind::Shear => (4.0, TEAL),
-                SpringKind::Bend => (8.0, VIOLET),
-            };
-            self.lines.push(Line::new(
-                self.at(spring.i),
-                self.at(spring.j),
-                width,
-                color,
-            ));
+            let (color, width) = kind_look(spring.kind);
+            let [a, b] = [spring.i, spring.j].map(|end| self.at(end));
+            self.lines.push(Line::new(a, b, 2.5 * width, color));
             let other = spring.i + spring.j - i;
             self.ball(other, 0.035, color);
         }

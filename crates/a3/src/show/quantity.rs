@@ -12,6 +12,10 @@ pub enum Quantity {
     Strain,
     /// Sum of the forces on a particle that is free (N)
     Force,
+    /// Force by which obstacles and surfaces touch a particle (N)
+    Contact,
+    /// Distance from the reference of a comparison (m)
+    Error,
 }
 
 /// A vector of each particle.
@@ -25,7 +29,13 @@ pub enum Arrows {
 
 impl Quantity {
     /// All of them, in the order of their key.
-    pub const ALL: [Self; 3] = [Self::Speed, Self::Strain, Self::Force];
+    pub const ALL: [Self; 5] = [
+        Self::Speed,
+        Self::Strain,
+        Self::Force,
+        Self::Contact,
+        Self::Error,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -33,6 +43,8 @@ impl Quantity {
             Self::Speed => "speed",
             Self::Strain => "strain",
             Self::Force => "force",
+            Self::Contact => "contact",
+            Self::Error => "error",
         }
     }
 
@@ -41,27 +53,31 @@ impl Quantity {
         match self {
             Self::Speed => " m/s",
             Self::Strain => "",
-            Self::Force => " N",
+            Self::Force | Self::Contact => " N",
+            Self::Error => " m",
         }
     }
 
-    /// Whether the scene has it.
-    pub fn is_in(self, simulation: &Simulation) -> bool {
+    /// Whether a run has it, which is one of several with a reference or not.
+    pub fn is_in(self, simulation: &Simulation, compared: bool) -> bool {
         let network = simulation.model().network();
         match self {
             Self::Speed => true,
             Self::Strain => network.is_some_and(Network::is_elastic),
             Self::Force => network.is_some(),
+            Self::Contact => network.is_some_and(Network::can_touch),
+            Self::Error => compared,
         }
     }
 
-    /// Its value at each particle, or nothing where the scene does not have it.
-    pub fn values(self, simulation: &Simulation) -> Vec<f64> {
+    /// Its value at each particle, NaN for one that has none; or nothing where the run does not
+    /// have it. Errors are known to the caller.
+    pub fn values(self, simulation: &Simulation, errors: &[f64]) -> Vec<f64> {
         let network = simulation.model().network();
         match self {
             Self::Speed => lengths(&simulation.velocities()),
             Self::Strain => network
-                .filter(|_| self.is_in(simulation))
+                .filter(|network| network.is_elastic())
                 .map(|network| network.strains(network.halves(simulation.state()).0))
                 .unwrap_or_default(),
             Self::Force => {
@@ -70,8 +86,18 @@ impl Quantity {
                 for (i, _) in network.into_iter().flat_map(Network::pins) {
                     forces[i] = 0.0;
                 }
+                // The forces on a body's points are gathered at its centre.
+                for body in network.into_iter().flat_map(Network::bodies) {
+                    let on_body = forces[body.center()];
+                    forces[body.points()].fill(on_body);
+                }
                 forces
             }
+            Self::Contact => {
+                let forces = simulation.contact_forces();
+                forces.map(|forces| lengths(&forces)).unwrap_or_default()
+            }
+            Self::Error => errors.to_vec(),
         }
     }
 }
@@ -144,14 +170,14 @@ mod tests {
         let mut run = run("chain");
         run.take_steps(100).unwrap();
         let (n, v) = (run.particles(), run.velocities());
-        let speeds = Quantity::Speed.values(&run);
+        let speeds = Quantity::Speed.values(&run, &[]);
         assert_eq!(speeds.len(), n);
         let [vx, vy, vz] = [v[2], v[n + 2], v[2 * n + 2]];
         assert!((speeds[2] - vx.hypot(vy).hypot(vz)).abs() < 1e-14);
         let spring = run.model().network().unwrap().springs().next().unwrap();
         let length = (run.position(spring.i) - run.position(spring.j)).norm();
         let strain = (length / spring.law.rest_length - 1.0).abs();
-        let strains = Quantity::Strain.values(&run);
+        let strains = Quantity::Strain.values(&run, &[]);
         assert!(strains[spring.i].max(strains[spring.j]) >= strain && strain > 0.0);
         // The force on the last particle is its mass times its acceleration.
         let forces = Arrows::Force.vectors(&run);
@@ -167,18 +193,58 @@ mod tests {
     #[test]
     fn a_circle_has_a_speed_alone_and_a_solid_has_strain() {
         let circle = run("simple");
-        assert!((Quantity::Speed.values(&circle)[0] - 1.0).abs() < 1e-12);
+        assert!((Quantity::Speed.values(&circle, &[])[0] - 1.0).abs() < 1e-12);
         for quantity in Quantity::ALL {
             assert_eq!(
-                quantity.values(&circle).is_empty(),
-                !quantity.is_in(&circle)
+                quantity.values(&circle, &[]).is_empty(),
+                !quantity.is_in(&circle, false)
             );
         }
-        assert!(!Quantity::Strain.is_in(&circle) && !Quantity::Force.is_in(&circle));
+        assert_eq!(Quantity::Error.values(&circle, &[0.5]), [0.5]);
+        assert!(Quantity::Error.is_in(&circle, true));
         assert!(Arrows::Force.vectors(&circle).is_empty() && !Arrows::Force.is_in(&circle));
         let mut bar = run("cantilever");
-        assert!(Quantity::Strain.values(&bar).iter().all(|s| *s < 1e-9));
+        let strains = |bar: &Simulation| Quantity::Strain.values(bar, &[]);
+        assert!(strains(&bar).iter().all(|s| *s < 1e-9));
         bar.take_steps(50).unwrap();
-        assert!(Quantity::Strain.values(&bar).iter().any(|s| *s > 1e-4));
+        assert!(strains(&bar).iter().any(|s| *s > 1e-4));
+    }
+
+    #[test]
+    fn what_lies_on_a_sphere_is_touched_where_it_lies() {
+        let mut run = run("mit-sphere");
+        assert!(Quantity::Contact.is_in(&run, false));
+        run.take_steps(1000).unwrap();
+        let values = Quantity::Contact.values(&run, &[]);
+        let obstacle = &run.model().network().unwrap().obstacles()[0];
+        let middle = obstacle.at(run.time()).place.position;
+        let distances = (0..run.particles()).map(|i| (run.position(i) - middle).norm());
+        let distances: Vec<_> = distances.collect();
+        let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut touched = 0;
+        for (value, distance) in values.iter().zip(distances) {
+            assert!(
+                *value == 0.0 || distance < nearest + 1e-6,
+                "{value} N, {distance} m"
+            );
+            touched += usize::from(*value > 0.0);
+        }
+        assert!(touched > 5, "{touched}");
+    }
+
+    #[test]
+    fn a_body_is_one_for_forces_and_has_no_strain() {
+        let mut run = run("ball-on-cloth");
+        run.take_steps(20).unwrap();
+        let values = |quantity: Quantity| quantity.values(&run, &[]);
+        let network = run.model().network().unwrap();
+        for body in network.bodies() {
+            let weight = 9.81 * network.masses()[body.center()];
+            for i in body.points() {
+                assert!((values(Quantity::Force)[i] / weight - 1.0).abs() < 0.1);
+                assert!(values(Quantity::Strain)[i].is_nan());
+                assert!((values(Quantity::Speed)[i] - 0.04 * 9.81).abs() < 0.01);
+            }
+        }
     }
 }

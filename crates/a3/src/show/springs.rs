@@ -1,6 +1,29 @@
-//! The springs of a particle, in words.
+//! Springs: the look of each kind, and those of a particle in words.
 
 use a3_core::{Simulation, Spring, SpringKind, SpringLaw};
+
+use super::colours::{AMBER, TEAL, VIOLET};
+
+/// All kinds. In a grid, bend springs lie over structural ones: wide lines come first.
+pub const KINDS: [SpringKind; 3] = [SpringKind::Bend, SpringKind::Shear, SpringKind::Structural];
+
+/// Width (points) of a spring among all of them.
+const WIDTH: f32 = 1.6;
+
+/// Whether a scene has springs.
+pub fn has_springs(simulation: &Simulation) -> bool {
+    let network = simulation.model().network();
+    network.is_some_and(|network| network.all_springs().next().is_some())
+}
+
+/// The colour of a kind of springs, and the width of one among all springs (points).
+pub fn kind_look(kind: SpringKind) -> ([f32; 4], f32) {
+    match kind {
+        SpringKind::Structural => (AMBER, WIDTH),
+        SpringKind::Shear => (TEAL, WIDTH),
+        SpringKind::Bend => (VIOLET, 2.0 * WIDTH),
+    }
+}
 
 /// The springs attached to particle i.
 pub fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {

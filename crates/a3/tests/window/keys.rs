@@ -59,7 +59,7 @@ fn keys() {
     app.press_for("s", "swing", "false");
     app.press_for("d", "wind", "false");
 
-    for colour in ["speed", "strain", "force", "-"] {
+    for colour in ["speed", "strain", "force", "contact", "-"] {
         app.press_for("v", "colour", colour);
     }
     for arrows in ["velocity", "force", "-"] {
@@ -128,6 +128,18 @@ fn pausing_looking_and_help() {
         wires.count(is_red)
     );
     assert!(wires.difference(&shaded) > 2.0);
+    // All springs are wires in three colours.
+    app.press_for("w", "style", "Springs");
+    let springs = app.settled();
+    assert!(springs.difference(&wires) > 1.0);
+    let amber = |[r, g, b]: [u8; 3]| r > 150 && r / 4 * 3 > g && g > b + 30;
+    let violet = |[r, g, b]: [u8; 3]| b > 120 && b > r + 20 && r > g + 20;
+    for (name, count) in [
+        ("amber", springs.count(amber)),
+        ("violet", springs.count(violet)),
+    ] {
+        assert!(count > 1000, "{count} {name} pixels");
+    }
     app.press_for("w", "style", "Shaded");
 
     // Help comes and goes without a trace.

@@ -80,6 +80,8 @@ impl Cuts {
             if *share < 1.0 && motion.inverse_masses[i] > 0.0 {
                 vertices += 1;
                 lost += motion.v[i].norm() * (1.0 - share) / motion.inverse_masses[i];
+                let taken = motion.v[i] * ((share - 1.0) / motion.inverse_masses[i]);
+                motion.impulses.add(i, taken);
                 motion.v[i] *= *share;
             }
         }

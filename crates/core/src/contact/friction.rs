@@ -41,8 +41,8 @@ pub(super) struct Masses<'a> {
 /// Direction of a pair's contact: the weights of its closest points, the normal from the second
 /// primitive to the first, and the sum of the weighted inverse masses (1/kg).
 pub(super) struct Contact {
-    points: [u32; 4],
-    weights: [f64; 4],
+    pub points: [u32; 4],
+    pub weights: [f64; 4],
     normal: Vector3<f64>,
     /// The change of their relative velocity along the normal by an impulse along it (1/kg).
     pub inverse_mass: f64,
@@ -191,13 +191,18 @@ impl Contact {
     }
 
     /// Stops an approach, so that the primitives part by as much as is wanted, and by friction at
-    /// most mu times as much of a slip. Returns the impulse's magnitude (N s), 0 if there was no
-    /// approach.
-    pub fn stop(&self, friction: f64, wanted: f64, masses: Masses, field: &mut Field) -> f64 {
+    /// most mu times as much of a slip. Returns the impulse on the first primitive (N s).
+    pub fn stop(
+        &self,
+        friction: f64,
+        wanted: f64,
+        masses: Masses,
+        field: &mut Field,
+    ) -> Vector3<f64> {
         let relative = self.relative(field) - self.normal * wanted;
         let approach = -relative.dot(&self.normal);
         if approach <= 0.0 {
-            return 0.0;
+            return Vector3::zeros();
         }
         if let Some(rigid) = &self.rigid {
             let impulse = self.rigid_impulse(rigid, friction, relative);
@@ -205,13 +210,13 @@ impl Contact {
             for arm in self.arms() {
                 masses.solids[arm.solid].settle(arm.solid, field);
             }
-            return impulse.norm();
+            return impulse;
         }
         let slip = relative + self.normal * approach;
         let held = hold(slip, friction * approach);
-        let change = self.normal * approach - held;
-        self.apply(change, masses, field);
-        change.norm() / self.inverse_mass
+        let impulse = (self.normal * approach - held) / self.inverse_mass;
+        self.push(impulse, masses, field);
+        impulse
     }
 
     /// The impulse that stops the approach and the slip, or, where that takes more friction than
@@ -339,6 +344,7 @@ fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded
         v,
         inverse_masses,
         solids,
+        impulses,
         ..
     } = motion;
     let masses = Masses {
@@ -370,6 +376,7 @@ fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded
     });
     for ((contact, _), (impulse, delay)) in pressed.iter().zip(all.iter().zip(&delays)) {
         contact.push(impulse * *delay, masses, moves);
+        impulses.share(contact.points, contact.weights, *impulse);
     }
     let limit = |contact: &Contact, most: f64, slip| most * contact.mobility(slip);
     let sticks = |(contact, most): &&(Contact, f64)| {

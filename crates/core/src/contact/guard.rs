@@ -9,6 +9,7 @@
 use super::candidates::Candidates;
 use super::cut::Squeezed;
 use super::friction::{Contact, Masses, rub};
+use super::impulses::Impulses;
 use super::layer::{ContactLayer, Scratch};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
@@ -24,7 +25,8 @@ const ROUNDS: usize = 20;
 
 impl ContactLayer {
     /// Guards the step of h (s) from the state y0 at time t (s) to y1, which it changes where
-    /// surfaces would pass through one another or friction acts. Inverse masses are in 1/kg.
+    /// surfaces would pass through one another or friction acts, and notes the impulses. Inverse
+    /// masses are in 1/kg.
     ///
     /// # Errors
     /// Vertices that are led leave no room.
@@ -34,8 +36,15 @@ impl ContactLayer {
         (t, h): (f64, f64),
         y0: &[f64],
         y1: &mut [f64],
+        impulses: &mut Impulses,
     ) -> Result<Guarded, Squeezed> {
-        self.with_scratch(|scratch| self.guard_with(scratch, inverse_masses, (t, h), y0, y1))
+        impulses.clear();
+        self.with_scratch(|scratch| {
+            std::mem::swap(impulses, &mut scratch.motion.impulses);
+            let guarded = self.guard_with(scratch, inverse_masses, (t, h), y0, y1);
+            std::mem::swap(impulses, &mut scratch.motion.impulses);
+            guarded
+        })
     }
 
     fn guard_with(
@@ -211,6 +220,7 @@ fn push(
         v,
         inverse_masses,
         solids,
+        impulses,
         ..
     } = motion;
     let masses = Masses {
@@ -219,8 +229,9 @@ fn push(
     };
     let by_move = contact.stop(friction, contact.wanted, masses, moves);
     let by_speed = contact.stop(friction, 0.0, masses, v);
+    impulses.share(contact.points, contact.weights, by_speed);
     guarded.impulses += 1;
-    guarded.impulse += by_speed.max(by_move / h);
+    guarded.impulse += by_speed.norm().max(by_move.norm() / h);
     for i in candidate.points {
         moved[i as usize] |= inverse_masses[i as usize] > 0.0;
     }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::advance::time_of_impact;
 use super::candidates::{Candidates, Stretch};
+use super::impulses::Impulses;
 use super::listing::Candidate;
 use super::solids::{Field, Solid};
 use super::surface::Surface;
@@ -67,6 +68,8 @@ pub(super) struct Motion {
     pub inverse_masses: Vec<f64>,
     /// Rigid bodies.
     pub solids: Vec<Solid>,
+    /// Impulses that the guard gave.
+    pub impulses: Impulses,
     ends: Vec<Vector3<f64>>,
 }
 

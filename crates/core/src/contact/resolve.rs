@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::cut::Squeezed;
+use super::impulses::Impulses;
 use super::layer::ContactLayer;
 use super::motion::Guarded;
 use super::obstacle::Obstacle;
@@ -48,6 +49,8 @@ pub struct Statistics {
 pub struct Contact {
     y0: Vec<f64>,
     last: Statistics,
+    /// Impulses of the last step, and its length (s).
+    impulses: (Impulses, f64),
 }
 
 impl Contact {
@@ -57,6 +60,7 @@ impl Contact {
         Self {
             y0: Vec::with_capacity(dim),
             last: Statistics::default(),
+            impulses: (Impulses::with_room_for(dim / 6), 0.0),
         }
     }
 
@@ -87,6 +91,18 @@ impl Contact {
         self.last
     }
 
+    /// Adds the impulses on particles in the last step, divided by its length, to forces (N),
+    /// n x 3.
+    pub(crate) fn add_forces(&self, f: &mut [f64]) {
+        let (impulses, h) = &self.impulses;
+        impulses.add_forces(*h, f);
+    }
+
+    /// Forgets the impulses of the last step: the state is no longer its end.
+    pub(crate) fn forget_impulses(&mut self) {
+        self.impulses.0.clear();
+    }
+
     /// Resolves the contacts of a step of h (s) from time t (s) to y1, as [`resolve`] does.
     pub fn resolve(
         &mut self,
@@ -95,8 +111,10 @@ impl Contact {
         (t, h): (f64, f64),
         y1: &mut [f64],
     ) -> Statistics {
-        let y0 = &self.y0;
-        self.last = resolve(obstacles, inverse_masses, &Step { t, h, y0 }, y1);
+        let step = Step { t, h, y0: &self.y0 };
+        let (impulses, length) = &mut self.impulses;
+        *length = h;
+        self.last = resolve_noting(obstacles, inverse_masses, &step, y1, impulses);
         self.last
     }
 
@@ -111,7 +129,9 @@ impl Contact {
         (t, h): (f64, f64),
         y1: &mut [f64],
     ) -> Result<Statistics, Squeezed> {
-        let guarded = layer.guard(inverse_masses, (t, h), &self.y0, y1)?;
+        let (impulses, length) = &mut self.impulses;
+        *length = h;
+        let guarded = layer.guard(inverse_masses, (t, h), &self.y0, y1, impulses)?;
         self.last = Statistics {
             contacts: guarded.impulses,
             impulse: guarded.impulse,
@@ -131,6 +151,24 @@ pub fn resolve(
     step: &Step,
     y1: &mut [f64],
 ) -> Statistics {
+    resolve_noting(
+        obstacles,
+        inverse_masses,
+        step,
+        y1,
+        &mut Impulses::default(),
+    )
+}
+
+/// Does the same, and notes the impulses.
+fn resolve_noting(
+    obstacles: &[Obstacle],
+    inverse_masses: &[f64],
+    step: &Step,
+    y1: &mut [f64],
+    impulses: &mut Impulses,
+) -> Statistics {
+    impulses.clear();
     let mut statistics = Statistics::default();
     for obstacle in obstacles {
         let met = Met {
@@ -146,19 +184,19 @@ pub fn resolve(
                 0..3
             },
         };
-        let statistics = &mut statistics;
+        let noted = &mut (&mut statistics, &mut *impulses);
         match &obstacle.shape {
             &Shape::Sphere { radius } => {
-                met.resolve(y1, statistics, |d| of_sphere(d, radius, Vector3::y));
+                met.resolve(y1, noted, |d| of_sphere(d, radius, Vector3::y));
             }
             &Shape::Box { half_extents, axes } => {
-                met.resolve(y1, statistics, |d| of_box(d, half_extents, axes));
+                met.resolve(y1, noted, |d| of_box(d, half_extents, axes));
             }
             &Shape::Capsule { ends, radius } => {
-                met.resolve(y1, statistics, |d| of_capsule(d, ends, radius));
+                met.resolve(y1, noted, |d| of_capsule(d, ends, radius));
             }
-            Shape::Mesh(mesh) => met.resolve(y1, statistics, |d| mesh.nearest(d)),
-            Shape::Floor => met.resolve(y1, statistics, of_floor),
+            Shape::Mesh(mesh) => met.resolve(y1, noted, |d| mesh.nearest(d)),
+            Shape::Floor => met.resolve(y1, noted, of_floor),
         }
     }
     statistics
@@ -184,7 +222,7 @@ impl Met<'_> {
     fn resolve(
         &self,
         y1: &mut [f64],
-        statistics: &mut Statistics,
+        (statistics, impulses): &mut (&mut Statistics, &mut Impulses),
         surface: impl Fn(Vector3<f64>) -> Option<Nearest>,
     ) {
         let n = self.inverse_masses.len();
@@ -255,6 +293,7 @@ impl Met<'_> {
             statistics.contacts += 1;
             let change = vector(v, n, i) - own - velocity;
             statistics.impulse += change.norm() / self.inverse_masses[i];
+            impulses.add(i, change / self.inverse_masses[i]);
         }
     }
 

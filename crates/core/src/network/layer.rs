@@ -47,6 +47,12 @@ impl Network {
         self.touch.as_ref()
     }
 
+    /// Whether anything can touch: particles obstacles, or surfaces one another.
+    #[must_use]
+    pub fn can_touch(&self) -> bool {
+        !self.obstacles.is_empty() || self.touch.as_ref().is_some_and(|touch| touch.bodies)
+    }
+
     /// The contact of surfaces, if they touch.
     #[must_use]
     pub fn contact_layer(&self) -> Option<&ContactLayer> {

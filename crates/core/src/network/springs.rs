@@ -83,7 +83,7 @@ impl Network {
     }
 
     /// Every spring by itself, those that buckle as they are while straight.
-    pub(super) fn all_springs(&self) -> impl Iterator<Item = Spring> {
+    pub fn all_springs(&self) -> impl Iterator<Item = Spring> {
         let straight = self.buckling_springs().flat_map(BucklingSprings::straight);
         self.springs().chain(straight)
     }
@@ -167,10 +167,10 @@ impl Network {
 
     /// The strain at each particle at x (m), n x 3: the most by which the length of one of its
     /// springs over that at rest, or a principal stretch of one of its tetrahedra, differs from 1;
-    /// 0 where there are neither. Springs of rest length 0 have none.
+    /// NaN where there are neither. Springs of rest length 0 have none.
     #[must_use]
     pub fn strains(&self, x: &[f64]) -> Vec<f64> {
-        let mut strains = vec![0.0_f64; self.particles()];
+        let mut strains = vec![f64::NAN; self.particles()];
         for s in self.all_springs().filter(|s| s.law.rest_length > 0.0) {
             let strain = (distance(x, s.i, s.j) / s.law.rest_length - 1.0).abs();
             for i in [s.i, s.j] {

@@ -253,6 +253,7 @@ impl Simulation {
         self.guarded = checkpoint.guarded;
         self.watch.resume(checkpoint.balance);
         self.y.copy_from_slice(&checkpoint.y);
+        self.contact.forget_impulses();
         self.unpinned = checkpoint.unpinned;
         (self.grabbed, self.grabbed_obstacle) = (checkpoint.grabbed, checkpoint.grabbed_obstacle);
         (self.swinging, self.swing_phase) = (checkpoint.swinging, checkpoint.swing_phase);
@@ -312,6 +313,7 @@ impl Simulation {
             }
         }
         self.y.copy_from_slice(&moment.y);
+        self.contact.forget_impulses();
         self.watch.resume(moment.balance);
         self.steps = moment.steps;
         // Another step is no multiple of the time that was counted then.

@@ -123,6 +123,7 @@ impl Simulation {
         let (windy, swinging, touching) = (self.windy(), self.swinging, self.touching());
         self.model = self.scene.model.clone();
         self.y.copy_from_slice(&self.scene.state);
+        self.contact.forget_impulses();
         (self.since, self.taken, self.steps) = (0.0, 0, 0);
         (self.work, self.blow_up) = (Work::default(), None);
         self.guarded = Guarded::default();

@@ -69,6 +69,22 @@ impl Simulation {
         self.contact.last()
     }
 
+    /// Forces of contact on the particles (N), n x 3: those of surfaces as they are now, and the
+    /// impulses that obstacles, friction and the guard gave in the last step, divided by its
+    /// length. Those are not known after the run went to another state, until the next step.
+    /// Nothing if nothing can touch.
+    #[must_use]
+    pub fn contact_forces(&self) -> Option<Vec<f64>> {
+        let network = self.model.network().filter(|n| n.can_touch())?;
+        let mut f = vec![0.0; 3 * self.particles()];
+        if let Some(layer) = network.contact_layer() {
+            let (x, v) = network.halves(&self.y);
+            layer.add_repulsion(self.time(), x, v, &mut f);
+        }
+        self.contact.add_forces(&mut f);
+        Some(f)
+    }
+
     /// What the guard of surfaces did since the beginning.
     #[must_use]
     pub fn guarded(&self) -> Guarded {

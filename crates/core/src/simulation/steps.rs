@@ -3,7 +3,7 @@
 
 use super::blow_up::blow_up_by;
 use super::{Simulation, Stepper};
-use crate::contact::{Contact, Obstacle, Squeezed, Statistics, StrainLimiter, Strained};
+use crate::contact::{Contact, Impulses, Obstacle, Squeezed, Statistics, StrainLimiter, Strained};
 use crate::control::Control;
 use crate::error::{Cause, Error};
 use crate::network::Network;
@@ -231,7 +231,8 @@ impl Simulation {
                     // A polynomial knows of no surfaces. Where what is led leaves no room, the step
                     // itself has ended the run.
                     let way = (begin, time - begin);
-                    let _ = layer.guard(network.inverse_masses(), way, y0, &mut self.y);
+                    let none = &mut Impulses::default();
+                    let _ = layer.guard(network.inverse_masses(), way, y0, &mut self.y, none);
                     network.hold(time, &mut self.y);
                 }
             }

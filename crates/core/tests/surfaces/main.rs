@@ -6,6 +6,7 @@ mod common;
 mod bounce;
 mod collisions;
 mod conserved;
+mod felt;
 mod force;
 mod hands;
 mod impact;

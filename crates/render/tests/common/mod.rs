@@ -3,7 +3,7 @@
 
 use std::io::Write;
 
-use a3_render::{Ball, Camera, Gpu, Line, Picture, Style, Topology};
+use a3_render::{Ball, Camera, Corner, Gpu, Line, Picture, Solid, Spring, Style, Topology};
 
 /// The adapter, or a loud word that there is none. `A3_REQUIRE_GPU` forbids to go on without.
 pub fn gpu() -> Option<Gpu> {
@@ -18,12 +18,14 @@ pub fn gpu() -> Option<Gpu> {
     }
 }
 
-/// A wavy sheet of 16 x 16 points above a floor, a ball, a line.
+/// A wavy sheet of 16 x 16 points above a floor, a ball, a line; no solids and no liquid.
 pub struct Sheet {
     pub topology: Topology,
     pub points: Vec<[f32; 4]>,
     pub balls: Vec<Ball>,
     pub lines: Vec<Line>,
+    pub solids: Vec<Solid>,
+    pub liquid: (Vec<Corner>, Vec<[u32; 3]>),
     pub camera: Camera,
 }
 
@@ -50,7 +52,23 @@ impl Sheet {
             if i + 1 < N {
                 topology.wires.push([k, k + N]);
             }
+            let spring = |other: u32, width: f32, color: [f32; 3]| Spring {
+                ends: [k, other],
+                width,
+                color,
+            };
+            if j + 2 < N {
+                topology.springs.push(spring(k + 2, 4.0, [0.3, 0.1, 0.55]));
+            }
+            if j + 1 < N {
+                topology
+                    .springs
+                    .push(spring(k + 1, 1.6, [0.95, 0.42, 0.02]));
+            }
             if i + 1 < N && j + 1 < N {
+                topology
+                    .springs
+                    .push(spring(k + N + 1, 1.6, [0.0, 0.33, 0.36]));
                 topology
                     .triangles
                     .extend([[k, k + N, k + 1], [k + 1, k + N, k + N + 1]]);
@@ -77,6 +95,8 @@ impl Sheet {
             points,
             balls: vec![ball, pin],
             lines: vec![line],
+            solids: vec![],
+            liquid: (vec![], vec![]),
             camera: Camera::look_at([1.6, 1.9, 4.2], [0.0, 1.0, 0.2]),
         }
     }
@@ -88,9 +108,12 @@ impl Sheet {
             scale: 1.0,
             points: &self.points,
             balls: &self.balls,
-            solids: &[],
+            solids: &self.solids,
             lines: &self.lines,
-            liquid: a3_render::Liquid::default(),
+            liquid: a3_render::Liquid {
+                corners: &self.liquid.0,
+                triangles: &self.liquid.1,
+            },
             floor: Some(0.0),
             transparent: false,
         }

@@ -2,16 +2,15 @@
 
 use a3_core::contact::Shape;
 use a3_core::{Network, Vector3};
-use a3_render::Style;
 
 use super::dial::{Dial, DialScale, Turn};
-use super::seen::{arrows, colour, film, film_of, full_colour};
+use super::seen::{arrows, colour, film, film_of, full_colour, style};
 use super::values::{
     damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
     stiffness, strain_limit, strain_limits, switch,
 };
 use crate::session::{Action, Ending, Session, Tuning};
-use crate::show::{Arrows, Quantity};
+use crate::show::{Arrows, Quantity, Show};
 
 /// A knob: a row of the table.
 #[derive(Clone, Copy)]
@@ -269,17 +268,12 @@ pub static KNOBS: &[Knob] = &[
         },
     ),
     knob(
-        "wires",
-        "Whether wires are drawn instead of the surface.",
-        |session, _| {
-            let drawn = session.panes[0]
-                .show
-                .has_surface(&session.panes[0].simulation);
-            let wires = session.panes[0].show.style == Style::Wireframe;
-            drawn.then(|| switch(wires, false))
-        },
-        |session, at, _| {
-            session.act(Action::Wireframe, at);
+        "drawn as",
+        "The surface, its wires, or all springs, each kind in its colour and width.",
+        style,
+        |session, _, k| {
+            let styles = Show::styles(session.first());
+            session.set_style(styles.get(k as usize).copied().unwrap_or_default());
         },
     ),
     apart(knob(

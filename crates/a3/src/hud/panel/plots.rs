@@ -19,6 +19,8 @@ const FOOT: f32 = 15.0;
 const NUMBERS: f32 = 40.0;
 /// Size of the numbers (points).
 const SMALL: f32 = 10.5;
+/// Length of the piece of a curve before its name (points).
+const SAMPLE: f32 = 14.0;
 
 const TEAL: Color32 = Color32::from_rgb(0, 122, 128);
 const AMBER: Color32 = Color32::from_rgb(190, 106, 0);
@@ -26,11 +28,14 @@ const VIOLET: Color32 = Color32::from_rgb(112, 62, 158);
 const GRID: Color32 = Color32::from_rgb(196, 197, 200);
 
 /// A curve of a plot.
+#[derive(Clone, Copy)]
 struct Curve {
     name: &'static str,
     /// Its name in a file, with its unit.
     column: &'static str,
     colour: Color32,
+    /// Lengths of its dashes and of the gaps after them (points); empty for a whole line.
+    dashes: &'static [f32],
     of: fn(&Sample) -> Option<f64>,
 }
 
@@ -50,23 +55,38 @@ const fn curve(
         name,
         column,
         colour,
+        dashes: &[],
         of,
     }
+}
+
+/// The curve, in dashes: curves of one plot differ in more than their colours.
+const fn dashed(dashes: &'static [f32], curve: Curve) -> Curve {
+    Curve { dashes, ..curve }
 }
 
 static PLOTS: &[Plot] = &[
     Plot {
         title: "energy (J)",
         curves: &[
-            curve("kinetic", "kinetic energy (J)", TEAL, |s| {
-                Some(s.energy?.kinetic)
-            }),
-            curve("elastic", "elastic energy (J)", AMBER, |s| {
-                Some(s.energy?.elastic)
-            }),
-            curve("gravity", "gravitational energy (J)", VIOLET, |s| {
-                Some(s.energy?.gravitational)
-            }),
+            dashed(
+                &[7.0, 3.0],
+                curve("kinetic", "kinetic energy (J)", TEAL, |s| {
+                    Some(s.energy?.kinetic)
+                }),
+            ),
+            dashed(
+                &[1.6, 2.4],
+                curve("elastic", "elastic energy (J)", AMBER, |s| {
+                    Some(s.energy?.elastic)
+                }),
+            ),
+            dashed(
+                &[7.0, 2.4, 1.6, 2.4],
+                curve("gravity", "gravitational energy (J)", VIOLET, |s| {
+                    Some(s.energy?.gravitational)
+                }),
+            ),
             curve("total", "total energy (J)", TEXT, |s| {
                 Some(s.energy?.total())
             }),
@@ -169,6 +189,11 @@ impl Plot {
             };
             let at = pos2(right, rect.top());
             right = words(at, Align2::RIGHT_TOP, &said, 11.5, curve.colour).left() - 7.0;
+            if !curve.name.is_empty() {
+                let ends = [right + 4.0 - SAMPLE, right + 4.0];
+                curve.draw(painter, &ends.map(|x| pos2(x, rect.top() + 7.5)));
+                right = ends[0] - 5.0;
+            }
         }
         let area = Rect::from_min_max(
             rect.left_top() + egui::vec2(NUMBERS, HEAD),
@@ -220,8 +245,22 @@ impl Plot {
                 let value = (curve.of)(sample)?;
                 Some(pos2(x.at(sample.time) as f32, y.at(value) as f32))
             });
-            let stroke = Stroke::new(1.4, curve.colour);
-            painter.add(Shape::line(points.collect(), stroke));
+            curve.draw(painter, &points.collect::<Vec<_>>());
+        }
+    }
+}
+
+impl Curve {
+    fn draw(&self, painter: &Painter, points: &[Pos2]) {
+        let stroke = Stroke::new(1.4, self.colour);
+        if self.dashes.is_empty() {
+            painter.add(Shape::line(points.to_vec(), stroke));
+        } else {
+            let (lengths, gaps): (Vec<_>, Vec<_>) =
+                self.dashes.chunks(2).map(|dash| (dash[0], dash[1])).unzip();
+            painter.extend(Shape::dashed_line_with_offset(
+                points, stroke, &lengths, &gaps, 0.0,
+            ));
         }
     }
 }

@@ -1,9 +1,11 @@
 //! The values of the knobs for what is seen.
 
+use a3_render::Style;
+
 use super::dial::{Dial, DialScale};
 use crate::rounding::short;
 use crate::session::{Ending, FILM_OF, SPAN, Session};
-use crate::show::{Arrows, Quantity};
+use crate::show::{Arrows, Quantity, Show};
 
 /// A choice among what has a name, or none of it.
 fn one_of<T: Copy + PartialEq>(
@@ -31,8 +33,13 @@ fn one_of<T: Copy + PartialEq>(
 
 pub fn colour(session: &Session, at: usize) -> Option<Dial> {
     let chosen = session.panes.get(at)?.show.colouring.quantity;
-    let has = |session: &Session, quantity: Quantity| quantity.is_in(session.first());
-    one_of(session, &Quantity::ALL, chosen, has, Quantity::name)
+    one_of(
+        session,
+        &Quantity::ALL,
+        chosen,
+        Session::has,
+        Quantity::name,
+    )
 }
 
 pub fn full_colour(session: &Session, at: usize) -> Option<Dial> {
@@ -86,4 +93,26 @@ pub fn arrows(session: &Session, at: usize) -> Option<Dial> {
     let chosen = session.panes.get(at)?.show.field.arrows;
     let has = |session: &Session, arrows: Arrows| arrows.is_in(session.first());
     one_of(session, &Arrows::ALL, chosen, has, Arrows::name)
+}
+
+/// The names of the styles.
+fn style_name(style: Style) -> &'static str {
+    match style {
+        Style::Shaded => "surface",
+        Style::Wireframe => "wires",
+        Style::Springs => "springs",
+    }
+}
+
+pub fn style(session: &Session, at: usize) -> Option<Dial> {
+    let pane = session.panes.get(at)?;
+    let styles = Show::styles(&pane.simulation);
+    let place = styles.iter().position(|style| *style == pane.show.style);
+    let drawn = pane.show.has_surface(&pane.simulation);
+    drawn.then(|| Dial {
+        value: place.unwrap_or(0) as f64,
+        own: 0.0,
+        scale: DialScale::Choice((0..styles.len()).map(|k| k as f64).collect()),
+        words: style_name(pane.show.style).into(),
+    })
 }

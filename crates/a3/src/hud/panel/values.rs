@@ -7,7 +7,7 @@ use a3_core::{Control, Network, Sheet, integrators};
 
 use super::dial::{Dial, DialScale};
 use crate::bounds;
-use crate::rounding::{round_up, short};
+use crate::rounding::{FEW, round_up, short};
 use crate::session::Session;
 
 /// The network of the first run, if its scene has one.
@@ -121,7 +121,7 @@ pub fn drag(session: &Session, _: usize) -> Option<Dial> {
     let mean = own.masses().iter().sum::<f64>() / own.particles() as f64;
     let (own, value) = (own.drag().unwrap_or(0.0), now.drag().unwrap_or(0.0));
     // From none to a drag that ends motion within a fifth of a second.
-    let to = round_up((5.0 * mean).max(4.0 * own));
+    let to = round_up((5.0 * mean).max(4.0 * own), FEW);
     Some(Dial {
         value,
         own,
@@ -210,7 +210,7 @@ pub fn sphere(session: &Session, _: usize) -> Option<Dial> {
         scale: DialScale::Linear {
             from: 0.1 * own,
             to: 2.0 * own,
-            step: 0.05 * round_up(own),
+            step: 0.05 * round_up(own, FEW),
         },
         words: format!("{} m", short(value, 3)),
     })
