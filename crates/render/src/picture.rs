@@ -73,9 +73,20 @@ pub struct Solid {
     pub axes: [[f32; 4]; 3],
     /// Linear red, green and blue, and 1.
     pub color: [f32; 4],
-    /// Values from 0 to 1 that colour it, or -1 for its own colour: one for each corner, whose
-    /// number is the sum of 1, 2 and 4 for those of the three axes along which it lies.
-    pub values: [[f32; 4]; 2],
+    /// Vectors whose lengths, from 0 to 1, colour it: one for each corner, whose number is the sum of
+    /// 1, 2 and 4 for those of the three axes along which it lies.
+    pub values: [[f32; 4]; 8],
+}
+
+impl Solid {
+    /// Values of a solid in its own colour.
+    pub const PLAIN: [[f32; 4]; 8] = [[0.0, 0.0, 0.0, 1.0]; 8];
+
+    /// A vector as one of the values.
+    #[must_use]
+    pub fn value([x, y, z]: [f32; 3]) -> [f32; 4] {
+        [x, y, z, 0.0]
+    }
 }
 
 /// A straight line that is drawn in all styles.

@@ -85,58 +85,54 @@ impl Pipelines {
             bind_group_layouts: &[Some(layout)],
             immediate_size: 0,
         });
-        let pipeline = |name: &str, fragment: &str, topology, layer, buffers: &[_]| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(name),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &shader,
-                    entry_point: Some(&format!("{name}_vertex")),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers,
-                },
-                primitive: wgpu::PrimitiveState {
-                    topology,
-                    ..Default::default()
-                },
-                depth_stencil: Some(depth_stencil(layer)),
-                multisample: wgpu::MultisampleState {
-                    count: samples,
-                    ..Default::default()
-                },
-                fragment: Some(wgpu::FragmentState {
-                    module: &shader,
-                    entry_point: Some(&format!("{fragment}_fragment")),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format: color,
-                        blend: matches!(layer, Layer::Shadow | Layer::Over)
-                            .then_some(wgpu::BlendState::ALPHA_BLENDING),
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
+        let pipeline =
+            |name: &str, fragment: &str, topology, layer, buffers: &[wgpu::VertexBufferLayout]| {
+                let buffers: Vec<_> = buffers.iter().cloned().map(Some).collect();
+                device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                    label: Some(name),
+                    layout: Some(&layout),
+                    vertex: wgpu::VertexState {
+                        module: &shader,
+                        entry_point: Some(&format!("{name}_vertex")),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        buffers: &buffers,
+                    },
+                    primitive: wgpu::PrimitiveState {
+                        topology,
+                        ..Default::default()
+                    },
+                    depth_stencil: Some(depth_stencil(layer)),
+                    multisample: wgpu::MultisampleState {
+                        count: samples,
+                        ..Default::default()
+                    },
+                    fragment: Some(wgpu::FragmentState {
+                        module: &shader,
+                        entry_point: Some(&format!("{fragment}_fragment")),
+                        compilation_options: wgpu::PipelineCompilationOptions::default(),
+                        targets: &[Some(wgpu::ColorTargetState {
+                            format: color,
+                            blend: matches!(layer, Layer::Shadow | Layer::Over)
+                                .then_some(wgpu::BlendState::ALPHA_BLENDING),
+                            write_mask: wgpu::ColorWrites::ALL,
+                        })],
+                    }),
+                    multiview_mask: None,
+                    cache: None,
+                })
+            };
         let unit = wgpu::vertex_attr_array![0 => Float32x3];
         let ball = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4];
         let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
         let solid = wgpu::vertex_attr_array![
             2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4, 6 => Float32x4,
-            7 => Float32x4, 8 => Float32x4
+            7 => Float32x4, 8 => Float32x4, 9 => Float32x4, 10 => Float32x4,
+            11 => Float32x4, 12 => Float32x4, 13 => Float32x4, 14 => Float32x4
         ];
         let drop = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x3];
         let ends = wgpu::vertex_attr_array![0 => Uint32x2];
         let spring = wgpu::vertex_attr_array![0 => Uint32x2, 1 => Float32, 2 => Float32x3];
         let line = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
-        let stream = |step_mode, attributes, stride: usize| {
-            Some(wgpu::VertexBufferLayout {
-                array_stride: stride as u64,
-                step_mode,
-                attributes,
-            })
-        };
         let balls = [
             stream(VertexStepMode::Vertex, &unit, size_of::<[f32; 3]>()),
             stream(VertexStepMode::Instance, &ball, size_of::<Ball>()),
@@ -176,6 +172,19 @@ impl Pipelines {
             spring: pipeline("spring", "line", strip, Layer::Over, &springs),
             line: pipeline("line", "line", strip, Layer::Over, &lines),
         }
+    }
+}
+
+/// The layout of a buffer of vertices or instances of that length (bytes).
+fn stream(
+    step_mode: VertexStepMode,
+    attributes: &[wgpu::VertexAttribute],
+    stride: usize,
+) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout {
+        array_stride: stride as u64,
+        step_mode,
+        attributes,
     }
 }
 

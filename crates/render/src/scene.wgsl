@@ -217,7 +217,7 @@ fn banded(value: f32) -> vec3<f32> {
     out.clip = globals.view_proj * vec4(corner.xyz, 1.0);
     out.normal = normal;
     out.color = WATER;
-    out.value = corner.w;
+    out.value = vec4(corner.w, 0.0, 0.0, step(corner.w, -0.5));
     return out;
 }
 
@@ -227,7 +227,7 @@ fn banded(value: f32) -> vec3<f32> {
 
 @fragment fn liquid_fragment(in: Ball) -> @location(0) vec4<f32> {
     let n = in.normal / max(length(in.normal), 1e-20);
-    if in.value >= 0.0 { return vec4(lit(banded(in.value), n, in.world, 0.0, 0.1), 1.0); }
+    if in.value.w < 0.5 { return vec4(lit(banded(length(in.value.xyz)), n, in.world, 0.0, 0.1), 1.0); }
     return vec4(jelly(in.color, n, in.world), 1.0);
 }
 
@@ -238,8 +238,8 @@ struct Ball {
     @location(0) world: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) color: vec3<f32>,
-    // Value from 0 to 1, where one colours it; -1 elsewhere.
-    @location(3) value: f32,
+    // Vector whose length, from 0 to 1, colours it; the fourth number is 1 for its own colour.
+    @location(3) value: vec4<f32>,
 };
 
 @vertex fn ball_vertex(
@@ -250,13 +250,13 @@ struct Ball {
     out.clip = globals.view_proj * vec4(out.world, 1.0);
     out.normal = unit;
     out.color = color.rgb;
-    out.value = -1.0;
+    out.value = vec4(0.0, 0.0, 0.0, 1.0);
     return out;
 }
 
 @fragment fn ball_fragment(in: Ball) -> @location(0) vec4<f32> {
-    if in.value >= 0.0 {
-        return vec4(lit(banded(in.value), normalize(in.normal), in.world, 0.0, 0.1), 1.0);
+    if in.value.w < 0.5 {
+        return vec4(lit(banded(length(in.value.xyz)), normalize(in.normal), in.world, 0.0, 0.1), 1.0);
     }
     return vec4(lit(in.color, normalize(in.normal), in.world, 0.5, 0.25), 1.0);
 }
@@ -273,9 +273,11 @@ struct Solid {
     @location(4) y: vec4<f32>,
     @location(5) z: vec4<f32>,
     @location(6) color: vec4<f32>,
-    // Values of the corners on the lower and on the upper side along the third axis.
-    @location(7) low: vec4<f32>,
-    @location(8) high: vec4<f32>,
+    // Values of the corners.
+    @location(7) v0: vec4<f32>, @location(8) v1: vec4<f32>,
+    @location(9) v2: vec4<f32>, @location(10) v3: vec4<f32>,
+    @location(11) v4: vec4<f32>, @location(12) v5: vec4<f32>,
+    @location(13) v6: vec4<f32>, @location(14) v7: vec4<f32>,
 };
 
 fn solid_normal(in: Solid) -> vec3<f32> {
@@ -293,8 +295,9 @@ fn solid_position(in: Solid) -> vec3<f32> {
     out.clip = globals.view_proj * vec4(out.world, 1.0);
     out.normal = solid_normal(in);
     out.color = in.color.rgb;
-    var values = select(in.low, in.high, in.piece.z > 0.0);
-    out.value = values[select(0u, 1u, in.piece.x > 0.0) + select(0u, 2u, in.piece.y > 0.0)];
+    var values = array(in.v0, in.v1, in.v2, in.v3, in.v4, in.v5, in.v6, in.v7);
+    let upper = vec3<u32>(in.piece > vec3(0.0));
+    out.value = values[upper.x + 2u * upper.y + 4u * upper.z];
     return out;
 }
 
@@ -362,7 +365,8 @@ fn faded(a: vec3<f32>, b: vec3<f32>) -> f32 {
     let b = points[ends.y].xyz;
     let value = -1.0 - select(points[ends.x].w, points[ends.y].w, i >= 2u);
     if value >= 0.0 { return line(a, b, points_wide, vec4(ramp(value), 1.0), i); }
-    return line(a, b, points_wide, vec4(color, faded(a, b)), i);
+    // Opaque, so that no colour shines through another.
+    return line(a, b, points_wide, vec4(mix(PAPER, color, 0.75 + 0.25 * faded(a, b)), 1.0), i);
 }
 
 @vertex fn line_vertex(

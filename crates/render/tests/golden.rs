@@ -45,10 +45,11 @@ fn same(a: &RgbaImage, b: &RgbaImage) -> bool {
     off < 0.004 && mean < 0.4
 }
 
-/// Adds a box with another value at each corner, a capsule with one at either end, and a patch of
+/// Adds a box with another value at each corner, a capsule with opposite ones at its ends, and a patch of
 /// liquid whose values grow to the right.
 fn add_coloured_solids(sheet: &mut Sheet) {
     let axes = |[x, y, z]: [f32; 3]| [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]];
+    let along = |value| a3_render::Solid::value([value, 0.0, 0.0]);
     let color = [0.3, 0.36, 0.44, 1.0];
     sheet.solids = vec![
         a3_render::Solid {
@@ -56,14 +57,15 @@ fn add_coloured_solids(sheet: &mut Sheet) {
             radius: 0.03,
             axes: axes([0.4, 0.3, 0.2]),
             color,
-            values: [[0.0, 0.3, 0.4, 0.7], [0.2, 0.5, 0.6, 1.0]],
+            values: [0.0, 0.3, 0.4, 0.7, 0.2, 0.5, 0.6, 1.0].map(along),
         },
         a3_render::Solid {
             center: [0.15, 0.4, 1.1],
             radius: 0.15,
             axes: axes([0.0, 0.3, 0.0]),
             color,
-            values: [[0.1, 0.1, 0.9, 0.9]; 2],
+            // Opposite at either end: nothing in the middle.
+            values: [-0.9, -0.9, 0.9, 0.9, -0.9, -0.9, 0.9, 0.9].map(along),
         },
     ];
     let corner = |x: f32, z: f32, value: f32| a3_render::Corner {
@@ -321,7 +323,7 @@ fn solids_have_the_shape_asked_for() {
         let (s, c) = turn.sin_cos();
         let axes = [[c, s, 0.0, x], [-s, c, 0.0, y], [0.0, 0.0, 1.0, z]];
         a3_render::Solid {
-            values: [[-1.0; 4]; 2],
+            values: a3_render::Solid::PLAIN,
             center: ball.center,
             radius,
             axes,

@@ -30,7 +30,8 @@ pub const MARGIN: f32 = 12.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
     symbol: char,
-    colour: Color32,
+    /// Colour of the symbol and of what stands beside it.
+    pub colour: Color32,
 }
 
 impl Mark {

@@ -151,7 +151,7 @@ pub fn each(readings: &Readings) -> String {
 pub fn film(ui: &mut Ui, film: &FilmProgress) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-        ui.painter().circle_filled(rect.center(), 4.5, ALARM);
+        ui.painter().circle_filled(rect.center(), 4.5, ALARM.colour);
         ui.label(text(&film.said));
     });
 }

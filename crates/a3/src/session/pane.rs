@@ -125,12 +125,13 @@ impl Pane {
         }
     }
 
-    /// Takes the distances of the particles from the reference (m); none where they are not known.
-    pub fn set_errors(&mut self, distances: Vec<f64>) {
-        let squares = distances.iter().map(|distance| distance * distance);
-        let mean = squares.sum::<f64>() / distances.len() as f64;
-        self.error = (!distances.is_empty()).then_some(mean.sqrt());
-        self.show.colouring.errors = distances;
+    /// Takes the ways to the particles from where the reference has them (m), n x 3; none where
+    /// they are not known.
+    pub fn set_errors(&mut self, errors: Vec<f64>) {
+        let sum = errors.iter().map(|part| part * part).sum::<f64>();
+        let mean = sum / self.simulation.particles() as f64;
+        self.error = (!errors.is_empty()).then_some(mean.sqrt());
+        self.show.colouring.errors = errors;
     }
 
     /// Takes energy, stretch, a sample and the stable step of the state as it is now.

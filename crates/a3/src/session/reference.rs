@@ -130,7 +130,7 @@ impl ReferenceRun {
                 if !kept_up {
                     break;
                 }
-                pane.set_errors(distances(&pane.simulation, &self.simulation));
+                pane.set_errors(differences(&pane.simulation, &self.simulation));
             }
             self.late = if kept_up { 0 } else { self.late + 1 };
             if self.late > PATIENCE {
@@ -153,12 +153,10 @@ impl ReferenceRun {
     }
 }
 
-/// Distances between the particles of two runs (m).
-fn distances(a: &Simulation, b: &Simulation) -> Vec<f64> {
-    let particles = 0..a.particles();
-    particles
-        .map(|i| (a.position(i) - b.position(i)).norm())
-        .collect()
+/// The ways to the particles of one run from those of another (m), n x 3.
+fn differences(a: &Simulation, b: &Simulation) -> Vec<f64> {
+    let all = a.state().iter().zip(b.state());
+    all.take(3 * a.particles()).map(|(a, b)| a - b).collect()
 }
 
 #[cfg(test)]

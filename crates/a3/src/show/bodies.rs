@@ -40,7 +40,7 @@ pub fn draw(
             color: BODIES[k % BODIES.len()],
             // None, unless each point has one.
             values: points
-                .map(|i| colouring.share(i))
+                .map(|i| colouring.vector(i))
                 .collect::<Option<_>>()
                 .unwrap_or_default(),
         };

@@ -54,10 +54,12 @@ pub struct Colouring {
     pub quantity: Option<Quantity>,
     /// Its scale.
     pub scale: Scale,
-    /// Distances of the particles from a reference (m), as far as there is one.
+    /// The ways to the particles from where a reference has them (m), n x 3, if there is one.
     pub errors: Vec<f64>,
     /// Value of each particle, NaN where it has none; empty where the run has none.
     values: Vec<f64>,
+    /// The vectors of which these are the lengths, n x 3, if they are.
+    vectors: Vec<f64>,
 }
 
 impl Colouring {
@@ -77,6 +79,10 @@ impl Colouring {
         self.values = self
             .quantity
             .map(|quantity| quantity.values(simulation, &self.errors))
+            .unwrap_or_default();
+        self.vectors = self
+            .quantity
+            .map(|quantity| quantity.vectors(simulation, &self.errors))
             .unwrap_or_default();
         let largest = self.values.iter().copied().fold(0.0, f64::max);
         self.scale.follow(largest);
@@ -100,6 +106,18 @@ impl Colouring {
     pub fn share(&self, i: usize) -> Option<f32> {
         let value = self.values.get(i).filter(|value| !value.is_nan())?;
         Some(self.scale.share(*value))
+    }
+
+    /// A vector of a particle whose length is that share; where the quantity is the length of a
+    /// vector, along it, so that such vectors of a rigid body tell all between its points.
+    pub fn vector(&self, i: usize) -> Option<[f32; 3]> {
+        let (share, n) = (self.share(i)?, self.vectors.len() / 3);
+        let end = self.scale.end();
+        Some(if i < n && end > 0.0 {
+            [0, 1, 2].map(|axis| (self.vectors[axis * n + i] / end) as f32)
+        } else {
+            [share, 0.0, 0.0]
+        })
     }
 
     /// The colour of a particle, or that which it has otherwise.

@@ -42,11 +42,11 @@ pub fn draw(
     floor
 }
 
-/// Colour of a shape, or values from 0 to 1 that colour each of its points.
+/// Colour of a shape, or vectors whose lengths, from 0 to 1, colour its points.
 pub struct Paint {
     pub color: [f32; 4],
     /// Empty for the colour.
-    pub values: Vec<f32>,
+    pub values: Vec<[f32; 3]>,
 }
 
 impl Paint {
@@ -58,9 +58,19 @@ impl Paint {
         }
     }
 
-    /// The value at point k of the shape, or -1 for the colour.
-    fn at(&self, k: usize) -> f32 {
-        self.values.get(k).copied().unwrap_or(-1.0)
+    /// The colour of the first point.
+    fn first(&self) -> [f32; 4] {
+        let length = |[x, y, z]: &[f32; 3]| x.hypot(*y).hypot(*z);
+        let first = self.values.first();
+        first.map_or(self.color, |value| ramp(length(value)))
+    }
+
+    /// The values of the eight corners of a solid, each that of a point.
+    fn corners(&self, points: [usize; 8]) -> [[f32; 4]; 8] {
+        if self.values.is_empty() {
+            return Solid::PLAIN;
+        }
+        points.map(|k| Solid::value(self.values[k]))
     }
 }
 
@@ -80,7 +90,7 @@ pub fn draw_shape(
         &Shape::Sphere { radius } => balls.push(Ball {
             center: to_f32(place),
             radius: inside(radius),
-            color: paint.values.first().map_or(paint.color, |v| ramp(*v)),
+            color: paint.first(),
         }),
         &Shape::Box { half_extents, axes } => {
             let least = half_extents.min();
@@ -92,7 +102,7 @@ pub fn draw_shape(
                 axes: [0, 1, 2]
                     .map(|k| axis(pose.outwards(axes[k]), half_extents[k] - gap - round)),
                 color: paint.color,
-                values: [0, 4].map(|low| [0, 1, 2, 3].map(|k| paint.at(low + k))),
+                values: paint.corners([0, 1, 2, 3, 4, 5, 6, 7]),
             });
         }
         &Shape::Capsule {
@@ -111,7 +121,7 @@ pub fn draw_shape(
                     axis(side.cross(&y), 0.0),
                 ],
                 color: paint.color,
-                values: [[0, 0, 1, 1].map(|end| paint.at(end)); 2],
+                values: paint.corners([0, 0, 1, 1, 0, 0, 1, 1]),
             });
         }
         Shape::Mesh(_) | Shape::Floor => {}

@@ -70,12 +70,21 @@ impl Quantity {
         }
     }
 
+    /// The vectors of which its values are the lengths, n x 3, or nothing if they are none.
+    pub fn vectors(self, simulation: &Simulation, errors: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Speed => simulation.velocities(),
+            Self::Error => errors.to_vec(),
+            Self::Strain | Self::Force | Self::Contact => vec![],
+        }
+    }
+
     /// Its value at each particle, NaN for one that has none; or nothing where the run does not
-    /// have it. Errors are known to the caller.
+    /// have it. Errors, n x 3, are known to the caller.
     pub fn values(self, simulation: &Simulation, errors: &[f64]) -> Vec<f64> {
         let network = simulation.model().network();
         match self {
-            Self::Speed => lengths(&simulation.velocities()),
+            Self::Speed | Self::Error => lengths(&self.vectors(simulation, errors)),
             Self::Strain => network
                 .filter(|network| network.is_elastic())
                 .map(|network| network.strains(network.halves(simulation.state()).0))
@@ -97,7 +106,6 @@ impl Quantity {
                 let forces = simulation.contact_forces();
                 forces.map(|forces| lengths(&forces)).unwrap_or_default()
             }
-            Self::Error => errors.to_vec(),
         }
     }
 }
@@ -200,7 +208,7 @@ mod tests {
                 !quantity.is_in(&circle, false)
             );
         }
-        assert_eq!(Quantity::Error.values(&circle, &[0.5]), [0.5]);
+        assert_eq!(Quantity::Error.values(&circle, &[0.3, -0.4, 0.0]), [0.5]);
         assert!(Quantity::Error.is_in(&circle, true));
         assert!(Arrows::Force.vectors(&circle).is_empty() && !Arrows::Force.is_in(&circle));
         let mut bar = run("cantilever");

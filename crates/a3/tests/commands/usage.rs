@@ -123,6 +123,22 @@ fn what_a_scene_cannot_show_is_refused() {
             "has no force to show: leave out --arrows",
         ),
         (
+            vec!["t", "0.01", "--scene", "mit", "--colour", "contact"],
+            "nothing can touch in the scene mit: leave out --colour",
+        ),
+        (
+            vec!["t", "0.01", "--colour", "error"],
+            "a3 compare runs: leave out --colour",
+        ),
+        (
+            vec!["t", "0.01", "--scene", "cantilever", "--springs"],
+            "has no springs to show: leave out --springs",
+        ),
+        (
+            vec!["t", "0.01", "--springs", "--wireframe"],
+            "cannot be used with",
+        ),
+        (
             vec!["t", "0.01", "--colour", "heat"],
             "speed, strain, force",
         ),

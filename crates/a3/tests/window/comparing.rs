@@ -38,6 +38,17 @@ fn comparing() {
     let (a, b) = both("times").unwrap();
     assert!((a - b).abs() < 0.051, "{a} {b}");
 
+    // Both are coloured by their errors: the ball is no longer red in either.
+    let red = display.screen().count(is_red);
+    assert!(red > 50, "{red} red pixels");
+    for colour in ["speed", "error"] {
+        app.press_for("v", "colour", colour);
+    }
+    until("no red ball", || {
+        (display.screen().count(is_red) < red / 4).then_some(())
+    });
+    app.press_for("v", "colour", "-");
+
     // Plus is for all; a digit for the pane under the pointer.
     app.press_for("plus", "step_sizes", "0.06,0.06");
     display.xdotool(&["mousemove", "--window", &app.window, "1000", "600"]);
