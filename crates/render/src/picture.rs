@@ -73,8 +73,8 @@ pub struct Solid {
     pub axes: [[f32; 4]; 3],
     /// Linear red, green and blue, and 1.
     pub color: [f32; 4],
-    /// Vectors whose lengths, from 0 to 1, colour it: one for each corner, whose number is the sum of
-    /// 1, 2 and 4 for those of the three axes along which it lies.
+    /// Vectors whose lengths, from 0 to 1, colour it: one for each corner, whose number is the sum
+    /// of 1, 2 and 4 for those of the three axes along which it lies.
     pub values: [[f32; 4]; 8],
 }
 

@@ -45,8 +45,8 @@ fn same(a: &RgbaImage, b: &RgbaImage) -> bool {
     off < 0.004 && mean < 0.4
 }
 
-/// Adds a box with another value at each corner, a capsule with opposite ones at its ends, and a patch of
-/// liquid whose values grow to the right.
+/// Adds a box with another value at each corner, a capsule with opposite ones at its ends, and a
+/// patch of liquid whose values grow to the right.
 fn add_coloured_solids(sheet: &mut Sheet) {
     let axes = |[x, y, z]: [f32; 3]| [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]];
     let along = |value| a3_render::Solid::value([value, 0.0, 0.0]);

@@ -13,7 +13,7 @@ pub struct Drawing {
     pub wireframe: bool,
     /// Draw all springs instead of the surface: structural, shear and bend springs, each in its
     /// own colour and width
-    #[arg(long, conflicts_with = "wireframe")]
+    #[arg(long)]
     pub springs: bool,
     /// Colour particles by a quantity
     #[arg(long, value_name = "QUANTITY", value_enum, alias = "color")]
@@ -29,7 +29,7 @@ impl Drawing {
         Manner {
             style: match (self.wireframe, self.springs) {
                 (false, false) => Style::Shaded,
-                (true, _) => Style::Wireframe,
+                (true, false) => Style::Wireframe,
                 (_, true) => Style::Springs,
             },
             springs_of,

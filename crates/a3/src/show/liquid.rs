@@ -37,8 +37,8 @@ struct Field {
 }
 
 impl Liquid {
-    /// Surface of the fluid of a run as it is now, coloured by the values from 0 to 1 that particles
-    /// have by their numbers, if all have one; empty without a fluid.
+    /// Surface of the fluid of a run as it is now, coloured by the values from 0 to 1 of its
+    /// particles, if all have one; empty without a fluid.
     pub fn of(simulation: &Simulation, value: impl Fn(usize) -> Option<f32>) -> Self {
         let network = simulation.model().network();
         let Some((network, fluid)) = network.and_then(|n| Some((n, n.fluid()?))) else {

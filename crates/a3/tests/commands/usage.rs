@@ -135,10 +135,6 @@ fn what_a_scene_cannot_show_is_refused() {
             "has no springs to show: leave out --springs",
         ),
         (
-            vec!["t", "0.01", "--springs", "--wireframe"],
-            "cannot be used with",
-        ),
-        (
             vec!["t", "0.01", "--colour", "heat"],
             "speed, strain, force",
         ),

@@ -132,8 +132,8 @@ fn pausing_looking_and_help() {
     app.press_for("w", "style", "Springs");
     let springs = app.settled();
     assert!(springs.difference(&wires) > 1.0);
-    let amber = |[r, g, b]: [u8; 3]| r > 150 && r / 4 * 3 > g && g > b + 30;
-    let violet = |[r, g, b]: [u8; 3]| b > 120 && b > r + 20 && r > g + 20;
+    let amber = |[r, g, b]: [u8; 3]| r > 180 && g > 100 && r - 30 > g && g - 30 > b;
+    let violet = |[r, g, b]: [u8; 3]| b > 120 && r > 60 && b - 20 > r && r - 20 > g;
     for (name, count) in [
         ("amber", springs.count(amber)),
         ("violet", springs.count(violet)),
