@@ -81,7 +81,10 @@ fn impulses_of_the_guard_are_felt_and_balance() {
         let up = &forces[n..2 * n];
         let most = up.iter().map(|f| f.abs()).sum::<f64>();
         let (sum, cut) = (up.iter().sum::<f64>(), run.contact().guarded.lost / step);
-        assert!(sum.abs() <= cut + 1e-9 * most.max(1.0), "{sum} N, cut {cut}");
+        assert!(
+            sum.abs() <= cut + 1e-9 * most.max(1.0),
+            "{sum} N, cut {cut}"
+        );
         largest = largest.max(most);
     }
     assert!(largest > 1.0, "{largest} N");
