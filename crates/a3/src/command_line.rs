@@ -9,6 +9,7 @@ use crate::failure::Failure;
 use crate::hud::panel;
 use crate::session::Session;
 use crate::setup;
+use crate::show::has_springs;
 
 /// The command line that begins with the picture and the run of pane `at` as they are now. Where
 /// options cannot say what they are, a scene file is written. A comparison begins at its beginning,
@@ -63,7 +64,8 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
     let show = &session.panes[at].show;
     let mut option = |name: &str, value: &str| words.extend([name.into(), value.into()]);
     option("--scene", scene);
-    if let Some(quantity) = show.colouring.quantity {
+    let coloured = show.colouring.quantity;
+    if let Some(quantity) = coloured.filter(|quantity| session.has(*quantity)) {
         option("--colour", quantity.name());
     }
     if let Some(arrows) = show.field.arrows {
@@ -72,8 +74,12 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
     if let (Some(i), 1) = (show.springs_of, session.panes.len()) {
         option("--springs-of", &i.to_string());
     }
-    let wires = (show.style == Style::Wireframe, "--wireframe");
-    for (on, word) in [wires, (session.readings.paused, "--paused")] {
+    let springs = show.style == Style::Springs && has_springs(session.first());
+    for (on, word) in [
+        (show.style == Style::Wireframe, "--wireframe"),
+        (springs, "--springs"),
+        (session.readings.paused, "--paused"),
+    ] {
         words.extend(on.then(|| word.to_owned()));
     }
     words
@@ -141,7 +147,7 @@ mod tests {
             "verlet 0.005 --scene cloth",
             "rk4 0.002 --scene cloth --grid 12x9 --wind --swing --colour strain",
             "dopri5 0.0001 --scene flag --arrows velocity --wireframe --paused",
-            "verlet 0.005 --scene mit --self-collision --springs-of 7",
+            "verlet 0.005 --scene mit --self-collision --springs-of 7 --springs --colour contact",
             "compare euler:0.05 rk4:0.01 --scene chain --colour force --paused",
         ] {
             let words: Vec<_> = words.split(' ').collect();
