@@ -141,13 +141,17 @@ impl Camera {
     /// behind the eye.
     #[must_use]
     pub fn project(&self, point: [f32; 3], aspect: f32) -> Option<([f32; 2], f32)> {
-        let clip = self.view_projection(aspect) * Point3::from(point).to_homogeneous();
-        (clip.w > 0.0).then(|| {
-            (
-                [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w],
-                clip.w,
-            )
-        })
+        self.projection(aspect)(point)
+    }
+
+    /// [`project`](Self::project), for many points.
+    pub fn projection(&self, aspect: f32) -> impl Fn([f32; 3]) -> Option<([f32; 2], f32)> + use<> {
+        let matrix = self.view_projection(aspect);
+        move |point| {
+            let clip = matrix * Point3::from(point).to_homogeneous();
+            let place = [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w];
+            (clip.w > 0.0).then_some((place, clip.w))
+        }
     }
 
     /// The point of the world (m) at a place in the picture, at a distance from the eye along the

@@ -72,6 +72,13 @@ impl ApplicationHandler for App {
         self.last = Instant::now();
     }
 
+    fn about_to_wait(&mut self, _: &ActiveEventLoop) {
+        // While all moves, each frame looks.
+        if self.visible && !self.session.animated() && self.look_under_pointer() {
+            self.redraw();
+        }
+    }
+
     fn exiting(&mut self, _: &ActiveEventLoop) {
         self.complete_film();
     }
@@ -136,7 +143,11 @@ impl ApplicationHandler for App {
                 }
                 self.redraw();
             }
-            WindowEvent::CursorMoved { position, .. } => self.move_to(position),
+            WindowEvent::CursorMoved { position, .. } => {
+                self.mouse.inside = true;
+                self.move_to(position);
+            }
+            WindowEvent::CursorLeft { .. } => self.mouse.inside = false,
             WindowEvent::MouseWheel { delta, .. } if !taken => {
                 self.scroll(delta);
                 self.redraw();

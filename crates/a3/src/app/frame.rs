@@ -36,12 +36,13 @@ impl App {
         };
         self.session.tick(real);
         self.session.read_state();
+        self.look_under_pointer();
         let message_ends = self.session.message_ends();
         let Some(graphics) = &mut self.graphics else {
             return;
         };
         let begun = Instant::now();
-        match graphics.frame(&mut self.session) {
+        match graphics.frame(&mut self.session, self.cursor) {
             Ok(FrameOutcome::Drawn(again, request)) => {
                 self.session.drawn(begun.elapsed());
                 let again = if self.film() || request.is_some() {
@@ -104,7 +105,13 @@ impl App {
     /// Writes a line for tests, if they are asked for.
     pub fn say_status(&mut self) {
         if let (Some(status), Some(graphics)) = (&mut self.status, &self.graphics) {
-            status.say(&self.session, graphics, self.visible, self.devices);
+            status.say(
+                &self.session,
+                graphics,
+                self.cursor,
+                self.visible,
+                self.devices,
+            );
         }
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use a3_render::{Gpu, GpuError, Offscreen, Renderer, Targets, Tile};
+use egui::CursorIcon;
 use wgpu::CurrentSurfaceTexture;
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
@@ -160,8 +161,13 @@ impl Graphics {
         }
     }
 
-    /// Draws the session to the window, if that is possible now.
-    pub fn frame(&mut self, session: &mut Session) -> Result<FrameOutcome, GpuError> {
+    /// Draws the session to the window, if that is possible now. Where egui has no other, the
+    /// pointer has the shape `cursor`.
+    pub fn frame(
+        &mut self,
+        session: &mut Session,
+        cursor: CursorIcon,
+    ) -> Result<FrameOutcome, GpuError> {
         let inner = self.window.inner_size();
         if inner.width == 0 || inner.height == 0 {
             return Ok(FrameOutcome::Skipped);
@@ -216,7 +222,7 @@ impl Graphics {
         let text_view = frame
             .texture
             .create_view(&wgpu::TextureViewDescriptor::default());
-        let (before, again, request) = self.write_text(&mut encoder, &text_view, session);
+        let (before, again, request) = self.write_text(&mut encoder, &text_view, session, cursor);
         self.gpu
             .queue
             .submit(before.into_iter().chain([encoder.finish()]));
@@ -233,6 +239,7 @@ impl Graphics {
         encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,
         session: &Session,
+        cursor: CursorIcon,
     ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
         let mut input = self.egui_winit.take_egui_input(&self.window);
         let right = panel::inset(session, self.size(), self.scale());
@@ -246,8 +253,11 @@ impl Graphics {
             request = panel::show(ctx, session).or(request);
             request = hud::show_list(ctx, session).or(request);
         });
-        self.egui_winit
-            .handle_platform_output(&self.window, std::mem::take(&mut output.platform_output));
+        let mut answer = std::mem::take(&mut output.platform_output);
+        if answer.cursor_icon == CursorIcon::Default {
+            answer.cursor_icon = cursor;
+        }
+        self.egui_winit.handle_platform_output(&self.window, answer);
         let again = output
             .viewport_output
             .get(&egui::ViewportId::ROOT)

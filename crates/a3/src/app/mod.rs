@@ -4,6 +4,7 @@ mod events;
 mod filming;
 mod frame;
 mod graphics;
+mod hover;
 mod keyboard;
 mod mouse;
 mod pick;

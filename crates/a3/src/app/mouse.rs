@@ -3,15 +3,16 @@
 use winit::dpi::PhysicalPosition;
 use winit::event::{MouseButton, MouseScrollDelta};
 
-use super::pick::{self, Grip, Target};
+use super::pick::{self, Grip};
 use super::pointer::Drag;
 use super::state::App;
 use crate::hud::layout;
+use crate::show::Target;
 
 /// Distance from the pointer within which a particle is hit (points).
 const REACH: f32 = 18.0;
 /// The farthest that the pointer may move during a click (points).
-const CLICK: f32 = 4.0;
+pub(super) const CLICK: f32 = 4.0;
 /// Angle by which the camera turns when the pointer moves by the height of the picture (rad).
 const TURN: f32 = 4.0;
 /// Pixels of smooth scrolling that count as a notch of the wheel.
@@ -57,7 +58,7 @@ impl App {
     }
 
     /// The particle or the obstacle under the pointer in a pane. A lost run cannot be pulled.
-    fn hit(&self, pane: usize) -> Option<(Target, Grip)> {
+    pub(super) fn hit(&self, pane: usize) -> Option<(Target, Grip)> {
         let (tile, pane) = (self.tile(pane), &self.session.panes[pane]);
         let reach = REACH * self.scale() / tile.height as f32;
         let place = tile.place(self.mouse.pointer);
@@ -67,7 +68,7 @@ impl App {
 
     /// The share of the timeline at which the pointer is, if the timeline is shown and the pointer
     /// no farther from it than `margin` (points).
-    fn timeline_share(&self, margin: f32) -> Option<f32> {
+    pub(super) fn timeline_share(&self, margin: f32) -> Option<f32> {
         let graphics = self.graphics.as_ref()?;
         self.session.readings.rewound?;
         let (scale, size) = (graphics.scale(), graphics.size());

@@ -5,15 +5,9 @@ use a3_core::contact::Shape;
 use a3_core::{Simulation, Vector3};
 use a3_render::Camera;
 
+use crate::show::Target;
 use crate::show::tessellation::{self, Tessellation};
 use crate::show::{self, to_f32};
-
-/// A particle or an obstacle, by its number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Target {
-    Particle(usize),
-    Obstacle(usize),
-}
 
 /// The hold on a particle or an obstacle that keeps it under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,9 +39,10 @@ pub fn pick(
     reach: f32,
 ) -> Option<(Target, Grip)> {
     let network = simulation.model().network()?;
+    let project = camera.projection(aspect);
     let project = |i: usize| {
         let p = simulation.position(i);
-        camera.project([p.x as f32, p.y as f32, p.z as f32], aspect)
+        project([p.x as f32, p.y as f32, p.z as f32])
     };
     let places: Vec<_> = (0..simulation.particles()).map(project).collect();
     // Distance from the pointer, in heights of the picture.

@@ -28,6 +28,8 @@ pub enum Drag {
 pub struct Mouse {
     /// Position of the pointer (px from the left and from the top of the window).
     pub pointer: [f32; 2],
+    /// Whether the pointer is in the window.
+    pub inside: bool,
     /// The drag by the pressed button.
     pub drag: Drag,
     /// The pane in which the button was pressed.
@@ -47,6 +49,7 @@ impl Mouse {
     pub fn new() -> Self {
         Self {
             pointer: [0.0; 2],
+            inside: false,
             drag: Drag::None,
             pane: 0,
             button: None,

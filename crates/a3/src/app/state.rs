@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use a3_render::Tile;
 use arboard::Clipboard;
+use egui::CursorIcon;
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
 use winit::window::{Fullscreen, Window};
 
@@ -32,6 +33,8 @@ pub struct App {
     pub last: Instant,
     /// The mouse.
     pub mouse: Mouse,
+    /// The shape of the pointer over the picture.
+    pub cursor: CursorIcon,
     /// Whether the shift key is held.
     pub shift: bool,
     /// The clipboard, once it was needed: what was copied is lost with it.
@@ -66,6 +69,7 @@ impl App {
             window: None,
             last: Instant::now(),
             mouse: Mouse::new(),
+            cursor: CursorIcon::Default,
             shift: false,
             clipboard: None,
             recorder: None,

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use a3_render::Tile;
+use egui::CursorIcon;
 
 use super::graphics::Graphics;
 use crate::output;
@@ -22,7 +23,14 @@ pub struct Status {
 
 impl Status {
     /// Writes a line, unless nothing has changed and the last one is too recent.
-    pub fn say(&mut self, session: &Session, graphics: &Graphics, visible: bool, devices: u32) {
+    pub fn say(
+        &mut self,
+        session: &Session,
+        graphics: &Graphics,
+        cursor: CursorIcon,
+        visible: bool,
+        devices: u32,
+    ) {
         let run = session.first();
         let readings = &session.readings;
         let panes = &session.panes;
@@ -45,7 +53,7 @@ impl Status {
             values.join(",")
         };
         let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} list={} film={} blown={} grabbed={grabbed} \
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} list={} film={} cursor={cursor:?} blown={} grabbed={grabbed} \
              colour={} arrows={} slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
@@ -77,6 +85,8 @@ impl Status {
         let quiet = self
             .said
             .is_some_and(|said| now.duration_since(said) < Duration::from_millis(200));
+        // While all stands still, no other line would follow.
+        let quiet = quiet && session.animated();
         if quiet && state == self.state {
             return;
         }

@@ -52,7 +52,10 @@ impl Studio {
                 *tears = now;
                 self.renderer.set_topology_of(gpu, k, &pane.topology());
             }
+            // The pointer is not in the picture.
+            let hovered = pane.show.hovered.take();
             pane.show.compose(&pane.simulation);
+            pane.show.hovered = hovered;
         }
         let panes = &*panes;
         let pictures: Vec<_> = panes

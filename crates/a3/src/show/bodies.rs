@@ -6,7 +6,7 @@ use a3_core::{Network, Pose, Vector3};
 use a3_render::{Ball, Line, Solid};
 
 use super::colouring::Colouring;
-use super::colours::BODIES;
+use super::colours::{BODIES, INK};
 use super::obstacles::{Paint, draw_shape, great_circles};
 
 /// Each part of each body, with the body's number and where the part is in the state y.
@@ -46,7 +46,7 @@ pub fn draw(
         };
         draw_shape(&part.shape, &pose, 1.0, &paint, balls, solids);
         if let Shape::Sphere { radius } = part.shape {
-            lines.extend(great_circles(radius, Vector3::y(), pose));
+            lines.extend(great_circles(radius, Vector3::y(), pose, INK));
         }
     }
 }

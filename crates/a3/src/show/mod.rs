@@ -20,7 +20,7 @@ mod wires;
 pub use liquid::Liquid;
 pub use obstacles::drawn_radius;
 pub use parts::whole_triangles;
-pub use picture::{Manner, Show};
+pub use picture::{Manner, Show, Target};
 pub use quantity::{Arrows, Quantity};
 pub use springs::{has_springs, kind_look, kind_name, list_springs_of, springs_of};
 pub use vectors::to_f32;

@@ -165,11 +165,34 @@ pub fn meridians(network: &Network, time: f64) -> impl Iterator<Item = Line> {
             _ => None,
         }
     });
-    turning.flat_map(move |(radius, axis, pose)| great_circles(share * radius, axis, pose))
+    turning.flat_map(move |(radius, axis, pose)| great_circles(share * radius, axis, pose, INK))
+}
+
+/// Great circles around a sphere among the obstacles, in a colour.
+pub fn rings(
+    network: &Network,
+    k: usize,
+    time: f64,
+    color: [f32; 4],
+) -> impl Iterator<Item = Line> {
+    let share = f64::from(drawn_radius(network));
+    let sphere = network.obstacles().get(k).and_then(|obstacle| {
+        let Shape::Sphere { radius } = obstacle.shape else {
+            return None;
+        };
+        Some((share * radius, obstacle.at(time)))
+    });
+    let rings = move |(radius, pose)| great_circles(radius, Vector3::y(), pose, color);
+    sphere.into_iter().flat_map(rings)
 }
 
 /// Three great circles through the poles of a sphere.
-pub fn great_circles(radius: f64, axis: Vector3<f64>, pose: Pose) -> impl Iterator<Item = Line> {
+pub fn great_circles(
+    radius: f64,
+    axis: Vector3<f64>,
+    pose: Pose,
+    color: [f32; 4],
+) -> impl Iterator<Item = Line> {
     const CORNERS: usize = 48;
     let radius = radius * 1.002;
     let side = perpendicular(axis);
@@ -180,7 +203,7 @@ pub fn great_circles(radius: f64, axis: Vector3<f64>, pose: Pose) -> impl Iterat
             let (sin, cos) = (TAU / CORNERS as f64 * k as f64).sin_cos();
             to_f32(pose.of((axis * cos + across * sin) * radius).position)
         };
-        (0..CORNERS).map(move |k| Line::new(corner(k), corner(k + 1), 1.6, INK))
+        (0..CORNERS).map(move |k| Line::new(corner(k), corner(k + 1), 1.6, color))
     })
 }
 

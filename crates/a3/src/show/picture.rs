@@ -25,6 +25,13 @@ const MANY: usize = 60;
 /// Length of a pull that is drawn as the strongest, as a share of the scene's radius.
 const STRONG: f64 = 0.5;
 
+/// A particle or an obstacle, by its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    Particle(usize),
+    Obstacle(usize),
+}
+
 /// The manner in which a run is shown at first.
 #[derive(Clone, Copy, Default)]
 pub struct Manner {
@@ -53,6 +60,8 @@ pub struct Show {
     pub field: Field,
     /// Whether floor and background are left out.
     pub transparent: bool,
+    /// What the hand would take, if it is highlighted.
+    pub hovered: Option<Target>,
     /// Point to which the hand pulls (m).
     pub hand: Option<Vector3<f64>>,
     /// The way of the trailing particle.
@@ -80,6 +89,7 @@ impl Show {
             colouring,
             field,
             transparent: false,
+            hovered: None,
             hand: None,
             trail: Trail::default(),
             parts: Parts::default(),
@@ -96,6 +106,7 @@ impl Show {
     pub fn set_presentation(&mut self, presentation: Arc<Presentation>) {
         self.presentation = presentation;
         self.springs_of = None;
+        self.hovered = None;
         self.colouring.forget();
         self.field.scale = Scale::default();
         self.clear_trail();
@@ -196,6 +207,7 @@ impl Show {
         if let Some(i) = self.springs_of {
             self.draw_springs_of(simulation, i);
         }
+        self.highlight(simulation);
         if let Some(i) = simulation.grabbed() {
             self.ball(i, 0.055, AMBER);
             self.draw_pull(simulation, i);
@@ -346,6 +358,21 @@ impl Show {
                     self.lines.push(Line::new(ends[0], ends[1], 1.6, STEEL));
                 }
             }
+        }
+    }
+
+    /// Highlights what the hand would take.
+    fn highlight(&mut self, simulation: &Simulation) {
+        let network = simulation.model().network();
+        match (self.hovered, network) {
+            (Some(Target::Particle(i)), _) if i < simulation.particles() => {
+                self.ball(i, 0.045, AMBER);
+            }
+            (Some(Target::Obstacle(k)), Some(network)) => {
+                let rings = obstacles::rings(network, k, simulation.time(), AMBER);
+                self.lines.extend(rings);
+            }
+            _ => {}
         }
     }
 

@@ -30,9 +30,14 @@ fn pulling() {
             &y.to_string(),
         ]);
     };
+    // The pointer says what a press would do.
+    go(30, 600);
+    app.expect("cursor", "Default");
     go(x, y);
+    app.expect("cursor", "Grab");
     display.xdotool(&["mousedown", "1"]);
     until("a grip", || (app.get("grabbed") != "-").then_some(()));
+    app.expect("cursor", "Grabbing");
     let particle = app.get("grabbed");
     let hand = || {
         let (x, y) = app
