@@ -101,7 +101,7 @@ impl Kept {
             ));
         }
         postcard::from_bytes(&run[1..])
-            .map_err(|why| format!("this checkpoint cannot be read: {why}"))
+            .map_err(|_| "this checkpoint is damaged: a run is not what it holds".into())
     }
 
     /// `Ok` if the file at `path` is of the scene of a run.
@@ -153,7 +153,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
     match read() {
         Ok(Some(bytes)) => Ok(bytes),
         Ok(None) => Err("this is no checkpoint of a3".into()),
-        Err(why) => Err(format!("could not be read: {why}")),
+        Err(error) => Err(format!("it could not be read: {}", output::reason(&error))),
     }
 }
 

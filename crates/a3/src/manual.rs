@@ -14,7 +14,7 @@ use crate::output;
 /// Prints a script by which the shell completes words.
 pub fn completions(shell: Shell) -> Result<(), Failure> {
     let mut script = vec![];
-    clap_complete::generate(shell, &mut command(), "a3", &mut script);
+    clap_complete::generate(shell, &mut visible(&Cli::command()), "a3", &mut script);
     say(script)
 }
 
@@ -43,12 +43,24 @@ pub fn run(folder: Option<&Path>) -> Result<(), Failure> {
 }
 
 /// The command line with its complete names, and without the command `help`, which says no more
-/// than
-/// `--help`.
+/// than `--help`.
 fn command() -> Command {
     let mut command = Cli::command().disable_help_subcommand(true);
     command.build();
     command
+}
+
+/// A command without its hidden options, which clap would complete.
+fn visible(command: &Command) -> Command {
+    let args = command.get_arguments().filter(|arg| !arg.is_hide_set());
+    let about = command.get_about().cloned().unwrap_or_default();
+    Command::new(command.get_name().to_owned())
+        .about(about)
+        .version(env!("CARGO_PKG_VERSION"))
+        .disable_version_flag(command.get_version().is_none())
+        .disable_help_subcommand(true)
+        .args(args.cloned())
+        .subcommands(command.get_subcommands().map(visible))
 }
 
 /// Writes the page of the program, with a section for each command.

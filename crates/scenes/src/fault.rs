@@ -1,9 +1,15 @@
 //! Faults in the text of a scene, and where they are.
 
-use std::borrow::Cow;
 use std::fmt;
 
 use toml::de::{DeTable, DeValue};
+
+use crate::wording::{brief, of_serde, of_toml};
+
+/// Most characters of a key or a reason.
+const LONGEST: usize = 1000;
+/// What is said of a list of fixed length that goes on.
+const TOO_LONG: &str = "the list has too many numbers; write decimal points, as in 0.5";
 
 /// Fault in a description, with its place in the text.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,9 +29,9 @@ impl fmt::Display for Fault {
             write!(f, "line {line}: ")?;
         }
         if !self.key.is_empty() {
-            write!(f, "{}: ", brief(&self.key))?;
+            write!(f, "{}: ", brief(&self.key, LONGEST))?;
         }
-        f.write_str(&brief(&self.why))
+        f.write_str(&brief(&self.why, LONGEST))
     }
 }
 
@@ -72,6 +78,9 @@ impl Fault {
     /// The fault with the line of its key in that text.
     #[must_use]
     pub fn locate(self, text: &str) -> Self {
+        if text.trim_start().starts_with('{') {
+            return self.in_json(text);
+        }
         let offset = || {
             // The text as a whole has no line, and may be too long to be read.
             if self.key.is_empty() {
@@ -86,23 +95,68 @@ impl Fault {
         }
     }
 
-    /// Fault that the TOML reader found.
+    /// The fault with the key and the line that it has in JSON, where there are single particles
+    /// alone.
+    fn in_json(self, text: &str) -> Self {
+        let key = match self.key.strip_prefix("particles.") {
+            Some("masses") => "mass",
+            Some("pin" | "pin.particles") => "pinned",
+            Some(key) => key,
+            None => &self.key,
+        };
+        let at = || text.find(&format!("\"{key}\"")).filter(|_| !key.is_empty());
+        Self {
+            line: self.line.or_else(|| Some(line(text, at()?))),
+            key: key.into(),
+            why: self.why,
+        }
+    }
+
+    /// Fault of a text that is no TOML.
     pub(crate) fn of_toml(text: &str, error: &toml::de::Error) -> Self {
         let at = error.span().map(|span| span.start);
-        let key = at.and_then(|at| {
-            let table = DeTable::parse(text).ok()?;
-            key_at(table.get_ref(), at)
-        });
+        let rest = at.and_then(|at| text.get(at..)).unwrap_or_default();
         Self {
             line: at.map(|at| line(text, at)),
-            key: key.unwrap_or_default(),
-            why: explain(error.message()),
+            ..Self::new("", of_toml(error.message(), rest))
+        }
+    }
+
+    /// Fault that the JSON reader found in a table of lists.
+    pub(crate) fn of_json(text: &str, error: &serde_json::Error) -> Self {
+        let why = error.to_string();
+        // The reader ends with the place.
+        let why = why.split(" at line ").next().unwrap_or_default();
+        let mut lines = text.split_inclusive('\n');
+        let before: usize = lines
+            .by_ref()
+            .take(error.line().saturating_sub(1))
+            .map(str::len)
+            .sum();
+        let head = text.get(..before + error.column()).unwrap_or_default();
+        let is_in_list = head.matches('[').count() > head.matches(']').count();
+        let (key, why) = match why {
+            "trailing characters" if is_in_list => (last_key(head), TOO_LONG.into()),
+            _ if why.starts_with("invalid ") && error.is_data() => (last_key(head), of_serde(why)),
+            _ => (None, of_serde(why)),
+        };
+        Self {
+            line: Some(error.line()),
+            ..Self::new(key.unwrap_or_default(), why)
         }
     }
 }
 
+/// The last key of a text in JSON: a text in quotes before a colon.
+fn last_key(text: &str) -> Option<&str> {
+    text.rmatch_indices(':').find_map(|(colon, _)| {
+        let key = text[..colon].trim_end().strip_suffix('"')?;
+        Some(&key[key.rfind('"')? + 1..])
+    })
+}
+
 /// Line of a byte, counted from 1.
-fn line(text: &str, at: usize) -> usize {
+pub(crate) fn line(text: &str, at: usize) -> usize {
     1 + text.bytes().take(at).filter(|b| *b == b'\n').count()
 }
 
@@ -132,72 +186,10 @@ fn offset_of(table: &DeTable, key: &str) -> Option<usize> {
     Some(at)
 }
 
-/// The key whose value or name is at that byte. The span of a table is only its header, so that its
-/// contents are searched first.
-fn key_at(table: &DeTable, at: usize) -> Option<String> {
-    table.iter().find_map(|(name, value)| {
-        let rest = match value.get_ref() {
-            DeValue::Table(inner) => key_at(inner, at),
-            DeValue::Array(items) => items.iter().enumerate().find_map(|(i, item)| {
-                let rest = key_at(item.get_ref().as_table()?, at);
-                let own = || item.span().contains(&at).then(String::new);
-                let number = (items.len() > 1).then(|| i.to_string());
-                Some(join(number, rest.or_else(own)?))
-            }),
-            _ => None,
-        };
-        let own = || (name.span().contains(&at) || value.span().contains(&at)).then(String::new);
-        Some(join(Some(name.get_ref().to_string()), rest.or_else(own)?))
-    })
-}
-
 fn join(first: Option<String>, rest: String) -> String {
     match first {
         None => rest,
         Some(first) if rest.is_empty() => first,
         Some(first) => format!("{first}.{rest}"),
     }
-}
-
-/// A message with at most a thousand characters: it may quote a whole file.
-fn brief(message: &str) -> Cow<'_, str> {
-    match message.char_indices().nth(1000) {
-        Some((end, _)) => format!("{} ...", &message[..end]).into(),
-        None => message.into(),
-    }
-}
-
-/// The TOML reader's message, rephrased.
-fn explain(message: &str) -> String {
-    let message = message.lines().next().unwrap_or_default();
-    let quoted: Vec<_> = message.split('`').skip(1).step_by(2).collect();
-    if let (true, [unknown, known @ ..]) = (
-        message.starts_with("unknown field") || message.starts_with("unknown variant"),
-        &quoted[..],
-    ) {
-        let (what, all) = if message.starts_with("unknown field") {
-            ("there is no key", "keys")
-        } else {
-            ("there is no", "choices")
-        };
-        // Two neighbouring letters in the wrong order count as one slip.
-        let likeness = |name: &str| strsim::normalized_damerau_levenshtein(unknown, name);
-        // No key is so long; the time that a comparison takes grows with the length.
-        let near = known.iter().filter(|_| unknown.len() < 50);
-        let nearest = near
-            .map(|name| (likeness(name), *name))
-            .filter(|(likeness, _)| *likeness > 0.55)
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        let known = known.join(", ");
-        return match nearest {
-            Some((_, name)) => {
-                format!("{what} `{unknown}`; did you mean `{name}`? The {all} are {known}")
-            }
-            None => format!("{what} `{unknown}`; the {all} are {known}"),
-        };
-    }
-    if let (true, [missing, ..]) = (message.starts_with("missing field"), &quoted[..]) {
-        return format!("the key `{missing}` is missing");
-    }
-    message.to_owned()
 }

@@ -36,15 +36,8 @@ impl Description {
     /// # Errors
     /// The text is not JSON, a key is unknown or missing, or a value is of the wrong kind.
     pub fn parse_json(text: &str) -> Result<Self, Fault> {
-        let listed: Listed = serde_json::from_str(text).map_err(|e| {
-            let why = e.to_string();
-            let why = why.split(" at line ").next().unwrap_or_default();
-            let line = Some(e.line());
-            Fault {
-                line,
-                ..Fault::new("", why)
-            }
-        })?;
+        let listed: Listed =
+            serde_json::from_str(text).map_err(|error| Fault::of_json(text, &error))?;
         let pin = Pin {
             particles: listed.pinned,
             ..Pin::default()

@@ -56,14 +56,19 @@ fn csv_lines(record: &Record, names: bool) -> Result<String, String> {
     Ok(lines)
 }
 
+fn see_line(line: u64) -> String {
+    format!("see line {line}")
+}
+
 /// The runs in a text. One that has no checksums, because an older version wrote it or somebody
 /// took them out, is believed.
 pub fn read(text: &str, json: bool) -> Result<Vec<Record>, String> {
     let mut records: Vec<Record> = if json && !text.is_empty() {
-        serde_json::from_str(text).map_err(|e| e.to_string())?
+        serde_json::from_str(text).map_err(|e| see_line(e.line() as u64))?
     } else {
         let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize();
-        rows.collect::<Result<_, _>>().map_err(|e| e.to_string())?
+        rows.collect::<Result<_, _>>()
+            .map_err(|e| see_line(e.position().map_or(1, csv::Position::line)))?
     };
     if records.is_empty() && !text.is_empty() {
         return Err("it has no runs".into());

@@ -15,10 +15,10 @@ pub struct Drawing {
     /// own colour and width
     #[arg(long)]
     pub springs: bool,
-    /// Colour particles by a quantity
+    /// Colour each particle by a quantity
     #[arg(long, value_name = "QUANTITY", value_enum, alias = "color")]
     pub colour: Option<Quantity>,
-    /// Draw arrows on particles
+    /// Draw an arrow on each particle
     #[arg(long, value_name = "VECTOR", value_enum)]
     pub arrows: Option<Arrows>,
 }

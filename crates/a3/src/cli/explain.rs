@@ -1,17 +1,15 @@
 //! What the program says when the command line cannot be understood.
 
-use clap::CommandFactory;
-use clap::error::ErrorKind;
+use std::error::Error;
 
-use super::Cli;
-use super::values::{UNKNOWN_SOLVER, step};
+use a3_scenes::nearest;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+
 use crate::failure::Failure;
 use crate::output;
 
-/// The refused value: the text between the first quotes.
-fn value_of(head: &str) -> &str {
-    head.split('\'').nth(1).unwrap_or_default()
-}
+/// Most characters of an argument that is quoted.
+const LONGEST: usize = 80;
 
 /// Prints help and version as clap does, and returns any mistake in one line.
 pub fn explain(error: &clap::Error) -> Result<(), Failure> {
@@ -21,46 +19,125 @@ pub fn explain(error: &clap::Error) -> Result<(), Failure> {
     ) {
         return output::said(error.print());
     }
-    let text = error.render().to_string();
-    // The first paragraph is the error; usage and hints follow.
-    let words: Vec<_> = text
-        .lines()
-        .take_while(|line| !line.is_empty())
-        .map(str::trim)
-        .collect();
-    let line = words.join(" ");
-    let line = line.strip_prefix("error: ").unwrap_or(&line).to_owned();
-    let tip = text
-        .lines()
-        .find_map(|line| line.trim().strip_prefix("tip: "));
-    Err(Failure::Usage(match (error.kind(), tip) {
-        // The first word may be meant as a solver or as a command.
-        (ErrorKind::ValueValidation, _) if line.contains(UNKNOWN_SOLVER) => {
-            let cli = Cli::command();
-            let commands: Vec<_> = cli.get_subcommands().map(clap::Command::get_name).collect();
-            format!("{line}; the commands are {}, and come first", commands.join(", "))
-        }
-        // The parser's own words end with what is right; those about a scene file begin with its
-        // name.
-        (ErrorKind::ValueValidation, _) => match line.split_once("': ") {
-            Some((head, rest)) if head.contains(" '") && rest.starts_with(value_of(head)) => {
-                rest.into()
+    Err(Failure::Usage(mistake(error)))
+}
+
+fn mistake(error: &clap::Error) -> String {
+    let arg = text(error, ContextKind::InvalidArg);
+    let value = text(error, ContextKind::InvalidValue);
+    let option = arg.split([' ', '=']).next().unwrap_or_default();
+    let typed = if option.starts_with('-') {
+        quoted(format!("{option} {value}").trim_end())
+    } else {
+        quoted(&value)
+    };
+    let choices = list(error, ContextKind::ValidValue);
+    let list_of_choices = choices.join(", ");
+    match error.kind() {
+        ErrorKind::ValueValidation => {
+            let why = error.source().map(ToString::to_string).unwrap_or_default();
+            // What is wrong in a file begins with the name of the file.
+            if why.starts_with(&format!("{value}:")) {
+                why
+            } else {
+                format!("{typed}: {why}")
             }
-            _ => line,
+        }
+        ErrorKind::InvalidValue if value.is_empty() => {
+            let needed = format!("{} needs a value: {}", quoted(option), spelt(&arg));
+            if choices.is_empty() {
+                needed
+            } else {
+                format!("{needed}, which is one of {list_of_choices}")
+            }
+        }
+        ErrorKind::InvalidValue => match nearest(&value, choices.iter().map(String::as_str)) {
+            Some(name) => {
+                format!("{typed}: did you mean {name}? The choices are {list_of_choices}")
+            }
+            None => format!("{typed}: the choices are {list_of_choices}"),
         },
-        (ErrorKind::ArgumentConflict | ErrorKind::MissingRequiredArgument, _)
-            if line.contains("--error") =>
-        {
-            "choose takes either --error E (in m) or --budget MS (in ms per frame)".into()
+        ErrorKind::TooManyValues => format!("{} takes no value: leave out {value}", quoted(option)),
+        ErrorKind::UnknownArgument => unknown(&arg, &text(error, ContextKind::SuggestedArg)),
+        ErrorKind::InvalidSubcommand => {
+            let name = text(error, ContextKind::InvalidSubcommand);
+            format!("there is no command {}; --help lists them", quoted(&name))
         }
-        (ErrorKind::ArgumentConflict, _) => {
-            "a command comes before everything else, as in `a3 chart --scene flag`; without one, there is a solver and a step, as in `a3 t 0.01`".into()
+        ErrorKind::MissingRequiredArgument => {
+            let missing = list(error, ContextKind::InvalidArg);
+            let missing: Vec<_> = missing.iter().map(|arg| spelt(arg)).collect();
+            if missing.iter().any(|arg| arg.contains("--error")) {
+                return either_error_or_budget();
+            }
+            format!("{} is missing; --help explains it", missing.join(" and "))
         }
-        // clap takes -1e-3 for options, but not -0.001.
-        (ErrorKind::UnknownArgument, _) if line.contains("argument '-") && !line.contains("argument '--") => {
-            format!("{line}; {}", step("").unwrap_err())
-        }
-        (_, Some(tip)) => format!("{line}; {tip}"),
-        (_, None) => format!("{line}; --help explains the options"),
-    }))
+        ErrorKind::ArgumentConflict => conflict(error, &arg),
+        _ => "the command line cannot be understood; --help explains it".into(),
+    }
+}
+
+/// What is said of an argument that there is not.
+fn unknown(arg: &str, similar: &str) -> String {
+    let arg = quoted(arg);
+    if !similar.is_empty() {
+        return format!("there is no option {arg}; did you mean {similar}?");
+    }
+    if arg.starts_with("`--") {
+        return format!("there is no option {arg} here; --help lists the options");
+    }
+    if arg.starts_with("`-") {
+        return format!(
+            "there is no option {arg}: long options have two dashes, as in --scene, and a step is a number above 0, \
+             such as 0.01"
+        );
+    }
+    format!("{arg} is one word too many; --help shows what is expected")
+}
+
+/// What is said of two arguments of which only one may be given.
+fn conflict(error: &clap::Error, arg: &str) -> String {
+    let others = list(error, ContextKind::PriorArg);
+    let both = [&[arg.to_owned()], &others[..]].concat();
+    if both.iter().any(|arg| arg.contains("--error")) {
+        return either_error_or_budget();
+    }
+    if arg.is_empty() || others.is_empty() {
+        return "a command comes before everything else, as in `a3 chart --scene flag`; without one, there is a \
+                solver and a step, as in `a3 t 0.01`"
+            .into();
+    }
+    if both[0] == both[1] {
+        return format!("{} is there twice: give it once", spelt(arg));
+    }
+    let both: Vec<_> = both.iter().map(|arg| spelt(arg)).collect();
+    format!("give either {}, not both", both.join(" or "))
+}
+
+fn either_error_or_budget() -> String {
+    "choose takes either --error E (in m) or --budget MS (in ms per frame)".into()
+}
+
+/// An argument as it is typed, without clap's brackets.
+fn spelt(arg: &str) -> String {
+    quoted(&arg.replace(['<', '>', '[', ']'], ""))
+}
+
+fn quoted(text: &str) -> String {
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("`{} ...`", &text[..end]),
+        None => format!("`{text}`"),
+    }
+}
+
+/// What clap knows of a mistake, as one text.
+fn text(error: &clap::Error, kind: ContextKind) -> String {
+    list(error, kind).into_iter().next().unwrap_or_default()
+}
+
+fn list(error: &clap::Error, kind: ContextKind) -> Vec<String> {
+    match error.get(kind) {
+        Some(ContextValue::String(text)) => vec![text.clone()],
+        Some(ContextValue::Strings(texts)) => texts.clone(),
+        _ => vec![],
+    }
 }

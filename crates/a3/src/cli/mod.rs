@@ -2,6 +2,7 @@
 
 mod drawing;
 mod explain;
+mod names;
 mod values;
 
 use std::path::PathBuf;
@@ -12,9 +13,10 @@ use clap_complete::Shell;
 
 use crate::failure::Failure;
 use crate::scene_file::Source;
+use names::{SCENE, SOLVER, SOLVER_AND_STEP, SOLVER_OR_COMMAND};
 use values::{
     beginning, budget, error, factor, grid, horizon, particle, pause, picture_size, rate, size,
-    solver, solver_and_step, step, threads, until,
+    step, threads, until,
 };
 
 pub use drawing::Drawing;
@@ -77,7 +79,7 @@ pub enum Command {
 #[derive(Args, Clone)]
 pub struct What {
     /// Scene: a name that `a3 scenes` lists, or a file of your own: TOML, JSON, or a mesh
-    #[arg(long, value_name = "NAME|FILE", default_value = "cloth", value_parser = Source::find)]
+    #[arg(long, value_name = "NAME|FILE", default_value = "cloth", value_parser = SCENE, hide_possible_values = true)]
     pub scene: Source,
     /// Rows and columns of the cloth, such as 30x40
     #[arg(long, value_name = "ROWSxCOLS", value_parser = grid, allow_hyphen_values = true)]
@@ -85,23 +87,25 @@ pub struct What {
     /// Let the wind blow
     #[arg(long)]
     pub wind: bool,
-    /// Swing the pins
+    /// Swing the pinned particles to and fro
     #[arg(long)]
     pub swing: bool,
     /// Keep surfaces from passing through one another and themselves
     #[arg(long)]
     pub self_collision: bool,
-    /// Number of threads; by default that of the processors, or `RAYON_NUM_THREADS`
+    /// Number of threads; by default one for each processor, or as many as the environment variable
+    /// `RAYON_NUM_THREADS` says
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
 }
 
 #[derive(Args)]
 pub struct WindowOptions {
-    /// Solver by letter or name, as `a3 solvers` lists them; by default the scene's own, or t
-    #[arg(value_parser = solver)]
+    /// Solver by letter or name, as `a3 solvers` lists them; by default the scene's own, or else t
+    #[arg(value_parser = SOLVER_OR_COMMAND, hide_possible_values = true)]
     pub solver: Option<&'static Method>,
-    /// Step in seconds, or relative tolerance of an adaptive solver; by default the solver's own
+    /// Step in seconds, or relative tolerance of an adaptive solver; by default the scene's own, or
+    /// else the solver's
     #[arg(value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
     #[command(flatten)]
@@ -114,7 +118,7 @@ pub struct WindowOptions {
     /// Load the scene's file again whenever it is saved
     #[arg(long)]
     pub watch: bool,
-    /// Go on from a checkpoint of this scene, by its solver and step
+    /// Continue a run of this scene from a checkpoint, with the solver and the step of that run
     #[arg(long, value_name = "FILE.checkpoint", conflicts_with = "solver")]
     pub resume: Option<PathBuf>,
 }
@@ -135,7 +139,7 @@ pub struct Look {
 #[derive(Args)]
 pub struct Scenes {
     /// Print the file of a scene, as a start for one of your own
-    #[arg(long, value_name = "NAME", value_parser = Source::find)]
+    #[arg(long, value_name = "NAME", value_parser = SCENE, hide_possible_values = true)]
     pub print: Option<Source>,
     /// Print the JSON Schema of scene files, with which editors complete and check them
     #[arg(long, conflicts_with = "print")]
@@ -163,22 +167,23 @@ pub struct Simulate {
     /// Frames per second of outputs that have several; 30 by default
     #[arg(long, value_name = "N", value_parser = rate, allow_negative_numbers = true)]
     pub fps: Option<f64>,
-    /// File for a summary as JSON, or - for standard output: energy at the start and at the end,
-    /// its largest drift, largest stretch, steps, evaluations, real time
+    /// File for a summary in JSON: energy at the start and at the end, its largest drift, the
+    /// largest stretch, steps, evaluations and real time; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub summary: Option<PathBuf>,
     /// Fail if surfaces pass through one another: every edge is checked against every triangle,
     /// exactly, sixty times a simulated second
     #[arg(long)]
     pub check: bool,
-    /// File in which the whole run is kept every now and then, on an interrupt and at the end
+    /// File to which the whole run is saved from time to time, when it is interrupted, and at the
+    /// end
     #[arg(long, value_name = "FILE.checkpoint")]
     pub checkpoint: Option<PathBuf>,
     /// Real time between two checkpoints, in seconds
     #[arg(long, value_name = "S", default_value = "60", value_parser = pause, requires = "checkpoint")]
     pub every: f64,
-    /// Go on from a checkpoint of this scene, to the same bits as if the run had never ended;
-    /// solver and step are those of the checkpoint
+    /// Continue a run of this scene from a checkpoint, with the solver and the step of that run;
+    /// the results are exactly those of a run that had never stopped
     #[arg(long, value_name = "FILE.checkpoint")]
     pub resume: Option<PathBuf>,
 }
@@ -230,7 +235,7 @@ pub enum ErrorMeasure {
     Momentum,
     /// Time by which the motion is ahead or behind (s)
     Phase,
-    /// Largest share of its thickness by which a surface is within it
+    /// Largest depth of a surface within the thickness of another, over that thickness
     Penetration,
     /// Times at which surfaces first touch, and at which nothing touches any more (s)
     Impact,
@@ -239,10 +244,10 @@ pub enum ErrorMeasure {
 /// Where errors are taken.
 #[derive(Args)]
 pub struct ErrorScope {
-    /// Count the position and the phase of particle I alone
+    /// Take the errors of position and phase from particle I alone
     #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
     pub particle: Option<usize>,
-    /// Count the error at the end alone, instead of the largest on the way
+    /// Take the error at the end, instead of the largest one on the way
     #[arg(long)]
     pub at_end: bool,
 }
@@ -261,7 +266,7 @@ pub struct Chart {
     #[command(flatten)]
     pub what: What,
     /// Solvers to compare, such as t,r,v; by default all that can run the scene
-    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = solver)]
+    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER, hide_possible_values = true)]
     pub solvers: Vec<&'static Method>,
     /// Simulated seconds; by default, as long as errors are meaningful on this scene
     #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
@@ -274,7 +279,8 @@ pub struct Chart {
     /// What counts as the cost
     #[arg(long, default_value = "seconds")]
     pub work: WorkMeasure,
-    /// Factors of the springs' stiffness, such as 1,10,100: the chart has a panel for each
+    /// Factors by which the stiffness of the springs is multiplied, such as 1,10,100; the chart has
+    /// a panel for each
     #[arg(long, value_name = "FACTORS", value_delimiter = ',', default_value = "1", value_parser = factor, allow_negative_numbers = true)]
     pub stiffness: Vec<f64>,
     /// Picture to write, ending in .svg or .png; by default a3-chart-SCENE.svg
@@ -293,10 +299,10 @@ pub struct Stability {
     #[command(flatten)]
     pub what: What,
     /// Solvers to examine, such as t,r,v; by default all that can run the scene
-    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = solver)]
+    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER, hide_possible_values = true)]
     pub solvers: Vec<&'static Method>,
-    /// Step in seconds at which the picture shows the eigenvalues; by default one radian of the
-    /// fastest motion
+    /// Step in seconds by which the picture multiplies the eigenvalues; by default the time in which
+    /// the fastest motion turns by one radian
     #[arg(long, value_name = "STEP", value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
     /// Picture to write, ending in .svg or .png; by default a3-stability-SCENE.svg
@@ -311,8 +317,8 @@ pub struct Stability {
 pub struct Choose {
     #[command(flatten)]
     pub what: What,
-    /// Largest error that is allowed, such as 1e-3: of the positions in m, if --of says nothing
-    /// else
+    /// Largest error that is allowed, such as 1e-3; it is that of the positions, in m, unless --of
+    /// names another
     #[arg(long, value_name = "E", value_parser = error, allow_negative_numbers = true, required_unless_present = "budget", conflicts_with = "budget")]
     pub error: Option<f64>,
     /// What counts as the error
@@ -330,9 +336,9 @@ pub struct Choose {
 
 #[derive(Args)]
 pub struct Compare {
-    /// Two to four solvers by letter or name, each with its step in seconds or its tolerance, such
-    /// as e:0.05 r:0.05; by default the solver's own step
-    #[arg(value_name = "SOLVER[:STEP]", value_parser = solver_and_step)]
+    /// Two to four solvers by letter or name, each with its step in seconds or its tolerance after a
+    /// colon, as in e:0.05 r:0.05; by default the solver's own
+    #[arg(value_name = "SOLVER[:STEP]", value_parser = SOLVER_AND_STEP, hide_possible_values = true)]
     pub methods: Vec<(&'static Method, Option<f64>)>,
     #[command(flatten)]
     pub what: What,
@@ -352,11 +358,11 @@ pub struct Compare {
 /// A run without a window.
 #[derive(Args)]
 pub struct RunOptions {
-    /// Solver by letter or name, as `a3 solvers` lists them; by default the scene's own, or t
-    #[arg(value_parser = solver)]
+    /// Solver by letter or name, as `a3 solvers` lists them; by default the scene's own, or else t
+    #[arg(value_parser = SOLVER, hide_possible_values = true)]
     pub solver: Option<&'static Method>,
-    /// Step in seconds, or relative tolerance of an adaptive solver (a, x, f); by default the
-    /// solver's own
+    /// Step in seconds, or relative tolerance of an adaptive solver; by default the scene's own, or
+    /// else the solver's
     #[arg(value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
     /// Simulated seconds, by default the scene's own; the last step is shortened to end exactly

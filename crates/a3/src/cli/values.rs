@@ -1,14 +1,11 @@
-//! Values of arguments: numbers within their ranges, sizes and solvers. An error says what is
-//! right.
+//! Values of arguments: numbers within their ranges, and sizes. An error says what is right.
 
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-use a3_core::{Grid, Method, integrators};
+use a3_core::Grid;
 
 use crate::bounds::{LARGEST_STEP, SMALLEST_STEP, TOLERANCES};
-
-/// Beginning of the error for a name that no solver has.
-pub const UNKNOWN_SOLVER: &str = "the solvers are";
 
 /// Largest number of threads.
 const MOST_THREADS: usize = 1024;
@@ -21,25 +18,29 @@ fn number(text: &str) -> Option<f64> {
     }
 }
 
-/// A step (s) or a tolerance.
-pub fn step(text: &str) -> Result<f64, String> {
+/// A number of that range. `right` says what one is.
+fn within(text: &str, range: RangeInclusive<f64>, right: &str) -> Result<f64, String> {
     match number(text) {
-        Some(step) if (*TOLERANCES.start()..=LARGEST_STEP).contains(&step) => Ok(step),
-        _ => Err(format!(
-            "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01 or 1/60; the tolerance of an \
-             adaptive solver is a number from {:e} to {}",
-            TOLERANCES.start(),
-            TOLERANCES.end()
-        )),
+        Some(number) if range.contains(&number) => Ok(number),
+        _ => Err(pointed(text).unwrap_or_else(|| right.into())),
     }
 }
 
-/// A solver, and its step or tolerance after a colon.
-pub fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), String> {
-    match text.split_once(':') {
-        Some((name, number)) => Ok((solver(name)?, Some(step(number)?))),
-        None => Ok((solver(text)?, None)),
-    }
+/// What is said of a number with a decimal comma.
+fn pointed(text: &str) -> Option<String> {
+    let point = text.replacen(',', ".", 1);
+    (point != text && number(&point).is_some()).then(|| format!("use a decimal point: {point}"))
+}
+
+/// A step (s) or a tolerance.
+pub fn step(text: &str) -> Result<f64, String> {
+    let right = format!(
+        "a step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01 or 1/60; the tolerance of an \
+         adaptive solver is a number from {:e} to {}",
+        TOLERANCES.start(),
+        TOLERANCES.end()
+    );
+    within(text, *TOLERANCES.start()..=LARGEST_STEP, &right)
 }
 
 /// The number of a particle.
@@ -60,68 +61,74 @@ pub fn threads(text: &str) -> Result<usize, String> {
 
 /// The end of a run (s).
 pub fn until(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
-        _ => Err("the end is a number of seconds from 0 to 1e9, such as 10".into()),
-    }
+    within(
+        text,
+        0.0..=1e9,
+        "the end is a number of seconds from 0 to 1e9, such as 10",
+    )
 }
 
 /// Real time between two checkpoints (s).
 pub fn pause(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(time) if (0.0..=1e6).contains(&time) => Ok(time),
-        _ => Err(
-            "the time between checkpoints is a number of seconds from 0 to 1e6, such as 60".into(),
-        ),
-    }
+    within(
+        text,
+        0.0..=1e6,
+        "the time between checkpoints is a number of seconds from 0 to 1e6, such as 60",
+    )
 }
 
 /// The beginning of a film (s).
 pub fn beginning(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(time) if (0.0..=1e9).contains(&time) => Ok(time),
-        _ => Err("a film begins at a number of seconds from 0 to 1e9, such as 2.5".into()),
-    }
+    within(
+        text,
+        0.0..=1e9,
+        "a film begins at a number of seconds from 0 to 1e9, such as 2.5",
+    )
 }
 
 /// Frames a second.
 pub fn rate(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(rate) if (0.1..=1000.0).contains(&rate) => Ok(rate),
-        _ => Err("a rate is a number of frames per second from 0.1 to 1000, such as 30".into()),
-    }
+    within(
+        text,
+        0.1..=1000.0,
+        "a rate is a number of frames per second from 0.1 to 1000, such as 30",
+    )
 }
 
 /// The end of runs that are compared (s).
 pub fn horizon(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(time) if (0.01..=1000.0).contains(&time) => Ok(time),
-        _ => Err("the end is a number of seconds from 0.01 to 1000, such as 1".into()),
-    }
+    within(
+        text,
+        0.01..=1000.0,
+        "the end is a number of seconds from 0.01 to 1000, such as 1",
+    )
 }
 
 /// A factor of the stiffness.
 pub fn factor(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(factor) if (1e-6..=1e6).contains(&factor) => Ok(factor),
-        _ => Err("a factor of the stiffness is a number from 1e-6 to 1e6, such as 10".into()),
-    }
+    within(
+        text,
+        1e-6..=1e6,
+        "a factor of the stiffness is a number from 1e-6 to 1e6, such as 10",
+    )
 }
 
 /// An error of positions (m).
 pub fn error(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(error) if (1e-12..=10.0).contains(&error) => Ok(error),
-        _ => Err("an error is a number of metres from 1e-12 to 10, such as 1e-3".into()),
-    }
+    within(
+        text,
+        1e-12..=10.0,
+        "an error is a number of metres from 1e-12 to 10, such as 1e-3",
+    )
 }
 
 /// Computing time for a frame (ms).
 pub fn budget(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(budget) if (1e-4..=1e5).contains(&budget) => Ok(budget),
-        _ => Err("a budget is a number of milliseconds from 1e-4 to 1e5, such as 2".into()),
-    }
+    within(
+        text,
+        1e-4..=1e5,
+        "a budget is a number of milliseconds from 1e-4 to 1e5, such as 2",
+    )
 }
 
 /// Width and height of a chart (px).
@@ -132,17 +139,6 @@ pub fn picture_size(text: &str) -> Result<(u32, u32), String> {
             "a picture's size is WIDTHxHEIGHT, from 320x240 to 8000x8000, such as 1200x800".into(),
         ),
     }
-}
-
-/// A solver, by its letter or its name.
-pub fn solver(text: &str) -> Result<&'static Method, String> {
-    integrators::find(text).ok_or_else(|| {
-        let names: Vec<_> = integrators::METHODS
-            .iter()
-            .map(|m| format!("{} ({})", m.letter, m.name))
-            .collect();
-        format!("{UNKNOWN_SOLVER} {}", names.join(", "))
-    })
 }
 
 /// Two numbers with an x between them.

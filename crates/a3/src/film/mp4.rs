@@ -9,7 +9,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use super::Film;
 use crate::failure::Failure;
 use crate::interrupt::{self, Loose, Temporary};
-use crate::output::{Draft, not_written};
+use crate::output::{self, Draft, not_written};
 
 /// An MP4 in the making, which `ffmpeg` writes to a temporary file beside the target.
 pub struct Mp4 {
@@ -77,7 +77,7 @@ impl Mp4 {
                 "an MP4 is written by ffmpeg, which is not here: install it (apt install ffmpeg), or write a .gif or a \
                  sequence such as film-####.png",
             ),
-            _ => Failure::run(format!("ffmpeg could not be started: {e}")),
+            _ => Failure::run(format!("ffmpeg could not be started: {}", output::reason(&e))),
         })?;
         Ok(Self {
             draft: Some(draft),

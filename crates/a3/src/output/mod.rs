@@ -15,7 +15,7 @@ use crate::failure::Failure;
 
 pub use apart::{files_read, is_read, refuse_read};
 pub use draft::{Draft, Scratch};
-pub use place::{lock, not_written};
+pub use place::{lock, not_written, reason};
 pub use terminal::{said, say, send, warn};
 
 /// Most numbered names of one scene.

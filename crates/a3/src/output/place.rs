@@ -97,8 +97,19 @@ fn no_folder(path: &Path, folder: &Path) -> Failure {
 
 /// The failure of a write.
 pub fn not_written(path: &Path, error: &io::Error) -> Failure {
-    // The message does not show the name of the temporary file.
-    let why = error.to_string();
-    let why = why.split(" at path").next().unwrap_or_default();
+    let why = reason(error);
     Failure::run(format!("{}: could not be written: {why}", path.display()))
+}
+
+/// Why a file could not be read or written, in words alone.
+pub fn reason(error: &io::Error) -> String {
+    if error.kind() == io::ErrorKind::NotFound {
+        return "there is no such file or folder".into();
+    }
+    // Neither the name of a temporary file nor the number of the error says more.
+    let mut why = error.to_string();
+    for end in [" at path", " (os error"] {
+        why.truncate(why.find(end).unwrap_or(why.len()));
+    }
+    why
 }

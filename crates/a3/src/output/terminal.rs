@@ -3,6 +3,7 @@
 
 use std::io::{self, IsTerminal, Write};
 
+use super::place::reason;
 use crate::failure::Failure;
 
 /// The most characters of a message, and of a word in it.
@@ -37,7 +38,8 @@ fn put(text: &str) -> Result<(), Failure> {
 pub fn said(written: io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Failure::run(format!(
-            "standard output could not be written: {e}"
+            "standard output could not be written: {}",
+            reason(&e)
         ))),
         _ => Ok(()),
     }

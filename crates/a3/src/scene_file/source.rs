@@ -133,15 +133,14 @@ fn place(file: &str, why: &str) -> String {
 
 /// The error of an unknown name.
 fn unknown(typed: &str) -> String {
-    let names = || a3_scenes::SCENES.iter().map(|entry| entry.name);
-    let near = names()
-        .map(|name| (strsim::normalized_damerau_levenshtein(typed, name), name))
-        .filter(|(likeness, _)| *likeness > 0.55)
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    let hint = near.map_or(String::new(), |(_, name)| format!("; did you mean {name}?"));
-    let names: Vec<_> = names().collect();
-    format!(
-        "the scenes are {}, or a file that ends in .toml or .json, or a mesh{hint}",
+    let names: Vec<_> = a3_scenes::SCENES.iter().map(|entry| entry.name).collect();
+    let near = a3_scenes::nearest(typed, names.iter().copied());
+    let all = format!(
+        "scenes are {}, or a file that ends in .toml or .json, or a mesh",
         names.join(", ")
-    )
+    );
+    match near {
+        Some(name) => format!("there is no such scene; did you mean {name}? The {all}"),
+        None => format!("there is no such scene; the {all}"),
+    }
 }

@@ -25,6 +25,7 @@ mod scene_files;
 mod signals;
 mod states;
 mod usage;
+mod words;
 
 use std::fs;
 use std::path::Path;

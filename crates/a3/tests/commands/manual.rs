@@ -34,6 +34,14 @@ fn every_shell_completes_every_command() {
             assert!(script.contains(command), "{shell}: {command}");
         }
         assert!(script.contains("transparent"), "{shell}");
+        // The others are not told of values by the generator.
+        if ["bash", "zsh", "fish"].contains(&shell) {
+            for offered in ["ball-on-cloth", "implicit-midpoint"] {
+                assert!(script.contains(offered), "{shell}: {offered}");
+            }
+        }
+        // A hidden option, for tests.
+        assert!(!script.contains("status"), "{shell}");
     }
     let line = complaint(&a3(folder.path(), &["completions", "tcsh"]), 2);
     assert!(line.contains("bash") && line.contains("zsh"), "{line}");
@@ -53,13 +61,23 @@ fn bash_takes_its_script() {
     asked(folder.path(), "bash", &["-n", "a3.bash"]);
     let complete = |typed: &str, last: usize| {
         let words = format!(
-            "source ./a3.bash; COMP_WORDS=({typed}); COMP_CWORD={last}; _a3 a3 \"${{COMP_WORDS[{last}]}}\" a3; \
+            "source ./a3.bash; COMP_WORDS=({typed}); COMP_CWORD={last}; _a3 a3 \"${{COMP_WORDS[{last}]}}\" \"${{COMP_WORDS[{last}-1]}}\"; \
              echo \"${{COMPREPLY[@]}}\""
         );
         asked(folder.path(), "bash", &["-c", &words])
     };
     assert_eq!(complete("a3 sim", 1).trim(), "simulate");
     assert_eq!(complete("a3 render --tr", 2).trim(), "--transparent");
+    assert_eq!(complete("a3 --scene mi", 2).trim(), "mit mit-sphere");
+    assert_eq!(complete("a3 chart --scene dom", 3).trim(), "dominoes");
+    // Where nothing is offered, bash completes files.
+    assert_eq!(complete("a3 --scene own", 2).trim(), "");
+    assert!(said(folder.path(), &["completions", "bash"]).contains("-o bashdefault -o default a3"));
+    assert_eq!(complete("a3 trap", 1).trim(), "trapezoid");
+    assert_eq!(complete("a3 simulate symp", 2).trim(), "symplectic");
+    assert_eq!(complete("a3 chart --solvers eu", 3).trim(), "euler");
+    assert_eq!(complete("a3 --pa", 1).trim(), "--paused");
+    assert_eq!(complete("a3 --sta", 1).trim(), "");
 }
 
 #[test]

@@ -32,6 +32,7 @@ use crate::mesh::Mesh;
 use crate::numbers;
 use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::surface::Surface;
+use crate::wording::unknown_choice;
 use circle::Circling;
 pub use fluid::LAYERS;
 use network::NetworkParts;
@@ -165,10 +166,7 @@ impl Description {
             None => None,
             Some(name) => Some(integrators::find(name).ok_or_else(|| {
                 let names: Vec<_> = integrators::METHODS.iter().map(|m| m.name).collect();
-                Fault::new(
-                    "solver",
-                    format!("there is no `{name}`; the solvers are {}", names.join(", ")),
-                )
+                Fault::new("solver", unknown_choice(name, &names))
             })?),
         };
         for (key, number) in [("step", self.step), ("duration", self.duration)] {

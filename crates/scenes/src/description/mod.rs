@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::budget::check_text;
 use crate::fault::Fault;
+use crate::reader;
 
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, SolidModel};
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
@@ -162,7 +163,7 @@ impl Description {
     /// kind.
     pub fn parse(text: &str) -> Result<Self, Fault> {
         check_text(text.as_bytes()).map_err(|why| Fault::new("", why))?;
-        toml::from_str(text).map_err(|error| Fault::of_toml(text, &error))
+        reader::read(text)
     }
 
     /// Writes TOML that [`parse`](Self::parse) reads as the same description.

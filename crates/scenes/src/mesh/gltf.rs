@@ -10,6 +10,7 @@ use nalgebra::{Matrix4, Point3};
 use super::accessor::{Accessor, Buffers, View};
 use super::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use crate::budget;
+use crate::fault::Fault;
 use serde::Deserialize;
 
 /// The parts of a document that say where triangles are.
@@ -89,6 +90,12 @@ struct Buffer<'a> {
 #[derive(Deserialize)]
 struct Uri<'a>(#[serde(borrow)] Cow<'a, str>);
 
+/// What is said of a text that is no glTF.
+fn not_gltf(json: &[u8], error: &serde_json::Error) -> String {
+    let fault = Fault::of_json(&String::from_utf8_lossy(json), error);
+    format!("it is no glTF 2.0 file: {fault}")
+}
+
 /// The mesh in a glTF file. `file` reads a file that it names.
 pub(super) fn read(
     bytes: &[u8],
@@ -97,7 +104,7 @@ pub(super) fn read(
     let (json, binary) = chunks(bytes)?;
     budget::check_text(json)?;
     let document: Document =
-        serde_json::from_slice(json).map_err(|e| format!("it is no glTF 2.0 file: {e}"))?;
+        serde_json::from_slice(json).map_err(|error| not_gltf(json, &error))?;
     if let Some(extension) = document.extensions_required.first() {
         return Err(format!(
             "it needs the extension {extension}, which is not known"

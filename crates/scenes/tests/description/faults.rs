@@ -19,7 +19,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "spacing = 0.5",
         "spacng = 0.5",
-        "line 5: cloth.spacng: there is no key `spacng`; did you mean `spacing`? The keys are grid, ",
+        "line 5: cloth.spacng: there is no key `spacng`; did you mean `spacing`? The valid keys are grid, ",
     ),
     (
         "spacing = 0.5",
@@ -49,7 +49,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "grid = [3, 4]",
         "grid = \"big\"",
-        "line 4: cloth.grid: invalid type: string \"big\"",
+        "line 4: cloth.grid: it must be a list of 2 numbers in square brackets, not the text \"big\"",
     ),
     (
         "stiffness = [10, 5, 2]",
@@ -109,7 +109,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "gravity = [0, -9.81, 0]",
         "solver = \"rk5\"",
-        "line 1: solver: there is no `rk5`; the solvers are euler, ",
+        "line 1: solver: there is no `rk5`; did you mean `rk4`? The choices are euler, ",
     ),
     (
         "gravity = [0, -9.81, 0]",
@@ -220,7 +220,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "gravity = [0, -9.81, 0]",
         "floor = { height = 0, frition = 0.4 }",
-        "line 1: floor.frition: there is no key `frition`; did you mean `friction`? The keys are height, friction",
+        "line 1: floor.frition: there is no key `frition`; did you mean `friction`? The valid keys are height, friction",
     ),
     (
         "gravity = [0, -9.81, 0]",
@@ -230,7 +230,7 @@ const WRONG: &[(&str, &str, &str)] = &[
     (
         "gravity = [0, -9.81, 0]",
         "floor = true",
-        "line 1: floor: invalid type: boolean `true`, expected a height (m), or a table with the keys `height` and `friction`",
+        "line 1: floor: it must be a height (m), or a table with the keys `height` and `friction`, not true",
     ),
     (
         "gravity = [0, -9.81, 0]",

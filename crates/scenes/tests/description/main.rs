@@ -4,7 +4,9 @@
 mod building;
 mod faults;
 mod fluids;
+mod json;
 mod solids;
+mod words;
 
 use a3_core::{Grid, Scene};
 use a3_scenes::{Description, Fault, Mesh, Setup, find};

@@ -1,0 +1,129 @@
+//! Names of solvers and scenes as arguments: shells complete them, and near misses are understood.
+
+use std::ffi::OsStr;
+
+use a3_core::{Method, integrators};
+use a3_scenes::nearest;
+use clap::builder::{PossibleValue, TypedValueParser};
+use clap::{Arg, Command, CommandFactory};
+
+use super::Cli;
+use super::values::step;
+use crate::scene_file::Source;
+
+/// A parser of names, which knows them all.
+#[derive(Clone)]
+pub struct Names<T> {
+    parse: fn(&str) -> Result<T, String>,
+    all: fn() -> Vec<&'static str>,
+}
+
+impl<T: Clone + Send + Sync + 'static> TypedValueParser for Names<T> {
+    type Value = T;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        arg: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<T, clap::Error> {
+        TypedValueParser::parse_ref(&self.parse, command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new((self.all)().into_iter().map(PossibleValue::new)))
+    }
+}
+
+/// A solver, by its letter or its name.
+pub const SOLVER: Names<&'static Method> = Names {
+    parse: solver,
+    all: solvers,
+};
+
+/// A solver where there can also be a command.
+pub const SOLVER_OR_COMMAND: Names<&'static Method> = Names {
+    parse: solver_or_command,
+    all: solvers,
+};
+
+/// A solver, and its step or tolerance after a colon.
+pub const SOLVER_AND_STEP: Names<(&'static Method, Option<f64>)> = Names {
+    parse: solver_and_step,
+    all: solvers,
+};
+
+/// A scene, by its name or in a file.
+pub const SCENE: Names<Source> = Names {
+    parse: Source::find,
+    all: scenes,
+};
+
+fn solvers() -> Vec<&'static str> {
+    integrators::METHODS.iter().map(|m| m.name).collect()
+}
+
+fn scenes() -> Vec<&'static str> {
+    a3_scenes::SCENES.iter().map(|entry| entry.name).collect()
+}
+
+fn solver(text: &str) -> Result<&'static Method, String> {
+    integrators::find(text).ok_or_else(|| match nearest_of(text, &[]) {
+        Some(name) => {
+            format!("there is no such solver; did you mean {name}? `a3 solvers` lists all of them")
+        }
+        None => format!(
+            "there is no such solver; the solvers are {}",
+            letters_and_names()
+        ),
+    })
+}
+
+fn solver_or_command(text: &str) -> Result<&'static Method, String> {
+    if let Some(method) = integrators::find(text) {
+        return Ok(method);
+    }
+    if scenes().contains(&text) || [".toml", ".json"].iter().any(|end| text.ends_with(end)) {
+        return Err(format!(
+            "a scene comes after --scene, as in `a3 --scene {text}`"
+        ));
+    }
+    let cli = Cli::command();
+    let commands: Vec<_> = cli.get_subcommands().map(Command::get_name).collect();
+    Err(match nearest_of(text, &commands) {
+        Some(name) => format!(
+            "there is no such command or solver; did you mean {name}? `a3 --help` lists the commands, and `a3 solvers` \
+             the solvers"
+        ),
+        None => format!(
+            "there is no such command or solver; the commands are {}; the solvers are {}",
+            commands.join(", "),
+            letters_and_names()
+        ),
+    })
+}
+
+/// The command, the solver or the letter of a solver that is most like a word, if one is.
+fn nearest_of(text: &str, commands: &[&str]) -> Option<String> {
+    let letters: Vec<_> = integrators::METHODS
+        .iter()
+        .map(|m| m.letter.to_string())
+        .collect();
+    let names = commands.iter().copied().chain(solvers());
+    nearest(text, names.chain(letters.iter().map(String::as_str))).map(str::to_owned)
+}
+
+fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), String> {
+    match text.split_once(':') {
+        Some((name, number)) => Ok((solver(name)?, Some(step(number)?))),
+        None => Ok((solver(text)?, None)),
+    }
+}
+
+fn letters_and_names() -> String {
+    let names = integrators::METHODS.iter();
+    let names: Vec<_> = names
+        .map(|m| format!("{} ({})", m.letter, m.name))
+        .collect();
+    names.join(", ")
+}
