@@ -121,7 +121,7 @@ fn simulate(
             .map(|m| m.name);
         let serve = serve.collect::<Vec<_>>().join(", ");
         return Err(Failure::usage(format!(
-            "scene {}: {e}; these serve it: {serve}",
+            "scene {}: {e}; the solvers that can run it are {serve}",
             scene.name
         )));
     }

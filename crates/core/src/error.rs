@@ -181,7 +181,7 @@ impl fmt::Display for BlowUp {
             Cause::ReadsVelocity => write!(f, "{SERVES_POSITIONS}"),
             Cause::Squeezed { vertices: [a, b] } => write!(
                 f,
-                "surfaces are squeezed: what is led leaves no room between {a} and {b}"
+                "surfaces are squeezed: pins or moving obstacles leave no room between {a} and {b}"
             ),
         }
     }

@@ -87,7 +87,7 @@ mod tests {
         let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
         let words = words.replace('\n', " ");
         for said in [
-            "surfaces are squeezed: what is led leaves no room between obstacle 0 and particle 0",
+            "surfaces are squeezed: pins or moving obstacles leave no room between obstacle 0 and particle 0",
             "A shorter step does not help. Press , to go back",
         ] {
             assert!(words.contains(said), "{said} in {words}");

@@ -30,7 +30,9 @@ impl Session {
                 let touching = self.first().touching();
                 self.panes.iter_mut().for_each(Pane::reset);
                 if touching && !self.first().touching() {
-                    self.say("Surfaces cross at the beginning: they pass through again.");
+                    self.say(
+                        "Surfaces cross at the beginning, so they pass through one another again.",
+                    );
                 }
                 self.clear_timeline();
                 if let Some(reference) = &mut self.reference {

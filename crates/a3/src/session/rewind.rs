@@ -15,7 +15,7 @@ impl Session {
         if self.timeline.go(by) {
             self.show_moment();
         } else if by < 0 {
-            self.say("Nothing older is kept.");
+            self.say("There is nothing earlier to go back to.");
         }
     }
 

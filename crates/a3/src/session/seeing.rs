@@ -68,7 +68,7 @@ impl Session {
         self.set_colour(next);
         self.say(match next {
             Some(quantity) => format!("colours show the {}", quantity.name()),
-            None => "colours of the scene".into(),
+            None => "colours are those of the scene".into(),
         });
     }
 
@@ -81,7 +81,7 @@ impl Session {
         self.set_arrows(next);
         self.say(match next {
             Some(arrows) => format!("arrows show the {}", arrows.name()),
-            None => "no arrows".into(),
+            None => "arrows are off".into(),
         });
     }
 

@@ -56,7 +56,7 @@ impl Description {
             return Err(Fault::new(
                 "",
                 format!(
-                    "the scene {} has no grid",
+                    "the scene {} has no grid: only a cloth has one",
                     self.name.as_deref().unwrap_or_default()
                 ),
             ));

@@ -168,7 +168,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
 fn decoded(data: &str) -> Result<Vec<u8>, String> {
     let (_, text) = data.split_once("base64,").ok_or("its data is not base64")?;
     let decoded = base64::engine::general_purpose::STANDARD.decode(text);
-    decoded.map_err(|e| format!("its data is not base64: {e}"))
+    decoded.map_err(|_| "its data is not base64".into())
 }
 
 /// Item k of a list of the document.

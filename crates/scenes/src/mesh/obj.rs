@@ -30,8 +30,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
                 let mut corners = words.map(|word| {
                     let corner = corner(word, count).ok_or_else(|| {
                         wrong(format!(
-                            "{} is no corner: it is the number of a point, from 1, or from -1 back \
-                             from the last of the {count} points before it",
+                            "`{}` is no corner: a corner is the number of a point, counted from 1, or from -1 \
+                             backwards, among the {count} points before it",
                             String::from_utf8_lossy(&word[..word.len().min(40)])
                         ))
                     })?;
