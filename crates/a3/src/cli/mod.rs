@@ -279,8 +279,8 @@ pub struct Chart {
     /// What counts as the cost
     #[arg(long, default_value = "seconds")]
     pub work: WorkMeasure,
-    /// Factors by which the stiffness of the springs is multiplied, such as 1,10,100; the chart has
-    /// a panel for each
+    /// Factors by which the stiffness of the springs is multiplied, such as 1,10,100; the chart
+    /// has a panel for each
     #[arg(long, value_name = "FACTORS", value_delimiter = ',', default_value = "1", value_parser = factor, allow_negative_numbers = true)]
     pub stiffness: Vec<f64>,
     /// Picture to write, ending in .svg or .png; by default a3-chart-SCENE.svg
@@ -301,8 +301,8 @@ pub struct Stability {
     /// Solvers to examine, such as t,r,v; by default all that can run the scene
     #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER, hide_possible_values = true)]
     pub solvers: Vec<&'static Method>,
-    /// Step in seconds by which the picture multiplies the eigenvalues; by default the time in which
-    /// the fastest motion turns by one radian
+    /// Step in seconds by which the picture multiplies the eigenvalues; by default the time in
+    /// which the fastest motion turns by one radian
     #[arg(long, value_name = "STEP", value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
     /// Picture to write, ending in .svg or .png; by default a3-stability-SCENE.svg
