@@ -336,8 +336,8 @@ pub struct Choose {
 
 #[derive(Args)]
 pub struct Compare {
-    /// Two to four solvers by letter or name, each with its step in seconds or its tolerance after a
-    /// colon, as in e:0.05 r:0.05; by default the solver's own
+    /// Two to four solvers by letter or name, each with its step in seconds or its tolerance after
+    /// a colon, as in e:0.05 r:0.05; by default the solver's own
     #[arg(value_name = "SOLVER[:STEP]", value_parser = SOLVER_AND_STEP, hide_possible_values = true)]
     pub methods: Vec<(&'static Method, Option<f64>)>,
     #[command(flatten)]
