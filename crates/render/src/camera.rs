@@ -1,6 +1,6 @@
 //! The camera, whose eye is on a sphere around its target.
 
-use nalgebra::{Isometry3, Matrix4, Perspective3, Point3, Vector3};
+use nalgebra::{Isometry3, Matrix4, Orthographic3, Perspective3, Point3, Vector3};
 
 /// Vertical field of view (rad).
 const FIELD_OF_VIEW: f32 = 0.75;
@@ -19,6 +19,8 @@ pub struct Camera {
     pitch: f32,
     /// Distance of the eye from the target (m).
     distance: f32,
+    /// Whether the projection is parallel: orthographic, not perspective.
+    parallel: bool,
 }
 
 impl Camera {
@@ -36,6 +38,27 @@ impl Camera {
                 .asin()
                 .clamp(-STEEPEST, STEEPEST),
             distance,
+            parallel: false,
+        }
+    }
+
+    /// Whether the projection is parallel: orthographic, not perspective.
+    #[must_use]
+    pub fn is_parallel(&self) -> bool {
+        self.parallel
+    }
+
+    /// Chooses an orthographic projection, or perspective. What is at the distance of the target
+    /// keeps its size.
+    pub fn set_parallel(&mut self, parallel: bool) {
+        self.parallel = parallel;
+    }
+
+    /// Moves eye and target by a vector (m).
+    pub fn shift(&mut self, by: [f32; 3]) {
+        let moved = self.target + Vector3::from(by);
+        if moved.coords.iter().all(|c| c.abs() < 1e6) {
+            self.target = moved;
         }
     }
 
@@ -124,10 +147,20 @@ impl Camera {
             0.0, 0.0, 0.5, 0.5,
             0.0, 0.0, 0.0, 1.0,
         );
-        let near = 0.02 * self.distance;
-        let far = 20.0 * self.distance + 100.0;
+        let fovy = Self::field_of_view(aspect);
+        let projection = if self.parallel {
+            let half = self.distance * (0.5 * fovy).tan();
+            // What is behind the eye is seen too: there is no point from which one looks.
+            let far = 5.0 * self.distance + 50.0;
+            let wide = half * aspect;
+            Orthographic3::new(-wide, wide, -half, half, -far, far).to_homogeneous()
+        } else {
+            let near = 0.02 * self.distance;
+            let far = 20.0 * self.distance + 100.0;
+            Perspective3::new(aspect, fovy, near, far).to_homogeneous()
+        };
         half_depth
-            * Perspective3::new(aspect, Self::field_of_view(aspect), near, far).to_homogeneous()
+            * projection
             * Isometry3::look_at_rh(&self.eye(), &self.target, &Vector3::y()).to_homogeneous()
     }
 
@@ -147,10 +180,13 @@ impl Camera {
     /// [`project`](Self::project), for many points.
     pub fn projection(&self, aspect: f32) -> impl Fn([f32; 3]) -> Option<([f32; 2], f32)> + use<> {
         let matrix = self.view_projection(aspect);
+        let (eye, (_, _, towards), parallel) = (self.eye(), self.axes(), self.parallel);
         move |point| {
-            let clip = matrix * Point3::from(point).to_homogeneous();
+            let point = Point3::from(point);
+            let clip = matrix * point.to_homogeneous();
             let place = [0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w];
-            (clip.w > 0.0).then_some((place, clip.w))
+            let depth = towards.dot(&(eye - point));
+            (parallel || clip.w > 0.0).then_some((place, depth))
         }
     }
 
@@ -158,7 +194,12 @@ impl Camera {
     /// view (m): the inverse of [`project`](Self::project).
     #[must_use]
     pub fn unproject(&self, at: [f32; 2], distance: f32, aspect: f32) -> [f32; 3] {
-        let half = distance * (0.5 * Self::field_of_view(aspect)).tan();
+        let depth = if self.parallel {
+            self.distance
+        } else {
+            distance
+        };
+        let half = depth * (0.5 * Self::field_of_view(aspect)).tan();
         let (x, y, z) = self.axes();
         let across = x * ((2.0 * at[0] - 1.0) * half * aspect) + y * ((1.0 - 2.0 * at[1]) * half);
         (self.eye() + across - z * distance).coords.into()
@@ -186,6 +227,34 @@ mod tests {
             );
             camera.zoom_at(f32::NAN, at, aspect);
             assert!(camera.eye().coords.iter().all(|c| c.is_finite()));
+        }
+    }
+
+    #[test]
+    fn an_orthographic_picture_has_parallel_lines_and_the_same_size_at_the_target() {
+        for aspect in [1.7, 0.6] {
+            let mut camera = Camera::look_at([3.0, 2.0, 5.0], [0.1, 1.0, -0.2]);
+            let (x, _, z) = camera.axes();
+            let seen = |camera: &Camera, p: Point3<f32>| camera.project(p.into(), aspect).unwrap();
+            let beside = camera.target() + x * 0.3;
+            let ([before, _], _) = seen(&camera, beside);
+            camera.set_parallel(true);
+            let ([after, _], depth) = seen(&camera, beside);
+            assert!((before - after).abs() < 1e-5 && (depth - camera.distance).abs() < 1e-4);
+            // Nearer and behind the eye it is seen at the same place.
+            for near in [1.0, 20.0] {
+                let ([there, _], depth) = seen(&camera, beside + z * near);
+                assert!((there - after).abs() < 1e-5);
+                assert!((depth - (camera.distance - near)).abs() < 1e-3, "{depth}");
+            }
+            let point = [0.4, 1.3, 0.9];
+            let (at, depth) = camera.project(point, aspect).unwrap();
+            let back = camera.unproject(at, depth, aspect);
+            assert!((Point3::from(back) - Point3::from(point)).norm() < 1e-4);
+            let stays = camera.unproject([0.2, 0.7], camera.distance, aspect);
+            camera.zoom_at(0.7, [0.2, 0.7], aspect);
+            let (found, _) = camera.project(stays, aspect).unwrap();
+            assert!((found[0] - 0.2).hypot(found[1] - 0.7) < 1e-5, "{found:?}");
         }
     }
 

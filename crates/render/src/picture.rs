@@ -99,8 +99,8 @@ pub struct Line {
     pub width: f32,
     /// The other end (m).
     pub to: [f32; 3],
-    /// Padding, which the shader ignores.
-    pub padding: f32,
+    /// 1 if the line casts a shadow, 0 if not.
+    pub shadow: f32,
     /// Linear red, green and blue, and opacity.
     pub color: [f32; 4],
 }
@@ -113,8 +113,17 @@ impl Line {
             from,
             width,
             to,
-            padding: 0.0,
+            shadow: 0.0,
             color,
+        }
+    }
+
+    /// The line, with a shadow.
+    #[must_use]
+    pub fn with_shadow(self) -> Self {
+        Self {
+            shadow: 1.0,
+            ..self
         }
     }
 }

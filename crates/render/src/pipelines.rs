@@ -13,6 +13,11 @@ pub(crate) const SOURCE: &str = include_str!("scene.wgsl");
 pub(crate) struct Pipelines {
     pub(crate) background: wgpu::RenderPipeline,
     pub(crate) floor: wgpu::RenderPipeline,
+    /// The floor, seen from below.
+    pub(crate) floor_below: wgpu::RenderPipeline,
+    pub(crate) wire_shadow: wgpu::RenderPipeline,
+    pub(crate) spring_shadow: wgpu::RenderPipeline,
+    pub(crate) line_shadow: wgpu::RenderPipeline,
     pub(crate) mesh_shadow: wgpu::RenderPipeline,
     pub(crate) ball_shadow: wgpu::RenderPipeline,
     pub(crate) solid_shadow: wgpu::RenderPipeline,
@@ -160,10 +165,20 @@ impl Pipelines {
         Self {
             background: pipeline("background", "background", list, Layer::Back, &[]),
             floor: pipeline("floor", "floor", strip, Layer::Solid, &[]),
+            floor_below: pipeline("floor", "floor_below", strip, Layer::Over, &[]),
             mesh_shadow: pipeline("mesh_shadow", "shadow", list, Layer::Shadow, &[]),
             ball_shadow: pipeline("ball_shadow", "shadow", list, Layer::Shadow, &balls),
             solid_shadow: pipeline("solid_shadow", "shadow", list, Layer::Shadow, &solids),
             liquid_shadow: pipeline("liquid_shadow", "shadow", list, Layer::Shadow, &liquid),
+            wire_shadow: pipeline("wire_shadow", "line_shadow", strip, Layer::Shadow, &wires),
+            spring_shadow: pipeline(
+                "spring_shadow",
+                "line_shadow",
+                strip,
+                Layer::Shadow,
+                &springs,
+            ),
+            line_shadow: pipeline("line_shadow", "line_shadow", strip, Layer::Shadow, &lines),
             mesh: pipeline("mesh", "mesh", list, Layer::Solid, &[]),
             ball: pipeline("ball", "ball", list, Layer::Solid, &balls),
             solid: pipeline("solid", "ball", list, Layer::Solid, &solids),

@@ -7,7 +7,7 @@ use crate::gpu::Gpu;
 use crate::mesh::Mesh;
 use crate::picture::{Picture, Style, Tile, Topology};
 use crate::pipelines::{Pipelines, SOURCE, layout};
-use crate::view::View;
+use crate::view::{Side, View};
 
 /// Draws [`Picture`]s of one scene.
 pub struct Renderer {
@@ -117,7 +117,7 @@ impl Renderer {
         self.draw_balls(pass, view);
         pass.set_pipeline(&p.solid);
         self.draw_solids(pass, view);
-        if frame.floor {
+        if frame.floor == Some(Side::Above) {
             pass.set_pipeline(&p.floor);
             pass.draw(0..4, 0..1);
         }
@@ -125,7 +125,7 @@ impl Renderer {
             pass.set_pipeline(&p.background);
             pass.draw(0..3, 0..1);
         }
-        if frame.floor {
+        if frame.floor == Some(Side::Above) {
             pass.set_stencil_reference(0);
             if shaded {
                 pass.set_pipeline(&p.mesh_shadow);
@@ -139,20 +139,12 @@ impl Renderer {
             self.draw_balls(pass, view);
             pass.set_pipeline(&p.solid_shadow);
             self.draw_solids(pass, view);
+            draw_lines(pass, view, &p.wire_shadow, &p.spring_shadow, &p.line_shadow);
         }
-        if frame.style == Style::Springs {
-            pass.set_pipeline(&p.spring);
-            pass.set_vertex_buffer(0, mesh.springs.slice(..));
-            pass.draw(0..4, 0..mesh.spring_count);
-        } else if !shaded {
-            pass.set_pipeline(&p.wire);
-            pass.set_vertex_buffer(0, mesh.wires.slice(..));
-            pass.draw(0..4, 0..mesh.wire_count);
-        }
-        if frame.lines > 0 {
-            pass.set_pipeline(&p.line);
-            pass.set_vertex_buffer(0, view.lines.buffer.slice(..));
-            pass.draw(0..4, 0..frame.lines);
+        draw_lines(pass, view, &p.wire, &p.spring, &p.line);
+        if frame.floor == Some(Side::Below) {
+            pass.set_pipeline(&p.floor_below);
+            pass.draw(0..4, 0..1);
         }
     }
 
@@ -167,6 +159,30 @@ impl Renderer {
     fn draw_solids(&self, pass: &mut wgpu::RenderPass, view: &View) {
         self.rounded_box
             .draw(pass, &view.solids, 0..view.frame.solids);
+    }
+}
+
+/// Draws wires or springs, and the lines of all styles, with these pipelines.
+fn draw_lines(
+    pass: &mut wgpu::RenderPass,
+    view: &View,
+    wire: &wgpu::RenderPipeline,
+    spring: &wgpu::RenderPipeline,
+    line: &wgpu::RenderPipeline,
+) {
+    let (mesh, frame) = (&view.mesh, view.frame);
+    let of_style = match frame.style {
+        Style::Shaded => None,
+        Style::Wireframe => Some((wire, &mesh.wires, mesh.wire_count)),
+        Style::Springs => Some((spring, &mesh.springs, mesh.spring_count)),
+    };
+    let of_all = (line, &view.lines.buffer, frame.lines);
+    for (pipeline, buffer, count) in of_style.into_iter().chain([of_all]) {
+        if count > 0 {
+            pass.set_pipeline(pipeline);
+            pass.set_vertex_buffer(0, buffer.slice(..));
+            pass.draw(0..4, 0..count);
+        }
     }
 }
 

@@ -93,14 +93,29 @@ fn floor_fade(world: vec3<f32>) -> f32 {
     return 1.0 - smoothstep(0.25, 1.0, length(world.xz - globals.floor.zw) / globals.floor.y);
 }
 
+// The visibility of the lines of the grid, from 0 between them to 1 on them.
+fn floor_grid(world: vec3<f32>) -> f32 {
+    let width = max(fwidth(world.xz), vec2(1e-5));
+    let line = 1.0 - min(abs(fract(world.xz - 0.5) - 0.5) / width / globals.depth.z, vec2(1.0));
+    return max(line.x, line.y) * min(1.0, 0.2 / max(width.x, width.y));
+}
+
+// The floor is fainter where the eye grazes it.
+fn floor_grazing(world: vec3<f32>) -> f32 {
+    return smoothstep(0.0, 0.12, abs(normalize(globals.eye.xyz - world).y));
+}
+
 @fragment fn floor_fragment(in: Floor) -> @location(0) vec4<f32> {
-    let width = max(fwidth(in.world.xz), vec2(1e-5));
-    let line = 1.0 - min(abs(fract(in.world.xz - 0.5) - 0.5) / width / globals.depth.z, vec2(1.0));
-    let grid = max(line.x, line.y) * min(1.0, 0.2 / max(width.x, width.y));
-    let color = mix(vec3(0.90, 0.895, 0.88), SHADE * 0.8, 0.35 * grid);
-    let grazing = smoothstep(0.0, 0.12, abs(normalize(globals.eye.xyz - in.world).y));
+    let color = mix(vec3(0.90, 0.895, 0.88), SHADE * 0.8, 0.35 * floor_grid(in.world));
     let paper = background(in.clip.xy) + dither(in.clip.xy);
-    return vec4(mix(paper, color, 0.75 * floor_fade(in.world) * grazing), 1.0);
+    let fade = floor_fade(in.world) * floor_grazing(in.world);
+    return vec4(mix(paper, color, 0.75 * fade), 1.0);
+}
+
+// From below the floor is glass, through which all that stands on it is seen.
+@fragment fn floor_below_fragment(in: Floor) -> @location(0) vec4<f32> {
+    let opacity = 0.16 + 0.5 * floor_grid(in.world);
+    return vec4(SHADE * 0.7, opacity * floor_fade(in.world) * floor_grazing(in.world));
 }
 
 // ---- Shadow: the projection of everything above the floor onto it, along the light. The stencil
@@ -374,6 +389,54 @@ fn faded(a: vec3<f32>, b: vec3<f32>) -> f32 {
     @location(0) a: vec4<f32>, @location(1) b: vec4<f32>, @location(2) color: vec4<f32>
 ) -> Line {
     return line(a.xyz, b.xyz, a.w, color, i);
+}
+
+// The shadow of a line is as wide on the screen as the line.
+struct LineShadow {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) world: vec3<f32>,
+    @location(1) height: f32,
+    @location(2) @interpolate(linear) across: f32,
+    @location(3) @interpolate(flat) half_width: f32,
+};
+
+fn line_shadow(a: vec3<f32>, b: vec3<f32>, points_wide: f32, i: u32) -> LineShadow {
+    let sa = shadow(a);
+    let sb = shadow(b);
+    let drawn = line(sa.world, sb.world, points_wide, vec4(1.0), i);
+    var out: LineShadow;
+    out.clip = drawn.clip;
+    out.world = select(sa.world, sb.world, i >= 2u);
+    out.height = select(sa.height, sb.height, i >= 2u);
+    out.across = drawn.across;
+    out.half_width = drawn.half_width;
+    return out;
+}
+
+@vertex fn wire_shadow_vertex(@builtin(vertex_index) i: u32, @location(0) ends: vec2<u32>) -> LineShadow {
+    return line_shadow(points[ends.x].xyz, points[ends.y].xyz, 1.35, i);
+}
+
+@vertex fn spring_shadow_vertex(
+    @builtin(vertex_index) i: u32,
+    @location(0) ends: vec2<u32>, @location(1) points_wide: f32, @location(2) color: vec3<f32>
+) -> LineShadow {
+    return line_shadow(points[ends.x].xyz, points[ends.y].xyz, points_wide, i);
+}
+
+@vertex fn line_shadow_vertex(
+    @builtin(vertex_index) i: u32,
+    @location(0) a: vec4<f32>, @location(1) b: vec4<f32>, @location(2) color: vec4<f32>
+) -> LineShadow {
+    // A line that casts none is drawn with no width.
+    return line_shadow(a.xyz, select(a.xyz, b.xyz, b.w > 0.5), a.w * step(0.5, b.w), i);
+}
+
+@fragment fn line_shadow_fragment(in: LineShadow) -> @location(0) vec4<f32> {
+    let edge = clamp(in.half_width + 0.5 - abs(in.across), 0.0, 1.0) * step(0.01, in.half_width);
+    // The stencil counts what is drawn: pixels outside must stay free.
+    if edge < 0.05 { discard; }
+    return vec4(0.10, 0.11, 0.17, edge * 0.34 * floor_fade(in.world) / (1.0 + 0.35 * in.height));
 }
 
 @fragment fn line_fragment(in: Line) -> @location(0) vec4<f32> {

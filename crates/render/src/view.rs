@@ -42,12 +42,19 @@ pub(crate) struct View {
     pub(crate) frame: Frame,
 }
 
+/// A side of the floor.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    Above,
+    Below,
+}
+
 /// The parts of the picture that was prepared last on which draw calls depend.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Frame {
     pub(crate) tile: Tile,
-    /// Whether the floor is drawn.
-    pub(crate) floor: bool,
+    /// The side from which the floor is seen, if it is drawn.
+    pub(crate) floor: Option<Side>,
     /// Whether the background is drawn.
     pub(crate) background: bool,
     /// The style of what is drawn: wires where there is no surface.
@@ -117,11 +124,16 @@ impl View {
         queue.write_buffer(&self.globals, 0, bytemuck::bytes_of(&globals));
         self.frame = Frame {
             tile,
-            // Seen from below, the floor would hide everything.
-            floor: !picture.transparent
-                && picture
-                    .floor
-                    .is_some_and(|height| picture.camera.eye().y > height),
+            floor: picture
+                .floor
+                .filter(|_| !picture.transparent)
+                .map(|height| {
+                    if picture.camera.eye().y > height {
+                        Side::Above
+                    } else {
+                        Side::Below
+                    }
+                }),
             background: !picture.transparent,
             style: match picture.style {
                 Style::Shaded if self.mesh.indices == 0 => Style::Wireframe,

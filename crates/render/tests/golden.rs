@@ -97,8 +97,14 @@ fn pictures_match_the_golden_ones() {
         ("springs", Style::Springs),
         ("coloured-springs", Style::Springs),
         ("coloured-solids", Style::Shaded),
+        ("orthographic", Style::Shaded),
+        ("from-below", Style::Shaded),
     ] {
         let mut sheet = Sheet::new();
+        sheet.camera.set_parallel(name == "orthographic");
+        if name == "from-below" {
+            sheet.camera = a3_render::Camera::look_at([1.6, -1.1, 4.2], [0.0, 0.8, 0.2]);
+        }
         if name == "coloured-solids" {
             add_coloured_solids(&mut sheet);
         }

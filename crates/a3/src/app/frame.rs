@@ -35,6 +35,7 @@ impl App {
             None => real,
         };
         self.session.tick(real);
+        self.session.go_along();
         self.session.read_state();
         self.look_under_pointer();
         let message_ends = self.session.message_ends();

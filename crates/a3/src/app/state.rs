@@ -18,6 +18,7 @@ use crate::failure::Failure;
 use crate::hud::panel;
 use crate::recorder::Recorder;
 use crate::session::{Action, Session};
+use crate::show::Target;
 use crate::{command_line, keep, output};
 
 /// The window, from the first event to the last.
@@ -153,6 +154,14 @@ impl App {
                     let whole = window.fullscreen().is_none();
                     window.set_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
                 }
+            }
+            Action::Follow => {
+                let pane = self.pointed();
+                let hit = self.hit(pane).and_then(|(target, _)| match target {
+                    Target::Particle(i) => Some(i),
+                    Target::Obstacle(_) => None,
+                });
+                self.session.follow(pane, hit);
             }
             Action::WritePlots => {
                 let message = match self.write_plots() {

@@ -15,6 +15,9 @@ pub struct Drawing {
     /// own colour and width
     #[arg(long)]
     pub springs: bool,
+    /// Draw in parallel projection instead of perspective
+    #[arg(long)]
+    pub orthographic: bool,
     /// Colour each particle by a quantity
     #[arg(long, value_name = "QUANTITY", value_enum, alias = "color")]
     pub colour: Option<Quantity>,
@@ -33,6 +36,7 @@ impl Drawing {
                 (_, true) => Style::Springs,
             },
             springs_of,
+            orthographic: self.orthographic,
             colour: self.colour,
             arrows: self.arrows,
         }

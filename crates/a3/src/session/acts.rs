@@ -84,7 +84,13 @@ impl Session {
             },
             Action::LongerStep => self.set_steps(true),
             Action::ShorterStep => self.set_steps(false),
-            Action::Camera => self.camera = self.panes[0].show.camera(),
+            Action::Camera => {
+                let parallel = self.camera.is_parallel();
+                self.camera = self.panes[0].show.camera();
+                self.camera.set_parallel(parallel);
+                self.followed = None;
+            }
+            Action::Projection => self.toggle_projection(),
             Action::SeeAll => self.see_all(),
             Action::NextView => self.next_view(),
             Action::Panel => self.panel.open = !self.panel.open,
@@ -95,6 +101,7 @@ impl Session {
             Action::Help => self.readings.help = !self.readings.help,
             Action::Picture
             | Action::CommandLine
+            | Action::Follow
             | Action::FullScreen
             | Action::WritePlots
             | Action::Record

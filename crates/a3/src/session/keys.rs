@@ -31,6 +31,10 @@ pub enum Action {
     /// Go so many kept frames on, or back if it is negative.
     Scrub(isize),
     Camera,
+    /// Perspective or orthographic.
+    Projection,
+    /// Follow what is under the pointer.
+    Follow,
     /// See all particles, from the same side.
     SeeAll,
     /// See from the front, from the side, or from above.
@@ -92,6 +96,8 @@ pub static KEYS: &[Binding] = &[
     bind(&["c"], Action::Camera, "camera home"),
     bind(&["g"], Action::SeeAll, "see all"),
     bind(&["b"], Action::NextView, "front, side, top"),
+    bind(&["i"], Action::Projection, "perspective or parallel"),
+    bind(&["j"], Action::Follow, "follow a particle"),
     bind(&["p"], Action::Picture, "save a picture"),
     bind(&["Tab"], Action::Panel, "tune and plot"),
     bind(&["f"], Action::WriteScene, "write a scene file"),

@@ -12,7 +12,6 @@ use super::reference::ReferenceRun;
 use super::state::Session;
 use super::tuning::Tuning;
 use crate::scene_file::Source;
-use crate::show;
 
 impl Session {
     /// The names of all scenes: the files that were asked for or opened, then those of the table.
@@ -52,7 +51,7 @@ impl Session {
             Ok((setup, origin)) => {
                 self.shown = origin;
                 self.scene_number = number;
-                self.camera = show::camera(&setup.presentation);
+                self.see_scene(&setup.presentation);
                 self.set_scene(&setup);
             }
             Err(why) => self.warn(why),
@@ -73,7 +72,7 @@ impl Session {
                 self.asked.retain(|origin| !same(origin));
                 self.asked.insert(0, self.shown.clone());
                 self.scene_number = 0;
-                self.camera = show::camera(&setup.presentation);
+                self.see_scene(&setup.presentation);
                 self.set_scene(&setup);
                 true
             }
@@ -104,7 +103,7 @@ impl Session {
         };
         let (new, old) = (&source.description, &old.description);
         if new.camera != old.camera {
-            self.camera = show::camera(&setup.presentation);
+            self.see_scene(&setup.presentation);
         }
         let run = (new.solver != old.solver || new.step != old.step)
             .then_some(setup.defaults.solver)
@@ -153,6 +152,7 @@ impl Session {
         match simulations {
             Ok(simulations) => {
                 self.tuning = Tuning::of(setup.scene.clone());
+                self.followed = None;
                 self.defaults = setup.defaults;
                 for (pane, mut simulation) in self.panes.iter_mut().zip(simulations) {
                     let asked = simulation.control().step();

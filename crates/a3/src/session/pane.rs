@@ -88,11 +88,28 @@ impl Pane {
         let step = self.pace();
         let due = ((time - self.simulation.time()) / step + 1e-9).floor() as u64;
         if !self.alive() {
-        } else if adaptive {
+        } else if adaptive && !self.show.has_trail() {
             // The state is read off between two steps.
             let _ = self.simulation.advance_to(time);
+        } else if adaptive {
+            while self.alive() && self.simulation.time() < time {
+                let next = (self.simulation.time() + PORTION).min(time);
+                let _ = self.simulation.advance_to(next);
+                self.follow();
+            }
         } else if due > 0 {
-            let _ = self.simulation.take_steps(due);
+            // A trail has a point for each step, or for as many as make a portion.
+            let at_once = if self.show.has_trail() {
+                ((PORTION / step) as u64).max(1)
+            } else {
+                due
+            };
+            let mut left = due;
+            while left > 0 && self.alive() {
+                let _ = self.simulation.take_steps(left.min(at_once));
+                left -= left.min(at_once);
+                self.follow();
+            }
         }
         self.computing += begun.elapsed();
     }

@@ -2,10 +2,12 @@
 
 use std::f32::consts::FRAC_PI_2;
 
+use a3_scenes::Presentation;
+
 use a3_render::Style;
 
 use super::state::Session;
-use crate::show::{Arrows, Quantity, Show};
+use crate::show::{self, Arrows, Quantity, Show};
 
 /// Yaw and pitch (rad) of the views of a key, and their names.
 const VIEWS: [([f32; 2], &str); 3] = [
@@ -15,7 +17,66 @@ const VIEWS: [([f32; 2], &str); 3] = [
     ([0.0, FRAC_PI_2], "from above"),
 ];
 
+/// A particle that the camera goes along with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    pane: usize,
+    particle: usize,
+    /// Where it was seen last (m).
+    at: [f32; 3],
+}
+
 impl Session {
+    /// Sees another scene as it is first seen, in the same projection.
+    pub(super) fn see_scene(&mut self, presentation: &Presentation) {
+        let parallel = self.camera.is_parallel();
+        self.camera = show::camera(presentation);
+        self.camera.set_parallel(parallel);
+    }
+
+    /// Goes from perspective to an orthographic projection, or back.
+    pub(super) fn toggle_projection(&mut self) {
+        let parallel = !self.camera.is_parallel();
+        self.camera.set_parallel(parallel);
+        self.say(if parallel {
+            "The projection is orthographic."
+        } else {
+            "The projection is perspective."
+        });
+    }
+
+    /// Lets the camera go along with a particle of a pane, or with none: then too where it goes
+    /// along with that one already.
+    pub fn follow(&mut self, pane: usize, particle: Option<usize>) {
+        let before = self.followed.take();
+        let again = |i: &usize| before.is_some_and(|it| (it.pane, it.particle) == (pane, *i));
+        let Some(particle) = particle.filter(|i| !again(i)) else {
+            return self.say(match before {
+                Some(_) => "The camera stays where it is.",
+                None => "Nothing is there that the camera could follow.",
+            });
+        };
+        let at = show::to_f32(self.panes[pane].simulation.position(particle));
+        self.followed = Some(Followed { pane, particle, at });
+        self.say(format!("The camera follows particle {particle}."));
+    }
+
+    /// The particle that the camera follows.
+    pub fn followed(&self) -> Option<usize> {
+        self.followed.map(|followed| followed.particle)
+    }
+
+    /// Moves the camera as the particle that it follows has moved.
+    pub fn go_along(&mut self) {
+        if let Some(followed) = &mut self.followed {
+            let run = &self.panes[followed.pane].simulation;
+            let now = show::to_f32(run.position(followed.particle));
+            self.camera
+                .shift([0, 1, 2].map(|axis| now[axis] - followed.at[axis]));
+            followed.at = now;
+        }
+    }
+
     /// Moves the camera so that all particles of all panes are seen, from the same side.
     pub(super) fn see_all(&mut self) {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
@@ -123,7 +184,7 @@ fn after<T: Copy + PartialEq>(all: &[T], now: Option<T>) -> Option<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Action, compared, session};
+    use crate::session::{Action, compared, frames, session};
 
     #[test]
     fn colours_and_arrows_come_round_as_far_as_the_scene_has_them() {
@@ -187,6 +248,48 @@ mod tests {
             styles("drop"),
             [Style::Wireframe, Style::Shaded, Style::Wireframe]
         );
+    }
+
+    #[test]
+    fn the_camera_follows_a_particle_forth_and_back() {
+        let mut session = session(&["v", "0.005", "--scene", "pendulum"]);
+        session.readings.in_window = true;
+        let last = session.first().particles() - 1;
+        let offset = |session: &Session| {
+            let p = session.first().position(last);
+            let t = session.camera.target();
+            [p.x as f32 - t.x, p.y as f32 - t.y, p.z as f32 - t.z]
+        };
+        let near = |a: [f32; 3], b: [f32; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 1e-4);
+        let before = offset(&session);
+        session.follow(0, Some(last));
+        let begun = session.camera.target();
+        frames(&mut session, 0.7);
+        session.go_along();
+        assert!(near(offset(&session), before) && (session.camera.target() - begun).norm() > 0.1);
+        session.act(Action::Scrub(-20), 0);
+        session.go_along();
+        assert!(near(offset(&session), before));
+        // The same particle again, or none, ends it; and so does another scene.
+        session.follow(0, Some(last));
+        assert_eq!(session.followed(), None);
+        session.follow(0, Some(0));
+        assert_eq!(session.followed(), Some(0));
+        session.act(Action::NextScene, 0);
+        assert_eq!(session.followed(), None);
+    }
+
+    #[test]
+    fn the_projection_stays_with_another_scene_and_when_the_camera_goes_home() {
+        let mut session = session(&["v", "0.005", "--orthographic"]);
+        assert!(session.camera.is_parallel());
+        for action in [Action::NextScene, Action::Camera] {
+            session.act(action, 0);
+            assert!(session.camera.is_parallel());
+        }
+        session.act(Action::Projection, 0);
+        session.act(Action::NextScene, 0);
+        assert!(!session.camera.is_parallel());
     }
 
     #[test]

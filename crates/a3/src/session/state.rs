@@ -13,11 +13,12 @@ use super::origin::Origin;
 use super::pane::Pane;
 use super::readings::Readings;
 use super::reference::ReferenceRun;
+use super::seeing::Followed;
 use super::timeline::Timeline;
 use super::tuning::{PanelState, Tuning};
 use crate::failure::Failure;
 use crate::scene_file::Source;
-use crate::show::{self, Manner, Show};
+use crate::show::{Manner, Show};
 
 /// Time that a message stays.
 const MESSAGE_TIME: Duration = Duration::from_secs(4);
@@ -37,6 +38,8 @@ pub struct Session {
     pub panes: Vec<Pane>,
     /// The camera, which all panes share.
     pub camera: Camera,
+    /// What the camera goes along with.
+    pub(super) followed: Option<Followed>,
     /// Values for the text over the picture.
     pub readings: Readings,
     /// State of the panel.
@@ -89,7 +92,7 @@ impl Session {
             })
             .collect();
         Ok(Self {
-            camera: show::camera(&setup.presentation),
+            camera: panes[0].show.camera(),
             readings: Readings {
                 paused: beginning.paused,
                 ..Readings::default()
@@ -98,6 +101,7 @@ impl Session {
             defaults: setup.defaults,
             tuning: Tuning::of(setup.scene),
             list: None,
+            followed: None,
             kept: None,
             shown: origin.clone(),
             scene_number: a3_scenes::SCENES

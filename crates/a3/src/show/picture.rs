@@ -39,6 +39,8 @@ pub struct Manner {
     pub style: Style,
     /// The particle whose springs are highlighted.
     pub springs_of: Option<usize>,
+    /// Whether the projection is orthographic, not perspective.
+    pub orthographic: bool,
     /// What particles are coloured by.
     pub colour: Option<Quantity>,
     /// Arrows on particles.
@@ -60,6 +62,8 @@ pub struct Show {
     pub field: Field,
     /// Whether floor and background are left out.
     pub transparent: bool,
+    /// Whether the scene is first seen in an orthographic projection.
+    orthographic: bool,
     /// What the hand would take, if it is highlighted.
     pub hovered: Option<Target>,
     /// Point to which the hand pulls (m).
@@ -89,6 +93,7 @@ impl Show {
             colouring,
             field,
             transparent: false,
+            orthographic: manner.orthographic,
             hovered: None,
             hand: None,
             trail: Trail::default(),
@@ -114,7 +119,9 @@ impl Show {
 
     /// The camera that the scene is first seen by.
     pub fn camera(&self) -> Camera {
-        view::camera(&self.presentation)
+        let mut camera = view::camera(&self.presentation);
+        camera.set_parallel(self.orthographic);
+        camera
     }
 
     /// Whether the scene has a surface.
@@ -155,6 +162,11 @@ impl Show {
     #[cfg(test)]
     pub fn trail(&self) -> impl Iterator<Item = &[f32; 3]> {
         self.trail.points()
+    }
+
+    /// Whether a particle leaves a trail.
+    pub fn has_trail(&self) -> bool {
+        self.presentation.trail.is_some()
     }
 
     /// Continues the trail to where the trailing particle is.
@@ -272,7 +284,7 @@ impl Show {
             if many {
                 let [a, b] = ends.map(|i| self.at(i));
                 let color = self.colouring.of(spring.i, own);
-                self.lines.push(Line::new(a, b, width, color));
+                self.lines.push(Line::new(a, b, width, color).with_shadow());
                 continue;
             }
             let [a, b] = ends.map(|i| simulation.position(i));
@@ -282,7 +294,8 @@ impl Show {
                 let end = if k < half { spring.i } else { spring.j };
                 let color = self.colouring.of(end, own);
                 let width = 1.5 * width;
-                self.lines.push(Line::new(part[0], part[1], width, color));
+                self.lines
+                    .push(Line::new(part[0], part[1], width, color).with_shadow());
             }
         }
         if let Some(network) = network {

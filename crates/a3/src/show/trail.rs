@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use a3_render::Line;
 
 /// The most points of a trail.
-const MOST: usize = 3600;
+const MOST: usize = 7200;
 /// Width of the line (points).
 const WIDTH: f32 = 2.2;
 

@@ -21,7 +21,9 @@ pub fn lines(
         .constraints()
         .iter()
         .flat_map(move |constraint| match *constraint {
-            Constraint::Rod { i, j, .. } => vec![Line::new(at(i), at(j), 4.0, color)],
+            Constraint::Rod { i, j, .. } => {
+                vec![Line::new(at(i), at(j), 4.0, color).with_shadow()]
+            }
             Constraint::Line {
                 point, direction, ..
             } => {

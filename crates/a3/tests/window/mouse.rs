@@ -35,6 +35,17 @@ fn pulling() {
     app.expect("cursor", "Default");
     go(x, y);
     app.expect("cursor", "Grab");
+    app.press_for("i", "parallel", "true");
+    app.press_for("i", "parallel", "false");
+    app.press("j");
+    until("a particle to follow", || {
+        (app.get("followed") != "-").then_some(())
+    });
+    // Where nothing is, the camera stays.
+    go(30, 600);
+    app.press_for("j", "followed", "-");
+    app.press("c");
+    go(x, y);
     display.xdotool(&["mousedown", "1"]);
     until("a grip", || (app.get("grabbed") != "-").then_some(()));
     app.expect("cursor", "Grabbing");
