@@ -21,6 +21,7 @@ mod hostile;
 mod hud;
 mod interrupt;
 mod keep;
+mod lessons;
 mod list;
 mod manual;
 mod output;
@@ -61,6 +62,7 @@ fn main() -> ExitCode {
             Some(Command::Choose(options)) => choose::run(&options),
             Some(Command::Scenes(options)) => list::scenes(&options),
             Some(Command::Solvers) => list::solvers(),
+            Some(Command::Lessons { lesson }) => lessons::print(lesson),
             Some(Command::Completions { shell }) => manual::completions(shell),
             Some(Command::Man { output }) => manual::run(output.as_deref()),
         },

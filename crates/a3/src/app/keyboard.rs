@@ -15,6 +15,7 @@ pub fn action(key: &Key) -> Option<Action> {
         Key::Named(NamedKey::F11) => session::action("F11"),
         Key::Named(NamedKey::PageUp) => session::action("PgUp"),
         Key::Named(NamedKey::PageDown) => session::action("PgDn"),
+        Key::Named(NamedKey::F1) => session::action("F1"),
         Key::Character(text) if text == " " => session::action("Space"),
         Key::Character(text) if text.chars().count() == 1 => session::action(text),
         _ => None,
@@ -66,6 +67,7 @@ mod tests {
                     "F11" => Key::Named(NamedKey::F11),
                     "PgUp" => Key::Named(NamedKey::PageUp),
                     "PgDn" => Key::Named(NamedKey::PageDown),
+                    "F1" => Key::Named(NamedKey::F1),
                     key => Key::Character(key.into()),
                 };
                 assert_eq!(action(&typed), Some(binding.action));
@@ -74,6 +76,6 @@ mod tests {
         assert_eq!(action(&Key::Character(" ".into())), Some(Action::Pause));
         assert_eq!(action(&Key::Character("10".into())), None);
         assert_eq!(action(&Key::Character("Tab".into())), None);
-        assert_eq!(action(&Key::Named(NamedKey::F1)), None);
+        assert_eq!(action(&Key::Named(NamedKey::F2)), None);
     }
 }

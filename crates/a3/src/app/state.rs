@@ -19,7 +19,7 @@ use crate::hud::panel;
 use crate::recorder::Recorder;
 use crate::session::{Action, Session};
 use crate::show::Target;
-use crate::{command_line, keep, output};
+use crate::{command_line, keep, lessons, output};
 
 /// The window, from the first event to the last.
 pub struct App {
@@ -198,6 +198,10 @@ impl App {
                 };
                 self.session.say(message);
                 self.scene_changed();
+            }
+            Action::Lessons => {
+                let message = lessons::open().unwrap_or_else(Failure::message);
+                self.session.say(message);
             }
             action => {
                 // No steps are due for the time in which nothing moved.

@@ -12,6 +12,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use crate::failure::Failure;
+use crate::lessons;
 use crate::scene_file::Source;
 use names::{SCENE, SOLVER, SOLVER_AND_STEP, SOLVER_OR_COMMAND};
 use values::{
@@ -62,6 +63,12 @@ pub enum Command {
     Scenes(Scenes),
     /// List the solvers with their order, evaluations per step, and default step or tolerance
     Solvers,
+    /// Print a lesson on solvers, or the list of them; key F1 of the window opens them with pictures
+    Lessons {
+        /// Number of the lesson
+        #[arg(value_parser = clap::value_parser!(u8).range(1..=i64::from(lessons::COUNT)))]
+        lesson: Option<u8>,
+    },
     /// Print the completion script of a shell
     Completions {
         /// Shell that the script is for

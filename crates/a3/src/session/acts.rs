@@ -108,6 +108,7 @@ impl Session {
             | Action::FilmLast
             | Action::Keep
             | Action::TakeUp
+            | Action::Lessons
             | Action::Quit => {}
         }
         false

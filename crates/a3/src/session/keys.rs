@@ -57,6 +57,8 @@ pub enum Action {
     Help,
     /// Fill the screen, or a window again.
     FullScreen,
+    /// Open the lessons.
+    Lessons,
     Quit,
 }
 
@@ -109,6 +111,7 @@ pub static KEYS: &[Binding] = &[
     bind(&["l"], Action::TakeUp, "load what was kept"),
     bind(&["F11"], Action::FullScreen, "full screen"),
     bind(&["h", "?"], Action::Help, "this help"),
+    bind(&["F1"], Action::Lessons, "lessons"),
     bind(&["Esc"], Action::Quit, "quit"),
 ];
 
@@ -156,6 +159,6 @@ mod tests {
         assert_eq!(action("3"), Some(Action::Solver(2)));
         assert_eq!(action("0"), Some(Action::Solver(9)));
         assert_eq!(action("10"), None);
-        assert_eq!(action("F1"), None);
+        assert_eq!(action("F2"), None);
     }
 }

@@ -15,6 +15,7 @@ mod films;
 #[cfg(unix)]
 mod hand_in;
 mod help;
+mod lessons;
 mod manual;
 #[cfg(unix)]
 mod outputs;

@@ -1,16 +1,27 @@
 //! The program in its window.
 
 use std::collections::HashMap;
-use std::fs;
+use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Child, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+use std::{env, fs};
 
 use crate::display::{Display, PATIENCE, until};
 use crate::screen::Screen;
+
+fn first_in_path(folder: &Path) -> OsString {
+    let path = env::var_os("PATH").unwrap_or_default();
+    env::join_paths(
+        [folder.to_owned()]
+            .into_iter()
+            .chain(env::split_paths(&path)),
+    )
+    .unwrap()
+}
 
 /// The program in its window, gone when dropped.
 pub struct App<'d> {
@@ -51,6 +62,9 @@ impl<'d> App<'d> {
             .current_dir(folder)
             .env("XDG_RUNTIME_DIR", folder)
             .stdout(Stdio::piped())
+            .env("XDG_CACHE_HOME", folder)
+            // A test may put programs there that are found before the system's own.
+            .env("PATH", first_in_path(folder))
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();

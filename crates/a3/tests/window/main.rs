@@ -13,6 +13,7 @@ mod comparing;
 mod display;
 mod filming;
 mod keys;
+mod lessons;
 mod mouse;
 mod panel;
 mod screen;
