@@ -6,7 +6,7 @@ use std::process::Command;
 
 use crate::common::{a3, asked, complaint, is_missing, text};
 
-const COMMANDS: [&str; 10] = [
+const COMMANDS: [&str; 11] = [
     "simulate",
     "render",
     "chart",
@@ -15,6 +15,7 @@ const COMMANDS: [&str; 10] = [
     "compare",
     "scenes",
     "solvers",
+    "lessons",
     "completions",
     "man",
 ];
