@@ -7,7 +7,7 @@ use crate::gpu::DEPTH;
 use crate::picture::{Ball, Corner, Line, Solid, Spring};
 
 /// The source of the shaders.
-pub(crate) const SOURCE: &str = include_str!("scene.wgsl");
+pub(crate) const SOURCE: &str = concat!(include_str!("scene.wgsl"), include_str!("lines.wgsl"));
 
 /// The pipelines, one for each kind of thing.
 pub(crate) struct Pipelines {
@@ -73,6 +73,61 @@ enum Layer {
     Over,
 }
 
+/// What all pipelines have in common.
+struct Maker<'a> {
+    device: &'a wgpu::Device,
+    shader: wgpu::ShaderModule,
+    layout: wgpu::PipelineLayout,
+    color: wgpu::TextureFormat,
+    samples: u32,
+}
+
+impl Maker<'_> {
+    /// A pipeline of a vertex and a fragment shader, by the beginnings of their names.
+    fn pipeline(
+        &self,
+        [vertex, fragment]: [&str; 2],
+        topology: PrimitiveTopology,
+        layer: Layer,
+        buffers: &[wgpu::VertexBufferLayout],
+    ) -> wgpu::RenderPipeline {
+        let buffers: Vec<_> = buffers.iter().cloned().map(Some).collect();
+        let blended = matches!(layer, Layer::Shadow | Layer::Over);
+        self.device
+            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(vertex),
+                layout: Some(&self.layout),
+                vertex: wgpu::VertexState {
+                    module: &self.shader,
+                    entry_point: Some(&format!("{vertex}_vertex")),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &buffers,
+                },
+                primitive: wgpu::PrimitiveState {
+                    topology,
+                    ..Default::default()
+                },
+                depth_stencil: Some(depth_stencil(layer)),
+                multisample: wgpu::MultisampleState {
+                    count: self.samples,
+                    ..Default::default()
+                },
+                fragment: Some(wgpu::FragmentState {
+                    module: &self.shader,
+                    entry_point: Some(&format!("{fragment}_fragment")),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format: self.color,
+                        blend: blended.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+    }
+}
+
 impl Pipelines {
     pub(crate) fn new(
         device: &wgpu::Device,
@@ -90,41 +145,16 @@ impl Pipelines {
             bind_group_layouts: &[Some(layout)],
             immediate_size: 0,
         });
+        let maker = Maker {
+            device,
+            shader,
+            layout,
+            color,
+            samples,
+        };
         let pipeline =
             |name: &str, fragment: &str, topology, layer, buffers: &[wgpu::VertexBufferLayout]| {
-                let buffers: Vec<_> = buffers.iter().cloned().map(Some).collect();
-                device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                    label: Some(name),
-                    layout: Some(&layout),
-                    vertex: wgpu::VertexState {
-                        module: &shader,
-                        entry_point: Some(&format!("{name}_vertex")),
-                        compilation_options: wgpu::PipelineCompilationOptions::default(),
-                        buffers: &buffers,
-                    },
-                    primitive: wgpu::PrimitiveState {
-                        topology,
-                        ..Default::default()
-                    },
-                    depth_stencil: Some(depth_stencil(layer)),
-                    multisample: wgpu::MultisampleState {
-                        count: samples,
-                        ..Default::default()
-                    },
-                    fragment: Some(wgpu::FragmentState {
-                        module: &shader,
-                        entry_point: Some(&format!("{fragment}_fragment")),
-                        compilation_options: wgpu::PipelineCompilationOptions::default(),
-                        targets: &[Some(wgpu::ColorTargetState {
-                            format: color,
-                            blend: matches!(layer, Layer::Shadow | Layer::Over)
-                                .then_some(wgpu::BlendState::ALPHA_BLENDING),
-                            write_mask: wgpu::ColorWrites::ALL,
-                        })],
-                    }),
-                    multiview_mask: None,
-                    cache: None,
-                })
+                maker.pipeline([name, fragment], topology, layer, buffers)
             };
         let unit = wgpu::vertex_attr_array![0 => Float32x3];
         let ball = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4];

@@ -2,7 +2,10 @@
 
 #[test]
 fn the_shader_is_valid() {
-    let source = include_str!("../src/scene.wgsl");
+    let source = concat!(
+        include_str!("../src/scene.wgsl"),
+        include_str!("../src/lines.wgsl")
+    );
     let module = naga::front::wgsl::parse_str(source)
         .unwrap_or_else(|e| panic!("{}", e.emit_to_string(source)));
     naga::valid::Validator::new(

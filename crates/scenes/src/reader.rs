@@ -22,7 +22,7 @@ pub(crate) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
     let table = DeValue::Table(table.into_inner());
     let whole = Value {
         text,
-        value: &table,
+        found: &table,
         span: 0..0,
     };
     T::deserialize(whole).map_err(|fault| fault.locate(text))
@@ -31,7 +31,7 @@ pub(crate) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
 /// A value, and where it is in the text. The span of a table is its header.
 struct Value<'a> {
     text: &'a str,
-    value: &'a DeValue<'a>,
+    found: &'a DeValue<'a>,
     span: Range<usize>,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Value<'a> {
     fn new(text: &'a str, spanned: &'a Spanned<DeValue<'a>>) -> Self {
         Self {
             text,
-            value: spanned.get_ref(),
+            found: spanned.get_ref(),
             span: spanned.span(),
         }
     }
@@ -52,7 +52,7 @@ impl<'a> Value<'a> {
     }
 
     fn wrong(&self, wanted: &str) -> Fault {
-        let found = match self.value {
+        let found = match self.found {
             DeValue::String(text) => quoted(text),
             DeValue::Integer(number) => number.to_string(),
             DeValue::Float(number) => number.to_string(),
@@ -78,7 +78,7 @@ impl<'a> Value<'a> {
     }
 
     fn number(&self) -> Option<f64> {
-        match self.value {
+        match self.found {
             DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
             DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
                 .ok()
@@ -91,7 +91,7 @@ impl<'a> Value<'a> {
     fn items<V: Visitor<'a>>(&self, items: &'a DeArray<'a>, visitor: V) -> Result<V::Value, Fault> {
         visitor.visit_seq(Items {
             text: self.text,
-            items: items.iter().enumerate(),
+            rest: items.iter().enumerate(),
             count: items.len(),
         })
     }
@@ -106,7 +106,7 @@ impl<'a> Value<'a> {
         entries.sort_by_key(|(key, _)| key.span().start);
         visitor.visit_map(Entries {
             text: self.text,
-            entries: entries.into_iter(),
+            rest: entries.into_iter(),
             entry: None,
         })
     }
@@ -116,7 +116,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
     type Error = Fault;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        match self.value {
+        match self.found {
             DeValue::String(text) => visitor.visit_str(text),
             DeValue::Boolean(is) => visitor.visit_bool(*is),
             DeValue::Array(items) => self.items(items, visitor),
@@ -127,7 +127,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
     }
 
     fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        match self.value {
+        match self.found {
             DeValue::Boolean(is) => visitor.visit_bool(*is),
             _ => Err(self.wrong("true or false")),
         }
@@ -141,7 +141,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
     }
 
     fn deserialize_u64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        let DeValue::Integer(number) = self.value else {
+        let DeValue::Integer(number) = self.found else {
             return Err(self.wrong(WHOLE));
         };
         match u64::from_str_radix(number.as_str(), number.radix()) {
@@ -156,7 +156,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
     }
 
     fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        match self.value {
+        match self.found {
             DeValue::String(text) => visitor.visit_str(text),
             _ => Err(self.wrong("a text in quotes")),
         }
@@ -167,7 +167,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
     }
 
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        match self.value {
+        match self.found {
             DeValue::Array(items) => self.items(items, visitor),
             DeValue::Table(_) => Err(self.alone()),
             _ => Err(self.wrong("a list in square brackets")),
@@ -179,7 +179,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
         count: usize,
         visitor: V,
     ) -> Result<V::Value, Fault> {
-        match self.value {
+        match self.found {
             DeValue::Array(items) if items.len() == count => self.items(items, visitor),
             DeValue::Array(items) => Err(self.fault(wrong_length(count, items.len()))),
             _ => Err(self.wrong(&list_of(count))),
@@ -192,7 +192,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
         keys: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Fault> {
-        match self.value {
+        match self.found {
             DeValue::Table(table) => self.entries(table, visitor),
             _ => Err(self.wrong(&format!("a table with keys among {}", keys.join(", ")))),
         }
@@ -204,7 +204,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
         choices: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Fault> {
-        match self.value {
+        match self.found {
             DeValue::String(text) => {
                 let text: StrDeserializer<'_, Fault> = text.as_ref().into_deserializer();
                 visitor.visit_enum(text)
@@ -222,7 +222,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
 /// The items of a list, one after another.
 struct Items<'a, I> {
     text: &'a str,
-    items: I,
+    rest: I,
     count: usize,
 }
 
@@ -236,7 +236,7 @@ where
         &mut self,
         seed: S,
     ) -> Result<Option<S::Value>, Fault> {
-        let Some((k, item)) = self.items.next() else {
+        let Some((k, item)) = self.rest.next() else {
             return Ok(None);
         };
         let read = seed.deserialize(Value::new(self.text, item));
@@ -249,14 +249,14 @@ where
     }
 
     fn size_hint(&self) -> Option<usize> {
-        Some(self.items.len())
+        Some(self.rest.len())
     }
 }
 
 /// The keys and values of a table, one after another.
 struct Entries<'a, I> {
     text: &'a str,
-    entries: I,
+    rest: I,
     /// The value that comes next, and its key.
     entry: Option<(&'a str, &'a Spanned<DeValue<'a>>)>,
 }
@@ -273,7 +273,7 @@ where
         seed: S,
     ) -> Result<Option<S::Value>, Fault> {
         self.entry = self
-            .entries
+            .rest
             .next()
             .map(|(key, value)| (key.get_ref().as_ref(), value));
         let Some((key, _)) = self.entry else {

@@ -11,6 +11,7 @@ use winit::keyboard::{Key, NamedKey};
 use winit::window::{Window, WindowId};
 
 use super::keyboard;
+use super::pointer::Drag;
 use super::state::App;
 use crate::hud::panel;
 use crate::session::Action;
@@ -131,7 +132,10 @@ impl ApplicationHandler for App {
                 button,
                 ..
             } if self.mouse.button == Some(button) => {
-                if button == MouseButton::Right && self.mouse.is_click() {
+                if button == MouseButton::Right
+                    && self.mouse.is_click()
+                    && self.mouse.drag == Drag::Pan
+                {
                     self.click();
                 }
                 self.let_go();

@@ -18,10 +18,12 @@ impl App {
             Drag::Orbit => (CursorIcon::AllScroll, None),
             Drag::Pan => (CursorIcon::Move, None),
             Drag::Scrub => (CursorIcon::ResizeHorizontal, None),
+            Drag::Select { .. } => (CursorIcon::Crosshair, None),
             Drag::None if !self.over_picture() => (CursorIcon::Default, None),
             Drag::None if self.timeline_share(CLICK).is_some() => {
                 (CursorIcon::ResizeHorizontal, None)
             }
+            Drag::None if self.shift => (CursorIcon::Crosshair, None),
             Drag::None => match self.hit(at).map(|(target, _)| target) {
                 Some(target @ Target::Particle(_)) => (CursorIcon::Grab, Some(target)),
                 Some(target @ Target::Obstacle(_)) => (CursorIcon::Move, Some(target)),

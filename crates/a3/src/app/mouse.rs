@@ -7,7 +7,8 @@ use super::pick::{self, Grip};
 use super::pointer::Drag;
 use super::state::App;
 use crate::hud::layout;
-use crate::show::Target;
+use crate::session::Selection;
+use crate::show::{self, Target};
 
 /// Distance from the pointer within which a particle is hit (points).
 const REACH: f32 = 18.0;
@@ -30,7 +31,14 @@ impl App {
         let share = self.timeline_share(CLICK);
         let hit = self.hit(pane);
         let session = &mut self.session;
+        let select = |pinned| Drag::Select {
+            from: self.mouse.pointer,
+            pinned,
+        };
         let drag = match button {
+            MouseButton::Left | MouseButton::Right if self.shift => {
+                select(button == MouseButton::Left)
+            }
             MouseButton::Left if share.is_some() => {
                 session.scrub_to(share.unwrap_or(1.0));
                 Drag::Scrub
@@ -90,8 +98,54 @@ impl App {
         }
     }
 
+    /// The particles in the box that is drawn, walls of tanks left out.
+    fn boxed(&self) -> Vec<usize> {
+        let Drag::Select { from, .. } = self.mouse.drag else {
+            return vec![];
+        };
+        let (tile, to) = (self.tile(self.mouse.pane), self.mouse.pointer);
+        let run = &self.session.panes[self.mouse.pane].simulation;
+        let (a, b) = (tile.place(from), tile.place(to));
+        let inside =
+            |at: [f32; 2]| (0..2).all(|k| (a[k].min(b[k])..=a[k].max(b[k])).contains(&at[k]));
+        let network = run.model().network();
+        let is_wall = |i: usize| network.is_some_and(|network| network.is_wall(i));
+        let project = self.session.camera.projection(tile.aspect());
+        (0..run.particles())
+            .filter(|i| {
+                let seen = project(show::to_f32(run.position(*i)));
+                seen.is_some_and(|(at, _)| inside(at)) && !is_wall(*i)
+            })
+            .collect()
+    }
+
+    /// Shows the box, and how many particles are in it.
+    fn look_into_box(&mut self) {
+        let scale = self.scale();
+        if let Drag::Select { from, pinned } = self.mouse.drag {
+            let corners = [from, self.mouse.pointer].map(|at| at.map(|px| px / scale));
+            let count = self.boxed().len();
+            self.session.readings.selection = Some(Selection {
+                corners,
+                count,
+                pinned,
+            });
+        }
+    }
+
+    /// Pins what is in the box, or lets go of it.
+    fn take_box(&mut self) {
+        if let Drag::Select { pinned, .. } = self.mouse.drag
+            && self.session.readings.selection.take().is_some()
+        {
+            let particles = self.boxed();
+            self.session.pin_all(&particles, pinned);
+        }
+    }
+
     /// Ends what the pressed button does.
     pub fn let_go(&mut self) {
+        self.take_box();
         self.session.release();
         self.mouse.let_go();
     }
@@ -123,6 +177,7 @@ impl App {
                     self.session.scrub_to(share);
                 }
             }
+            Drag::Select { .. } => self.look_into_box(),
             Drag::Pull(_) | Drag::None => return,
         }
         self.redraw();

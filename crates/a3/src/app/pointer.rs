@@ -22,6 +22,8 @@ pub enum Drag {
     Pan,
     /// Go along the timeline.
     Scrub,
+    /// Pin what is in a box from there (px) to the pointer, or let go of it.
+    Select { from: [f32; 2], pinned: bool },
 }
 
 /// The mouse.

@@ -155,6 +155,10 @@ impl App {
                     window.set_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
                 }
             }
+            Action::Undo | Action::Redo => {
+                let again = action == Action::Redo || self.shift;
+                panel::undo(&mut self.session, again);
+            }
             Action::Follow => {
                 let pane = self.pointed();
                 let hit = self.hit(pane).and_then(|(target, _)| match target {

@@ -9,6 +9,7 @@ mod overlay;
 pub mod panel;
 mod panes;
 mod picture;
+mod selection;
 mod single;
 mod style;
 mod text;

@@ -3,7 +3,7 @@
 use egui::Context;
 
 use super::help::help;
-use super::{panes, single, timeline};
+use super::{panes, selection, single, timeline};
 use crate::session::{Pane, Readings};
 
 /// Writes all text over the picture. Sheets stand below one another, and the help stands alone, so
@@ -13,6 +13,9 @@ pub fn show(ctx: &Context, panes: &[Pane], readings: &Readings) {
         [pane] if !readings.help => single::show(ctx, pane, readings),
         [_] => {}
         panes => panes::show(ctx, panes, readings),
+    }
+    if let Some(selection) = &readings.selection {
+        selection::show(ctx, selection);
     }
     if readings.help {
         help(ctx, panes.len() > 1);

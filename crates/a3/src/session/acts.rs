@@ -90,6 +90,7 @@ impl Session {
                 self.camera.set_parallel(parallel);
                 self.followed = None;
             }
+            Action::FreeAll => self.free_all(),
             Action::Projection => self.toggle_projection(),
             Action::SeeAll => self.see_all(),
             Action::NextView => self.next_view(),
@@ -102,6 +103,8 @@ impl Session {
             Action::Picture
             | Action::CommandLine
             | Action::Follow
+            | Action::Undo
+            | Action::Redo
             | Action::FullScreen
             | Action::WritePlots
             | Action::Record

@@ -1,8 +1,9 @@
 //! Hands that change all runs of a session at the same time.
 
-use a3_core::{Network, Simulation, Vector3};
+use a3_core::{Network, Path, Simulation, Vector3};
 
 use super::clock::KEY_BUDGET;
+use super::history::Change;
 use super::reference::ReferenceRun;
 use super::state::Session;
 
@@ -37,6 +38,11 @@ impl Session {
     /// Changes the model of every run. A reset keeps the change. Where surfaces touch and would
     /// cross then, a message names what does, and nothing is changed.
     pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
+        self.change_apart(&change, |run| run.adjust(&change));
+    }
+
+    /// Applies a change to every run, unless surfaces touch and would cross with it.
+    fn change_apart(&mut self, change: impl Fn(&mut Network), apply: impl FnMut(&mut Simulation)) {
         let apart = |run: &Simulation| {
             let Some(network) = run.model().network() else {
                 return Ok(());
@@ -54,7 +60,7 @@ impl Session {
         let crossed = runs.chain(reference).find_map(|run| apart(run).err());
         match crossed {
             Some(why) => self.say(format!("Surfaces would cross: {why}")),
-            None => self.change_all(|run| run.adjust(&change)),
+            None => self.change_all(apply),
         }
     }
 
@@ -110,6 +116,7 @@ impl Session {
     /// Takes hold of sphere k in every run, and returns whether any run holds it.
     pub fn grab_obstacle(&mut self, k: usize) -> bool {
         self.align();
+        self.pushed = self.obstacle_path(k).map(|path| (k, path));
         self.runs()
             .fold(false, |held, run| held | run.grab_obstacle(k).is_ok())
     }
@@ -136,6 +143,38 @@ impl Session {
             run.release_obstacle();
         });
         self.hide_hand();
+        self.note_push();
+    }
+
+    /// The path of obstacle k in the first run.
+    fn obstacle_path(&self, k: usize) -> Option<Path> {
+        let network = self.first().model().network()?;
+        Some(network.obstacles().get(k)?.path)
+    }
+
+    /// Notes the push that has ended, if it led anywhere.
+    fn note_push(&mut self) {
+        let Some((obstacle, from)) = self.pushed.take() else {
+            return;
+        };
+        let now = self.first().time();
+        if let Some(to) = self.obstacle_path(obstacle)
+            && to.at(now).position != from.at(now).position
+        {
+            self.history.note(Change::Push { obstacle, from, to });
+        }
+    }
+
+    /// Puts an obstacle back on a path in every run. Where surfaces touch and would cross then, a
+    /// message names what does, and nothing is changed.
+    pub fn put_back(&mut self, obstacle: usize, path: Path) {
+        let lead = |network: &mut Network| {
+            // It is there: it was pushed.
+            let _ = network.lead_obstacle(obstacle, path);
+        };
+        self.change_apart(lead, |run| {
+            let _ = run.set_obstacle_path(obstacle, path);
+        });
     }
 
     /// Stops drawing the hand.
@@ -143,25 +182,6 @@ impl Session {
         for pane in &mut self.panes {
             pane.show.hand = None;
         }
-    }
-
-    /// Pins particle i where it is in every run, or frees it if the first run has it pinned.
-    pub fn toggle_pin(&mut self, i: usize) {
-        self.align();
-        // All runs follow the first one, even if the particle is pinned in some of them only.
-        let pinned = self
-            .first()
-            .model()
-            .network()
-            .is_some_and(|n| n.is_pinned(i));
-        self.do_to_all(|run| {
-            if run.model().network().is_some_and(|n| n.is_pinned(i)) == pinned {
-                // The particle was picked in the picture, so it exists.
-                let _ = run.toggle_pin(i);
-            }
-        });
-        let now = if pinned { "free" } else { "pinned" };
-        self.say(format!("particle {i} is {now} now"));
     }
 }
 

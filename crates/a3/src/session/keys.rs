@@ -31,6 +31,11 @@ pub enum Action {
     /// Go so many kept frames on, or back if it is negative.
     Scrub(isize),
     Camera,
+    /// Let go of all pins.
+    FreeAll,
+    Undo,
+    /// Do again what was undone.
+    Redo,
     /// Perspective or orthographic.
     Projection,
     /// Follow what is under the pointer.
@@ -98,6 +103,8 @@ pub static KEYS: &[Binding] = &[
     bind(&["c"], Action::Camera, "camera home"),
     bind(&["g"], Action::SeeAll, "see all"),
     bind(&["b"], Action::NextView, "front, side, top"),
+    bind(&["z"], Action::Undo, "undo; Shift: redo"),
+    bind(&["Del"], Action::FreeAll, "let go of all pins"),
     bind(&["i"], Action::Projection, "perspective or parallel"),
     bind(&["j"], Action::Follow, "follow a particle"),
     bind(&["p"], Action::Picture, "save a picture"),
@@ -121,6 +128,8 @@ pub static MOUSE: &[(&str, &str)] = &[
     ("left, elsewhere", "turn"),
     ("right or middle", "move"),
     ("right click", "pin, or let go"),
+    ("Shift and left", "pin all in a box"),
+    ("Shift and right", "let go of them"),
     ("double click", "list springs"),
     ("wheel", "zoom to the pointer"),
 ];

@@ -153,6 +153,7 @@ impl Session {
             Ok(simulations) => {
                 self.tuning = Tuning::of(setup.scene.clone());
                 self.followed = None;
+                self.history.clear();
                 self.defaults = setup.defaults;
                 for (pane, mut simulation) in self.panes.iter_mut().zip(simulations) {
                     let asked = simulation.control().step();

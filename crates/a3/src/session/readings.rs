@@ -11,6 +11,17 @@ pub struct FilmProgress {
     pub said: String,
 }
 
+/// A box that is drawn to pin what is in it, or to let go of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Selection {
+    /// Opposite corners (points).
+    pub corners: [[f32; 2]; 2],
+    /// Number of particles in it.
+    pub count: usize,
+    /// Whether they will be pinned, or free.
+    pub pinned: bool,
+}
+
 /// Values that the text shows, taken twice a second or when something happens.
 #[derive(Clone, Debug, Default)]
 pub struct Readings {
@@ -28,6 +39,8 @@ pub struct Readings {
     pub drawing: f32,
     /// Message about what just happened, shown for a few seconds.
     pub message: Option<String>,
+    /// The box that is being drawn.
+    pub selection: Option<Selection>,
     /// A film that is being made.
     pub film: Option<FilmProgress>,
     /// Whether there is a window, with keys to press.

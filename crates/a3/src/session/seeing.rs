@@ -6,6 +6,7 @@ use a3_scenes::Presentation;
 
 use a3_render::Style;
 
+use super::followed::Followed;
 use super::state::Session;
 use crate::show::{self, Arrows, Quantity, Show};
 
@@ -16,15 +17,6 @@ const VIEWS: [([f32; 2], &str); 3] = [
     // Almost: the camera does not pass over the poles.
     ([0.0, FRAC_PI_2], "from above"),
 ];
-
-/// A particle that the camera goes along with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Followed {
-    pane: usize,
-    particle: usize,
-    /// Where it was seen last (m).
-    at: [f32; 3],
-}
 
 impl Session {
     /// Sees another scene as it is first seen, in the same projection.

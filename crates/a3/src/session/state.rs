@@ -3,17 +3,18 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use a3_core::Simulation;
+use a3_core::{Path, Simulation};
 use a3_render::Camera;
 use a3_scenes::{Defaults, Setup};
 
+use super::followed::Followed;
+use super::history::History;
 use super::list::List;
 use super::meter::Meter;
 use super::origin::Origin;
 use super::pane::Pane;
 use super::readings::Readings;
 use super::reference::ReferenceRun;
-use super::seeing::Followed;
 use super::timeline::Timeline;
 use super::tuning::{PanelState, Tuning};
 use crate::failure::Failure;
@@ -40,6 +41,10 @@ pub struct Session {
     pub camera: Camera,
     /// What the camera goes along with.
     pub(super) followed: Option<Followed>,
+    /// What can be undone.
+    pub history: History,
+    /// Number and path of the obstacle that is being pushed, before the push.
+    pub(super) pushed: Option<(usize, Path)>,
     /// Values for the text over the picture.
     pub readings: Readings,
     /// State of the panel.
@@ -102,6 +107,8 @@ impl Session {
             tuning: Tuning::of(setup.scene),
             list: None,
             followed: None,
+            history: History::default(),
+            pushed: None,
             kept: None,
             shown: origin.clone(),
             scene_number: a3_scenes::SCENES

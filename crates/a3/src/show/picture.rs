@@ -9,10 +9,11 @@ use a3_scenes::{Presentation, TANK_LAYERS};
 use super::arrows::Field;
 use super::coil::coil;
 use super::colouring::{Colouring, Scale};
-use super::colours::{ALARM, AMBER, BLUE, INK, RED, STEEL, TEAL};
+use super::colours::{AMBER, BLUE, INK, RED, STEEL, TEAL};
 use super::liquid::Liquid;
+use super::manner::{Manner, Target};
 use super::parts::{self, Parts};
-use super::quantity::{Arrows, Quantity};
+use super::pull::pull;
 use super::springs::{KINDS, has_springs, kind_look, springs_of};
 use super::trail::Trail;
 use super::vectors::to_f32;
@@ -21,31 +22,6 @@ use super::{bodies, obstacles, view, wires};
 /// The most springs or particles without a surface that are drawn as coils and balls. More of them
 /// are drawn as lines and small balls: a coil is 170 lines.
 const MANY: usize = 60;
-
-/// Length of a pull that is drawn as the strongest, as a share of the scene's radius.
-const STRONG: f64 = 0.5;
-
-/// A particle or an obstacle, by its number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Target {
-    Particle(usize),
-    Obstacle(usize),
-}
-
-/// The manner in which a run is shown at first.
-#[derive(Clone, Copy, Default)]
-pub struct Manner {
-    /// Surface, wires or springs.
-    pub style: Style,
-    /// The particle whose springs are highlighted.
-    pub springs_of: Option<usize>,
-    /// Whether the projection is orthographic, not perspective.
-    pub orthographic: bool,
-    /// What particles are coloured by.
-    pub colour: Option<Quantity>,
-    /// Arrows on particles.
-    pub arrows: Option<Arrows>,
-}
 
 /// How a run is shown, and the buffers of its picture.
 #[derive(Clone)]
@@ -222,7 +198,10 @@ impl Show {
         self.highlight(simulation);
         if let Some(i) = simulation.grabbed() {
             self.ball(i, 0.055, AMBER);
-            self.draw_pull(simulation, i);
+            if let Some((line, ball)) = self.hand.and_then(|hand| pull(simulation, i, hand)) {
+                self.lines.push(line);
+                self.balls.push(ball);
+            }
         }
     }
 
@@ -387,25 +366,6 @@ impl Show {
             }
             _ => {}
         }
-    }
-
-    /// Draws a line from the particle to the hand, thicker and redder the farther it is.
-    fn draw_pull(&mut self, simulation: &Simulation, i: usize) {
-        let Some(hand) = self.hand else { return };
-        let strength = (hand - simulation.position(i)).norm() / simulation.extent().1;
-        if strength < 0.01 {
-            return;
-        }
-        let share = (strength / STRONG).min(1.0) as f32;
-        let color = [0, 1, 2, 3].map(|k| AMBER[k] + share * (ALARM[k] - AMBER[k]));
-        let to = to_f32(hand);
-        self.lines
-            .push(Line::new(self.at(i), to, 2.0 + 6.0 * share, color));
-        self.balls.push(Ball {
-            center: to,
-            radius: 0.035,
-            color,
-        });
     }
 
     /// Highlights the springs of particle i.

@@ -180,3 +180,55 @@ fn clicks_slow_motion_and_going_back() {
     app.press("Escape");
     assert!(app.exit().success());
 }
+
+/// With Shift, the left button draws a box and pins what is in it, and the right one lets go;
+/// Delete lets go of all; z takes that back, and with Shift does it again.
+#[test]
+fn boxes_and_undoing() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let app = App::open(&display, folder.path(), &["t", "0.01", "--paused"]);
+    let drag = |button: &str, [x, y]: [&str; 2], [to_x, to_y]: [&str; 2]| {
+        display.xdotool(&["mousemove", "--window", &app.window, x, y]);
+        display.xdotool(&["keydown", "shift"]);
+        app.expect("cursor", "Crosshair");
+        display.xdotool(&["mousedown", button]);
+        display.xdotool(&["mousemove", "--window", &app.window, "500", "300"]);
+        display.xdotool(&["mousemove", "--window", &app.window, to_x, to_y]);
+        display.xdotool(&["mouseup", button, "keyup", "shift"]);
+    };
+    app.expect("pins", "20");
+    drag("1", ["300", "20"], ["1000", "700"]);
+    app.expect("pins", "400");
+    drag("3", ["300", "20"], ["1000", "700"]);
+    app.expect("pins", "0");
+    app.press_for("z", "pins", "400");
+    app.press_for("z", "pins", "20");
+    app.press_for("shift+z", "pins", "400");
+    app.press_for("ctrl+z", "pins", "20");
+    app.press_for("Delete", "pins", "0");
+    app.press_for("z", "pins", "20");
+    // A box around nothing changes nothing.
+    drag("1", ["20", "500"], ["60", "600"]);
+    app.settled();
+    app.expect("pins", "20");
+    // A slider that was dragged is one change.
+    app.press_for("Tab", "panel", "true");
+    display.xdotool(&[
+        "mousemove",
+        "--window",
+        &app.window,
+        "1120",
+        "70",
+        "mousedown",
+        "1",
+    ]);
+    display.xdotool(&["mousemove", "--window", &app.window, "900", "70"]);
+    app.expect("step", "0.00001");
+    display.xdotool(&["mouseup", "1"]);
+    app.press_for("z", "step", "0.01");
+    app.press("Escape");
+    assert!(app.exit().success());
+}

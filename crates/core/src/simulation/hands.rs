@@ -320,6 +320,19 @@ impl Simulation {
         self.grabbed_obstacle = None;
     }
 
+    /// Gives obstacle k another path, such as the one that it had before it was pushed, and lets go
+    /// of any. A reset goes back to the scene's own.
+    ///
+    /// # Errors
+    /// There is no such obstacle.
+    pub fn set_obstacle_path(&mut self, k: usize, path: Path) -> Result<(), Error> {
+        self.release_obstacle();
+        match self.network_mut() {
+            Some(network) => network.lead_obstacle(k, path),
+            None => Ok(()),
+        }
+    }
+
     /// Gives the grabbed obstacle a path, which `path` makes of its position (m).
     fn lead_obstacle(&mut self, path: impl FnOnce(&Self, Vector3<f64>) -> Path) {
         let network = self.model.network().zip(self.grabbed_obstacle);

@@ -9,7 +9,7 @@ mod seen;
 mod values;
 mod view;
 
-pub use knobs::{tune, tuned};
+pub use knobs::{tune, tuned, undo};
 pub use plots::csv;
 pub use request::{PanelKey, Request, apply, press, press_text};
 pub use view::{inset, leaves, show};

@@ -4,7 +4,7 @@ use a3_core::{Control, Network, Path, Vector3};
 use super::screen::Screen;
 use super::{changed, dials, every_scene, opened, type_key};
 use crate::hud::panel::dial::Turn;
-use crate::hud::panel::knobs::KNOBS;
+use crate::hud::panel::knobs::{KNOBS, undo};
 use crate::hud::panel::request::{PanelKey, Request, apply, press, press_text, rows};
 use crate::session::{Action, Session, TextKey, compared};
 
@@ -236,5 +236,45 @@ fn values_are_typed() {
         assert!(type_value(&mut session, "stiffness", words), "{words}");
         assert_eq!(session.readings.message.as_deref(), Some(why));
         assert_eq!(session.tuning.stiffness, 1.0);
+    }
+}
+
+#[test]
+fn turns_are_undone_and_done_again() {
+    for mut session in every_scene() {
+        let name = session.first().scene().name.clone();
+        for (row, _, dial) in rows(&session) {
+            // A solver that takes a tolerance has another step.
+            if ["solver", "step"].contains(&KNOBS[row].name) {
+                continue;
+            }
+            let before = dials(&session);
+            let there = |session: &Session| (KNOBS[row].read)(session, 0).map(|dial| dial.value);
+            apply(
+                &mut session,
+                Request::Turn(
+                    row,
+                    Turn::By {
+                        up: true,
+                        other: false,
+                    },
+                ),
+            );
+            let turned = there(&session);
+            if turned == Some(dial.value) {
+                continue;
+            }
+            undo(&mut session, false);
+            assert_eq!(
+                there(&session),
+                Some(dial.value),
+                "{} of {name}",
+                KNOBS[row].name
+            );
+            assert_eq!(changed(&before, &session), [""; 0], "{name}");
+            undo(&mut session, true);
+            assert_eq!(there(&session), turned, "{} of {name}", KNOBS[row].name);
+            undo(&mut session, false);
+        }
     }
 }

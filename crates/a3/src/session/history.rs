@@ -1,0 +1,116 @@
+//! What the user changed, to be undone and done again.
+
+use std::time::{Duration, Instant};
+
+use a3_core::Path;
+
+/// The most changes that are kept.
+const MOST: usize = 200;
+/// Turns of the same knob within this time of one another are one change: a slider that is dragged.
+const ONE: Duration = Duration::from_millis(800);
+
+/// A change, which can be undone.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// Particles were pinned, or let go of.
+    Pins { particles: Vec<usize>, pinned: bool },
+    /// An obstacle was pushed: its path before and after.
+    Push {
+        obstacle: usize,
+        from: Path,
+        to: Path,
+    },
+    /// A knob was turned: its row in the table, its pane, and its value before and after.
+    Knob {
+        row: usize,
+        pane: usize,
+        from: f64,
+        to: f64,
+    },
+}
+
+/// Changes that were made, and those that were undone.
+#[derive(Default)]
+pub struct History {
+    done: Vec<Change>,
+    undone: Vec<Change>,
+    /// Time of the last change.
+    last: Option<Instant>,
+}
+
+impl History {
+    /// Notes a change. What was undone before cannot be done again.
+    pub fn note(&mut self, change: Change) {
+        let soon = self.last.is_some_and(|last| last.elapsed() < ONE);
+        self.last = Some(Instant::now());
+        self.undone.clear();
+        if let Change::Knob { row, pane, to, .. } = change
+            && let Some(Change::Knob {
+                row: last_row,
+                pane: last_pane,
+                to: last_to,
+                ..
+            }) = self.done.last_mut()
+            && soon
+            && (*last_row, *last_pane) == (row, pane)
+        {
+            *last_to = to;
+            return;
+        }
+        self.done.push(change);
+        if self.done.len() > MOST {
+            self.done.remove(0);
+        }
+    }
+
+    /// The change that is undone now, or with `again` done again.
+    pub fn step(&mut self, again: bool) -> Option<Change> {
+        let (from, to) = if again {
+            (&mut self.undone, &mut self.done)
+        } else {
+            (&mut self.done, &mut self.undone)
+        };
+        let change = from.pop()?;
+        to.push(change.clone());
+        self.last = None;
+        Some(change)
+    }
+
+    /// Forgets all changes.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drag_is_one_change_and_a_new_change_ends_what_was_undone() {
+        let knob = |row, from: f64, to: f64| Change::Knob {
+            row,
+            pane: 0,
+            from,
+            to,
+        };
+        let mut history = History::default();
+        for (from, to) in [(1.0, 2.0), (2.0, 3.0), (3.0, 4.0)] {
+            history.note(knob(5, from, to));
+        }
+        history.note(knob(6, 0.0, 1.0));
+        assert_eq!(history.step(false), Some(knob(6, 0.0, 1.0)));
+        assert_eq!(history.step(false), Some(knob(5, 1.0, 4.0)));
+        assert_eq!(history.step(false), None);
+        assert_eq!(history.step(true), Some(knob(5, 1.0, 4.0)));
+        history.note(knob(7, 0.0, 1.0));
+        assert_eq!(history.step(true), None);
+        for k in 0..300 {
+            history.note(Change::Pins {
+                particles: vec![k],
+                pinned: true,
+            });
+        }
+        assert_eq!(history.done.len(), MOST);
+    }
+}
