@@ -100,6 +100,9 @@ impl ApplicationHandler for App {
         let taken = !is_key && (graphics.on_event(&event) || self.session.list.is_some())
             || panel::leaves(&self.session, graphics.size(), graphics.scale()).0 as f32
                 <= self.mouse.pointer[0];
+        if let WindowEvent::MouseInput { state, .. } = event {
+            self.session.history.hold(state == ElementState::Pressed);
+        }
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {

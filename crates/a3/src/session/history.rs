@@ -6,7 +6,7 @@ use a3_core::Path;
 
 /// The most changes that are kept.
 const MOST: usize = 200;
-/// Turns of the same knob within this time of one another are one change: a slider that is dragged.
+/// Turns of the same knob by keys within this time of one another are one change.
 const ONE: Duration = Duration::from_millis(800);
 
 /// A change, which can be undone.
@@ -34,14 +34,18 @@ pub enum Change {
 pub struct History {
     done: Vec<Change>,
     undone: Vec<Change>,
-    /// Time of the last change.
+    /// Time of the last change since a button was pressed.
     last: Option<Instant>,
+    /// Whether a button is held.
+    held: bool,
 }
 
 impl History {
     /// Notes a change. What was undone before cannot be done again.
     pub fn note(&mut self, change: Change) {
-        let soon = self.last.is_some_and(|last| last.elapsed() < ONE);
+        let soon = self
+            .last
+            .is_some_and(|last| self.held || last.elapsed() < ONE);
         self.last = Some(Instant::now());
         self.undone.clear();
         if let Change::Knob { row, pane, to, .. } = change
@@ -61,6 +65,15 @@ impl History {
         if self.done.len() > MOST {
             self.done.remove(0);
         }
+    }
+
+    /// Notes that a button of the mouse was pressed or let go of: a slider that is dragged is one
+    /// change.
+    pub fn hold(&mut self, held: bool) {
+        if held {
+            self.last = None;
+        }
+        self.held = held;
     }
 
     /// The change that is undone now, or with `again` done again.
@@ -98,6 +111,12 @@ mod tests {
         for (from, to) in [(1.0, 2.0), (2.0, 3.0), (3.0, 4.0)] {
             history.note(knob(5, from, to));
         }
+        // Another drag of the same knob is another change, however soon.
+        history.hold(true);
+        history.note(knob(5, 4.0, 5.0));
+        history.note(knob(5, 5.0, 6.0));
+        history.hold(false);
+        assert_eq!(history.step(false), Some(knob(5, 4.0, 6.0)));
         history.note(knob(6, 0.0, 1.0));
         assert_eq!(history.step(false), Some(knob(6, 0.0, 1.0)));
         assert_eq!(history.step(false), Some(knob(5, 1.0, 4.0)));

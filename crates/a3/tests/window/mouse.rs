@@ -35,17 +35,6 @@ fn pulling() {
     app.expect("cursor", "Default");
     go(x, y);
     app.expect("cursor", "Grab");
-    app.press_for("i", "parallel", "true");
-    app.press_for("i", "parallel", "false");
-    app.press("j");
-    until("a particle to follow", || {
-        (app.get("followed") != "-").then_some(())
-    });
-    // Where nothing is, the camera stays.
-    go(30, 600);
-    app.press_for("j", "followed", "-");
-    app.press("c");
-    go(x, y);
     display.xdotool(&["mousedown", "1"]);
     until("a grip", || (app.get("grabbed") != "-").then_some(()));
     app.expect("cursor", "Grabbing");
@@ -92,6 +81,17 @@ fn pulling() {
     app.frames_go_on();
     assert_eq!(app.get("grabbed"), "-");
     display.xdotool(&["mouseup", "1"]);
+    go(x, y);
+    app.expect("cursor", "Grab");
+    app.press_for("i", "parallel", "true");
+    app.press_for("i", "parallel", "false");
+    app.press("j");
+    until("a particle to follow", || {
+        (app.get("followed") != "-").then_some(())
+    });
+    // Where nothing is, the camera stays.
+    go(30, 600);
+    app.press_for("j", "followed", "-");
     app.press("Escape");
     assert!(app.exit().success());
 }
@@ -216,16 +216,14 @@ fn boxes_and_undoing() {
     app.expect("pins", "20");
     // A slider that was dragged is one change.
     app.press_for("Tab", "panel", "true");
-    display.xdotool(&[
-        "mousemove",
-        "--window",
-        &app.window,
-        "1120",
-        "70",
-        "mousedown",
-        "1",
-    ]);
-    display.xdotool(&["mousemove", "--window", &app.window, "900", "70"]);
+    let slide = |words: &[&str]| {
+        display.xdotool(&[&["mousemove", "--window", &app.window], words].concat());
+        app.settled();
+    };
+    slide(&["1120", "70"]);
+    slide(&["1120", "70", "mousedown", "1"]);
+    slide(&["1090", "70"]);
+    slide(&["900", "70"]);
     app.expect("step", "0.00001");
     display.xdotool(&["mouseup", "1"]);
     app.press_for("z", "step", "0.01");

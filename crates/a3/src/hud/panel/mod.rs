@@ -6,12 +6,14 @@ mod plots;
 mod request;
 mod row;
 mod seen;
+mod undo;
 mod values;
 mod view;
 
-pub use knobs::{tune, tuned, undo};
+pub use knobs::{tune, tuned};
 pub use plots::csv;
 pub use request::{PanelKey, Request, apply, press, press_text};
+pub use undo::undo;
 pub use view::{inset, leaves, show};
 
 #[cfg(test)]

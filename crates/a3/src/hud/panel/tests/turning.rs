@@ -4,8 +4,9 @@ use a3_core::{Control, Network, Path, Vector3};
 use super::screen::Screen;
 use super::{changed, dials, every_scene, opened, type_key};
 use crate::hud::panel::dial::Turn;
-use crate::hud::panel::knobs::{KNOBS, undo};
+use crate::hud::panel::knobs::KNOBS;
 use crate::hud::panel::request::{PanelKey, Request, apply, press, press_text, rows};
+use crate::hud::panel::undo;
 use crate::session::{Action, Session, TextKey, compared};
 
 #[test]
