@@ -161,7 +161,8 @@ impl Session {
         if let Some(to) = self.obstacle_path(obstacle)
             && to.at(now).position != from.at(now).position
         {
-            self.history.note(Change::Push { obstacle, from, to });
+            let paths = Box::new([from, to]);
+            self.history.note(Change::Push { obstacle, paths });
         }
     }
 

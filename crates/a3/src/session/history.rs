@@ -14,11 +14,10 @@ const ONE: Duration = Duration::from_millis(800);
 pub enum Change {
     /// Particles were pinned, or let go of.
     Pins { particles: Vec<usize>, pinned: bool },
-    /// An obstacle was pushed: its path before and after.
+    /// An obstacle was pushed: its paths before and after.
     Push {
         obstacle: usize,
-        from: Path,
-        to: Path,
+        paths: Box<[Path; 2]>,
     },
     /// A knob was turned: its row in the table, its pane, and its value before and after.
     Knob {

@@ -65,10 +65,9 @@ impl Session {
                 }
             };
             // Pins are kept in order: few are moved when the last ones are removed first.
-            if pinned {
-                particles.iter().for_each(|i| set(*i));
-            } else {
-                particles.iter().rev().for_each(|i| set(*i));
+            for k in 0..particles.len() {
+                let at = if pinned { k } else { particles.len() - 1 - k };
+                set(particles[at]);
             }
         });
     }

@@ -19,8 +19,8 @@ pub fn undo(session: &mut Session, again: bool) {
                 (n, false) => format!("letting go of {n} pins"),
             }
         }
-        Change::Push { obstacle, from, to } => {
-            session.put_back(obstacle, if again { to } else { from });
+        Change::Push { obstacle, paths } => {
+            session.put_back(obstacle, paths[usize::from(again)]);
             "push".into()
         }
         Change::Knob {
