@@ -32,6 +32,7 @@ mod render;
 mod rounding;
 mod scene_file;
 mod session;
+mod settings;
 mod setup;
 mod show;
 mod simulate;

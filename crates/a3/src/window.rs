@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use crate::app::{self, End};
-use crate::cli::{Compare, WindowOptions};
+use crate::cli::{Compare, Look, WindowOptions};
 use crate::failure::Failure;
 use crate::session::Session;
+use crate::settings::Settings;
 use crate::{headless, keep, output, setup, show};
 
 /// Opens the window on one run.
@@ -23,16 +24,22 @@ pub fn run(options: &WindowOptions) -> Result<(), Failure> {
     if let Some(i) = options.springs_of {
         output::say(&show::list_springs_of(session.first(), i))?;
     }
-    open(session, options.look.status, files)
+    open(session, &options.look, files)
 }
 
 /// Opens the window on several runs.
 pub fn compare(options: &Compare) -> Result<(), Failure> {
-    open(setup::comparison(options)?, options.look.status, vec![])
+    open(setup::comparison(options)?, &options.look, vec![])
 }
 
-fn open(session: Session, status: bool, files: Vec<PathBuf>) -> Result<(), Failure> {
-    match app::open(session, status, files)? {
+fn open(session: Session, look: &Look, files: Vec<PathBuf>) -> Result<(), Failure> {
+    let settings = if look.no_config {
+        None
+    } else {
+        // A file of another program, or of another version, is left as it is.
+        Settings::read().map_err(|why| output::warn(&why)).ok()
+    };
+    match app::open(session, look.status, files, settings)? {
         End::Closed => Ok(()),
         End::NoWindow(why, session) => headless::run(&why, *session),
     }

@@ -8,7 +8,7 @@ use winit::dpi::LogicalSize;
 use winit::event::{ElementState, KeyEvent, MouseButton, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::{Key, NamedKey};
-use winit::window::{Window, WindowId};
+use winit::window::{Fullscreen, Window, WindowId};
 
 use super::keyboard;
 use super::pointer::Drag;
@@ -42,6 +42,9 @@ impl App {
             self.redraw();
             return;
         }
+        if let (true, Some(by)) = (self.control, keyboard::zoom(&event.logical_key)) {
+            return self.scale_interface(by);
+        }
         let Some(action) = keyboard::action(&event.logical_key) else {
             return;
         };
@@ -61,9 +64,11 @@ impl ApplicationHandler for App {
             return;
         }
         event_loop.set_control_flow(ControlFlow::Wait);
+        let whole = self.settings.as_ref().is_some_and(|it| it.full_screen);
         let attributes = Window::default_attributes()
             .with_inner_size(LogicalSize::new(1280.0, 720.0))
-            .with_min_inner_size(LogicalSize::new(64.0, 48.0));
+            .with_min_inner_size(LogicalSize::new(64.0, 48.0))
+            .with_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
         match event_loop.create_window(attributes) {
             Ok(window) => self.window = Some(Arc::new(window)),
             Err(why) => return self.fail(event_loop, format!("no window ({why})")),
@@ -82,6 +87,7 @@ impl ApplicationHandler for App {
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         self.complete_film();
+        self.remember();
     }
 
     fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
@@ -117,7 +123,10 @@ impl ApplicationHandler for App {
                 self.say_status();
                 self.redraw();
             }
-            WindowEvent::ModifiersChanged(held) => self.shift = held.state().shift_key(),
+            WindowEvent::ModifiersChanged(held) => {
+                self.shift = held.state().shift_key();
+                self.control = held.state().control_key();
+            }
             WindowEvent::Focused(false) => self.let_go(),
             WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
                 self.press_key(event_loop, &event);

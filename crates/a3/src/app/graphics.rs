@@ -95,7 +95,12 @@ impl Graphics {
 
     /// Pixels per point.
     pub fn scale(&self) -> f32 {
-        self.window.scale_factor() as f32
+        self.window.scale_factor() as f32 * self.overlay.context.zoom_factor()
+    }
+
+    /// Makes text and panel larger or smaller than the screen's own scale asks for.
+    pub fn set_zoom(&mut self, zoom: f32) {
+        self.overlay.context.set_zoom_factor(zoom);
     }
 
     /// The adapter, for pictures that are drawn beside the window.

@@ -23,6 +23,16 @@ pub fn action(key: &Key) -> Option<Action> {
     }
 }
 
+/// The steps by which a key, with Ctrl, makes text and panel larger: 0 for as at first.
+pub fn zoom(key: &Key) -> Option<isize> {
+    match key {
+        Key::Character(text) if text == "+" || text == "=" => Some(1),
+        Key::Character(text) if text == "-" => Some(-1),
+        Key::Character(text) if text == "0" => Some(0),
+        _ => None,
+    }
+}
+
 /// The meaning of a key in the panel, if it has one there.
 pub fn panel_key(key: &Key) -> Option<PanelKey> {
     match key {

@@ -9,6 +9,7 @@ mod keyboard;
 mod mouse;
 mod pick;
 mod pointer;
+mod remember;
 mod start;
 mod state;
 mod status;

@@ -8,6 +8,7 @@ use super::state::App;
 use crate::caught::caught;
 use crate::failure::Failure;
 use crate::session::Session;
+use crate::settings::Settings;
 
 /// How the window ends.
 pub enum End {
@@ -18,14 +19,26 @@ pub enum End {
 }
 
 /// Opens the window. With `status`, lines on stderr tell what is on the screen. When one of `files`
-/// changes, the scene is loaded again.
-pub fn open(mut session: Session, status: bool, files: Vec<PathBuf>) -> Result<End, Failure> {
+/// changes, the scene is loaded again. The `settings` are written again when the window closes.
+pub fn open(
+    mut session: Session,
+    status: bool,
+    files: Vec<PathBuf>,
+    settings: Option<Settings>,
+) -> Result<End, Failure> {
     let event_loop = match event_loop() {
         Ok(event_loop) => event_loop,
         Err(why) => return Ok(End::NoWindow(why, Box::new(session))),
     };
     session.readings.in_window = true;
-    let mut app = App::new(session, event_loop.owned_display_handle(), status, files);
+    if let Some(settings) = &settings {
+        session.panel.open = settings.panel;
+        session.panel.film = settings.film;
+        session.panel.film_of = settings.film_seconds;
+        session.recent.clone_from(&settings.recent);
+    }
+    let display = event_loop.owned_display_handle();
+    let mut app = App::new(session, display, status, files, settings);
     event_loop.run_app(&mut app).map_err(Failure::run)?;
     match app.failure {
         None => Ok(End::Closed),

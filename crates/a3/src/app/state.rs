@@ -18,6 +18,7 @@ use crate::failure::Failure;
 use crate::hud::panel;
 use crate::recorder::Recorder;
 use crate::session::{Action, Session};
+use crate::settings::Settings;
 use crate::show::Target;
 use crate::{command_line, keep, lessons, output};
 
@@ -38,8 +39,14 @@ pub struct App {
     pub cursor: CursorIcon,
     /// Whether the shift key is held.
     pub shift: bool,
+    /// Whether the control key is held.
+    pub control: bool,
     /// The clipboard, once it was needed: what was copied is lost with it.
     clipboard: Option<Clipboard>,
+    /// The settings as they were read, unless none are remembered.
+    pub settings: Option<Settings>,
+    /// Size of text and panel over that of the screen's own scale.
+    pub zoom: f32,
     /// The film that is being made.
     pub recorder: Option<Recorder>,
     /// Whether the window can be seen.
@@ -62,6 +69,7 @@ impl App {
         display: OwnedDisplayHandle,
         status: bool,
         files: Vec<PathBuf>,
+        settings: Option<Settings>,
     ) -> Self {
         Self {
             session,
@@ -72,8 +80,11 @@ impl App {
             mouse: Mouse::new(),
             cursor: CursorIcon::Default,
             shift: false,
+            control: false,
             clipboard: None,
             recorder: None,
+            zoom: settings.as_ref().map_or(1.0, |it| it.interface_scale),
+            settings,
             visible: true,
             devices: 0,
             status: status.then(Status::default),
@@ -126,7 +137,8 @@ impl App {
         // The old surface has to go before the window can have another.
         self.graphics = None;
         match Graphics::new(window, &self.display, &self.session) {
-            Ok(graphics) => {
+            Ok(mut graphics) => {
+                graphics.set_zoom(self.zoom);
                 self.graphics = Some(graphics);
                 self.devices += 1;
             }

@@ -135,6 +135,9 @@ pub struct WindowOptions {
 pub struct Look {
     #[command(flatten)]
     pub manner: Drawing,
+    /// Neither read nor write the settings that the window remembers
+    #[arg(long)]
+    pub no_config: bool,
     /// Begin paused
     #[arg(long)]
     pub paused: bool,

@@ -22,7 +22,21 @@ impl Session {
     }
 
     fn scene_entries(&self) -> Vec<Entry> {
-        let names = self.scene_names().into_iter().enumerate();
+        let names = self.scene_names();
+        let count = names.len();
+        let earlier = self.earlier_files().into_iter().enumerate();
+        let earlier = earlier.map(|(k, path)| Entry {
+            number: count + k,
+            key: String::new(),
+            name: path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into(),
+            about: path.display().to_string(),
+            current: false,
+        });
+        let names = names.into_iter().enumerate();
         names
             .map(|(number, name)| {
                 let asked = || self.asked.iter().find(|o| o.source.typed == name);
@@ -39,6 +53,7 @@ impl Session {
                     name,
                 }
             })
+            .chain(earlier)
             .collect()
     }
 
@@ -89,6 +104,11 @@ impl Session {
     pub fn take(&mut self, number: usize) -> bool {
         match self.list.take().map(|list| list.topic) {
             Some(Topic::Scenes) => {
+                let earlier = number.checked_sub(self.scene_names().len());
+                let file = earlier.and_then(|k| self.earlier_files().into_iter().nth(k));
+                if let Some(file) = file {
+                    return self.open(&file);
+                }
                 self.show_scene(number);
                 true
             }
@@ -161,6 +181,21 @@ mod tests {
         assert_eq!(names[..2], [STRIP, "cloth"]);
         assert_eq!(names.len(), a3_scenes::SCENES.len() + 1);
         assert_eq!(list.entries().position(|entry| entry.current), Some(1));
+    }
+
+    #[test]
+    fn files_of_earlier_windows_come_last_and_can_be_opened() {
+        let mut session = session(&["v", "0.005"]);
+        session.recent = ["/nowhere/gone.toml", STRIP].map(Into::into).to_vec();
+        session.act(Action::Scenes, 0);
+        type_words(&mut session, "strip.toml");
+        let list = session.list.as_ref().unwrap();
+        assert_eq!(list.entries().count(), 1);
+        assert!(keys(&mut session, &[TextKey::Take]));
+        let shown = session.shown().typed.clone();
+        assert!(shown.ends_with("strip.toml"), "{shown}");
+        // It is one of the files of this window now.
+        assert!(session.earlier_files().is_empty());
     }
 
     #[test]

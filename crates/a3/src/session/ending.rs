@@ -1,7 +1,10 @@
 //! The formats of films that the window writes.
 
+use serde::{Deserialize, Serialize};
+
 /// A format, by the ending of its files.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Ending {
     #[default]
     Gif,

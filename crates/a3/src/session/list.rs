@@ -76,9 +76,17 @@ impl List {
         self.choose_first();
     }
 
-    /// Chooses the current entry, or else the first.
+    /// Chooses the current entry, or the first one with what was typed in its name, or else the
+    /// first.
     fn choose_first(&mut self) {
-        let current = self.entries().position(|entry| entry.current);
-        self.chosen = current.filter(|_| self.filter.is_empty()).unwrap_or(0);
+        let typed = self.filter.trim().to_lowercase();
+        let best = self.entries().position(|entry| {
+            if typed.is_empty() {
+                entry.current
+            } else {
+                entry.name.to_lowercase().contains(&typed)
+            }
+        });
+        self.chosen = best.unwrap_or(0);
     }
 }

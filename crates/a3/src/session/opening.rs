@@ -1,6 +1,6 @@
 //! Another scene, or the same one from its file again.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use a3_core::{Control, Error, Simulation, integrators};
 use a3_scenes::Setup;
@@ -23,6 +23,25 @@ impl Session {
             .map(|source| source.typed.clone())
             .chain(table)
             .collect()
+    }
+
+    /// The files that were asked for or opened, the last one first.
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
+        let paths = self
+            .asked
+            .iter()
+            .filter_map(|origin| origin.source.path.as_ref());
+        paths.filter_map(|path| std::path::absolute(path).ok())
+    }
+
+    /// Files that were opened in earlier windows and are there still.
+    pub(super) fn earlier_files(&self) -> Vec<PathBuf> {
+        let now: Vec<_> = self.files().collect();
+        let earlier = self
+            .recent
+            .iter()
+            .filter(|path| !now.contains(*path) && path.is_file());
+        earlier.cloned().collect()
     }
 
     /// Shows the scene `by` places after the one that is shown, or before it if that is negative.

@@ -63,6 +63,8 @@ pub struct Session {
     pub(super) begun: String,
     /// The scene that is shown.
     pub(super) shown: Origin,
+    /// Files that were opened in earlier windows, the last one first.
+    pub recent: Vec<PathBuf>,
     /// Number of the scene that is shown: the user's files come first, then those of the table.
     pub(super) scene_number: usize,
     /// The run that the errors are taken from, if there are several panes.
@@ -109,6 +111,7 @@ impl Session {
             followed: None,
             history: History::default(),
             pushed: None,
+            recent: vec![],
             kept: None,
             shown: origin.clone(),
             scene_number: a3_scenes::SCENES

@@ -63,6 +63,7 @@ impl<'d> App<'d> {
             .env("XDG_RUNTIME_DIR", folder)
             .stdout(Stdio::piped())
             .env("XDG_CACHE_HOME", folder)
+            .env("XDG_CONFIG_HOME", folder)
             // A test may put programs there that are found before the system's own.
             .env("PATH", first_in_path(folder))
             .stderr(Stdio::piped())

@@ -16,6 +16,7 @@ mod keys;
 mod lessons;
 mod mouse;
 mod panel;
+mod remembering;
 mod screen;
 mod surface;
 mod watching;

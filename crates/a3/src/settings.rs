@@ -1,0 +1,165 @@
+//! Settings of the window that are remembered from one time to the next.
+
+use std::env;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::failure::Failure;
+use crate::output;
+use crate::session::{Ending, FILM_OF, SPAN};
+
+/// The most files that are remembered.
+const MOST: usize = 12;
+/// Factors of the size of text and panel.
+pub const SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0];
+
+/// What is not of a scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// Size of text and panel over that of the screen's own scale.
+    pub interface_scale: f32,
+    /// Whether the window fills the screen.
+    pub full_screen: bool,
+    /// Whether the panel is open.
+    pub panel: bool,
+    /// The format of films.
+    pub film: Ending,
+    /// Simulated time that a film of what was kept covers (s).
+    pub film_seconds: f64,
+    /// Files of scenes, the one opened last first.
+    pub recent: Vec<PathBuf>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            interface_scale: 1.0,
+            full_screen: false,
+            panel: false,
+            film: Ending::default(),
+            film_seconds: FILM_OF,
+            recent: vec![],
+        }
+    }
+}
+
+impl Settings {
+    /// The settings in the user's folder, or the first ones where there are none yet.
+    pub fn read() -> Result<Self, String> {
+        Self::read_from(&file())
+    }
+
+    fn read_from(path: &Path) -> Result<Self, String> {
+        let place = path.display();
+        let text = match fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(why) if why.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
+            Err(why) => return Err(format!("{place}: {why}")),
+        };
+        let read: Self = toml::from_str(&text).map_err(|why| {
+            let line = why
+                .span()
+                .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+            format!("{place}:{line}: this is no setting of a3")
+        })?;
+        let fits =
+            SCALES.contains(&read.interface_scale) && (1.0..=SPAN).contains(&read.film_seconds);
+        if !fits {
+            return Err(format!("{place}: a number is beyond its range"));
+        }
+        Ok(read)
+    }
+
+    /// Writes the settings to the user's folder.
+    pub fn write(&self) -> Result<(), Failure> {
+        self.write_to(&file())
+    }
+
+    fn write_to(&self, path: &Path) -> Result<(), Failure> {
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder)
+                .map_err(|why| Failure::run(format!("{}: {why}", folder.display())))?;
+        }
+        let text = toml::to_string(self).map_err(Failure::run)?;
+        output::write(path, text.as_bytes())
+    }
+
+    /// Remembers files, the last one first, before those that were remembered already.
+    pub fn remember(&mut self, files: impl Iterator<Item = PathBuf>) {
+        let mut all: Vec<PathBuf> = files.chain(std::mem::take(&mut self.recent)).collect();
+        let mut seen = std::collections::HashSet::new();
+        all.retain(|file| seen.insert(file.clone()));
+        all.truncate(MOST);
+        self.recent = all;
+    }
+}
+
+/// The file of the settings.
+fn file() -> PathBuf {
+    let named = |name| {
+        env::var_os(name)
+            .map(PathBuf::from)
+            .filter(|path| path.is_absolute())
+    };
+    let home = |below: &str| env::home_dir().map(|home| home.join(below));
+    let folder = if cfg!(windows) {
+        named("APPDATA")
+    } else if cfg!(target_os = "macos") {
+        home("Library/Application Support")
+    } else {
+        named("XDG_CONFIG_HOME").or_else(|| home(".config"))
+    };
+    folder
+        .unwrap_or_else(env::temp_dir)
+        .join("a3")
+        .join("settings.toml")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_written_is_read_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a3").join("settings.toml");
+        assert_eq!(Settings::read_from(&path), Ok(Settings::default()));
+        let mut settings = Settings {
+            interface_scale: 1.5,
+            panel: true,
+            film: Ending::Mp4,
+            ..Settings::default()
+        };
+        let files = ["/b.toml", "/a.toml", "/b.toml"].map(PathBuf::from);
+        settings.remember(files.into_iter());
+        settings.remember(std::iter::once(PathBuf::from("/c.toml")));
+        let names: Vec<_> = settings
+            .recent
+            .iter()
+            .map(|p| p.to_str().unwrap())
+            .collect();
+        assert_eq!(names, ["/c.toml", "/b.toml", "/a.toml"]);
+        assert!(settings.write_to(&path).is_ok());
+        assert_eq!(Settings::read_from(&path), Ok(settings));
+    }
+
+    #[test]
+    fn what_is_no_settings_is_refused_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.toml");
+        for (text, line) in [
+            ("panel = true\nscale = 2\n", ":2: "),
+            ("panel = 3\n", ":1: "),
+            ("interface_scale = 1e9\n", ": a number is beyond its range"),
+            ("\u{0}", ":1: "),
+        ] {
+            fs::write(&path, text).unwrap();
+            let why = Settings::read_from(&path).unwrap_err();
+            assert!(why.contains(line) && !why.contains('\n'), "{why}");
+        }
+    }
+}

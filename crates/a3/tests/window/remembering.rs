@@ -1,0 +1,60 @@
+//! What the window remembers from one time to the next.
+
+use std::fs;
+
+use crate::app::App;
+use crate::display::Display;
+
+#[test]
+fn settings_come_back_unless_they_are_not_wanted() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("own.toml");
+    let chain =
+        "[[chain]]\nparticles = 3\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = 25\n";
+    fs::write(&own, chain).unwrap();
+    let app = App::open(
+        &display,
+        folder.path(),
+        &["t", "0.01", "--scene", "own.toml"],
+    );
+    app.press_for("Tab", "panel", "true");
+    app.press_for("ctrl+plus", "scale", "1.15");
+    app.press_for("ctrl+plus", "scale", "1.3");
+    app.press_for("ctrl+minus", "scale", "1.15");
+    // The step and the solver are not meant then.
+    app.expect("step", "0.01");
+    app.press("Escape");
+    assert!(app.exit().success());
+    let file = folder.path().join("a3").join("settings.toml");
+    let text = fs::read_to_string(&file).unwrap();
+    assert!(text.contains("own.toml"), "{text}");
+    let app = App::open(&display, folder.path(), &["--scene", "chain"]);
+    app.expect("panel", "true");
+    app.expect("scale", "1.15");
+    app.press_for("ctrl+0", "scale", "1");
+    // The file of then is in the list.
+    app.press_for("o", "list", "true");
+    for letter in ["o", "w", "n"] {
+        app.press(letter);
+    }
+    app.press_for("Return", "scene", "own");
+    app.press("Escape");
+    assert!(app.exit().success());
+    let app = App::open(&display, folder.path(), &["--no-config"]);
+    app.expect("panel", "false");
+    app.press_for("Tab", "panel", "true");
+    app.press_for("Tab", "panel", "false");
+    app.press("Escape");
+    assert!(app.exit().success());
+    // What is no settings is said, and left as it is.
+    fs::write(&file, "colour = 'red'\n").unwrap();
+    let app = App::open(&display, folder.path(), &[]);
+    app.expect("panel", "false");
+    app.press_for("Tab", "panel", "true");
+    app.press("Escape");
+    assert!(app.exit().success());
+    assert_eq!(fs::read_to_string(&file).unwrap(), "colour = 'red'\n");
+}
