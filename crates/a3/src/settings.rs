@@ -26,6 +26,8 @@ pub struct Settings {
     pub full_screen: bool,
     /// Whether the panel is open.
     pub panel: bool,
+    /// The most frames a second, or 0 for as many as the screen shows.
+    pub frame_limit: u32,
     /// The format of films.
     pub film: Ending,
     /// Simulated time that a film of what was kept covers (s).
@@ -40,6 +42,7 @@ impl Default for Settings {
             interface_scale: 1.0,
             full_screen: false,
             panel: false,
+            frame_limit: 0,
             film: Ending::default(),
             film_seconds: FILM_OF,
             recent: vec![],
@@ -66,10 +69,21 @@ impl Settings {
                 .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
             format!("{place}:{line}: this is no setting of a3")
         })?;
-        let fits =
-            SCALES.contains(&read.interface_scale) && (1.0..=SPAN).contains(&read.film_seconds);
-        if !fits {
-            return Err(format!("{place}: a number is beyond its range"));
+        let [least, .., most] = SCALES;
+        let limit = f64::from(read.frame_limit);
+        for (name, value, low, high) in [
+            (
+                "interface_scale",
+                f64::from(read.interface_scale),
+                least.into(),
+                most.into(),
+            ),
+            ("film_seconds", read.film_seconds, 1.0, SPAN),
+            ("frame_limit", limit, 0.0, 1000.0),
+        ] {
+            if !(low..=high).contains(&value) {
+                return Err(format!("{place}: {name} must be from {low} to {high}"));
+            }
         }
         Ok(read)
     }
@@ -154,7 +168,10 @@ mod tests {
         for (text, line) in [
             ("panel = true\nscale = 2\n", ":2: "),
             ("panel = 3\n", ":1: "),
-            ("interface_scale = 1e9\n", ": a number is beyond its range"),
+            (
+                "interface_scale = 1e9\n",
+                ": interface_scale must be from 0.75 to 2",
+            ),
             ("\u{0}", ":1: "),
         ] {
             fs::write(&path, text).unwrap();

@@ -25,6 +25,9 @@ impl App {
             graphics.lose_device();
             self.redraw();
         }
+        if let (true, Some(by)) = (self.control, keyboard::zoom(&event.logical_key)) {
+            return self.scale_interface(by);
+        }
         let typed = keyboard::text_key(event);
         if self.session.list.is_some() {
             if typed.is_some_and(|key| self.session.press_list(key)) {
@@ -41,9 +44,6 @@ impl App {
         if key.is_some_and(|key| panel::press(&mut self.session, key, self.shift)) {
             self.redraw();
             return;
-        }
-        if let (true, Some(by)) = (self.control, keyboard::zoom(&event.logical_key)) {
-            return self.scale_interface(by);
         }
         let Some(action) = keyboard::action(&event.logical_key) else {
             return;

@@ -89,7 +89,11 @@ impl App {
         let rate = monitor
             .and_then(|monitor| monitor.refresh_rate_millihertz())
             .unwrap_or(60_000);
-        Duration::from_secs_f64(0.9e3 / f64::from(rate.clamp(30_000, 500_000)))
+        let own = Duration::from_secs_f64(0.9e3 / f64::from(rate.clamp(30_000, 500_000)));
+        match self.session.panel.frame_limit {
+            0 => own,
+            limit => own.max(Duration::from_secs(1) / limit),
+        }
     }
 
     /// Asks for a frame at that time, unless the window is hidden.

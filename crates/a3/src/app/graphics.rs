@@ -37,6 +37,8 @@ pub struct Graphics {
     tears: Vec<usize>,
     overlay: Overlay,
     egui_winit: egui_winit::State,
+    /// Size of text and panel over that of the screen's own scale.
+    zoom: f32,
     /// Whether the window has another size than the surface.
     stale: bool,
     gpu: Gpu,
@@ -76,6 +78,7 @@ impl Graphics {
             surface,
             config,
             format,
+            zoom: 1.0,
             stale: false,
             gpu,
             window,
@@ -95,11 +98,12 @@ impl Graphics {
 
     /// Pixels per point.
     pub fn scale(&self) -> f32 {
-        self.window.scale_factor() as f32 * self.overlay.context.zoom_factor()
+        self.window.scale_factor() as f32 * self.zoom
     }
 
     /// Makes text and panel larger or smaller than the screen's own scale asks for.
     pub fn set_zoom(&mut self, zoom: f32) {
+        self.zoom = zoom;
         self.overlay.context.set_zoom_factor(zoom);
     }
 

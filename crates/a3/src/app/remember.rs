@@ -34,6 +34,7 @@ impl App {
             interface_scale: self.zoom,
             full_screen: window.is_some_and(|window| window.fullscreen().is_some()),
             panel: session.panel.open,
+            frame_limit: session.panel.frame_limit,
             film: session.panel.film,
             film_seconds: session.panel.film_of,
             recent: before.recent.clone(),

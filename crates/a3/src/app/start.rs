@@ -34,6 +34,7 @@ pub fn open(
     if let Some(settings) = &settings {
         session.panel.open = settings.panel;
         session.panel.film = settings.film;
+        session.panel.frame_limit = settings.frame_limit;
         session.panel.film_of = settings.film_seconds;
         session.recent.clone_from(&settings.recent);
     }

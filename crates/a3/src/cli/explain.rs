@@ -88,7 +88,7 @@ fn unknown(arg: &str, similar: &str) -> String {
     if arg.starts_with("`-") {
         return format!(
             "there is no option {arg}: long options have two dashes, as in --scene, and a step is a number above 0, \
-             such as 0.01"
+             such as 0.01 or 1/60"
         );
     }
     format!("{arg} is one word too many; --help shows what is expected")

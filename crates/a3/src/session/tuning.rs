@@ -40,6 +40,8 @@ pub struct PanelState {
     pub row: usize,
     /// What was typed so far for the value of the chosen row, while one is typed.
     pub typed: Option<String>,
+    /// The most frames a second, or 0 for as many as the screen shows.
+    pub frame_limit: u32,
     /// The format of films.
     pub film: Ending,
     /// Simulated time that a film of what was kept covers (s).
@@ -54,6 +56,7 @@ impl Default for PanelState {
             open: false,
             row: 0,
             typed: None,
+            frame_limit: 0,
             film: Ending::default(),
             film_of: FILM_OF,
             pane: 0,

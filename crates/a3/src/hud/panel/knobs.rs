@@ -4,7 +4,7 @@ use a3_core::contact::Shape;
 use a3_core::{Network, Vector3};
 
 use super::dial::{Dial, DialScale, Turn};
-use super::seen::{arrows, colour, film, film_of, full_colour, style};
+use super::seen::{arrows, colour, film, film_of, frame_limit, full_colour, style};
 use super::values::{
     damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
     stiffness, strain_limit, strain_limits, switch,
@@ -277,13 +277,19 @@ pub static KNOBS: &[Knob] = &[
         },
     ),
     apart(knob(
+        "frame limit",
+        "The most frames a second, to spare the processor. Simulated time stays real time.",
+        frame_limit,
+        |session, _, limit| session.panel.frame_limit = limit as u32,
+    )),
+    knob(
         "film as",
         "The format of films by the keys n and m.",
         film,
         |session, _, k| {
             session.panel.film = Ending::ALL.get(k as usize).copied().unwrap_or_default();
         },
-    )),
+    ),
     knob(
         "film of",
         "Simulated time that key n films, in s.",

@@ -67,6 +67,29 @@ pub fn full_colour(session: &Session, at: usize) -> Option<Dial> {
     })
 }
 
+/// Frames a second that may be chosen as the most; 0 for as many as the screen shows.
+const LIMITS: [u32; 5] = [0, 60, 30, 15, 5];
+
+pub fn frame_limit(session: &Session, _: usize) -> Option<Dial> {
+    session.readings.in_window.then(|| {
+        let limit = session.panel.frame_limit;
+        let mut values: Vec<f64> = LIMITS.map(f64::from).to_vec();
+        // One that was written into the settings by hand is kept.
+        if !LIMITS.contains(&limit) {
+            values.push(limit.into());
+        }
+        Dial {
+            value: limit.into(),
+            own: 0.0,
+            scale: DialScale::Choice(values),
+            words: match limit {
+                0 => "none".into(),
+                limit => format!("{limit} per second"),
+            },
+        }
+    })
+}
+
 pub fn film(session: &Session, _: usize) -> Option<Dial> {
     let place = Ending::ALL.iter().position(|e| *e == session.panel.film)?;
     Some(Dial {

@@ -35,7 +35,9 @@ pub fn undo(session: &mut Session, again: bool) {
             if now.is_some_and(|dial| dial.value != value) {
                 (KNOBS[row].set)(session, pane, value);
             }
-            KNOBS[row].name.into()
+            let now = (KNOBS[row].read)(session, pane);
+            let words = now.map_or(String::new(), |dial| dial.words);
+            format!("{} {words}", KNOBS[row].name)
         }
     };
     let did = if again { "done again" } else { "undone" };
