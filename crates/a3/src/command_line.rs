@@ -79,6 +79,7 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
         (show.style == Style::Wireframe, "--wireframe"),
         (springs, "--springs"),
         (session.camera.is_parallel(), "--orthographic"),
+        (show.dark, "--dark"),
         (session.readings.paused, "--paused"),
     ] {
         words.extend(on.then(|| word.to_owned()));
@@ -147,7 +148,7 @@ mod tests {
         for words in [
             "verlet 0.005 --scene cloth",
             "rk4 0.002 --scene cloth --grid 12x9 --wind --swing --colour strain",
-            "dopri5 0.0001 --scene flag --arrows velocity --wireframe --orthographic --paused",
+            "dopri5 0.0001 --scene flag --arrows velocity --wireframe --orthographic --dark --paused",
             "verlet 0.005 --scene mit --self-collision --springs-of 7 --springs --colour contact",
             "compare euler:0.05 rk4:0.01 --scene chain --colour force --paused",
         ] {

@@ -24,6 +24,8 @@ pub struct Settings {
     pub interface_scale: f32,
     /// Whether the window fills the screen.
     pub full_screen: bool,
+    /// Whether the background is dark, and text light.
+    pub dark: bool,
     /// Whether the panel is open.
     pub panel: bool,
     /// The most frames a second, or 0 for as many as the screen shows.
@@ -41,6 +43,7 @@ impl Default for Settings {
         Self {
             interface_scale: 1.0,
             full_screen: false,
+            dark: false,
             panel: false,
             frame_limit: 0,
             film: Ending::default(),

@@ -48,7 +48,7 @@ fn faded(a: vec3<f32>, b: vec3<f32>) -> f32 {
     let b = points[ends.y].xyz;
     let value = -1.0 - select(points[ends.x].w, points[ends.y].w, i >= 2u);
     if value >= 0.0 { return line(a, b, 2.0, vec4(ramp(value), 1.0), i); }
-    return line(a, b, 1.35, vec4(INK, faded(a, b)), i);
+    return line(a, b, 1.35, vec4(inked(INK), faded(a, b)), i);
 }
 
 // A spring between two particles, in the colour of its kind or of a value.
@@ -61,14 +61,14 @@ fn faded(a: vec3<f32>, b: vec3<f32>) -> f32 {
     let value = -1.0 - select(points[ends.x].w, points[ends.y].w, i >= 2u);
     if value >= 0.0 { return line(a, b, points_wide, vec4(ramp(value), 1.0), i); }
     // Opaque, so that no colour shines through another.
-    return line(a, b, points_wide, vec4(mix(PAPER, color, 0.75 + 0.25 * faded(a, b)), 1.0), i);
+    return line(a, b, points_wide, vec4(mix(paper(), inked(color), 0.75 + 0.25 * faded(a, b)), 1.0), i);
 }
 
 @vertex fn line_vertex(
     @builtin(vertex_index) i: u32,
     @location(0) a: vec4<f32>, @location(1) b: vec4<f32>, @location(2) color: vec4<f32>
 ) -> Line {
-    return line(a.xyz, b.xyz, a.w, color, i);
+    return line(a.xyz, b.xyz, a.w, vec4(inked(color.rgb), color.a), i);
 }
 
 // The shadow of a line is as wide on the screen as the line.
@@ -116,7 +116,7 @@ fn line_shadow(a: vec3<f32>, b: vec3<f32>, points_wide: f32, i: u32) -> LineShad
     let edge = clamp(in.half_width + 0.5 - abs(in.across), 0.0, 1.0) * step(0.01, in.half_width);
     // The stencil counts what is drawn: pixels outside must stay free.
     if edge < 0.05 { discard; }
-    return vec4(0.10, 0.11, 0.17, edge * 0.34 * floor_fade(in.world) / (1.0 + 0.35 * in.height));
+    return shadow_color(in.world, in.height) * vec4(1.0, 1.0, 1.0, edge);
 }
 
 @fragment fn line_fragment(in: Line) -> @location(0) vec4<f32> {

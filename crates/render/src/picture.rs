@@ -174,6 +174,8 @@ pub struct Picture<'a> {
     /// Whether floor, shadows and background are left out, so that the picture can be laid over
     /// another.
     pub transparent: bool,
+    /// Whether the background is dark.
+    pub dark: bool,
 }
 
 /// A rectangular part of the target, inside it and not empty.

@@ -232,6 +232,7 @@ mod tests {
             liquid: Liquid::default(),
             floor: None,
             transparent: false,
+            dark: false,
         };
         Offscreen::new(gpu, (96, 64))
             .unwrap()

@@ -11,8 +11,8 @@ struct Globals {
     tile: vec4<f32>,
     // Height of the floor, its radius, and x and z of its centre (m).
     floor: vec4<f32>,
-    // Distances of the nearest and the farthest particle from the eye (m); pixels per point;
-    // unused.
+    // Distances of the nearest and the farthest particle from the eye (m); pixels per point; 1 in
+    // the dark theme and 0 in the light one.
     depth: vec4<f32>,
 };
 
@@ -27,6 +27,17 @@ const PAPER = vec3(0.86, 0.855, 0.835);
 const SHADE = vec3(0.56, 0.60, 0.655);
 const WATER = vec3(0.02, 0.24, 0.46);
 const INK = vec3(0.035, 0.05, 0.09);
+
+// Paper, its shade towards the corners, and the grid on the floor, of the theme.
+fn paper() -> vec3<f32> { return mix(PAPER, vec3(0.060, 0.066, 0.082), globals.depth.w); }
+fn shade() -> vec3<f32> { return mix(SHADE, vec3(0.020, 0.022, 0.030), globals.depth.w); }
+fn grid() -> vec3<f32> { return mix(SHADE * 0.8, vec3(0.20, 0.22, 0.26), globals.depth.w); }
+
+// A colour, or light grey for one that is nearly black in the dark theme.
+fn inked(color: vec3<f32>) -> vec3<f32> {
+    let black = max(color.r, max(color.g, color.b)) < 0.12;
+    return select(color, vec3(0.62, 0.64, 0.68), black && globals.depth.w > 0.5);
+}
 
 // The colours of surfaces by their look, outside and inside: cloth in red, teal, amber and violet,
 // jelly in green, orange, berry and blue, and steel.
@@ -63,7 +74,7 @@ fn ramp(value: f32) -> vec3<f32> {
 
 fn background(pixel: vec2<f32>) -> vec3<f32> {
     let p = ((pixel - globals.tile.xy) / globals.tile.zw - vec2(0.5, 0.42)) * vec2(1.0, 1.15);
-    return mix(PAPER, SHADE, min(2.1 * dot(p, p), 1.0));
+    return mix(paper(), shade(), min(2.1 * dot(p, p), 1.0));
 }
 
 // Noise of up to half a step of an 8-bit channel, so that the gradient shows no bands.
@@ -106,16 +117,17 @@ fn floor_grazing(world: vec3<f32>) -> f32 {
 }
 
 @fragment fn floor_fragment(in: Floor) -> @location(0) vec4<f32> {
-    let color = mix(vec3(0.90, 0.895, 0.88), SHADE * 0.8, 0.35 * floor_grid(in.world));
-    let paper = background(in.clip.xy) + dither(in.clip.xy);
+    let ground = mix(vec3(0.90, 0.895, 0.88), vec3(0.085, 0.092, 0.11), globals.depth.w);
+    let color = mix(ground, grid(), 0.35 * floor_grid(in.world));
+    let behind = background(in.clip.xy) + dither(in.clip.xy);
     let fade = floor_fade(in.world) * floor_grazing(in.world);
-    return vec4(mix(paper, color, 0.75 * fade), 1.0);
+    return vec4(mix(behind, color, 0.75 * fade), 1.0);
 }
 
 // From below the floor is glass, through which all that stands on it is seen.
 @fragment fn floor_below_fragment(in: Floor) -> @location(0) vec4<f32> {
     let opacity = 0.16 + 0.5 * floor_grid(in.world);
-    return vec4(SHADE * 0.7, opacity * floor_fade(in.world) * floor_grazing(in.world));
+    return vec4(grid() * 0.9, opacity * floor_fade(in.world) * floor_grazing(in.world));
 }
 
 // ---- Shadow: the projection of everything above the floor onto it, along the light. The stencil
@@ -134,6 +146,13 @@ fn shadow(p: vec3<f32>) -> Shadow {
     return out;
 }
 
+// Of what is at a height above the floor: the fainter the higher.
+fn shadow_color(world: vec3<f32>, height: f32) -> vec4<f32> {
+    let color = mix(vec3(0.10, 0.11, 0.17), vec3(0.0), globals.depth.w);
+    let opacity = mix(0.34, 0.6, globals.depth.w);
+    return vec4(color, opacity * floor_fade(world) / (1.0 + 0.35 * height));
+}
+
 @vertex fn mesh_shadow_vertex(@builtin(vertex_index) i: u32) -> Shadow {
     return shadow(points[i].xyz);
 }
@@ -145,7 +164,7 @@ fn shadow(p: vec3<f32>) -> Shadow {
 }
 
 @fragment fn shadow_fragment(in: Shadow) -> @location(0) vec4<f32> {
-    return vec4(0.10, 0.11, 0.17, 0.34 * floor_fade(in.world) / (1.0 + 0.35 * in.height));
+    return shadow_color(in.world, in.height);
 }
 
 // ---- Light: a lamp, the sky, and a faint light from the eye, so that nothing is black.
@@ -264,7 +283,7 @@ struct Ball {
     out.world = ball.xyz + ball.w * unit;
     out.clip = globals.view_proj * vec4(out.world, 1.0);
     out.normal = unit;
-    out.color = color.rgb;
+    out.color = inked(color.rgb);
     out.value = vec4(0.0, 0.0, 0.0, 1.0);
     return out;
 }
@@ -309,7 +328,7 @@ fn solid_position(in: Solid) -> vec3<f32> {
     out.world = solid_position(in);
     out.clip = globals.view_proj * vec4(out.world, 1.0);
     out.normal = solid_normal(in);
-    out.color = in.color.rgb;
+    out.color = inked(in.color.rgb);
     var values = array(in.v0, in.v1, in.v2, in.v3, in.v4, in.v5, in.v6, in.v7);
     let upper = vec3<u32>(in.piece > vec3(0.0));
     out.value = values[upper.x + 2u * upper.y + 4u * upper.z];

@@ -181,6 +181,6 @@ fn globals(picture: &Picture, tile: Tile) -> Globals {
             target.x,
             target.z,
         ],
-        depth: [near, far, picture.scale, 0.0],
+        depth: [near, far, picture.scale, f32::from(u8::from(picture.dark))],
     }
 }

@@ -99,8 +99,10 @@ fn pictures_match_the_golden_ones() {
         ("coloured-solids", Style::Shaded),
         ("orthographic", Style::Shaded),
         ("from-below", Style::Shaded),
+        ("dark", Style::Springs),
     ] {
         let mut sheet = Sheet::new();
+        sheet.dark = name == "dark";
         sheet.camera.set_parallel(name == "orthographic");
         if name == "from-below" {
             sheet.camera = a3_render::Camera::look_at([1.6, -1.1, 4.2], [0.0, 0.8, 0.2]);

@@ -273,6 +273,7 @@ impl Graphics {
             .map(|viewport| viewport.repaint_delay);
         let again = again.filter(|delay| *delay < Duration::from_mins(1));
         let size = (self.config.width, self.config.height);
+        self.overlay.dark = session.panes[0].show.dark;
         let before = self.overlay.paint(&self.gpu, encoder, view, size, output);
         (before, again, request)
     }

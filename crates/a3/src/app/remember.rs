@@ -33,6 +33,7 @@ impl App {
         let mut now = Settings {
             interface_scale: self.zoom,
             full_screen: window.is_some_and(|window| window.fullscreen().is_some()),
+            dark: session.panes[0].show.dark,
             panel: session.panel.open,
             frame_limit: session.panel.frame_limit,
             film: session.panel.film,

@@ -33,6 +33,9 @@ pub fn open(
     session.readings.in_window = true;
     if let Some(settings) = &settings {
         session.panel.open = settings.panel;
+        if settings.dark {
+            session.set_dark(true);
+        }
         session.panel.film = settings.film;
         session.panel.frame_limit = settings.frame_limit;
         session.panel.film_of = settings.film_seconds;

@@ -53,7 +53,7 @@ impl Status {
             values.join(",")
         };
         let state = format!(
-            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} blown={} grabbed={grabbed} \
+            "scene={} solver={} step={} style={:?} wind={} swing={} paused={} help={} panel={} list={} film={} cursor={cursor:?} followed={} parallel={} scale={} dark={} blown={} grabbed={grabbed} \
              colour={} arrows={} slowness={} scrubbed={} pins={} springs_of={} size={}x{} visible={} devices={}",
             run.scene().name,
             run.method().name,
@@ -69,6 +69,7 @@ impl Status {
             session.followed().map_or("-".into(), |i| i.to_string()),
             session.camera.is_parallel(),
             graphics.scale(),
+            panes[0].show.dark,
             run.blow_up().is_some(),
             panes[0].show.colouring.quantity.map_or("-", Quantity::name),
             panes[0].show.field.arrows.map_or("-", Arrows::name),

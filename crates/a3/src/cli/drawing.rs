@@ -6,6 +6,7 @@ use clap::Args;
 use crate::show::{Arrows, Manner, Quantity};
 
 /// How a scene is drawn.
+#[expect(clippy::struct_excessive_bools, reason = "each is an option")]
 #[derive(Args, Clone, Copy)]
 pub struct Drawing {
     /// Draw the wireframe instead of the surface
@@ -18,6 +19,9 @@ pub struct Drawing {
     /// Draw in parallel projection instead of perspective
     #[arg(long)]
     pub orthographic: bool,
+    /// Draw light things on a dark background
+    #[arg(long)]
+    pub dark: bool,
     /// Colour each particle by a quantity
     #[arg(long, value_name = "QUANTITY", value_enum, alias = "color")]
     pub colour: Option<Quantity>,
@@ -37,6 +41,7 @@ impl Drawing {
             },
             springs_of,
             orthographic: self.orthographic,
+            dark: self.dark,
             colour: self.colour,
             arrows: self.arrows,
         }

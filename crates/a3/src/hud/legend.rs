@@ -5,7 +5,7 @@ use egui::{
     Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, epaint::Vertex, vec2,
 };
 
-use super::style::{FAINT, TEXT};
+use super::style::{FAINT, TEXT, exchanged};
 use super::words::digits;
 use crate::show::{self, Show};
 
@@ -23,7 +23,7 @@ pub fn legend(ui: &mut Ui, show: &Show) {
         let width = BAR[0].min(ui.available_width());
         let (rect, _) = ui.allocate_exact_size(vec2(width, BAR[1] + 17.0), Sense::hover());
         let bar = Rect::from_min_size(rect.min, vec2(width, BAR[1]));
-        draw(ui, bar);
+        draw(ui, bar, show.dark);
         let end = digits(colouring.scale.end());
         let fixed = if colouring.scale.fixed.is_some() {
             ", fixed"
@@ -70,12 +70,14 @@ fn springs(ui: &mut Ui, show: &Show, in_colours: bool) {
     }
 }
 
-fn draw(ui: &Ui, bar: Rect) {
+fn draw(ui: &Ui, bar: Rect, dark: bool) {
     let mut mesh = Mesh::default();
     for k in 0..=PIECES {
         let share = k as f32 / PIECES as f32;
         let [r, g, b, _] = ramp(share);
         let color = Color32::from(egui::Rgba::from_rgb(r, g, b));
+        // The colours of values are the same in both themes.
+        let color = if dark { exchanged(color) } else { color };
         let x = bar.left() + share * bar.width();
         for y in [bar.top(), bar.bottom()] {
             mesh.vertices.push(Vertex {

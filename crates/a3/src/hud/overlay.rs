@@ -1,11 +1,17 @@
 //! egui's text and shapes, drawn over a picture.
 
 use a3_render::Gpu;
+use egui::ClippedPrimitive;
+use egui::epaint::Primitive;
+
+use super::style::exchanged;
 
 /// egui's layout and its renderer.
 pub struct Overlay {
     /// The layout.
     pub context: egui::Context,
+    /// Whether light and dark are exchanged.
+    pub dark: bool,
     renderer: egui_wgpu::Renderer,
 }
 
@@ -14,6 +20,7 @@ impl Overlay {
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         Self {
             context: egui::Context::default(),
+            dark: false,
             renderer: egui_wgpu::Renderer::new(
                 &gpu.device,
                 format,
@@ -51,7 +58,10 @@ impl Overlay {
         mut output: egui::FullOutput,
     ) -> Vec<wgpu::CommandBuffer> {
         let pixels_per_point = output.pixels_per_point;
-        let shapes = self.context.tessellate(output.shapes, pixels_per_point);
+        let mut shapes = self.context.tessellate(output.shapes, pixels_per_point);
+        if self.dark {
+            shapes.iter_mut().for_each(darken);
+        }
         let screen = egui_wgpu::ScreenDescriptor {
             size_in_pixels: [size.0, size.1],
             pixels_per_point,
@@ -109,5 +119,14 @@ impl Overlay {
             output = self.lay_out(gpu, input(f64::from(pass)), &mut contents);
         }
         self.paint(gpu, encoder, view, size, output)
+    }
+}
+
+/// Exchanges light and dark in all colours of a shape.
+fn darken(shape: &mut ClippedPrimitive) {
+    if let Primitive::Mesh(mesh) = &mut shape.primitive {
+        for vertex in &mut mesh.vertices {
+            vertex.color = exchanged(vertex.color);
+        }
     }
 }

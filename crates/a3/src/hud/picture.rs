@@ -64,12 +64,14 @@ impl Studio {
             .zip(layout::tiles(panes.len(), size, scale))
             .collect();
         let write = |encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView, format| {
-            match panes.len() {
-                1 => vec![],
-                _ => Overlay::new(gpu, format).write(gpu, encoder, view, (size, scale), |ctx| {
-                    text::show(ctx, panes, readings);
-                }),
+            if panes.len() == 1 {
+                return vec![];
             }
+            let mut overlay = Overlay::new(gpu, format);
+            overlay.dark = panes[0].show.dark;
+            overlay.write(gpu, encoder, view, (size, scale), |ctx| {
+                text::show(ctx, panes, readings);
+            })
         };
         self.offscreen
             .render_tiles(gpu, &mut self.renderer, &pictures, write)

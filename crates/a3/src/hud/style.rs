@@ -41,6 +41,17 @@ impl Mark {
     }
 }
 
+/// The colour of the dark theme for one of the light theme, or the other way round: of the same hue
+/// and opacity, as light as the other is dark.
+pub fn exchanged(color: Color32) -> Color32 {
+    let [r, g, b, a] = color.to_srgba_unmultiplied();
+    let (low, high) = (r.min(g).min(b), r.max(g).max(b));
+    // The sum of the least and the largest is twice the lightness; all move by the same.
+    let shift = 255 - i16::from(low) - i16::from(high);
+    let [r, g, b] = [r, g, b].map(|channel| (i16::from(channel) + shift).clamp(0, 255) as u8);
+    Color32::from_rgba_unmultiplied(r, g, b, a)
+}
+
 /// A column for sheets below one another. Clicks go through it.
 pub fn column(
     ctx: &Context,
@@ -89,6 +100,17 @@ pub fn faint(words: impl Into<String>) -> RichText {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn light_and_dark_are_exchanged_and_back() {
+        assert_eq!(exchanged(Color32::WHITE), Color32::BLACK);
+        assert_eq!(exchanged(Color32::TRANSPARENT), Color32::TRANSPARENT);
+        for color in [TEXT, FAINT, SAFE.colour, ALARM.colour] {
+            let other = exchanged(color);
+            assert!(other.intensity() > color.intensity() + 0.1, "{other:?}");
+            assert_eq!(exchanged(other), color);
+        }
+    }
 
     #[test]
     fn every_mark_has_its_own_symbol_and_the_font_has_them() {

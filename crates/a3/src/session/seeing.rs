@@ -26,6 +26,13 @@ impl Session {
         self.camera.set_parallel(parallel);
     }
 
+    /// Draws light things on a dark background, or the other way round.
+    pub fn set_dark(&mut self, dark: bool) {
+        for pane in &mut self.panes {
+            pane.show.dark = dark;
+        }
+    }
+
     /// Goes from perspective to an orthographic projection, or back.
     pub(super) fn toggle_projection(&mut self) {
         let parallel = !self.camera.is_parallel();

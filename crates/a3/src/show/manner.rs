@@ -20,6 +20,8 @@ pub struct Manner {
     pub springs_of: Option<usize>,
     /// Whether the projection is orthographic, not perspective.
     pub orthographic: bool,
+    /// Whether the background is dark, and text light.
+    pub dark: bool,
     /// What particles are coloured by.
     pub colour: Option<Quantity>,
     /// Arrows on particles.

@@ -38,6 +38,8 @@ pub struct Show {
     pub field: Field,
     /// Whether floor and background are left out.
     pub transparent: bool,
+    /// Whether the background is dark, and text light.
+    pub dark: bool,
     /// Whether the scene is first seen in an orthographic projection.
     orthographic: bool,
     /// What the hand would take, if it is highlighted.
@@ -69,6 +71,7 @@ impl Show {
             colouring,
             field,
             transparent: false,
+            dark: manner.dark,
             orthographic: manner.orthographic,
             hovered: None,
             hand: None,
@@ -225,6 +228,7 @@ impl Show {
             },
             floor: self.floor,
             transparent: self.transparent,
+            dark: self.dark,
         }
     }
 

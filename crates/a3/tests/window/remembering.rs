@@ -18,7 +18,7 @@ fn settings_come_back_unless_they_are_not_wanted() {
     let app = App::open(
         &display,
         folder.path(),
-        &["t", "0.01", "--scene", "own.toml"],
+        &["t", "0.01", "--scene", "own.toml", "--dark"],
     );
     app.press_for("Tab", "panel", "true");
     app.press_for("ctrl+plus", "scale", "1.15");
@@ -34,6 +34,7 @@ fn settings_come_back_unless_they_are_not_wanted() {
     let app = App::open(&display, folder.path(), &["--scene", "chain"]);
     app.expect("panel", "true");
     app.expect("scale", "1.15");
+    app.expect("dark", "true");
     app.press_for("ctrl+0", "scale", "1");
     // The file of then is in the list.
     app.press_for("o", "list", "true");
@@ -45,6 +46,7 @@ fn settings_come_back_unless_they_are_not_wanted() {
     assert!(app.exit().success());
     let app = App::open(&display, folder.path(), &["--no-config"]);
     app.expect("panel", "false");
+    app.expect("dark", "false");
     app.press_for("Tab", "panel", "true");
     app.press_for("Tab", "panel", "false");
     app.press("Escape");

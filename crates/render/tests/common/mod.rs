@@ -27,6 +27,7 @@ pub struct Sheet {
     pub solids: Vec<Solid>,
     pub liquid: (Vec<Corner>, Vec<[u32; 3]>),
     pub camera: Camera,
+    pub dark: bool,
 }
 
 impl Sheet {
@@ -98,6 +99,7 @@ impl Sheet {
             solids: vec![],
             liquid: (vec![], vec![]),
             camera: Camera::look_at([1.6, 1.9, 4.2], [0.0, 1.0, 0.2]),
+            dark: false,
         }
     }
 
@@ -116,6 +118,7 @@ impl Sheet {
             },
             floor: Some(0.0),
             transparent: false,
+            dark: self.dark,
         }
     }
 }

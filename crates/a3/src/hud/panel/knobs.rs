@@ -277,11 +277,17 @@ pub static KNOBS: &[Knob] = &[
         },
     ),
     apart(knob(
-        "frame limit",
+        "dark",
+        "Whether light things are drawn on a dark background.",
+        |session, _| Some(switch(session.panes[0].show.dark, false)),
+        |session, _, on| session.set_dark(on != 0.0),
+    )),
+    knob(
+        "frames",
         "The most frames a second, to spare the processor. Simulated time stays real time.",
         frame_limit,
         |session, _, limit| session.panel.frame_limit = limit as u32,
-    )),
+    ),
     knob(
         "film as",
         "The format of films by the keys n and m.",

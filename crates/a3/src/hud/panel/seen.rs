@@ -83,8 +83,8 @@ pub fn frame_limit(session: &Session, _: usize) -> Option<Dial> {
             own: 0.0,
             scale: DialScale::Choice(values),
             words: match limit {
-                0 => "none".into(),
-                limit => format!("{limit} per second"),
+                0 => "no limit".into(),
+                limit => format!("at most {limit}/s"),
             },
         }
     })
