@@ -83,6 +83,7 @@ impl Row {
     }
 
     /// Whether no force can do what is wanted.
+    #[cfg(feature = "sparse")]
     pub fn is_left_out(&self) -> bool {
         self.scale == 0.0
     }

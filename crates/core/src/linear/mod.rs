@@ -6,6 +6,7 @@ mod blocks;
 mod conjugate_gradients;
 mod direct;
 mod multigrid;
+#[cfg_attr(not(feature = "sparse"), path = "no_sparse.rs")]
 mod sparse;
 mod tangent;
 
