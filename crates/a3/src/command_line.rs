@@ -4,11 +4,11 @@ use a3_core::Simulation;
 use a3_render::Style;
 use clap::Parser;
 
+use crate::begin;
 use crate::cli::{Cli, Command};
 use crate::failure::Failure;
 use crate::hud::panel;
 use crate::session::Session;
-use crate::setup;
 use crate::show::has_springs;
 
 /// The command line that begins with the picture and the run of pane `at` as they are now. Where
@@ -94,8 +94,8 @@ fn makes(words: &[String], session: &Session) -> bool {
         return false;
     };
     let made = match options.command {
-        Some(Command::Compare(options)) => setup::comparison(&options),
-        _ => setup::window(&options.window),
+        Some(Command::Compare(options)) => begin::comparison(&options),
+        _ => begin::window(&options.window),
     };
     let Ok(made) = made else {
         return false;

@@ -6,14 +6,14 @@ use crate::cli::Compare;
 use crate::failure::Failure;
 use crate::hud::{Studio, digits};
 use crate::session::{Pane, Session};
-use crate::{output, painter, setup};
+use crate::{begin, output, painter};
 
 /// Size of a picture for which none is given (px).
 pub const SIZE: (u32, u32) = (1280, 720);
 
 /// Runs the methods and writes their picture and table.
 pub fn run(options: &Compare) -> Result<(), Failure> {
-    let mut session = setup::comparison(options)?;
+    let mut session = begin::comparison(options)?;
     let (Some(path), Some(until)) = (&options.output, options.until) else {
         return Err(Failure::usage("a picture takes both --output and --until"));
     };

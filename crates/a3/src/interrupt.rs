@@ -114,9 +114,9 @@ fn end() -> ! {
         thread::sleep(Duration::from_millis(1));
     }
     // Drivers of the GPU that are at work in other threads would crash in their exit handlers.
-    #[cfg(unix)]
+    #[cfg(all(unix, feature = "window"))]
     signal_hook::low_level::exit(i32::from(exit_code()));
-    #[cfg(not(unix))]
+    #[cfg(not(all(unix, feature = "window")))]
     std::process::exit(i32::from(exit_code()))
 }
 

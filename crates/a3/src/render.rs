@@ -4,13 +4,13 @@ use crate::cli::Render;
 use crate::failure::Failure;
 use crate::painter::Painter;
 use crate::show::{self, Show};
-use crate::{film, output, progress, setup, verdict};
+use crate::{begin, film, output, progress, setup, verdict};
 
 /// Runs the simulation and writes its picture or its film.
 pub fn run(options: &Render) -> Result<(), Failure> {
     let (mut simulation, presentation) = setup::simulation(&options.run)?;
-    setup::check_particle(&simulation, options.springs_of)?;
-    setup::check_drawing(&simulation, options.manner, false)?;
+    begin::check_particle(&simulation, options.springs_of)?;
+    begin::check_drawing(&simulation, options.manner, false)?;
     let (path, size) = (&options.output, options.size);
     output::check(path, &["png", "gif", "mp4"])?;
     // There may be no ffmpeg, and the device may not support pictures of this size: both are

@@ -1,4 +1,4 @@
-//! From arguments to what they ask for: scenes, simulations and sessions.
+//! From arguments to what they ask for: scenes and simulations.
 
 use std::sync::Arc;
 
@@ -6,61 +6,8 @@ use a3_core::{Control, Method, Scene, Simulation, integrators};
 use a3_scenes::{Presentation, Setup};
 
 use crate::bounds;
-use crate::cli::{Compare, Drawing, RunOptions, What, WindowOptions};
+use crate::cli::{RunOptions, What};
 use crate::failure::Failure;
-use crate::session::{Beginning, Origin, Session};
-use crate::show::{self, Quantity};
-
-/// The session of a window on one run.
-pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
-    let what = &options.what;
-    if options.watch && what.scene.path.is_none() {
-        return Err(Failure::usage(
-            "--watch needs a scene file, as in `--scene flag.toml --watch`",
-        ));
-    }
-    let solver = what.scene.solver_or(options.solver);
-    let setup = build(what)?;
-    let simulation = simulate(what, &setup, solver, options.step)?;
-    check_particle(&simulation, options.springs_of)?;
-    check_drawing(&simulation, options.look.manner, false)?;
-    let beginning = Beginning {
-        manner: options.look.manner.of(options.springs_of),
-        paused: options.look.paused,
-    };
-    Session::new(origin(what), setup, vec![simulation], &beginning)
-}
-
-/// The session of a comparison.
-pub fn comparison(options: &Compare) -> Result<Session, Failure> {
-    let count = options.methods.len();
-    if !(2..=4).contains(&count) {
-        return Err(Failure::usage(format!(
-            "compare takes 2 to 4 solvers, as in `a3 compare e:0.05 r:0.05`, not {count}"
-        )));
-    }
-    let what = &options.what;
-    let setup = build(what)?;
-    let simulations = options
-        .methods
-        .iter()
-        .map(|(solver, step)| simulate(what, &setup, solver, *step))
-        .collect::<Result<Vec<_>, Failure>>()?;
-    check_drawing(&simulations[0], options.look.manner, true)?;
-    let beginning = Beginning {
-        manner: options.look.manner.of(None),
-        paused: options.look.paused,
-    };
-    Session::new(origin(what), setup, simulations, &beginning)
-}
-
-/// The origin of the scene.
-fn origin(what: &What) -> Origin {
-    Origin {
-        source: what.scene.clone(),
-        grid: what.grid,
-    }
-}
 
 /// The simulation of a run without a window, and what of it is shown.
 pub fn simulation(options: &RunOptions) -> Result<(Simulation, Arc<Presentation>), Failure> {
@@ -82,7 +29,7 @@ pub fn scene(what: &What) -> Result<Scene, Failure> {
 }
 
 /// The scene with its presentation and its defaults.
-fn build(what: &What) -> Result<Setup, Failure> {
+pub fn build(what: &What) -> Result<Setup, Failure> {
     if let Some(count) = what.threads {
         // Only the first scene of a command sets it; the others have it.
         let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
@@ -92,7 +39,7 @@ fn build(what: &What) -> Result<Setup, Failure> {
 }
 
 /// A simulation by this solver, with its own step or tolerance unless one is given.
-fn simulate(
+pub fn simulate(
     what: &What,
     setup: &Setup,
     solver: &'static Method,
@@ -138,49 +85,6 @@ fn simulate(
         simulation.set_touching(true).map_err(Failure::usage)?;
     }
     Ok(simulation)
-}
-
-/// `Ok` if the scene has that particle.
-pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Result<(), Failure> {
-    match (particle, simulation.model().network()) {
-        (Some(i), Some(network)) => network
-            .check_particle(i)
-            .map_err(|e| Failure::usage(format!("--springs-of: {e}"))),
-        (Some(_), None) => Err(Failure::usage("--springs-of: this scene has no springs")),
-        (None, _) => Ok(()),
-    }
-}
-
-/// `Ok` if the run, which is one of several that are compared or not, has what it is to be coloured
-/// by, the arrows, and the springs.
-pub fn check_drawing(
-    simulation: &Simulation,
-    drawing: Drawing,
-    compared: bool,
-) -> Result<(), Failure> {
-    let scene = &simulation.scene().name;
-    let has_none = |what: &str, option: &str| {
-        format!("the scene {scene} has no {what} to show: leave out --{option}")
-    };
-    let colour = drawing.colour.filter(|c| !c.is_in(simulation, compared));
-    let arrows = drawing.arrows.filter(|a| !a.is_in(simulation));
-    let why = match (colour, arrows) {
-        (Some(Quantity::Contact), _) => format!(
-            "nothing can touch in the scene {scene}: leave out --colour, or let surfaces touch \
-             by --self-collision"
-        ),
-        (Some(Quantity::Error), _) => {
-            "errors are shown where there is a reference, which a3 compare runs: leave out --colour"
-                .into()
-        }
-        (Some(colour), _) => has_none(colour.name(), "colour"),
-        (None, Some(arrows)) => has_none(arrows.name(), "arrows"),
-        (None, None) if drawing.springs && !show::has_springs(simulation) => {
-            has_none("springs", "springs")
-        }
-        (None, None) => return Ok(()),
-    };
-    Err(Failure::usage(why))
 }
 
 /// `Ok` if the step or the tolerance is within its range.

@@ -4,8 +4,8 @@
 use a3_core::{Cause, Control, Error, Simulation};
 
 use crate::failure::Failure;
+use crate::holding::step_that_holds;
 use crate::output;
-use crate::session::step_that_holds;
 
 /// The failure of a run, with a clause that says what is left of it.
 pub fn lost(run: &Simulation, error: &Error, kept: &str) -> Failure {

@@ -7,11 +7,11 @@ use crate::cli::{Compare, Look, WindowOptions};
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::{headless, keep, output, setup, show};
+use crate::{begin, headless, keep, output, show};
 
 /// Opens the window on one run.
 pub fn run(options: &WindowOptions) -> Result<(), Failure> {
-    let mut session = setup::window(options)?;
+    let mut session = begin::window(options)?;
     // The scene, its meshes and their buffers.
     let files = if options.watch {
         output::files_read()
@@ -29,7 +29,7 @@ pub fn run(options: &WindowOptions) -> Result<(), Failure> {
 
 /// Opens the window on several runs.
 pub fn compare(options: &Compare) -> Result<(), Failure> {
-    open(setup::comparison(options)?, &options.look, vec![])
+    open(begin::comparison(options)?, &options.look, vec![])
 }
 
 fn open(session: Session, look: &Look, files: Vec<PathBuf>) -> Result<(), Failure> {

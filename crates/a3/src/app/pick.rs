@@ -6,8 +6,9 @@ use a3_core::{Simulation, Vector3};
 use a3_render::Camera;
 
 use crate::show::Target;
-use crate::show::tessellation::{self, Tessellation};
 use crate::show::{self, to_f32};
+use crate::surfaces::tessellation::{self, Tessellation};
+use crate::surfaces::whole_triangles;
 
 /// The hold on a particle or an obstacle that keeps it under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +50,7 @@ pub fn pick(
     let gap = |at: [f32; 2]| ((at[0] - pointer[0]) * aspect).hypot(at[1] - pointer[1]);
     let near = |i: &usize| places[*i].map_or(f32::INFINITY, |(at, _)| gap(at));
     let on_surface = {
-        show::whole_triangles(simulation)
+        whole_triangles(simulation)
             .filter_map(|corners| {
                 let corners = corners.map(|i| i as usize);
                 let [a, b, c] = corners.map(|i| places[i]);
@@ -260,7 +261,7 @@ mod tests {
     fn a_hole_is_not_hit() {
         let run = cloth();
         let camera = Camera::look_at([0.0, 3.0, 9.0], [0.0, 2.5, 0.0]);
-        let corners = show::whole_triangles(&run).nth(300).unwrap();
+        let corners = whole_triangles(&run).nth(300).unwrap();
         let middle = corners
             .map(|i| run.position(i as usize))
             .iter()

@@ -60,8 +60,13 @@ fn mistake(error: &clap::Error) -> String {
         ErrorKind::TooManyValues => format!("{} takes no value: leave out {value}", quoted(option)),
         ErrorKind::UnknownArgument => unknown(&arg, &text(error, ContextKind::SuggestedArg)),
         ErrorKind::InvalidSubcommand => {
-            let name = text(error, ContextKind::InvalidSubcommand);
-            format!("there is no command {}; --help lists them", quoted(&name))
+            let name = quoted(&text(error, ContextKind::InvalidSubcommand));
+            let windowless = if cfg!(feature = "window") {
+                ""
+            } else {
+                "; this a3 was built without its window"
+            };
+            format!("there is no command {name}; --help lists them{windowless}")
         }
         ErrorKind::MissingRequiredArgument => {
             let missing = list(error, ContextKind::InvalidArg);

@@ -1,9 +1,12 @@
 //! The command line: its commands, arguments and help.
 
+#[cfg(feature = "window")]
 mod drawing;
 mod explain;
 mod names;
 mod values;
+#[cfg(feature = "window")]
+mod window;
 
 use std::path::PathBuf;
 
@@ -14,32 +17,47 @@ use clap_complete::Shell;
 use crate::failure::Failure;
 use crate::lessons;
 use crate::scene_file::Source;
-use names::{SCENE, SOLVER, SOLVER_AND_STEP, SOLVER_OR_COMMAND};
+use names::{SCENE, SOLVER};
 use values::{
-    beginning, budget, error, factor, grid, horizon, particle, pause, picture_size, rate, size,
-    step, threads, until,
+    budget, error, factor, grid, horizon, particle, pause, picture_size, rate, step, threads, until,
 };
 
+#[cfg(feature = "window")]
 pub use drawing::Drawing;
 pub use explain::explain;
+#[cfg(feature = "window")]
+pub use window::{Compare, Look, Render, WindowOptions};
+
+/// What the help ends with.
+#[cfg(feature = "window")]
+const EXAMPLES: &str = "Examples:
+  a3 t 0.01                          the default cloth, explicit trapezoid, 10 ms
+  a3 e 0.05 --scene simple           watch Euler's circle spiral outwards
+  a3 simulate rk4 0.001 --until 2 --output state.json
+  a3 render v 0.005 --until 3 --output cloth.png --size 1920x1080
+  a3 render v 0.005 --until 3 --output cloth.gif --size 480x360
+  a3 compare e:0.05 r:0.05 --scene simple
+  a3 chart --scene mit --solvers r,v,a
+  a3 choose --error 1e-3
+
+In the window, h shows the keys.";
+#[cfg(not(feature = "window"))]
+const EXAMPLES: &str = "Examples:
+  a3 simulate rk4 0.001 --until 2 --output state.json
+  a3 chart --scene mit --solvers r,v,a
+  a3 choose --error 1e-3
+
+This a3 was built without its window and without the commands that draw scenes.";
 
 /// Simulate cloth and other mass-spring systems, and measure how fast and how accurate each
 /// integrator is.
 #[derive(Parser)]
 #[command(version, args_conflicts_with_subcommands = true, max_term_width = 100)]
-#[command(
-    after_help = "Examples:\n  a3 t 0.01                          the default cloth, explicit trapezoid, 10 ms\n  \
-    a3 e 0.05 --scene simple           watch Euler's circle spiral outwards\n  \
-    a3 simulate rk4 0.001 --until 2 --output state.json\n  \
-    a3 render v 0.005 --until 3 --output cloth.png --size 1920x1080\n  \
-    a3 render v 0.005 --until 3 --output cloth.gif --size 480x360\n  \
-    a3 compare e:0.05 r:0.05 --scene simple\n  \
-    a3 chart --scene mit --solvers r,v,a\n  \
-    a3 choose --error 1e-3\n\nIn the window, h shows the keys."
-)]
+#[command(after_help = EXAMPLES)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
+    #[cfg(feature = "window")]
     #[command(flatten)]
     pub window: WindowOptions,
 }
@@ -50,6 +68,7 @@ pub enum Command {
     /// GLB
     Simulate(Simulate),
     /// Simulate without a window and write a picture or a film: PNG, GIF, MP4
+    #[cfg(feature = "window")]
     Render(Render),
     /// Chart speed against accuracy: every solver on your scene, its true error and its cost
     Chart(Chart),
@@ -58,6 +77,7 @@ pub enum Command {
     /// Choose the cheapest solver and step for an error, or the most accurate ones for a budget
     Choose(Choose),
     /// Compare two to four solvers side by side, in a window or as a picture
+    #[cfg(feature = "window")]
     Compare(Compare),
     /// List the scenes with their particles, springs, length of the state and forces
     Scenes(Scenes),
@@ -104,46 +124,6 @@ pub struct What {
     /// `RAYON_NUM_THREADS` says
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
-}
-
-#[derive(Args)]
-pub struct WindowOptions {
-    /// Solver by letter or name, as `a3 solvers` lists them; by default the scene's own, or else t
-    #[arg(value_parser = SOLVER_OR_COMMAND, hide_possible_values = true)]
-    pub solver: Option<&'static Method>,
-    /// Step in seconds, or relative tolerance of an adaptive solver; by default the scene's own, or
-    /// else the solver's
-    #[arg(value_parser = step, allow_negative_numbers = true)]
-    pub step: Option<f64>,
-    #[command(flatten)]
-    pub what: What,
-    /// Show and list the springs attached to particle I
-    #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
-    pub springs_of: Option<usize>,
-    #[command(flatten)]
-    pub look: Look,
-    /// Load the scene's file again whenever it is saved
-    #[arg(long)]
-    pub watch: bool,
-    /// Continue a run of this scene from a checkpoint, with the solver and the step of that run
-    #[arg(long, value_name = "FILE.checkpoint", conflicts_with = "solver")]
-    pub resume: Option<PathBuf>,
-}
-
-/// How a window begins.
-#[derive(Args)]
-pub struct Look {
-    #[command(flatten)]
-    pub manner: Drawing,
-    /// Neither read nor write the settings that the window remembers
-    #[arg(long)]
-    pub no_config: bool,
-    /// Begin paused
-    #[arg(long)]
-    pub paused: bool,
-    /// Write what is on the screen as lines of text to stderr
-    #[arg(long, hide = true)]
-    pub status: bool,
 }
 
 #[derive(Args)]
@@ -196,40 +176,6 @@ pub struct Simulate {
     /// the results are exactly those of a run that had never stopped
     #[arg(long, value_name = "FILE.checkpoint")]
     pub resume: Option<PathBuf>,
-}
-
-#[derive(Args)]
-#[command(
-    after_help = "Outputs:\n  FILE.png       the picture at the time --until\n  \
-    FILE.gif       a film that loops, 25 frames per second by default\n  \
-    FILE.mp4       a film as H.264, 30 frames per second by default; needs ffmpeg\n  \
-    FILE-####.png  a film as pictures, 30 per second by default, numbered with as many digits as there are #\n\n\
-    Frames are at exactly T + k / N, from --from to --until; a step that would pass one is shortened. A\n\
-    film that blows up or is interrupted keeps the frames until then."
-)]
-pub struct Render {
-    #[command(flatten)]
-    pub run: RunOptions,
-    /// File to write, whose ending chooses the format
-    #[arg(long, short, value_name = "FILE")]
-    pub output: PathBuf,
-    /// Frames per second of a film
-    #[arg(long, value_name = "N", value_parser = rate, allow_negative_numbers = true)]
-    pub fps: Option<f64>,
-    /// Simulated seconds before a film begins
-    #[arg(long, value_name = "T", value_parser = beginning, allow_negative_numbers = true)]
-    pub from: Option<f64>,
-    /// Leave out floor and background: a PNG gets opacity, a GIF transparent pixels
-    #[arg(long)]
-    pub transparent: bool,
-    /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, allow_hyphen_values = true)]
-    pub size: (u32, u32),
-    #[command(flatten)]
-    pub manner: Drawing,
-    /// Show the springs attached to particle I
-    #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
-    pub springs_of: Option<usize>,
 }
 
 /// What counts as the error.
@@ -342,27 +288,6 @@ pub struct Choose {
     /// Simulated seconds; by default, as long as errors are meaningful on this scene
     #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
     pub until: Option<f64>,
-}
-
-#[derive(Args)]
-pub struct Compare {
-    /// Two to four solvers by letter or name, each with its step in seconds or its tolerance after
-    /// a colon, as in e:0.05 r:0.05; by default the solver's own
-    #[arg(value_name = "SOLVER[:STEP]", value_parser = SOLVER_AND_STEP, hide_possible_values = true)]
-    pub methods: Vec<(&'static Method, Option<f64>)>,
-    #[command(flatten)]
-    pub what: What,
-    #[command(flatten)]
-    pub look: Look,
-    /// Picture to write instead of opening a window, ending in .png
-    #[arg(long, short, value_name = "FILE.png", requires = "until")]
-    pub output: Option<PathBuf>,
-    /// Simulated seconds until the picture; the last step is shortened to end exactly there
-    #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true, requires = "output")]
-    pub until: Option<f64>,
-    /// Width and height of the picture in pixels
-    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true, requires = "output")]
-    pub size: Option<(u32, u32)>,
 }
 
 /// A run without a window.

@@ -4,11 +4,13 @@ use std::ffi::OsStr;
 
 use a3_core::{Method, integrators};
 use a3_scenes::nearest;
+#[cfg(feature = "window")]
+use clap::CommandFactory;
 use clap::builder::{PossibleValue, TypedValueParser};
-use clap::{Arg, Command, CommandFactory};
+use clap::{Arg, Command};
 
-use super::Cli;
-use super::values::step;
+#[cfg(feature = "window")]
+use super::{Cli, values::step};
 use crate::scene_file::Source;
 
 /// A parser of names, which knows them all.
@@ -42,12 +44,14 @@ pub const SOLVER: Names<&'static Method> = Names {
 };
 
 /// A solver where there can also be a command.
+#[cfg(feature = "window")]
 pub const SOLVER_OR_COMMAND: Names<&'static Method> = Names {
     parse: solver_or_command,
     all: solvers,
 };
 
 /// A solver, and its step or tolerance after a colon.
+#[cfg(feature = "window")]
 pub const SOLVER_AND_STEP: Names<(&'static Method, Option<f64>)> = Names {
     parse: solver_and_step,
     all: solvers,
@@ -79,6 +83,7 @@ fn solver(text: &str) -> Result<&'static Method, String> {
     })
 }
 
+#[cfg(feature = "window")]
 fn solver_or_command(text: &str) -> Result<&'static Method, String> {
     if let Some(method) = integrators::find(text) {
         return Ok(method);
@@ -113,6 +118,7 @@ fn nearest_of(text: &str, commands: &[&str]) -> Option<String> {
     nearest(text, names.chain(letters.iter().map(String::as_str))).map(str::to_owned)
 }
 
+#[cfg(feature = "window")]
 fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), String> {
     match text.split_once(':') {
         Some((name, number)) => Ok((solver(name)?, Some(step(number)?))),

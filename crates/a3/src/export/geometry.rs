@@ -6,7 +6,7 @@ use std::io;
 use a3_core::{Network, Simulation};
 use a3_scenes::Surface;
 
-use crate::show::{tessellation, whole_triangles};
+use crate::surfaces::{tessellation, whole_triangles};
 
 /// The connections between particles, which stay the same from frame to frame until something
 /// tears.

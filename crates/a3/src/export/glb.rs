@@ -15,7 +15,7 @@ use super::{Export, rows};
 use crate::failure::Failure;
 use crate::frames::FrameTimes;
 use crate::output::{Draft, Scratch};
-use crate::show::Liquid;
+use crate::surfaces::Liquid;
 
 /// Most frames. The animation has a weight for each morph target in each frame, so that its size
 /// grows with the square of their number.

@@ -13,7 +13,7 @@ use super::geometry::{Geometry, positions};
 use crate::failure::Failure;
 use crate::frames::Sequence;
 use crate::output;
-use crate::show::Liquid;
+use crate::surfaces::Liquid;
 
 /// OBJ files in the making.
 pub struct Obj {

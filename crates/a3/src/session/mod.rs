@@ -29,7 +29,6 @@ mod tuning;
 pub use ending::Ending;
 pub use history::Change;
 pub use keys::{Action, KEYS, MOUSE, action};
-pub use limit::step_that_holds;
 pub use list::{Entry, TextKey, Topic};
 pub use origin::Origin;
 pub use pane::Pane;
@@ -52,15 +51,15 @@ mod tests {
 
     use super::Session;
     use crate::failure::Failure;
-    use crate::{cli, setup};
+    use crate::{begin, cli};
 
     /// The session that a command line asks for.
     pub fn session(words: &[&str]) -> Session {
         let words = ["a3"].iter().chain(words);
         let options = cli::Cli::try_parse_from(words).unwrap();
         let session = match options.command {
-            Some(cli::Command::Compare(options)) => setup::comparison(&options),
-            _ => setup::window(&options.window),
+            Some(cli::Command::Compare(options)) => begin::comparison(&options),
+            _ => begin::window(&options.window),
         };
         session.map_err(Failure::message).unwrap()
     }

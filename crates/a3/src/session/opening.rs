@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use a3_core::{Control, Error, Simulation, integrators};
 use a3_scenes::Setup;
 
-use super::limit::shorter_step;
 use super::origin::Origin;
 use super::pane::Pane;
 use super::reference::ReferenceRun;
 use super::state::Session;
 use super::tuning::Tuning;
+use crate::holding::shorter_step;
 use crate::scene_file::Source;
 
 impl Session {

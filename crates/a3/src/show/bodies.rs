@@ -2,27 +2,13 @@
 
 use a3_core::contact::{ClosedMesh, Shape};
 use a3_core::rigid::{Body, Part};
-use a3_core::{Network, Pose, Vector3};
+use a3_core::{Network, Vector3};
 use a3_render::{Ball, Line, Solid};
 
 use super::colouring::Colouring;
 use super::colours::{BODIES, INK};
 use super::obstacles::{Paint, draw_shape, great_circles};
-
-/// Each part of each body, with the body's number and where the part is in the state y.
-pub fn parts<'a>(
-    network: &'a Network,
-    y: &'a [f64],
-) -> impl Iterator<Item = (usize, &'a Part, Pose)> {
-    (0..network.bodies().len()).flat_map(move |k| {
-        let pose = network.pose(k, y);
-        let parts = network.bodies()[k].parts().iter();
-        parts.map(move |part| {
-            let place = pose.of(part.at);
-            (k, part, Pose { place, ..pose })
-        })
-    })
-}
+use crate::surfaces::tessellation::parts;
 
 /// Draws the bodies as they are in the state y, in colours of their own or by values.
 pub fn draw(

@@ -13,16 +13,13 @@ mod picture;
 mod pull;
 mod quantity;
 mod springs;
-pub mod tessellation;
 mod trail;
 mod vectors;
 mod view;
 mod wires;
 
-pub use liquid::Liquid;
 pub use manner::{Manner, Target};
 pub use obstacles::drawn_radius;
-pub use parts::whole_triangles;
 pub use picture::Show;
 pub use quantity::{Arrows, Quantity};
 pub use springs::{has_springs, kind_look, kind_name, list_springs_of, springs_of};

@@ -10,6 +10,7 @@ use a3_scenes::{Presentation, Surface};
 use super::colours::INK;
 use super::springs::{KINDS, kind_look};
 use super::{bodies, obstacles};
+use crate::surfaces::whole_triangles;
 
 /// Parts that change only with the scene or when something tears.
 #[derive(Clone, Default)]
@@ -195,14 +196,6 @@ fn drawn(ends: [u32; 2], ([r, g, b, _], width): ([f32; 4], f32)) -> Drawn {
         width,
         color: [r, g, b],
     }
-}
-
-/// The triangles of the surface that are not torn.
-pub fn whole_triangles(simulation: &Simulation) -> impl Iterator<Item = [u32; 3]> {
-    let network = simulation.model().network();
-    network
-        .into_iter()
-        .flat_map(|network| network.triangles().iter().copied())
 }
 
 #[cfg(test)]

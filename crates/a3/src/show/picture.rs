@@ -181,10 +181,7 @@ impl Show {
         }
         self.draw_parts(simulation);
         self.draw_tanks(simulation);
-        self.liquid = match self.style {
-            Style::Shaded => Liquid::of(simulation, |i| self.colouring.share(i)),
-            Style::Wireframe | Style::Springs => Liquid::default(),
-        };
+        self.liquid = Liquid::of(simulation, self.style, &self.colouring);
         if let Some(network) = simulation.model().network() {
             let time = simulation.time();
             self.floor = obstacles::draw(network, time, &mut self.balls, &mut self.solids);
@@ -222,10 +219,7 @@ impl Show {
             balls: &self.balls,
             solids: &self.solids,
             lines: &self.lines,
-            liquid: a3_render::Liquid {
-                corners: &self.liquid.corners,
-                triangles: &self.liquid.triangles,
-            },
+            liquid: self.liquid.as_drawn(),
             floor: self.floor,
             transparent: self.transparent,
             dark: self.dark,

@@ -3,10 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use a3_core::contact::Shape;
-use a3_core::rigid::Body;
-use a3_core::{Network, Vector3};
-
-use super::bodies::parts;
+use a3_core::rigid::{Body, Part};
+use a3_core::{Network, Pose, Vector3};
 
 /// Number of meridians of a round shape, and of parallels from pole to pole.
 const MERIDIANS: u32 = 24;
@@ -117,6 +115,21 @@ pub fn placed<'a>(
             *point = pose.of(*point).position;
         }
         (k, placed)
+    })
+}
+
+/// Each part of each body, with the body's number and where the part is in the state y.
+pub fn parts<'a>(
+    network: &'a Network,
+    y: &'a [f64],
+) -> impl Iterator<Item = (usize, &'a Part, Pose)> {
+    (0..network.bodies().len()).flat_map(move |k| {
+        let pose = network.pose(k, y);
+        let parts = network.bodies()[k].parts().iter();
+        parts.map(move |part| {
+            let place = pose.of(part.at);
+            (k, part, Pose { place, ..pose })
+        })
     })
 }
 

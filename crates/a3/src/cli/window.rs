@@ -1,0 +1,105 @@
+//! The options of what is drawn: windows, comparisons, pictures and films.
+
+use std::path::PathBuf;
+
+use a3_core::Method;
+use clap::Args;
+
+use super::names::{SOLVER_AND_STEP, SOLVER_OR_COMMAND};
+use super::values::{beginning, particle, rate, size, step, until};
+use super::{Drawing, RunOptions, What};
+
+#[derive(Args)]
+pub struct WindowOptions {
+    /// Solver by letter or name, as `a3 solvers` lists them; by default the scene's own, or else t
+    #[arg(value_parser = SOLVER_OR_COMMAND, hide_possible_values = true)]
+    pub solver: Option<&'static Method>,
+    /// Step in seconds, or relative tolerance of an adaptive solver; by default the scene's own, or
+    /// else the solver's
+    #[arg(value_parser = step, allow_negative_numbers = true)]
+    pub step: Option<f64>,
+    #[command(flatten)]
+    pub what: What,
+    /// Show and list the springs attached to particle I
+    #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
+    pub springs_of: Option<usize>,
+    #[command(flatten)]
+    pub look: Look,
+    /// Load the scene's file again whenever it is saved
+    #[arg(long)]
+    pub watch: bool,
+    /// Continue a run of this scene from a checkpoint, with the solver and the step of that run
+    #[arg(long, value_name = "FILE.checkpoint", conflicts_with = "solver")]
+    pub resume: Option<PathBuf>,
+}
+
+/// How a window begins.
+#[derive(Args)]
+pub struct Look {
+    #[command(flatten)]
+    pub manner: Drawing,
+    /// Neither read nor write the settings that the window remembers
+    #[arg(long)]
+    pub no_config: bool,
+    /// Begin paused
+    #[arg(long)]
+    pub paused: bool,
+    /// Write what is on the screen as lines of text to stderr
+    #[arg(long, hide = true)]
+    pub status: bool,
+}
+
+#[derive(Args)]
+#[command(
+    after_help = "Outputs:\n  FILE.png       the picture at the time --until\n  \
+    FILE.gif       a film that loops, 25 frames per second by default\n  \
+    FILE.mp4       a film as H.264, 30 frames per second by default; needs ffmpeg\n  \
+    FILE-####.png  a film as pictures, 30 per second by default, numbered with as many digits as there are #\n\n\
+    Frames are at exactly T + k / N, from --from to --until; a step that would pass one is shortened. A\n\
+    film that blows up or is interrupted keeps the frames until then."
+)]
+pub struct Render {
+    #[command(flatten)]
+    pub run: RunOptions,
+    /// File to write, whose ending chooses the format
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Frames per second of a film
+    #[arg(long, value_name = "N", value_parser = rate, allow_negative_numbers = true)]
+    pub fps: Option<f64>,
+    /// Simulated seconds before a film begins
+    #[arg(long, value_name = "T", value_parser = beginning, allow_negative_numbers = true)]
+    pub from: Option<f64>,
+    /// Leave out floor and background: a PNG gets opacity, a GIF transparent pixels
+    #[arg(long)]
+    pub transparent: bool,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, allow_hyphen_values = true)]
+    pub size: (u32, u32),
+    #[command(flatten)]
+    pub manner: Drawing,
+    /// Show the springs attached to particle I
+    #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
+    pub springs_of: Option<usize>,
+}
+
+#[derive(Args)]
+pub struct Compare {
+    /// Two to four solvers by letter or name, each with its step in seconds or its tolerance after
+    /// a colon, as in e:0.05 r:0.05; by default the solver's own
+    #[arg(value_name = "SOLVER[:STEP]", value_parser = SOLVER_AND_STEP, hide_possible_values = true)]
+    pub methods: Vec<(&'static Method, Option<f64>)>,
+    #[command(flatten)]
+    pub what: What,
+    #[command(flatten)]
+    pub look: Look,
+    /// Picture to write instead of opening a window, ending in .png
+    #[arg(long, short, value_name = "FILE.png", requires = "until")]
+    pub output: Option<PathBuf>,
+    /// Simulated seconds until the picture; the last step is shortened to end exactly there
+    #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true, requires = "output")]
+    pub until: Option<f64>,
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true, requires = "output")]
+    pub size: Option<(u32, u32)>,
+}
