@@ -66,7 +66,10 @@ fn mistake(error: &clap::Error) -> String {
             } else {
                 "; this a3 was built without its window"
             };
-            format!("there is no command {name}; --help lists them{windowless}")
+            match list(error, ContextKind::SuggestedSubcommand).first() {
+                Some(meant) => format!("there is no command {name}; did you mean {meant}?"),
+                None => format!("there is no command {name}; --help lists them{windowless}"),
+            }
         }
         ErrorKind::MissingRequiredArgument => {
             let missing = list(error, ContextKind::InvalidArg);
