@@ -1,115 +1,102 @@
-//! a3: mass-spring systems in a window and without one. The window, pictures and films are the
-//! feature `window`.
+//! a3: mass-spring systems in a window, on a page and without either. The window, pictures and
+//! films are the feature `window`.
 
 #![forbid(unsafe_code)]
-// Parts of modules that serve both are for the window alone; a build with it finds what is dead.
-#![cfg_attr(not(feature = "window"), allow(dead_code, unused_imports))]
+// Parts of modules that several builds share are for one of them alone; the program with its
+// window finds what is dead.
+#![cfg_attr(
+    any(not(feature = "window"), target_arch = "wasm32"),
+    allow(dead_code, unused_imports)
+)]
+// What a page does at once has the form of what may fail elsewhere.
+#![cfg_attr(
+    target_arch = "wasm32",
+    allow(clippy::unused_self, clippy::unnecessary_wraps)
+)]
 
+mod bounds;
+mod checkpoint;
+mod cli;
+mod failure;
+mod holding;
+#[cfg(test)]
+mod hostile;
+mod lessons;
+mod progress;
+mod rounding;
+mod scene_file;
+mod setup;
+mod summary;
+mod surfaces;
+
+// The window, and the page.
 #[cfg(feature = "window")]
 mod app;
 #[cfg(feature = "window")]
 mod begin;
-mod bounds;
-#[cfg(feature = "window")]
-mod caught;
-mod chart;
-mod checkpoint;
-mod choose;
-mod cli;
 #[cfg(feature = "window")]
 mod command_line;
 #[cfg(feature = "window")]
-mod compare;
-mod export;
-mod failure;
-#[cfg(feature = "window")]
-mod film;
-mod frames;
-#[cfg(feature = "window")]
-mod headless;
-mod holding;
-#[cfg(test)]
-mod hostile;
-#[cfg(feature = "window")]
 mod hud;
-mod interrupt;
 #[cfg(feature = "window")]
 mod keep;
-mod lessons;
-mod list;
-mod manual;
-mod output;
-#[cfg(feature = "window")]
-mod painter;
-mod progress;
-#[cfg(feature = "window")]
-mod recorder;
-#[cfg(feature = "window")]
-mod render;
-mod rounding;
-mod scene_file;
 #[cfg(feature = "window")]
 mod session;
 #[cfg(feature = "window")]
 mod settings;
-mod setup;
 #[cfg(feature = "window")]
 mod show;
+
+// The program.
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
+mod caught;
+#[cfg(not(target_arch = "wasm32"))]
+mod chart;
+#[cfg(not(target_arch = "wasm32"))]
+mod choose;
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
+mod compare;
+#[cfg(not(target_arch = "wasm32"))]
+mod export;
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
+mod film;
+#[cfg(not(target_arch = "wasm32"))]
+mod frames;
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
+mod headless;
+#[cfg(not(target_arch = "wasm32"))]
+mod interrupt;
+#[cfg(not(target_arch = "wasm32"))]
+mod list;
+#[cfg(not(target_arch = "wasm32"))]
+mod manual;
+#[cfg(not(target_arch = "wasm32"))]
+mod output;
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
+mod painter;
+#[cfg(not(target_arch = "wasm32"))]
+mod program;
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
+mod recorder;
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
+mod render;
+#[cfg(not(target_arch = "wasm32"))]
 mod simulate;
+#[cfg(not(target_arch = "wasm32"))]
 mod stability;
-mod summary;
-mod surfaces;
+#[cfg(not(target_arch = "wasm32"))]
 mod verdict;
-#[cfg(feature = "window")]
+#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
 mod window;
 
-use std::process::ExitCode;
+// The page.
+#[cfg(target_arch = "wasm32")]
+mod browser;
+#[cfg(target_arch = "wasm32")]
+#[path = "browser/output.rs"]
+mod output;
+#[cfg(target_arch = "wasm32")]
+pub mod page;
 
-use clap::Parser;
-use cli::{Cli, Command};
-use failure::Failure;
-
-/// Does what the command line asks for, and returns the exit code of the program.
-#[must_use]
-pub fn main() -> ExitCode {
-    interrupt::start();
-    let result = match Cli::try_parse() {
-        Ok(cli) => match cli.command {
-            #[cfg(feature = "window")]
-            None => window::run(&cli.window),
-            #[cfg(not(feature = "window"))]
-            None => Err(Failure::usage(
-                "this a3 was built without its window: give a command; --help lists them",
-            )),
-            #[cfg(feature = "window")]
-            Some(Command::Compare(options)) if options.output.is_none() => {
-                window::compare(&options)
-            }
-            #[cfg(feature = "window")]
-            Some(Command::Compare(options)) => compare::run(&options),
-            Some(Command::Simulate(options)) => simulate::run(&options),
-            #[cfg(feature = "window")]
-            Some(Command::Render(options)) => render::run(&options),
-            Some(Command::Chart(options)) => chart::run(&options),
-            Some(Command::Stability(options)) => stability::run(&options),
-            Some(Command::Choose(options)) => choose::run(&options),
-            Some(Command::Scenes(options)) => list::scenes(&options),
-            Some(Command::Solvers) => list::solvers(),
-            Some(Command::Lessons { lesson }) => lessons::print(lesson),
-            Some(Command::Completions { shell }) => manual::completions(shell),
-            Some(Command::Man { output }) => manual::run(output.as_deref()),
-        },
-        Err(error) => cli::explain(&error),
-    };
-    let (why, code) = match result {
-        Ok(()) => return ExitCode::SUCCESS,
-        Err(Failure::Usage(why)) => (why, 2),
-        Err(Failure::Run(why)) => (why, 1),
-        Err(Failure::Interrupted(why)) => {
-            output::warn(&why);
-            return ExitCode::from(interrupt::exit_code());
-        }
-    };
-    output::warn(&format!("error: {why}"));
-    ExitCode::from(code)
-}
+#[cfg(not(target_arch = "wasm32"))]
+pub use program::main;

@@ -1,13 +1,15 @@
 //! Settings of the window that are remembered from one time to the next.
 
-use std::env;
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+#[cfg(not(target_arch = "wasm32"))]
+use std::{env, fs, io};
 
 use serde::{Deserialize, Serialize};
 
+#[cfg(target_arch = "wasm32")]
+use crate::browser;
 use crate::failure::Failure;
+#[cfg(not(target_arch = "wasm32"))]
 use crate::output;
 use crate::session::{Ending, FILM_OF, SPAN};
 
@@ -61,10 +63,8 @@ impl Settings {
 
     fn read_from(path: &Path) -> Result<Self, String> {
         let place = path.display();
-        let text = match fs::read_to_string(path) {
-            Ok(text) => text,
-            Err(why) if why.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
-            Err(why) => return Err(format!("{place}: {why}")),
+        let Some(text) = text_of(path)? else {
+            return Ok(Self::default());
         };
         let read: Self = toml::from_str(&text).map_err(|why| {
             let line = why
@@ -97,12 +97,8 @@ impl Settings {
     }
 
     fn write_to(&self, path: &Path) -> Result<(), Failure> {
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder)
-                .map_err(|why| Failure::run(format!("{}: {why}", folder.display())))?;
-        }
         let text = toml::to_string(self).map_err(Failure::run)?;
-        output::write(path, text.as_bytes())
+        keep(path, &text)
     }
 
     /// Remembers files, the last one first, before those that were remembered already.
@@ -115,7 +111,50 @@ impl Settings {
     }
 }
 
+/// The text of a file, if there is one.
+#[cfg(not(target_arch = "wasm32"))]
+fn text_of(path: &Path) -> Result<Option<String>, String> {
+    match fs::read_to_string(path) {
+        Ok(text) => Ok(Some(text)),
+        Err(why) if why.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(why) => Err(format!("{}: {why}", path.display())),
+    }
+}
+
+/// Writes a file, in a folder that is made if it is not there.
+#[cfg(not(target_arch = "wasm32"))]
+fn keep(path: &Path, text: &str) -> Result<(), Failure> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)
+            .map_err(|why| Failure::run(format!("{}: {why}", folder.display())))?;
+    }
+    output::write(path, text.as_bytes())
+}
+
+/// What the browser remembers under that name.
+#[cfg(target_arch = "wasm32")]
+fn text_of(path: &Path) -> Result<Option<String>, String> {
+    let storage = browser::storage();
+    Ok(storage.and_then(|it| it.get_item(&path.to_string_lossy()).ok().flatten()))
+}
+
+/// Lets the browser remember a text under that name, if it does.
+#[cfg(target_arch = "wasm32")]
+fn keep(path: &Path, text: &str) -> Result<(), Failure> {
+    if let Some(storage) = browser::storage() {
+        let _ = storage.set_item(&path.to_string_lossy(), text);
+    }
+    Ok(())
+}
+
+/// What the browser remembers the settings by.
+#[cfg(target_arch = "wasm32")]
+fn file() -> PathBuf {
+    "a3 settings".into()
+}
+
 /// The file of the settings.
+#[cfg(not(target_arch = "wasm32"))]
 fn file() -> PathBuf {
     let named = |name| {
         env::var_os(name)

@@ -1,7 +1,7 @@
 //! The summary of a run, with the extremes on its way.
 
 use std::path::Path;
-use std::time::Instant;
+use web_time::Instant;
 
 use a3_core::Simulation;
 use serde::{Deserialize, Serialize};

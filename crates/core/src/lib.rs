@@ -57,6 +57,7 @@ mod control;
 pub mod elements;
 mod energy;
 mod error;
+mod fused;
 mod geometry;
 mod grid;
 pub mod integrators;

@@ -1,6 +1,7 @@
 //! Particles in rows of which only near ones act on each other. A whole step can then go over them
 //! once, all of its stages a few rows apart: what it needs in between stays in the cache.
 
+use crate::fused::mul_add;
 use std::array;
 use std::ops::Range;
 
@@ -164,12 +165,12 @@ impl Registers {
                 } else {
                     self.sum.column(row, column)[i]
                 };
-                let after = stage.b.mul_add(k, before);
+                let after = mul_add(stage.b, k, before);
                 self.stage.column_mut(row, column)[i] = match stage.c {
                     None => after,
                     Some(c) => {
                         self.sum.column_mut(row, column)[i] = after;
-                        c.mul_add(k, self.y.column(row, column)[i])
+                        mul_add(c, k, self.y.column(row, column)[i])
                     }
                 };
             }

@@ -220,10 +220,11 @@ fn jelly(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
     return lit(0.75 * color, n, world, 0.55, 0.5) + through * color;
 }
 
-// The colour of a value, with a thin dark line at each tenth of the scale.
-fn banded(value: f32) -> vec3<f32> {
+// The colour of a value, with a thin dark line at each tenth of the scale. `change` is its fwidth, which has to be
+// found where all pixels pass.
+fn banded(value: f32, change: f32) -> vec3<f32> {
     let tenths = 10.0 * value;
-    let width = max(fwidth(tenths), 1e-5);
+    let width = max(10.0 * change, 1e-5);
     let off = abs(tenths - round(tenths)) / width / globals.depth.z;
     let inside = step(0.5, tenths) * step(tenths, 9.5);
     let line = (1.0 - smoothstep(0.5, 1.2, off)) * inside * (1.0 - smoothstep(0.1, 0.3, width));
@@ -233,7 +234,8 @@ fn banded(value: f32) -> vec3<f32> {
 @fragment fn mesh_fragment(in: Mesh, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     // A degenerate triangle has no normal; it must not become NaN.
     let n = in.normal / max(length(in.normal), 1e-20) * select(-1.0, 1.0, front);
-    if in.value >= 0.0 { return vec4(lit(banded(in.value), n, in.world, 0.0, 0.1), 1.0); }
+    let change = fwidth(in.value);
+    if in.value >= 0.0 { return vec4(lit(banded(in.value, change), n, in.world, 0.0, 0.1), 1.0); }
     var outside = OUTSIDE;
     var inside = INSIDE;
     let color = select(inside[in.look], outside[in.look], front);
@@ -261,7 +263,9 @@ fn banded(value: f32) -> vec3<f32> {
 
 @fragment fn liquid_fragment(in: Ball) -> @location(0) vec4<f32> {
     let n = in.normal / max(length(in.normal), 1e-20);
-    if in.value.w < 0.5 { return vec4(lit(banded(length(in.value.xyz)), n, in.world, 0.0, 0.1), 1.0); }
+    let value = length(in.value.xyz);
+    let change = fwidth(value);
+    if in.value.w < 0.5 { return vec4(lit(banded(value, change), n, in.world, 0.0, 0.1), 1.0); }
     return vec4(jelly(in.color, n, in.world), 1.0);
 }
 
@@ -289,8 +293,10 @@ struct Ball {
 }
 
 @fragment fn ball_fragment(in: Ball) -> @location(0) vec4<f32> {
+    let value = length(in.value.xyz);
+    let change = fwidth(value);
     if in.value.w < 0.5 {
-        return vec4(lit(banded(length(in.value.xyz)), normalize(in.normal), in.world, 0.0, 0.1), 1.0);
+        return vec4(lit(banded(value, change), normalize(in.normal), in.world, 0.0, 0.1), 1.0);
     }
     return vec4(lit(in.color, normalize(in.normal), in.world, 0.5, 0.25), 1.0);
 }

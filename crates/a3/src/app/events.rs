@@ -1,16 +1,16 @@
 //! Events of the window.
 
 use std::sync::Arc;
-use std::time::Instant;
+use web_time::Instant;
 
 use winit::application::ApplicationHandler;
-use winit::dpi::LogicalSize;
 use winit::event::{ElementState, KeyEvent, MouseButton, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::keyboard::{Key, NamedKey};
-use winit::window::{Fullscreen, Window, WindowId};
+use winit::window::{Fullscreen, WindowId};
 
 use super::keyboard;
+use super::platform::{self, Event};
 use super::pointer::Drag;
 use super::state::App;
 use crate::hud::panel;
@@ -58,17 +58,15 @@ impl App {
     }
 }
 
-impl ApplicationHandler for App {
+impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         if self.window.is_some() {
             return;
         }
         event_loop.set_control_flow(ControlFlow::Wait);
         let whole = self.settings.as_ref().is_some_and(|it| it.full_screen);
-        let attributes = Window::default_attributes()
-            .with_inner_size(LogicalSize::new(1280.0, 720.0))
-            .with_min_inner_size(LogicalSize::new(64.0, 48.0))
-            .with_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
+        let attributes =
+            platform::attributes().with_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
         match event_loop.create_window(attributes) {
             Ok(window) => self.window = Some(Arc::new(window)),
             Err(why) => return self.fail(event_loop, format!("no window ({why})")),
@@ -76,6 +74,11 @@ impl ApplicationHandler for App {
         self.title();
         self.open_graphics(event_loop);
         self.last = Instant::now();
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
+        self.take_event(event_loop, event);
     }
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {

@@ -12,7 +12,12 @@ use crate::recorder::{Format, Recorder};
 impl App {
     /// Films from now on, or completes that film.
     pub fn record(&mut self) {
-        if self.recorder.as_ref().is_some_and(Recorder::is_live) {
+        if self
+            .outside
+            .recorder
+            .as_ref()
+            .is_some_and(Recorder::is_live)
+        {
             return self.end_film();
         }
         self.begin_film(|app, format| {
@@ -38,7 +43,7 @@ impl App {
         let Some(graphics) = &self.graphics else {
             return;
         };
-        if self.recorder.is_some() {
+        if self.outside.recorder.is_some() {
             self.session.say("Another film is being made.");
             return;
         }
@@ -49,7 +54,7 @@ impl App {
             scale,
         };
         match begin(self, format) {
-            Some(Ok(recorder)) => self.recorder = Some(recorder),
+            Some(Ok(recorder)) => self.outside.recorder = Some(recorder),
             Some(Err(why)) => self.session.warn(why.message()),
             None => {}
         }
@@ -59,24 +64,45 @@ impl App {
     /// Draws the next frame of the film that is being made, if it is due, and returns whether the
     /// film needs another frame of the window for the next.
     pub fn film(&mut self) -> bool {
-        let (Some(recorder), Some(graphics)) = (&mut self.recorder, &self.graphics) else {
+        let (Some(recorder), Some(graphics)) = (&mut self.outside.recorder, &self.graphics) else {
             return false;
         };
         match recorder.go_on(graphics.gpu(), &mut self.session) {
             Ok(true) => {}
             Ok(false) => self.end_film(),
             Err(why) => {
-                self.recorder = None;
+                self.outside.recorder = None;
                 self.session.warn(why.message());
             }
         }
         self.tell_film();
-        self.recorder.as_ref().is_some_and(|film| !film.is_live())
+        self.outside
+            .recorder
+            .as_ref()
+            .is_some_and(|film| !film.is_live())
+    }
+
+    /// Completes a film of what happens from now on: something else is shown.
+    pub fn end_live_film(&mut self) {
+        if self
+            .outside
+            .recorder
+            .as_ref()
+            .is_some_and(Recorder::is_live)
+        {
+            self.end_film();
+        }
+    }
+
+    /// Real time that passes for a session of which so much did (s), while it is filmed.
+    pub fn pace(&self, real: f64) -> f64 {
+        let recorder = self.outside.recorder.as_ref();
+        recorder.map_or(real, |recorder| recorder.pace(&self.session, real))
     }
 
     /// Completes the film that is being made, and says so.
     pub fn end_film(&mut self) {
-        let Some(recorder) = self.recorder.take() else {
+        let Some(recorder) = self.outside.recorder.take() else {
             return;
         };
         match recorder.finish() {
@@ -89,7 +115,13 @@ impl App {
     /// Completes the film that is being made before the window closes: with all moments that it is
     /// to show.
     pub fn complete_film(&mut self) {
-        while self.recorder.as_ref().is_some_and(|film| !film.is_live()) && self.film() {
+        while self
+            .outside
+            .recorder
+            .as_ref()
+            .is_some_and(|film| !film.is_live())
+            && self.film()
+        {
             thread::sleep(Duration::from_millis(1));
         }
         self.end_film();
@@ -99,6 +131,6 @@ impl App {
     }
 
     fn tell_film(&mut self) {
-        self.session.readings.film = self.recorder.as_ref().map(Recorder::progress);
+        self.session.readings.film = self.outside.recorder.as_ref().map(Recorder::progress);
     }
 }

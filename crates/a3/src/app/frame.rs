@@ -1,6 +1,6 @@
 //! Frames: the session is brought up to date and drawn, and the next frame is asked for.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use a3_core::Vector3;
 use a3_render::GpuError;
@@ -9,7 +9,6 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use super::graphics::FrameOutcome;
 use super::pointer::Drag;
 use super::state::App;
-use super::watch::Watch;
 use crate::hud::panel::{self, Request};
 
 /// Time after which a frame that could not be drawn is tried again.
@@ -30,11 +29,7 @@ impl App {
                 .map(f64::from);
             self.session.pull(Vector3::new(x, y, z));
         }
-        let real = match &self.recorder {
-            Some(recorder) => recorder.pace(&self.session, real),
-            None => real,
-        };
-        self.session.tick(real);
+        self.session.tick(self.pace(real));
         self.session.go_along();
         self.session.read_state();
         self.look_under_pointer();
@@ -65,8 +60,10 @@ impl App {
                     Some(now + self.frame_time())
                 } else {
                     let again = again.map(|delay| now + delay.max(self.frame_time()));
-                    let look = self.watch.as_ref().map(Watch::next);
-                    [again, message_ends, look].into_iter().flatten().min()
+                    [again, message_ends, self.next_look()]
+                        .into_iter()
+                        .flatten()
+                        .min()
                 };
                 if let Some(next) = next {
                     self.wait_until(event_loop, next);

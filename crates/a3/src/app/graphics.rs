@@ -4,17 +4,15 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use a3_render::{Gpu, GpuError, Offscreen, Renderer, Targets, Tile};
+use a3_render::{Gpu, GpuError, Renderer, Targets, Tile};
 use egui::CursorIcon;
 use wgpu::CurrentSurfaceTexture;
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
-use crate::failure::Failure;
 use crate::hud::panel::{self, Request};
-use crate::hud::{self, Overlay, Studio, layout};
-use crate::output;
-use crate::session::{Readings, Session};
+use crate::hud::{self, Overlay, layout};
+use crate::session::Session;
 
 /// The outcome of drawing a frame.
 pub enum FrameOutcome {
@@ -46,12 +44,13 @@ pub struct Graphics {
 }
 
 impl Graphics {
+    /// What draws the session to the window, by an adapter that is open for it.
     pub fn new(
+        gpu: Gpu,
+        surface: wgpu::Surface<'static>,
         window: Arc<Window>,
-        display: &OwnedDisplayHandle,
         session: &Session,
     ) -> Result<Self, GpuError> {
-        let (gpu, surface) = open(&window, display)?;
         let size = clamped(&gpu, &window);
         let mut config = surface
             .get_default_config(&gpu.adapter, size.0, size.1)
@@ -277,23 +276,6 @@ impl Graphics {
         let before = self.overlay.paint(&self.gpu, encoder, view, size, output);
         (before, again, request)
     }
-
-    /// Saves a picture under the first free name, and returns the name: one pane without text,
-    /// several with the text that tells them apart.
-    pub fn save_picture(&self, session: &mut Session) -> Result<String, Failure> {
-        let size = self.size();
-        let offscreen = Offscreen::new(&self.gpu, size).map_err(Failure::run)?;
-        let readings = Readings {
-            no_error: session.readings.no_error,
-            ..Readings::default()
-        };
-        let (panes, scale) = (&mut session.panes, self.scale());
-        let mut studio = Studio::new(&self.gpu, offscreen, panes);
-        let pixels = studio.draw(&self.gpu, panes, session.camera, scale, &readings)?;
-        let scene = &session.first().scene().name;
-        let path = output::write_new("".as_ref(), scene, "png", &output::png(&pixels, size)?)?;
-        Ok(path.display().to_string())
-    }
 }
 
 /// Samples of a pixel in the window. A software adapter gets one: at 1280 x 720 on two cores a
@@ -314,9 +296,9 @@ fn clamped(gpu: &Gpu, window: &Window) -> (u32, u32) {
 }
 
 /// Opens an adapter that can draw to the window.
-fn open(
-    window: &Arc<Window>,
-    display: &OwnedDisplayHandle,
+pub async fn open(
+    window: Arc<Window>,
+    display: OwnedDisplayHandle,
 ) -> Result<(Gpu, wgpu::Surface<'static>), GpuError> {
     let mut result = Err(GpuError::no_adapter());
     for backends in Gpu::backends() {
@@ -328,7 +310,9 @@ fn open(
         let Ok(surface) = instance.create_surface(window.clone()) else {
             continue;
         };
-        result = pollster::block_on(Gpu::open(instance, Some(&surface))).map(|gpu| (gpu, surface));
+        result = Gpu::open(instance, Some(&surface))
+            .await
+            .map(|gpu| (gpu, surface));
         if result.is_ok() {
             break;
         }

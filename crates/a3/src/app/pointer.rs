@@ -1,6 +1,6 @@
 //! The mouse: the position of its pointer, and the drag by a pressed button.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use winit::event::MouseButton;
 

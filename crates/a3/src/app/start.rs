@@ -1,16 +1,20 @@
 //! Opening the window.
 
+#[cfg(not(target_arch = "wasm32"))]
 use std::path::PathBuf;
 
 use winit::event_loop::EventLoop;
 
+use super::platform::{Event, Outside};
 use super::state::App;
+#[cfg(not(target_arch = "wasm32"))]
 use crate::caught::caught;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::settings::Settings;
 
 /// How the window ends.
+#[cfg(not(target_arch = "wasm32"))]
 pub enum End {
     /// The user closed the window.
     Closed,
@@ -20,6 +24,7 @@ pub enum End {
 
 /// Opens the window. With `status`, lines on stderr tell what is on the screen. When one of `files`
 /// changes, the scene is loaded again. The `settings` are written again when the window closes.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn open(
     mut session: Session,
     status: bool,
@@ -30,19 +35,9 @@ pub fn open(
         Ok(event_loop) => event_loop,
         Err(why) => return Ok(End::NoWindow(why, Box::new(session))),
     };
-    session.readings.in_window = true;
-    if let Some(settings) = &settings {
-        session.panel.open = settings.panel;
-        if settings.dark {
-            session.set_dark(true);
-        }
-        session.panel.film = settings.film;
-        session.panel.frame_limit = settings.frame_limit;
-        session.panel.film_of = settings.film_seconds;
-        session.recent.clone_from(&settings.recent);
-    }
+    prepare(&mut session, settings.as_ref());
     let display = event_loop.owned_display_handle();
-    let mut app = App::new(session, display, status, files, settings);
+    let mut app = App::new(session, display, status, Outside::new(files), settings);
     event_loop.run_app(&mut app).map_err(Failure::run)?;
     match app.failure {
         None => Ok(End::Closed),
@@ -54,10 +49,50 @@ pub fn open(
     }
 }
 
+/// Opens the window in the page, which goes on by itself. With `status`, lines on the console tell
+/// what is on the screen.
+#[cfg(target_arch = "wasm32")]
+pub fn spawn(
+    mut session: Session,
+    status: bool,
+    settings: Option<Settings>,
+) -> Result<(), Failure> {
+    use winit::platform::web::EventLoopExtWebSys;
+    let event_loop = EventLoop::<Event>::with_user_event().build();
+    let event_loop = event_loop.map_err(Failure::run)?;
+    super::platform::reach(event_loop.create_proxy());
+    prepare(&mut session, settings.as_ref());
+    let display = event_loop.owned_display_handle();
+    event_loop.spawn_app(App::new(
+        session,
+        display,
+        status,
+        Outside::default(),
+        settings,
+    ));
+    Ok(())
+}
+
+/// Gives a session in a window the settings that are remembered.
+fn prepare(session: &mut Session, settings: Option<&Settings>) {
+    session.readings.in_window = true;
+    if let Some(settings) = settings {
+        session.panel.open = settings.panel;
+        if settings.dark {
+            session.set_dark(true);
+        }
+        session.panel.film = settings.film;
+        session.panel.frame_limit = settings.frame_limit;
+        session.panel.film_of = settings.film_seconds;
+        session.recent.clone_from(&settings.recent);
+    }
+}
+
 /// The event loop. Without a display winit returns an error; without a library that it needs it
 /// panics, which is caught here.
-fn event_loop() -> Result<EventLoop<()>, String> {
-    match caught(EventLoop::new) {
+#[cfg(not(target_arch = "wasm32"))]
+fn event_loop() -> Result<EventLoop<Event>, String> {
+    match caught(|| EventLoop::with_user_event().build()) {
         Some(Ok(event_loop)) => Ok(event_loop),
         Some(Err(_)) => {
             Err("no display (DISPLAY and WAYLAND_DISPLAY are unset or lead nowhere)".into())

@@ -2,31 +2,29 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
+use web_time::Instant;
 
-use a3_render::Tile;
-use arboard::Clipboard;
+use a3_render::{GpuError, Tile};
 use egui::CursorIcon;
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
 use winit::window::{Fullscreen, Window};
 
 use super::graphics::Graphics;
+use super::platform::Outside;
 use super::pointer::Mouse;
 use super::status::Status;
-use super::watch::Watch;
 use crate::failure::Failure;
 use crate::hud::panel;
-use crate::recorder::Recorder;
 use crate::session::{Action, Session};
 use crate::settings::Settings;
 use crate::show::Target;
-use crate::{command_line, keep, lessons, output};
+use crate::{command_line, keep, output};
 
 /// The window, from the first event to the last.
 pub struct App {
     /// The session that is shown.
     pub session: Session,
-    display: OwnedDisplayHandle,
+    pub display: OwnedDisplayHandle,
     /// All that depends on the adapter, once it is open.
     pub graphics: Option<Graphics>,
     /// The window, once it is there.
@@ -41,34 +39,29 @@ pub struct App {
     pub shift: bool,
     /// Whether the control key is held.
     pub control: bool,
-    /// The clipboard, once it was needed: what was copied is lost with it.
-    clipboard: Option<Clipboard>,
     /// The settings as they were read, unless none are remembered.
     pub settings: Option<Settings>,
     /// Size of text and panel over that of the screen's own scale.
     pub zoom: f32,
-    /// The film that is being made.
-    pub recorder: Option<Recorder>,
     /// Whether the window can be seen.
     pub visible: bool,
     /// Number of devices opened so far.
     pub devices: u32,
+    /// What the window has of the system.
+    pub outside: Outside,
     /// Lines for tests, if they are asked for.
     pub status: Option<Status>,
-    /// The files of the scene, if they are watched.
-    pub watch: Option<Watch>,
     /// The failure that closed the window, if there was one.
     pub failure: Option<Failure>,
 }
 
 impl App {
-    /// A session in a window that is yet to be opened. When one of `files` changes, its scene is
-    /// loaded again.
+    /// A session in a window that is yet to be opened.
     pub fn new(
         session: Session,
         display: OwnedDisplayHandle,
         status: bool,
-        files: Vec<PathBuf>,
+        outside: Outside,
         settings: Option<Settings>,
     ) -> Self {
         Self {
@@ -81,14 +74,12 @@ impl App {
             cursor: CursorIcon::Default,
             shift: false,
             control: false,
-            clipboard: None,
-            recorder: None,
             zoom: settings.as_ref().map_or(1.0, |it| it.interface_scale),
             settings,
             visible: true,
             devices: 0,
             status: status.then(Status::default),
-            watch: (!files.is_empty()).then(|| Watch::new(files)),
+            outside,
             failure: None,
         }
     }
@@ -127,16 +118,13 @@ impl App {
             .unwrap_or(0)
     }
 
-    /// Opens all that depends on the adapter, for the window that is there.
-    pub fn open_graphics(&mut self, event_loop: &ActiveEventLoop) {
-        let Some(window) = self.window.clone() else {
-            return;
-        };
-        // What was filmed is drawn by the device that goes.
-        self.end_film();
-        // The old surface has to go before the window can have another.
-        self.graphics = None;
-        match Graphics::new(window, &self.display, &self.session) {
+    /// Takes up all that depends on the adapter.
+    pub fn take_graphics(
+        &mut self,
+        event_loop: &ActiveEventLoop,
+        graphics: Result<Graphics, GpuError>,
+    ) {
+        match graphics {
             Ok(mut graphics) => {
                 graphics.set_zoom(self.zoom);
                 self.graphics = Some(graphics);
@@ -152,13 +140,7 @@ impl App {
         match action {
             Action::Quit => event_loop.exit(),
             Action::Picture => {
-                let Some(graphics) = &self.graphics else {
-                    return;
-                };
-                let message = match graphics.save_picture(&mut self.session) {
-                    Ok(name) => format!("saved {name}"),
-                    Err(failure) => failure.message(),
-                };
+                let message = self.save_picture();
                 self.session.say(message);
             }
             Action::FullScreen => {
@@ -216,7 +198,7 @@ impl App {
                 self.scene_changed();
             }
             Action::Lessons => {
-                let message = lessons::open().unwrap_or_else(Failure::message);
+                let message = Self::open_lessons();
                 self.session.say(message);
             }
             action => {
@@ -239,38 +221,14 @@ impl App {
         output::write_new("".as_ref(), scene, "csv", &table)
     }
 
-    /// Writes a line to the terminal and to the clipboard, and returns what is said of that.
-    fn copy(&mut self, line: &str) -> String {
-        // A closed terminal is no reason to lose the line.
-        let _ = output::say(&format!("{line}\n"));
-        if self.clipboard.is_none() {
-            self.clipboard = Clipboard::new().ok();
-        }
-        let copied = self.clipboard.as_mut().map(|board| board.set_text(line));
-        match copied {
-            Some(Ok(())) => format!("copied: {line}"),
-            _ => format!("on the terminal: {line}"),
-        }
-    }
-
     /// Shows another scene.
     pub fn scene_changed(&mut self) {
         self.mouse.let_go();
-        if self.recorder.as_ref().is_some_and(Recorder::is_live) {
-            self.end_film();
-        }
+        self.end_live_film();
         if let Some(graphics) = &mut self.graphics {
             graphics.set_scene(&self.session);
         }
         self.title();
-    }
-
-    /// Loads the scene again if one of its files was saved.
-    pub fn look_at_files(&mut self) {
-        if self.watch.as_mut().is_some_and(Watch::changed) && self.session.reload() {
-            self.last = Instant::now();
-            self.scene_changed();
-        }
     }
 
     /// Puts the scene's name into the title of the window.

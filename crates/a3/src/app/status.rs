@@ -1,6 +1,6 @@
 //! Status lines for tests: what is on the screen, as text on stderr.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use a3_render::Tile;
 use egui::CursorIcon;

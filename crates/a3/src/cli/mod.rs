@@ -12,6 +12,7 @@ use std::path::PathBuf;
 
 use a3_core::{Grid, Method};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+#[cfg(not(target_arch = "wasm32"))]
 use clap_complete::Shell;
 
 use crate::failure::Failure;
@@ -91,11 +92,13 @@ pub enum Command {
         lesson: Option<u8>,
     },
     /// Print the completion script of a shell
+    #[cfg(not(target_arch = "wasm32"))]
     Completions {
         /// Shell that the script is for
         shell: Shell,
     },
     /// Print the manual as a man page, or write one page for each command
+    #[cfg(not(target_arch = "wasm32"))]
     Man {
         /// Folder for a3.1, a3-simulate.1, ...; by default, a single page goes to standard output
         #[arg(long, short, value_name = "FOLDER")]

@@ -1,42 +1,14 @@
 //! Reading the files of a scene: ordinary files of limited length, from the scene's folder
 //! downwards.
 
-use std::fs::{self, File};
-use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
-use crate::output;
+use super::read::read;
 
 /// The longest scene file (bytes).
 const LONGEST: u64 = 16 << 20;
 /// The longest line of a scene file (bytes): a longer one was not written by hand.
 const LONGEST_LINE: usize = 8 << 20;
-
-fn unreadable(error: &io::Error) -> String {
-    format!("it could not be read: {}", output::reason(error))
-}
-
-/// The bytes of an ordinary file with at most `longest` bytes.
-pub fn read(path: &Path, longest: u64) -> Result<Vec<u8>, String> {
-    let meta = fs::metadata(path).map_err(|e| unreadable(&e))?;
-    if !meta.is_file() {
-        return Err("it is not an ordinary file".into());
-    }
-    let too_long = || format!("it is larger than {} MiB", longest >> 20);
-    if meta.len() > longest {
-        return Err(too_long());
-    }
-    let mut bytes = vec![];
-    let file = File::open(path).map_err(|e| unreadable(&e))?;
-    output::is_read(path);
-    file.take(longest + 1)
-        .read_to_end(&mut bytes)
-        .map_err(|e| unreadable(&e))?;
-    if bytes.len() as u64 > longest {
-        return Err(too_long());
-    }
-    Ok(bytes)
-}
 
 /// The text of a scene file.
 pub fn read_text(path: &Path) -> Result<String, String> {

@@ -5,8 +5,9 @@ use std::path::Path;
 
 use a3_scenes::Mesh;
 
-use super::files::{beside, read};
+use super::files::beside;
 use super::hash::Hash;
+use super::read::read;
 
 /// Length of the files of a scene's meshes and of their buffers, all together (bytes).
 const LONGEST: u64 = 64 << 20;

@@ -4,6 +4,8 @@ mod files;
 mod hash;
 mod hung;
 mod mesh;
+#[cfg_attr(target_arch = "wasm32", path = "read_page.rs")]
+mod read;
 mod source;
 
 pub use source::Source;

@@ -1,6 +1,6 @@
 //! Time for all runs of a session: they keep up with real time, together.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use super::meter::Meter;
 use super::pane::Pane;

@@ -1,6 +1,6 @@
 //! What the user changed, to be undone and done again.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use a3_core::Path;
 

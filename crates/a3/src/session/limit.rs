@@ -1,6 +1,6 @@
 //! The largest stable step of a run, as the run goes on.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use a3_core::stability::{LargestMode, Limit, Mode, largest_step, spectrum};
 use a3_core::{Mechanics, Method, Simulation};

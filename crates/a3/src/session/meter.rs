@@ -1,6 +1,6 @@
 //! Real time that frames take, and simulated time that they show.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 /// Real time between two readings (s).
 const INTERVAL: f32 = 0.5;

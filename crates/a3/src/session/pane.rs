@@ -1,7 +1,7 @@
 //! A pane: one run of the session, and what is known of it.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use a3_core::{Method, Simulation};
 use a3_render::Topology;

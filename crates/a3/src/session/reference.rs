@@ -1,6 +1,6 @@
 //! The reference: a hidden run from which the errors of the panes are taken.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use a3_core::{Control, Method, Simulation, integrators};
 

@@ -1,7 +1,7 @@
 //! A session: what its runs share.
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use a3_core::{Path, Simulation};
 use a3_render::Camera;

@@ -5,6 +5,7 @@
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
 )]
 
+use crate::fused::mul_adds;
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -38,7 +39,7 @@ impl Flow {
         let add = |a, from, k, more| {
             simd.add_f64s(
                 a,
-                simd.mul_add_f64s(simd.splat_f64s(k), from, simd.splat_f64s(more)),
+                mul_adds(simd, simd.splat_f64s(k), from, simd.splat_f64s(more)),
             )
         };
         (

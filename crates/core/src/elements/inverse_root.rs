@@ -5,6 +5,7 @@
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
 )]
 
+use crate::fused::negate_mul_adds;
 use pulp::Simd;
 
 /// 1 / sqrt(a) to the last digit or two: from the guess that half the exponent is, four steps of
@@ -22,7 +23,7 @@ pub(super) fn inverse_root<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
     for _ in 0..4 {
         // In this order nothing overflows at 0.
         let part = simd.mul_f64s(half, y);
-        y = simd.mul_f64s(y, simd.negate_mul_add_f64s(part, y, once_and_half));
+        y = simd.mul_f64s(y, negate_mul_adds(simd, part, y, once_and_half));
     }
     y
 }

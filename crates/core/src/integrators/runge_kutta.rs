@@ -7,6 +7,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::sweep::Sweeper;
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
+use crate::fused::mul_adds;
 use crate::rows::{Stage, Terms};
 use crate::system::ParticleSystem;
 
@@ -157,12 +158,12 @@ fn combine<S: Simd>(
     let c = stage.c.map(|c| simd.splat_f64s(c));
     for (((y, k), sum), next) in y.iter().zip(k).zip(sum).zip(next) {
         let before = if stage.first { *y } else { *sum };
-        let after = simd.mul_add_f64s(b, *k, before);
+        let after = mul_adds(simd, b, *k, before);
         match c {
             None => *next = after,
             Some(c) => {
                 *sum = after;
-                *next = simd.mul_add_f64s(c, *k, *y);
+                *next = mul_adds(simd, c, *k, *y);
             }
         }
     }

@@ -118,7 +118,10 @@ pub struct ObstacleSpec {
     pub turn: Option<Turn>,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde calls it so; on 32 bits clippy lets it"
+)]
 pub(super) fn is_smooth(friction: &f64) -> bool {
     *friction == 0.0
 }

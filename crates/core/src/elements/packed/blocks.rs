@@ -11,6 +11,7 @@ use std::ops::Range;
 use pulp::{Simd, WithSimd};
 
 use super::laws::{self, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity};
+use crate::fused::mul_add;
 use crate::spring::Spring;
 
 /// Three numbers of a particle and a zero.
@@ -158,16 +159,16 @@ fn apart(a: &[Numbers], [i, j]: [usize; 2]) -> Numbers {
 
 #[inline(always)]
 fn dot(a: Numbers, b: Numbers) -> f64 {
-    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
+    mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0]))
 }
 
 /// a + s b.
 #[inline(always)]
 fn plus(a: Numbers, s: f64, b: Numbers) -> Numbers {
     [
-        s.mul_add(b[0], a[0]),
-        s.mul_add(b[1], a[1]),
-        s.mul_add(b[2], a[2]),
-        s.mul_add(b[3], a[3]),
+        mul_add(s, b[0], a[0]),
+        mul_add(s, b[1], a[1]),
+        mul_add(s, b[2], a[2]),
+        mul_add(s, b[3], a[3]),
     ]
 }

@@ -8,6 +8,7 @@
 use pulp::Scalar;
 
 use crate::elements::inverse_root::inverse_root;
+use crate::fused::mul_add;
 use crate::spring::Spring;
 use crate::system::Matrix;
 
@@ -132,9 +133,9 @@ impl Laws {
 pub(super) fn force<const DAMPED: bool>(law: Law, m: usize, of: Products) -> f64 {
     // Finite for a spring without a length, whose force is a multiple of d.
     let inverse = inverse_root(Scalar::new(), of.dd);
-    let s = (-law.push[m]).mul_add(inverse, law.stiffness[m]);
+    let s = mul_add(-law.push[m], inverse, law.stiffness[m]);
     if DAMPED {
-        (law.damping[m] * of.wd * inverse).mul_add(inverse, s)
+        mul_add(law.damping[m] * of.wd * inverse, inverse, s)
     } else {
         s
     }
@@ -152,13 +153,13 @@ pub(super) fn change<const DAMPED: bool, const PRODUCT: bool>(
     // A spring without a length has no direction.
     let inverse = if of.dd == 0.0 { 0.0 } else { root };
     let k = law.stiffness[m];
-    let across = (-law.push[m]).mul_add(inverse, k);
+    let across = mul_add(-law.push[m], inverse, k);
     let share = of.de * inverse * inverse;
     if PRODUCT {
         let across = across.max(factors.least);
         let along = factors.stiffness * (k - across);
         let along = if DAMPED {
-            law.damping[m].mul_add(factors.damping, along)
+            mul_add(law.damping[m], factors.damping, along)
         } else {
             along
         };
@@ -186,7 +187,7 @@ fn differential_of_damped(
     Products { wd, we, gd, .. }: Products,
 ) -> [f64; 2] {
     let c = damping * inverse * inverse;
-    let turned = (-wd).mul_add(share, we);
-    let b = c.mul_add((-wd).mul_add(share, gd + turned), b);
-    [c.mul_add(wd, a), b]
+    let turned = mul_add(-wd, share, we);
+    let b = mul_add(c, mul_add(-wd, share, gd + turned), b);
+    [mul_add(c, wd, a), b]
 }

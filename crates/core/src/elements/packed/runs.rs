@@ -15,6 +15,7 @@ use std::ops::Range;
 use pulp::{Simd, WithSimd};
 
 use super::laws::{self, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity};
+use crate::fused::mul_add;
 use crate::spring::Spring;
 
 /// Springs between consecutive particles. Where a spring is missing, there is one without
@@ -76,7 +77,7 @@ fn apart([a, b]: [Three; 2], m: usize) -> [f64; 3] {
 
 #[inline(always)]
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
+    mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0]))
 }
 
 /// Takes g from the forces on the first ends, and gives it to the second.
@@ -165,7 +166,7 @@ impl Kernels for Sum<'_> {
                 }
                 let [a, b] = laws::change::<DAMPED, PRODUCT>(law, m, of, factors);
                 for axis in 0..3 {
-                    g[axis][m] = a.mul_add(e[axis], b * d[axis]);
+                    g[axis][m] = mul_add(a, e[axis], b * d[axis]);
                 }
             }
             give(&g, [i, j], stride, self.f);

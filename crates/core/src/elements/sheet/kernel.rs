@@ -17,6 +17,7 @@ use super::lanes::{Columns, Lanes, Numbers, Vectors, add, dot, pick, plus, put, 
 use super::laws::{Law, kind};
 use super::missing::Masks;
 use crate::elements::inverse_root::inverse_root;
+use crate::fused::{mul_adds, negate_mul_adds};
 
 /// Columns of forces that are kept from row to row: right, two right, down, down and right (of this
 /// row and of the one above), down and left (the same), two down (the same).
@@ -76,17 +77,17 @@ impl<'a, S: Simd> Others<'a, S> {
         }
         if let Some(c) = self.drag {
             f = [
-                simd.negate_mul_add_f64s(c, u[0], f[0]),
-                simd.negate_mul_add_f64s(c, u[1], f[1]),
-                simd.negate_mul_add_f64s(c, u[2], f[2]),
+                negate_mul_adds(simd, c, u[0], f[0]),
+                negate_mul_adds(simd, c, u[1], f[1]),
+                negate_mul_adds(simd, c, u[2], f[2]),
             ];
         }
         if let Some(masses) = self.inertia {
             let m = masses.at(simd, i);
             f = [
-                simd.mul_add_f64s(m, u[0], simd.neg_f64s(f[0])),
-                simd.mul_add_f64s(m, u[1], simd.neg_f64s(f[1])),
-                simd.mul_add_f64s(m, u[2], simd.neg_f64s(f[2])),
+                mul_adds(simd, m, u[0], simd.neg_f64s(f[0])),
+                mul_adds(simd, m, u[1], simd.neg_f64s(f[1])),
+                mul_adds(simd, m, u[2], simd.neg_f64s(f[2])),
             ];
         }
         if let Some(inverse_masses) = self.inverse_masses {
@@ -255,7 +256,7 @@ fn spring<S: Simd, const KIND: u8>(
         // Without a length there is no direction.
         let has_length = simd.less_than_f64s(zero, square);
         let inverse = simd.select_f64s(has_length, inverse, zero);
-        let mut across = simd.negate_mul_add_f64s(law[1], inverse, law[0]);
+        let mut across = negate_mul_adds(simd, law[1], inverse, law[0]);
         if KIND == CLAMPED {
             across = simd.max_f64s(across, zero);
         }
@@ -264,16 +265,16 @@ fn spring<S: Simd, const KIND: u8>(
         let more = simd.add_f64s(simd.sub_f64s(law[0], across), law[2]);
         let s = simd.mul_f64s(turn, more);
         return [
-            simd.mul_add_f64s(s, d[0], simd.mul_f64s(across, w[0])),
-            simd.mul_add_f64s(s, d[1], simd.mul_f64s(across, w[1])),
-            simd.mul_add_f64s(s, d[2], simd.mul_f64s(across, w[2])),
+            mul_adds(simd, s, d[0], simd.mul_f64s(across, w[0])),
+            mul_adds(simd, s, d[1], simd.mul_f64s(across, w[1])),
+            mul_adds(simd, s, d[2], simd.mul_f64s(across, w[2])),
         ];
     }
-    let mut s = simd.negate_mul_add_f64s(law[1], inverse, law[0]);
+    let mut s = negate_mul_adds(simd, law[1], inverse, law[0]);
     if KIND == DAMPED {
         let rate = dot(simd, sub::<S>(simd, u, pick::<S>(v, i)), d);
         let rate = simd.mul_f64s(simd.mul_f64s(rate, inverse), inverse);
-        s = simd.mul_add_f64s(law[2], rate, s);
+        s = mul_adds(simd, law[2], rate, s);
     }
     [
         simd.mul_f64s(s, d[0]),

@@ -10,6 +10,7 @@ use std::ops::Range;
 use pulp::Simd;
 
 use crate::columns::columns_mut;
+use crate::fused::mul_adds;
 use crate::rows::PAD;
 
 /// Three numbers of each particle of a vector, and of each of a row.
@@ -105,9 +106,9 @@ impl<'a, S: Simd> Numbers<'a, S> {
 #[inline(always)]
 pub(super) fn plus<S: Simd>(simd: S, a: Vectors<S>, b: S::f64s, k: Vectors<S>) -> Vectors<S> {
     [
-        simd.mul_add_f64s(b, k[0], a[0]),
-        simd.mul_add_f64s(b, k[1], a[1]),
-        simd.mul_add_f64s(b, k[2], a[2]),
+        mul_adds(simd, b, k[0], a[0]),
+        mul_adds(simd, b, k[1], a[1]),
+        mul_adds(simd, b, k[2], a[2]),
     ]
 }
 
@@ -153,6 +154,6 @@ pub(super) fn sub<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>) -> Vectors<S> 
 
 #[inline(always)]
 pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>) -> S::f64s {
-    let sum = simd.mul_add_f64s(a[1], b[1], simd.mul_f64s(a[0], b[0]));
-    simd.mul_add_f64s(a[2], b[2], sum)
+    let sum = mul_adds(simd, a[1], b[1], simd.mul_f64s(a[0], b[0]));
+    mul_adds(simd, a[2], b[2], sum)
 }

@@ -11,6 +11,8 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use pulp::Simd;
 
+use crate::fused::mul_adds;
+
 /// Number with the four operations.
 pub(super) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
@@ -57,7 +59,7 @@ impl<S: Simd> Number for Vector<S> {
 
     #[inline(always)]
     fn plus_product(self, a: Self, b: Self) -> Self {
-        self.with(self.simd.mul_add_f64s(a.value, b.value, self.value))
+        self.with(mul_adds(self.simd, a.value, b.value, self.value))
     }
 }
 

@@ -4,10 +4,10 @@
 //! A file is a line with the version of the program, the run in the format of `postcard`, and the
 //! CRC-32 of all that stands before it.
 
-use std::fs::File;
-use std::io::Read;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+#[cfg(not(target_arch = "wasm32"))]
+mod keeper;
+
+use std::path::Path;
 
 use a3_core::{Checkpoint, Grid, Simulation};
 use serde::{Deserialize, Serialize};
@@ -16,6 +16,10 @@ use crate::failure::Failure;
 use crate::output;
 use crate::scene_file::Source;
 use crate::summary::Extremes;
+#[cfg(not(target_arch = "wasm32"))]
+pub use keeper::Keeper;
+#[cfg(not(target_arch = "wasm32"))]
+use keeper::bytes_of;
 
 /// Ending of the files.
 pub const ENDING: &str = "checkpoint";
@@ -25,9 +29,6 @@ const TITLE: &[u8] = b"a3 checkpoint, version ";
 
 /// Version of the program that reads and writes the files: no other one promises the same bits.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
-
-/// Size of the largest file that is read (bytes).
-const LARGEST: u64 = 4 << 30;
 
 /// A run as it is kept in a file.
 #[derive(Serialize, Deserialize)]
@@ -138,70 +139,10 @@ fn identity(source: &Source, grid: Option<Grid>, run: &Simulation) -> String {
     }
 }
 
-/// The bytes of an ordinary file that is not too large.
+/// The bytes of a file of the page.
+#[cfg(target_arch = "wasm32")]
 fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
-    let read = || -> std::io::Result<Option<Vec<u8>>> {
-        let file = File::open(path)?;
-        let there = file.metadata()?;
-        if !there.is_file() || there.len() > LARGEST {
-            return Ok(None);
-        }
-        let mut bytes = vec![];
-        file.take(LARGEST).read_to_end(&mut bytes)?;
-        Ok(Some(bytes))
-    };
-    match read() {
-        Ok(Some(bytes)) => Ok(bytes),
-        Ok(None) => Err("this is no checkpoint of a3".into()),
-        Err(error) => Err(format!("it could not be read: {}", output::reason(&error))),
-    }
-}
-
-/// The file in which a run is kept again and again.
-pub struct Keeper {
-    path: PathBuf,
-    /// Real time between two writes.
-    every: Duration,
-    last: Instant,
-}
-
-impl Keeper {
-    /// A file that is written when so much real time has passed since the last time.
-    pub fn new(path: &Path, every: Duration) -> Result<Self, Failure> {
-        output::check(path, &[ENDING])?;
-        // Nothing else is overwritten, whatever its name is.
-        if path.is_file() && !bytes_of(path).is_ok_and(|bytes| bytes.starts_with(TITLE)) {
-            return Err(Failure::usage(format!(
-                "{}: this is no checkpoint of a3, and would be overwritten: give another name",
-                path.display()
-            )));
-        }
-        Ok(Self {
-            path: path.into(),
-            every,
-            last: Instant::now(),
-        })
-    }
-
-    /// Writes what `kept` returns, if it is time to.
-    pub fn look(&mut self, kept: impl FnOnce() -> Kept) -> Result<(), Failure> {
-        if self.last.elapsed() < self.every {
-            return Ok(());
-        }
-        kept().write(&self.path)?;
-        self.last = Instant::now();
-        Ok(())
-    }
-
-    /// Writes what is kept now. Returns a clause that says so.
-    pub fn write(&self, kept: &Kept) -> Result<String, Failure> {
-        kept.write(&self.path)?;
-        let time = kept.checkpoint.time();
-        Ok(format!(
-            "{} has the run at t = {time:.4} s",
-            self.path.display()
-        ))
-    }
+    crate::browser::files::read(path).ok_or_else(|| "there is no such file on this page".into())
 }
 
 #[cfg(test)]

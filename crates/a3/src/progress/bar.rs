@@ -1,14 +1,11 @@
-//! Long runs, with a progress bar on the terminal.
-
-use std::time::{Duration, Instant};
+//! Progress bars on the terminal.
 
 use a3_core::{Error, Simulation};
 use indicatif::{ProgressBar, ProgressStyle};
+use web_time::{Duration, Instant};
 
+use super::march;
 use crate::output;
-
-/// Simulated time between two calls of `frame` (s).
-const FRAME: f64 = 1.0 / 60.0;
 
 /// Brings a simulation to `until` (s) in whole steps, the last one shortened, with a bar once it
 /// takes long. Calls `frame` about sixty times a simulated second.
@@ -34,37 +31,6 @@ pub fn advance(
         bar.finish_and_clear();
     }
     done.map(drop)
-}
-
-/// Does what [`advance`] does without a bar, as long as `frame` returns true. Returns whether it
-/// got to the end.
-pub fn march(
-    simulation: &mut Simulation,
-    until: f64,
-    mut frame: impl FnMut(&Simulation) -> bool,
-) -> Result<bool, Error> {
-    let control = simulation.control();
-    let step = control.step().unwrap_or(FRAME);
-    let stride = (FRAME / step).floor().max(1.0);
-    loop {
-        // Whole steps that end before the last one. If only rounding makes the last one shorter, it
-        // is whole too.
-        let left = (until - simulation.time()) / step;
-        let whole = (left - 1.0 - Simulation::SLIVER).ceil().min(stride);
-        if whole < 1.0 {
-            break;
-        }
-        if control.step().is_none() {
-            simulation.advance_to(simulation.time() + FRAME)?;
-        } else {
-            simulation.take_steps(whole as u64)?;
-        }
-        if !frame(simulation) {
-            return Ok(false);
-        }
-    }
-    simulation.advance_to(until)?;
-    Ok(frame(simulation))
 }
 
 /// A bar that is shown at once, for work in any unit. Several threads may advance it.

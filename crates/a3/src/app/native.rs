@@ -1,0 +1,130 @@
+//! What the window does through the system: the clipboard, films, files that are watched, and the
+//! adapter, which is waited for.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use a3_render::Offscreen;
+use arboard::Clipboard;
+use winit::dpi::LogicalSize;
+use winit::event_loop::ActiveEventLoop;
+use winit::window::{Window, WindowAttributes};
+
+use super::graphics::{self, Graphics};
+use super::state::App;
+use super::watch::Watch;
+use crate::failure::Failure;
+use crate::hud::Studio;
+use crate::recorder::Recorder;
+use crate::session::Readings;
+use crate::{lessons, output};
+
+/// How the window begins.
+pub fn attributes() -> WindowAttributes {
+    Window::default_attributes()
+        .with_inner_size(LogicalSize::new(1280.0, 720.0))
+        .with_min_inner_size(LogicalSize::new(64.0, 48.0))
+}
+
+/// Events that come from elsewhere: none.
+pub type Event = ();
+
+/// What the window has of the system.
+#[derive(Default)]
+pub struct Outside {
+    /// The clipboard, once it was needed: what was copied is lost with it.
+    clipboard: Option<Clipboard>,
+    /// The film that is being made.
+    pub recorder: Option<Recorder>,
+    /// The files of the scene, if they are watched.
+    watch: Option<Watch>,
+}
+
+impl Outside {
+    /// When one of `files` changes, the scene is loaded again.
+    pub fn new(files: Vec<PathBuf>) -> Self {
+        Self {
+            watch: (!files.is_empty()).then(|| Watch::new(files)),
+            ..Self::default()
+        }
+    }
+}
+
+impl App {
+    /// Opens all that depends on the adapter, for the window that is there.
+    pub fn open_graphics(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(window) = self.window.clone() else {
+            return;
+        };
+        // What was filmed is drawn by the device that goes.
+        self.end_film();
+        // The old surface has to go before the window can have another.
+        self.graphics = None;
+        let opened = pollster::block_on(graphics::open(window.clone(), self.display.clone()));
+        let graphics =
+            opened.and_then(|(gpu, surface)| Graphics::new(gpu, surface, window, &self.session));
+        self.take_graphics(event_loop, graphics);
+    }
+
+    /// Saves a picture, and returns what is said of it.
+    pub fn save_picture(&mut self) -> String {
+        match self.write_picture() {
+            Ok(name) => format!("saved {name}"),
+            Err(failure) => failure.message(),
+        }
+    }
+
+    /// Writes a picture under the first free name, and returns the name: one pane without text,
+    /// several with the text that tells them apart.
+    fn write_picture(&mut self) -> Result<String, Failure> {
+        let lost = || Failure::run("the graphics adapter is not open");
+        let graphics = self.graphics.as_ref().ok_or_else(lost)?;
+        let (gpu, size, session) = (graphics.gpu(), graphics.size(), &mut self.session);
+        let offscreen = Offscreen::new(gpu, size).map_err(Failure::run)?;
+        let readings = Readings {
+            no_error: session.readings.no_error,
+            ..Readings::default()
+        };
+        let (panes, scale) = (&mut session.panes, graphics.scale());
+        let mut studio = Studio::new(gpu, offscreen, panes);
+        let pixels = studio.draw(gpu, panes, session.camera, scale, &readings)?;
+        let scene = &session.first().scene().name;
+        let path = output::write_new("".as_ref(), scene, "png", &output::png(&pixels, size)?)?;
+        Ok(path.display().to_string())
+    }
+
+    /// Writes the command line of now to the terminal and to the clipboard, and returns what is
+    /// said of that.
+    pub fn copy(&mut self, line: &str) -> String {
+        // A closed terminal is no reason to lose the line.
+        let _ = output::say(&format!("{line}\n"));
+        let clipboard = &mut self.outside.clipboard;
+        if clipboard.is_none() {
+            *clipboard = Clipboard::new().ok();
+        }
+        let copied = clipboard.as_mut().map(|board| board.set_text(line));
+        match copied {
+            Some(Ok(())) => format!("copied: {line}"),
+            _ => format!("on the terminal: {line}"),
+        }
+    }
+
+    /// Opens the lessons, and returns what is said of that.
+    pub fn open_lessons() -> String {
+        lessons::open().unwrap_or_else(Failure::message)
+    }
+
+    /// Loads the scene again if one of its files was saved.
+    pub fn look_at_files(&mut self) {
+        let watch = self.outside.watch.as_mut();
+        if watch.is_some_and(Watch::changed) && self.session.reload() {
+            self.last = Instant::now();
+            self.scene_changed();
+        }
+    }
+
+    /// Time of the next look at the files that are watched.
+    pub fn next_look(&self) -> Option<Instant> {
+        self.outside.watch.as_ref().map(Watch::next)
+    }
+}

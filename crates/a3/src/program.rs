@@ -1,0 +1,56 @@
+//! The program: from the command line to the command that does what it asks for.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::cli::{self, Cli, Command};
+use crate::failure::Failure;
+use crate::{chart, choose, interrupt, lessons, list, manual, output, simulate, stability};
+#[cfg(feature = "window")]
+use crate::{compare, render, window};
+
+/// Does what the command line asks for, and returns the exit code of the program.
+#[must_use]
+pub fn main() -> ExitCode {
+    interrupt::start();
+    let result = match Cli::try_parse() {
+        Ok(cli) => match cli.command {
+            #[cfg(feature = "window")]
+            None => window::run(&cli.window),
+            #[cfg(not(feature = "window"))]
+            None => Err(Failure::usage(
+                "this a3 was built without its window: give a command; --help lists them",
+            )),
+            #[cfg(feature = "window")]
+            Some(Command::Compare(options)) if options.output.is_none() => {
+                window::compare(&options)
+            }
+            #[cfg(feature = "window")]
+            Some(Command::Compare(options)) => compare::run(&options),
+            Some(Command::Simulate(options)) => simulate::run(&options),
+            #[cfg(feature = "window")]
+            Some(Command::Render(options)) => render::run(&options),
+            Some(Command::Chart(options)) => chart::run(&options),
+            Some(Command::Stability(options)) => stability::run(&options),
+            Some(Command::Choose(options)) => choose::run(&options),
+            Some(Command::Scenes(options)) => list::scenes(&options),
+            Some(Command::Solvers) => list::solvers(),
+            Some(Command::Lessons { lesson }) => lessons::print(lesson),
+            Some(Command::Completions { shell }) => manual::completions(shell),
+            Some(Command::Man { output }) => manual::run(output.as_deref()),
+        },
+        Err(error) => cli::explain(&error),
+    };
+    let (why, code) = match result {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Usage(why)) => (why, 2),
+        Err(Failure::Run(why)) => (why, 1),
+        Err(Failure::Interrupted(why)) => {
+            output::warn(&why);
+            return ExitCode::from(interrupt::exit_code());
+        }
+    };
+    output::warn(&format!("error: {why}"));
+    ExitCode::from(code)
+}

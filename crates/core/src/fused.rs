@@ -1,0 +1,49 @@
+//! a b + c, rounded once, for numbers and for vectors of the processor. WebAssembly has it as an
+//! instruction only with relaxed SIMD, where every processor of today fuses; without, a page rounds
+//! twice, because the exact function takes ten times as long as a step may.
+
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the processor's vectors"
+)]
+
+use pulp::Simd;
+
+/// a b + c.
+#[inline(always)]
+pub(crate) fn mul_add(a: f64, b: f64, c: f64) -> f64 {
+    #[cfg(all(target_arch = "wasm32", target_feature = "relaxed-simd"))]
+    {
+        use core::arch::wasm32::{f64x2_extract_lane, f64x2_relaxed_madd, f64x2_splat};
+        let sum = f64x2_relaxed_madd(f64x2_splat(a), f64x2_splat(b), f64x2_splat(c));
+        f64x2_extract_lane::<0>(sum)
+    }
+    #[cfg(all(target_arch = "wasm32", not(target_feature = "relaxed-simd")))]
+    {
+        a * b + c
+    }
+    #[cfg(not(target_arch = "wasm32"))]
+    {
+        a.mul_add(b, c)
+    }
+}
+
+/// a b + c in each lane.
+#[inline(always)]
+pub(crate) fn mul_adds<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
+    if cfg!(target_arch = "wasm32") {
+        simd.mul_add_e_f64s(a, b, c)
+    } else {
+        simd.mul_add_f64s(a, b, c)
+    }
+}
+
+/// c - a b in each lane.
+#[inline(always)]
+pub(crate) fn negate_mul_adds<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
+    if cfg!(target_arch = "wasm32") {
+        simd.negate_mul_add_e_f64s(a, b, c)
+    } else {
+        simd.negate_mul_add_f64s(a, b, c)
+    }
+}

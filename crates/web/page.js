@@ -1,0 +1,39 @@
+// Loads the program, and tells it what only a page sees.
+
+// Fused multiplications are an instruction of relaxed SIMD, without which they are slow; a program
+// of 30 bytes that uses one shows whether the browser has it.
+const relaxed = WebAssembly.validate(new Uint8Array([
+  0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 15, 1, 13, 0, 65, 1, 253, 15, 65, 2, 253, 15,
+  253, 128, 2, 11,
+]));
+const words = document.getElementById("words");
+const canvas = document.getElementById("a3");
+const panel = document.getElementById("panel");
+
+try {
+  if (!navigator.gpu) {
+    throw new Error("a3 draws with WebGPU, which this browser does not have, or not here: try another browser, or https");
+  }
+  const program = await import(relaxed ? "./fast/a3_web.js" : "./plain/a3_web.js");
+  await program.default();
+  program.start();
+  if (words.textContent.startsWith("a3 is loading")) words.textContent = "";
+  canvas.focus();
+  panel.hidden = false;
+  panel.addEventListener("click", () => {
+    program.toggle_panel();
+    canvas.focus();
+  });
+  addEventListener("dragover", (event) => event.preventDefault());
+  addEventListener("drop", async (event) => {
+    event.preventDefault();
+    // A scene comes after the meshes that it names.
+    const last = (file) => /\.(toml|json)$/i.test(file.name);
+    for (const file of [...event.dataTransfer.files].sort((a, b) => last(a) - last(b))) {
+      program.open_file(file.name, new Uint8Array(await file.arrayBuffer()));
+    }
+  });
+} catch (error) {
+  console.error(error);
+  words.textContent = error.message;
+}

@@ -1,0 +1,23 @@
+//! What the page calls: the program in a canvas, and what the page tells it.
+
+#![cfg(target_arch = "wasm32")]
+
+use wasm_bindgen::prelude::wasm_bindgen;
+
+/// Begins what the address asks for.
+#[wasm_bindgen]
+pub fn start() {
+    a3::page::start();
+}
+
+/// Opens the panel, or closes it.
+#[wasm_bindgen]
+pub fn toggle_panel() {
+    a3::page::toggle_panel();
+}
+
+/// Opens a file that was dropped on the page.
+#[wasm_bindgen]
+pub fn open_file(name: &str, bytes: &[u8]) {
+    a3::page::open_file(name, bytes);
+}
