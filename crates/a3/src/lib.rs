@@ -85,6 +85,8 @@ mod simulate;
 #[cfg(not(target_arch = "wasm32"))]
 mod stability;
 #[cfg(not(target_arch = "wasm32"))]
+mod sweep;
+#[cfg(not(target_arch = "wasm32"))]
 mod verdict;
 #[cfg(all(feature = "window", not(target_arch = "wasm32")))]
 mod window;

@@ -6,7 +6,7 @@ use clap::Parser;
 
 use crate::cli::{self, Cli, Command};
 use crate::failure::Failure;
-use crate::{chart, choose, interrupt, lessons, list, manual, output, simulate, stability};
+use crate::{chart, choose, interrupt, lessons, list, manual, output, simulate, stability, sweep};
 #[cfg(feature = "window")]
 use crate::{compare, render, window};
 
@@ -34,6 +34,7 @@ pub fn main() -> ExitCode {
             Some(Command::Chart(options)) => chart::run(&options),
             Some(Command::Stability(options)) => stability::run(&options),
             Some(Command::Choose(options)) => choose::run(&options),
+            Some(Command::Sweep(options)) => sweep::run(&options),
             Some(Command::Scenes(options)) => list::scenes(&options),
             Some(Command::Solvers) => list::solvers(),
             Some(Command::Lessons { lesson }) => lessons::print(lesson),

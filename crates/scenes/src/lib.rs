@@ -23,5 +23,6 @@ pub use description::*;
 pub use fault::Fault;
 pub use likeness::nearest;
 pub use mesh::Mesh;
+pub use reader::read;
 pub use setup::{Defaults, Presentation, Setup, Viewpoint};
 pub use surface::Surface;

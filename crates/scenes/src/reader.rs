@@ -16,8 +16,11 @@ use crate::wording::{
     WHOLE, list_of, missing, quoted, too_large, unknown_choice, unknown_key, wrong_length,
 };
 
-/// Reads a text.
-pub(crate) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
+/// Reads a text in TOML, with words for what is wrong that say what would be right.
+///
+/// # Errors
+/// The text is not TOML, or not what is wanted: with the line.
+pub fn read<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
     let table = DeTable::parse(text).map_err(|error| Fault::of_toml(text, &error))?;
     let table = DeValue::Table(table.into_inner());
     let whole = Value {

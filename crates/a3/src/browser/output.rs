@@ -11,7 +11,9 @@ use crate::failure::Failure;
 pub fn write_new(_: &Path, scene: &str, extension: &str, bytes: &[u8]) -> Result<PathBuf, Failure> {
     let scene = scene.replace(|c: char| c.is_control() || "/\\".contains(c), "-");
     let name = |k: usize| PathBuf::from(format!("a3-{scene}-{k}.{extension}"));
-    let path = (1..=usize::MAX).map(name).find(|path| files::read(path).is_none());
+    let path = (1..=usize::MAX)
+        .map(name)
+        .find(|path| files::read(path).is_none());
     let path = path.unwrap_or_default();
     write(&path, bytes)?;
     Ok(path)

@@ -232,19 +232,11 @@ impl<'a> Study<'a> {
         let Some(reference) = &self.reference else {
             return Ok(None);
         };
-        let control = method.control(like.setting);
-        let outcome = accuracy::measure(&self.scene, method, control, reference, &interrupt::go_on)
-            .map_err(Failure::run)?;
-        let Some(Outcome {
-            errors,
-            work,
-            guarded,
-            lost,
-        }) = outcome
-        else {
+        let Some(record) = compared(like, &self.scene, method, reference)? else {
             return Ok(None);
         };
-        let seconds = if self.timed && lost.is_none() {
+        let seconds = if self.timed && record.lost_at.is_none() {
+            let control = method.control(record.setting);
             let Some(time) = time(&self.scene, method, control, &self.frames)? else {
                 return Ok(None);
             };
@@ -252,49 +244,71 @@ impl<'a> Study<'a> {
         } else {
             None
         };
-        let Errors {
-            position,
-            energy,
-            strain,
-            momentum,
-            phase,
-            penetration,
-            impact,
-        } = errors;
-        let (floor, still) = (reference.floor, reference.still);
-        Ok(Some(Record {
-            error_position: position,
-            error_energy: energy,
-            error_strain: strain,
-            error_momentum: momentum,
-            error_phase: phase,
-            error_penetration: penetration,
-            error_impact: impact,
-            floor_position: floor.position,
-            floor_energy: floor.energy,
-            floor_strain: floor.strain,
-            floor_momentum: floor.momentum,
-            floor_phase: floor.phase,
-            floor_penetration: floor.penetration,
-            floor_impact: floor.impact,
-            still_position: still.position,
-            still_strain: still.strain,
-            still_penetration: still.penetration,
-            still_impact: still.impact,
-            lost_at: lost.map(|lost| lost.time),
-            guard_impulses: guarded.impulses,
-            guard_cuts: guarded.cuts,
-            guard_lost: guarded.lost,
-            seconds,
-            work: work.total(),
-            evaluations: work.evaluations,
-            solves: work.solves,
-            iterations: work.iterations,
-            factorizations: work.factorizations,
-            rejections: work.rejections,
-            ..like
-        }))
+        Ok(Some(Record { seconds, ..record }))
     }
+}
+
+/// The record of a run by a method with the setting of `like`, compared with the reference of its
+/// scene. `None` if it was interrupted.
+pub fn compared(
+    like: Record,
+    scene: &Scene,
+    method: &'static Method,
+    reference: &Reference,
+) -> Result<Option<Record>, Failure> {
+    let control = method.control(like.setting);
+    let outcome = accuracy::measure(scene, method, control, reference, &interrupt::go_on)
+        .map_err(Failure::run)?;
+    let Some(Outcome {
+        errors,
+        work,
+        guarded,
+        lost,
+    }) = outcome
+    else {
+        return Ok(None);
+    };
+    let Errors {
+        position,
+        energy,
+        strain,
+        momentum,
+        phase,
+        penetration,
+        impact,
+    } = errors;
+    let (floor, still) = (reference.floor, reference.still);
+    Ok(Some(Record {
+        error_position: position,
+        error_energy: energy,
+        error_strain: strain,
+        error_momentum: momentum,
+        error_phase: phase,
+        error_penetration: penetration,
+        error_impact: impact,
+        floor_position: floor.position,
+        floor_energy: floor.energy,
+        floor_strain: floor.strain,
+        floor_momentum: floor.momentum,
+        floor_phase: floor.phase,
+        floor_penetration: floor.penetration,
+        floor_impact: floor.impact,
+        still_position: still.position,
+        still_strain: still.strain,
+        still_penetration: still.penetration,
+        still_impact: still.impact,
+        lost_at: lost.map(|lost| lost.time),
+        guard_impulses: guarded.impulses,
+        guard_cuts: guarded.cuts,
+        guard_lost: guarded.lost,
+        work: work.total(),
+        evaluations: work.evaluations,
+        solves: work.solves,
+        iterations: work.iterations,
+        factorizations: work.factorizations,
+        rejections: work.rejections,
+        ..like
+    }))
 }
 
 /// Precision of a reference for all errors that a chart may show, of a scene whose particles move

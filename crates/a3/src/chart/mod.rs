@@ -2,8 +2,8 @@
 
 pub mod data;
 pub mod measure;
-mod picture;
-mod record;
+pub mod picture;
+pub mod record;
 pub mod style;
 mod table;
 pub mod text;

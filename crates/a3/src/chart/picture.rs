@@ -13,6 +13,9 @@ use crate::cli::What;
 /// Error of a run over that of a run in which nothing moves, above which it is not drawn.
 const BEYOND: f64 = 10.0;
 
+/// What the vertical axis shows where nothing is timed.
+pub const WORK: &str = "evaluations per simulated second, linear algebra included";
+
 /// The diagram, with a panel for each study.
 pub fn chart(
     studies: &[&Study],
@@ -26,7 +29,8 @@ pub fn chart(
     let problems = studies
         .iter()
         .map(|study| {
-            let mut problem = problem(study, data, methods, metric, timed);
+            let records: Vec<_> = study.records(data).collect();
+            let mut problem = problem(&records, methods, metric, timed);
             if studies.len() > 1 || study.stiffness() != 1.0 {
                 problem.title = format!("stiffness × {}", study.stiffness());
             }
@@ -45,7 +49,7 @@ pub fn chart(
         y_label: if timed {
             "computing time per simulated second (s)"
         } else {
-            "evaluations per simulated second, linear algebra included"
+            WORK
         }
         .into(),
         problems,
@@ -55,7 +59,7 @@ pub fn chart(
 }
 
 /// What the errors are, and which methods solve another model.
-fn foot(methods: &[&'static Method]) -> String {
+pub fn foot(methods: &[&'static Method]) -> String {
     let errors = "Errors are true ones, against DOP853 at two tolerances and a method of order 4 \
                   extrapolated, whose disagreement is the shaded floor.";
     if methods.iter().any(|method| method.needs_springs) {
@@ -69,7 +73,7 @@ fn foot(methods: &[&'static Method]) -> String {
 }
 
 /// What the horizontal axis shows.
-fn x_label(metric: Metric, scope: Scope) -> String {
+pub fn x_label(metric: Metric, scope: Scope) -> String {
     let what = match (metric, scope.particle) {
         (Metric::Position, None) => "RMS error of the positions".to_owned(),
         (Metric::Position, Some(i)) => format!("error of the position of particle {i}"),
@@ -89,17 +93,17 @@ fn x_label(metric: Metric, scope: Scope) -> String {
     }
 }
 
-/// The panel of a study, without a title.
-fn problem(
-    study: &Study,
-    data: &Data,
+/// The panel of the runs of a scene, without a title.
+pub fn problem(
+    all: &[&Record],
     methods: &[&'static Method],
     metric: Metric,
     timed: bool,
 ) -> Problem {
     let curves = methods.iter().map(|method| {
-        let mut records: Vec<_> = study
-            .records(data)
+        let mut records: Vec<_> = all
+            .iter()
+            .copied()
             .filter(|r| r.solver == method.name)
             .filter(|r| r.lost_at.is_some() || r.error(metric) <= BEYOND * r.still(metric))
             .collect();
@@ -131,12 +135,9 @@ fn problem(
             runs: records.iter().map(run).collect(),
         }
     });
-    let floor = study
-        .records(data)
-        .map(|r| r.floor(metric))
-        .reduce(f64::max);
-    let still = study
-        .records(data)
+    let floor = all.iter().map(|r| r.floor(metric)).reduce(f64::max);
+    let still = all
+        .iter()
         .map(|r| r.still(metric))
         .fold(f64::INFINITY, f64::min);
     Problem {

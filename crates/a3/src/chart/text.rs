@@ -45,7 +45,7 @@ pub fn write(records: &[Record], json: bool) -> Result<String, String> {
 }
 
 /// The line of a run in CSV, below the names of its values if they are asked for.
-fn csv_lines(record: &Record, names: bool) -> Result<String, String> {
+pub fn csv_lines(record: &Record, names: bool) -> Result<String, String> {
     let mut writer = csv::WriterBuilder::new()
         .has_headers(names)
         .from_writer(vec![]);

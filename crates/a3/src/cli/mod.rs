@@ -4,6 +4,8 @@
 mod drawing;
 mod explain;
 mod names;
+#[cfg(not(target_arch = "wasm32"))]
+mod sweep;
 mod values;
 #[cfg(feature = "window")]
 mod window;
@@ -26,6 +28,8 @@ use values::{
 #[cfg(feature = "window")]
 pub use drawing::Drawing;
 pub use explain::explain;
+#[cfg(not(target_arch = "wasm32"))]
+pub use sweep::Sweep;
 #[cfg(feature = "window")]
 pub use window::{Compare, Look, Render, WindowOptions};
 
@@ -78,6 +82,9 @@ pub enum Command {
     Stability(Stability),
     /// Choose the cheapest solver and step for an error, or the most accurate ones for a budget
     Choose(Choose),
+    /// Run scenes with many solvers, steps and values of their keys, in shares on many machines
+    #[cfg(not(target_arch = "wasm32"))]
+    Sweep(Sweep),
     /// Compare two to four solvers side by side, in a window or as a picture
     #[cfg(feature = "window")]
     Compare(Compare),

@@ -8,4 +8,5 @@ mod mesh;
 mod read;
 mod source;
 
-pub use source::Source;
+pub use hash::Hash;
+pub use source::{Source, table};

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use a3_core::{Grid, Method, Scene, integrators};
-use a3_scenes::{Description, Setup};
+use a3_scenes::{Description, Fault, Setup};
+use serde_json::Value;
 
 use super::files::{beside, read_text};
 use super::hash::Hash;
@@ -72,6 +73,43 @@ impl Source {
         })
     }
 
+    /// The scene with other values for some keys, which `change` sets in its table.
+    pub fn with(
+        &self,
+        change: impl FnOnce(&mut Value) -> Result<(), String>,
+    ) -> Result<Self, String> {
+        let extension = self.path.as_deref().and_then(Path::extension);
+        let json = extension.is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        let mut table: Value = if json {
+            serde_json::from_str(&self.text).map_err(|e| e.to_string())?
+        } else {
+            table(&self.text).map_err(|fault| fault.to_string())?
+        };
+        change(&mut table)?;
+        let (text, parsed) = if json {
+            let text = table.to_string();
+            (text.clone(), Description::parse_json(&text))
+        } else {
+            let text = toml::to_string(&table).map_err(|e| e.to_string())?;
+            (text.clone(), Description::parse(&text))
+        };
+        // Lines of a text that nobody wrote tell nobody anything.
+        let parsed = parsed.map_err(|fault| Fault {
+            line: None,
+            ..fault
+        });
+        let mut description = parsed.map_err(|fault| fault.to_string())?;
+        if description.name.is_none() {
+            description.name.clone_from(&self.description.name);
+        }
+        Ok(Self {
+            description: Arc::new(description),
+            text: text.into(),
+            meshes: Arc::default(),
+            ..self.clone()
+        })
+    }
+
     /// Builds the scene, with this grid of its cloth or with its own.
     pub fn build(&self, grid: Option<Grid>) -> Result<Setup, String> {
         // With a grid of its own, a scene is built with both.
@@ -120,6 +158,27 @@ impl Source {
         hash.add(self.meshes.load(Ordering::Relaxed).to_le_bytes());
         hash.add(scene.state.iter().flat_map(|y| y.to_le_bytes()));
         format!("{} {:016x}", scene.name, hash.value())
+    }
+}
+
+/// The table of a text in TOML, in which whole numbers are whole, however they are written.
+pub fn table(text: &str) -> Result<Value, Fault> {
+    let mut table = a3_scenes::read(text)?;
+    make_whole(&mut table);
+    Ok(table)
+}
+
+fn make_whole(value: &mut Value) {
+    match value {
+        Value::Number(number) => {
+            let whole = |x: &f64| x.fract() == 0.0 && x.abs() < 2f64.powi(53);
+            if let Some(whole) = number.as_f64().filter(whole) {
+                *value = Value::from(whole as i64);
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(make_whole),
+        Value::Object(entries) => entries.values_mut().for_each(make_whole),
+        _ => {}
     }
 }
 
