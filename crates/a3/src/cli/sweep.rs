@@ -10,7 +10,7 @@ use crate::sweep::Only;
 #[derive(Args)]
 #[command(after_help = "A sweep is a file such as\n\n  \
     scene = \"chain\"                                 # or a list of names and files\n  \
-    solver = [\"euler\", \"rk4\", \"dopri5\"]            # by default all that can run the scene\n  \
+    solver = [\"euler\", \"rk4\", \"dopri5\"]             # by default all that can run the scene\n  \
     step = { from = 1e-4, to = 0.1, count = 12 }      # or a list; of solvers with fixed steps\n  \
     tolerance = [1e-3, 1e-5, 1e-7]                    # of adaptive solvers\n  \
     until = 2                                         # simulated seconds\n\n  \

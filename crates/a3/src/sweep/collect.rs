@@ -80,12 +80,12 @@ fn lines(sweep: &Sweep, plan: &Plan, records: &[(usize, Record)]) -> Result<Stri
         if let Some((head, line)) = written.split_once('\n').filter(|_| k == 0) {
             let names = sweep.names().into_iter().map(str::to_owned);
             let names = ["id".to_owned()].into_iter().chain(names);
-            all += &format!("{},{head}\n", row(names.collect())?);
+            all.extend([&row(names.collect())?, ",", head, "\n"]);
             written = line;
         }
         let values = plan.variants[run.variant].values.iter().map(short);
         let values = [run.id.to_string()].into_iter().chain(values);
-        all += &format!("{},{written}\n", row(values.collect())?);
+        all.extend([&row(values.collect())?, ",", written, "\n"]);
     }
     Ok(all)
 }

@@ -72,16 +72,16 @@ impl Sweep {
         // Once for words with lines, once for whole numbers.
         let _: Text = a3_scenes::read(&text).map_err(|fault| wrong(fault.to_string()))?;
         let table = table(&text).map_err(|fault| wrong(fault.to_string()))?;
-        let text = serde_json::from_value(table).map_err(|why| wrong(why.to_string()))?;
+        let text: Text = serde_json::from_value(table).map_err(|why| wrong(why.to_string()))?;
         let name = path
             .file_stem()
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
-        Self::new(name, path.parent().unwrap_or(Path::new("")), text).map_err(wrong)
+        Self::new(name, path.parent().unwrap_or(Path::new("")), &text).map_err(wrong)
     }
 
-    fn new(name: String, folder: &Path, text: Text) -> Result<Self, String> {
+    fn new(name: String, folder: &Path, text: &Text) -> Result<Self, String> {
         let scenes = texts("scene", Some(&text.scene))?;
         let scenes = scenes.iter().map(|name| match a3_scenes::find(name) {
             Some(_) => Source::find(name),

@@ -57,13 +57,11 @@ pub fn set(at: &mut Value, path: &str, value: &Value) -> Result<(), String> {
 }
 
 fn put(at: &mut Value, rest: Option<&str>, value: &Value) -> Result<(), String> {
-    match rest {
-        Some(rest) => set(at, rest, value),
-        None => {
-            at.clone_from(value);
-            Ok(())
-        }
+    if let Some(rest) = rest {
+        return set(at, rest, value);
     }
+    at.clone_from(value);
+    Ok(())
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::file::Sweep;
 use super::keys;
+use super::values::exact;
 use crate::chart::data::VERSION;
 use crate::chart::measure::{stiffened, words};
 use crate::chart::{metric, scope};
@@ -185,7 +186,7 @@ fn variant(
     let mut values: Vec<_> = picked.collect();
     let factors = sweep.stiffness.as_ref();
     let factor = factors.map(|factors| factors[places[places.len() - 1]]);
-    values.extend(factor.map(Value::from));
+    values.extend(factor.map(exact));
     let mut variant = Variant {
         name: String::new(),
         scene: number,

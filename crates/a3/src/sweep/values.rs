@@ -61,11 +61,11 @@ fn spread(from: f64, to: f64, count: u64, at: impl Fn(f64) -> f64) -> Vec<Value>
             format!("{number:.5e}").parse().unwrap_or(number)
         }
     });
-    numbers.map(|number| exact(number)).collect()
+    numbers.map(exact).collect()
 }
 
 /// A number, as a whole one if it is.
-fn exact(number: f64) -> Value {
+pub fn exact(number: f64) -> Value {
     if number.fract() == 0.0 && number.abs() < 2f64.powi(53) {
         Value::from(number as i64)
     } else {

@@ -25,6 +25,7 @@ mod scene_files;
 #[cfg(unix)]
 mod signals;
 mod states;
+mod sweeps;
 mod usage;
 mod words;
 
