@@ -81,6 +81,8 @@ mod recorder;
 #[cfg(all(feature = "window", not(target_arch = "wasm32")))]
 mod render;
 #[cfg(not(target_arch = "wasm32"))]
+mod share;
+#[cfg(not(target_arch = "wasm32"))]
 mod simulate;
 #[cfg(not(target_arch = "wasm32"))]
 mod stability;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::values::{picture_size, threads};
-use crate::sweep::Only;
+use crate::share::Only;
 
 #[derive(Args)]
 #[command(after_help = "A sweep is a file such as\n\n  \

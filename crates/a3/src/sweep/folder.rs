@@ -4,12 +4,13 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::plan::{Id, Plan, Run};
+use super::plan::{Plan, Run};
 use crate::chart::data::VERSION;
 use crate::chart::record::Record;
 use crate::chart::text;
 use crate::failure::Failure;
 use crate::output;
+use crate::share::Id;
 
 /// Size of the largest file of a run (bytes).
 const LARGEST: u64 = 1 << 16;

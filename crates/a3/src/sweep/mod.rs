@@ -5,7 +5,6 @@ mod collect;
 mod file;
 mod folder;
 mod keys;
-mod only;
 mod plan;
 mod values;
 mod work;
@@ -18,8 +17,6 @@ use crate::{interrupt, output};
 use file::Sweep;
 use folder::Folder;
 use plan::Plan;
-
-pub use only::Only;
 
 /// Does what the command line asks for.
 pub fn run(options: &Options) -> Result<(), Failure> {
@@ -45,7 +42,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         return collect::run(&sweep, &plan, &folder, options.size);
     }
     let share = match &options.only {
-        Some(only) => only.of(&plan.runs).map_err(Failure::usage)?,
+        Some(only) => {
+            let ids: Vec<_> = plan.runs.iter().map(|run| run.id).collect();
+            only.of(&ids).map_err(Failure::usage)?
+        }
         None => (0..plan.runs.len()).collect(),
     };
     for refusal in &plan.refusals {

@@ -1,7 +1,5 @@
 //! The runs of a sweep, in their order: those of one scene stand together.
 
-use std::fmt;
-
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene, integrators};
 use rayon::prelude::*;
@@ -15,28 +13,10 @@ use crate::chart::measure::{stiffened, words};
 use crate::chart::{metric, scope};
 use crate::failure::Failure;
 use crate::scene_file::{Hash, Source};
+use crate::share::Id;
 
 /// Most runs.
 const MOST: u128 = 1_000_000;
-
-/// What a run is called: a number made of all that it depends on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Id(u64);
-
-impl Id {
-    /// An id as it is printed.
-    pub fn parse(text: &str) -> Option<Self> {
-        let digits = text.len() == 16 && text.bytes().all(|b| b.is_ascii_hexdigit());
-        let number = digits.then(|| u64::from_str_radix(text, 16).ok());
-        number.flatten().map(Self)
-    }
-}
-
-impl fmt::Display for Id {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{:016x}", self.0)
-    }
-}
 
 /// A scene with values for its keys.
 pub struct Variant {
@@ -228,7 +208,7 @@ fn variant(
             let mut hash = hash;
             hash.add(method.name.bytes().chain(setting.to_le_bytes()));
             Run {
-                id: Id(hash.value()),
+                id: Id::new(hash.value()),
                 variant: 0,
                 method,
                 setting,

@@ -1,6 +1,30 @@
-//! Which of the runs are asked for.
+//! Which of the runs of a sweep are asked for.
 
-use super::plan::{Id, Run};
+use std::fmt;
+
+/// What a run is called: a number made of all that it depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Id(u64);
+
+impl Id {
+    /// The id of that number.
+    pub fn new(number: u64) -> Self {
+        Self(number)
+    }
+
+    /// An id as it is printed.
+    pub fn parse(text: &str) -> Option<Self> {
+        let digits = text.len() == 16 && text.bytes().all(|b| b.is_ascii_hexdigit());
+        let number = digits.then(|| u64::from_str_radix(text, 16).ok());
+        number.flatten().map(Self)
+    }
+}
+
+impl fmt::Display for Id {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
+    }
+}
 
 /// A share of the runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,8 +52,8 @@ impl Only {
             .ok_or_else(|| right.into())
     }
 
-    /// The places of the runs in the plan.
-    pub fn of(&self, runs: &[Run]) -> Result<Vec<usize>, String> {
+    /// The places of the runs with these ids, which are those of all.
+    pub fn of(&self, runs: &[Id]) -> Result<Vec<usize>, String> {
         match self {
             Self::Share(k, n) => {
                 // In 128 bits, no product is too large.
@@ -38,7 +62,7 @@ impl Only {
             }
             Self::Ids(ids) => {
                 let place = |id: &Id| {
-                    runs.iter().position(|run| run.id == *id).ok_or_else(|| {
+                    runs.iter().position(|run| run == id).ok_or_else(|| {
                         format!("{id}: the sweep has no run of this id; --plan prints them")
                     })
                 };
