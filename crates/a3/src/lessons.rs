@@ -1,4 +1,4 @@
-//! The lessons of docs/lessons, carried in the program, so that they can be read wherever it is
+//! The lessons of the folder `lessons`, carried in the program, so that they can be read wherever it is
 //! installed: opened from the window, or printed.
 
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::output;
 
 macro_rules! carried {
     ($($name:literal),* $(,)?) => {
-        &[$(($name, include_bytes!(concat!("../../../docs/lessons/", $name)))),*]
+        &[$(($name, include_bytes!(concat!("../lessons/", $name)))),*]
     };
 }
 
@@ -117,7 +117,7 @@ fn open_with(opener: &str, path: &Path) -> String {
 mod tests {
     use super::*;
 
-    const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/lessons");
+    const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/lessons");
 
     #[test]
     fn every_file_of_the_lessons_is_carried_and_written() {
