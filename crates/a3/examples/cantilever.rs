@@ -2,7 +2,7 @@
 //! jelly, against Timoshenko's beam: linear tetrahedra are too stiff, and less so the finer they
 //! are.
 //!
-//! `cargo run -p a3 --example cantilever -- docs/pictures/cantilever.svg`
+//! `cargo run -p a3-simulator --example cantilever -- docs/pictures/cantilever.svg`
 
 use std::error::Error;
 
