@@ -4,13 +4,16 @@
 use std::panic;
 use std::path::Path;
 
+use a3_core::Simulation;
 use clap::Parser;
+use web_time::Instant;
 
 use crate::app;
 use crate::begin;
 use crate::browser::{self, files};
 use crate::cli::{self, Cli, Command};
 use crate::failure::Failure;
+use crate::scene_file::Hash;
 use crate::session::Action;
 use crate::settings::Settings;
 
@@ -46,6 +49,40 @@ fn begin() -> Result<(), Failure> {
         Settings::read().map_err(|why| browser::log(&why)).ok()
     };
     app::spawn(session, look.status, settings)
+}
+
+/// Takes steps of what a command line asks for, as fast as possible. Returns a hash (FNV-1a) of the
+/// bits of positions and velocities, and the time of a step (µs), or why there are none.
+pub fn run_steps(words: &str, steps: u32) -> String {
+    let words = ["a3"].into_iter().chain(words.split_whitespace());
+    let session = Cli::try_parse_from(words)
+        .map_err(|why| why.to_string())
+        .and_then(|cli| begin::window(&cli.window).map_err(Failure::message));
+    let begun = Instant::now();
+    let run = session.and_then(|session| {
+        let first = session.first();
+        let mut run = Simulation::new(first.scene().clone(), first.method(), first.control())
+            .map_err(|why| why.to_string())?;
+        run.take_steps(steps.into())
+            .map_err(|why| why.to_string())?;
+        Ok(run)
+    });
+    let each = 1e6 * begun.elapsed().as_secs_f64() / f64::from(steps);
+    match run {
+        Ok(run) => {
+            let mut hash = Hash::default();
+            let velocities = run.velocities();
+            let n = run.particles();
+            for i in 0..n {
+                hash.add(run.position(i).iter().flat_map(|x| x.to_le_bytes()));
+            }
+            for k in (0..n).flat_map(|i| [i, n + i, 2 * n + i]) {
+                hash.add(velocities.get(k).into_iter().flat_map(|v| v.to_le_bytes()));
+            }
+            format!("{:016x} {each:.1}", hash.value())
+        }
+        Err(why) => why,
+    }
 }
 
 /// Does what key Tab does, which leaves a page.

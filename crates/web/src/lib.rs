@@ -16,6 +16,12 @@ pub fn toggle_panel() {
     a3::page::toggle_panel();
 }
 
+/// Takes steps of what a command line asks for: a hash of the state, and the time of a step (µs).
+#[wasm_bindgen]
+pub fn run_steps(words: &str, steps: u32) -> String {
+    a3::page::run_steps(words, steps)
+}
+
 /// Opens a file that was dropped on the page.
 #[wasm_bindgen]
 pub fn open_file(name: &str, bytes: &[u8]) {

@@ -66,6 +66,11 @@ impl App {
         self.take_graphics(event_loop, graphics);
     }
 
+    /// Closes the window.
+    pub fn quit(&self, event_loop: &ActiveEventLoop) {
+        event_loop.exit();
+    }
+
     /// Saves a picture, and returns what is said of it.
     pub fn save_picture(&mut self) -> String {
         match self.write_picture() {

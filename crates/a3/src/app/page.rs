@@ -99,6 +99,12 @@ impl App {
         }
     }
 
+    /// A page is closed by the browser. What is remembered is kept now.
+    pub fn quit(&mut self, _: &ActiveEventLoop) {
+        self.remember();
+        self.session.say("The browser closes the page.");
+    }
+
     /// Saves the next frame as a picture, and returns what is said of it.
     pub fn save_picture(&mut self) -> String {
         self.outside.picture = true;

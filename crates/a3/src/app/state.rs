@@ -138,7 +138,7 @@ impl App {
     /// Does an action of the keys.
     pub fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
         match action {
-            Action::Quit => event_loop.exit(),
+            Action::Quit => self.quit(event_loop),
             Action::Picture => {
                 let message = self.save_picture();
                 self.session.say(message);

@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn the_help_fits_into_small_windows() {
         for size in [[320.0, 240.0], [640.0, 360.0], [1000.0, 300.0]] {
-            let ctx = Context::default();
+            let ctx = crate::hud::style::context();
             let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
             let seen = |scroll: f32| {
                 let mut words = String::new();

@@ -144,7 +144,7 @@ mod tests {
     fn a_click_takes_an_entry_and_a_click_elsewhere_closes_the_list() {
         let mut session = session(&["v", "0.005"]);
         session.act(Action::Scenes, 0);
-        let ctx = Context::default();
+        let ctx = crate::hud::style::context();
         let middle = Pos2::new(320.0, 180.0);
         for _ in 0..3 {
             assert_eq!(draw(&ctx, &session, middle, None), None);

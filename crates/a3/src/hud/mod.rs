@@ -49,7 +49,7 @@ mod tests {
                 _ => {}
             }
         }
-        let ctx = Context::default();
+        let ctx = crate::hud::style::context();
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
         let mut output = egui::FullOutput::default();
         // The first pass measures, the next ones draw.

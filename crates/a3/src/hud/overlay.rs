@@ -4,7 +4,7 @@ use a3_render::Gpu;
 use egui::ClippedPrimitive;
 use egui::epaint::Primitive;
 
-use super::style::exchanged;
+use super::style::{context, exchanged};
 
 /// egui's layout and its renderer.
 pub struct Overlay {
@@ -19,7 +19,7 @@ impl Overlay {
     /// An overlay for views of this format.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
         Self {
-            context: egui::Context::default(),
+            context: context(),
             dark: false,
             renderer: egui_wgpu::Renderer::new(
                 &gpu.device,

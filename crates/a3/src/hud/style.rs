@@ -1,6 +1,12 @@
 //! Colours, sizes of text, and sheets of paper to write on.
 
-use egui::{Align2, Area, Color32, Context, Frame, Id, Margin, RichText, Ui};
+use std::sync::Arc;
+
+use egui::{
+    Align2, Area, Color32, Context, FontData, FontDefinitions, FontTweak, Frame, Id, Margin,
+    RichText, Ui,
+};
+use epaint_default_fonts::{EMOJI_ICON, UBUNTU_LIGHT};
 
 /// Colour of text.
 pub const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
@@ -50,6 +56,25 @@ pub fn exchanged(color: Color32) -> Color32 {
     let shift = 255 - i16::from(low) - i16::from(high);
     let [r, g, b] = [r, g, b].map(|channel| (i16::from(channel) + shift).clamp(0, 255) as u8);
     Color32::from_rgba_unmultiplied(r, g, b, a)
+}
+
+/// A layout with its fonts: letters, and the symbols of the marks.
+pub fn context() -> Context {
+    let mut fonts = FontDefinitions::empty();
+    for (name, bytes, scale) in [("letters", UBUNTU_LIGHT, 1.0), ("symbols", EMOJI_ICON, 0.9)] {
+        let tweak = FontTweak {
+            scale,
+            ..FontTweak::default()
+        };
+        let data = FontData::from_static(bytes).tweak(tweak);
+        fonts.font_data.insert(name.into(), Arc::new(data));
+        for family in fonts.families.values_mut() {
+            family.push(name.into());
+        }
+    }
+    let context = Context::default();
+    context.set_fonts(fonts);
+    context
 }
 
 /// A column for sheets below one another. Clicks go through it.
@@ -114,7 +139,7 @@ mod tests {
 
     #[test]
     fn every_mark_has_its_own_symbol_and_the_font_has_them() {
-        let ctx = Context::default();
+        let ctx = context();
         let mut output = ctx.run_ui(egui::RawInput::default(), |_| {});
         output.textures_delta.set.clear();
         output.textures_delta.free.clear();

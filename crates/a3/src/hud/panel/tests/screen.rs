@@ -17,7 +17,7 @@ pub struct Screen {
 impl Screen {
     pub fn new(size: [f32; 2]) -> Self {
         Self {
-            ctx: Context::default(),
+            ctx: crate::hud::style::context(),
             size,
             time: 0.0,
         }
