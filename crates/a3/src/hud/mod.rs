@@ -30,7 +30,6 @@ mod tests {
     //! Panes for tests, and a reader of what is written over them.
 
     use a3_core::{Simulation, integrators};
-    use egui::Context;
 
     use super::show;
     use super::style::PAPER;
