@@ -13,6 +13,7 @@ use crate::begin;
 use crate::browser::{self, files};
 use crate::cli::{self, Cli, Command};
 use crate::failure::Failure;
+use crate::progress;
 use crate::scene_file::Hash;
 use crate::session::Action;
 use crate::settings::Settings;
@@ -53,6 +54,7 @@ fn begin() -> Result<(), Failure> {
 
 /// Takes steps of what a command line asks for, as fast as possible. Returns a hash (FNV-1a) of the
 /// bits of positions and velocities, and the time of a step (µs), or why there are none.
+#[must_use]
 pub fn run_steps(words: &str, steps: u32) -> String {
     let words = ["a3"].into_iter().chain(words.split_whitespace());
     let session = Cli::try_parse_from(words)
@@ -63,8 +65,8 @@ pub fn run_steps(words: &str, steps: u32) -> String {
         let first = session.first();
         let mut run = Simulation::new(first.scene().clone(), first.method(), first.control())
             .map_err(|why| why.to_string())?;
-        run.take_steps(steps.into())
-            .map_err(|why| why.to_string())?;
+        let until = f64::from(steps) * first.control().value();
+        progress::advance(&mut run, until, |_| {}).map_err(|why| why.to_string())?;
         Ok(run)
     });
     let each = 1e6 * begun.elapsed().as_secs_f64() / f64::from(steps);

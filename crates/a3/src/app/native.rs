@@ -67,6 +67,7 @@ impl App {
     }
 
     /// Closes the window.
+    #[expect(clippy::unused_self, reason = "a page is not closed, and says so")]
     pub fn quit(&self, event_loop: &ActiveEventLoop) {
         event_loop.exit();
     }
