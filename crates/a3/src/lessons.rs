@@ -1,5 +1,5 @@
-//! The lessons of the folder `lessons`, carried in the program, so that they can be read wherever it is
-//! installed: opened from the window, or printed.
+//! The lessons of the folder `lessons`, carried in the program, so that they can be read wherever
+//! it is installed: opened from the window, or printed.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -1,6 +1,7 @@
 //! Hashes of the states that every scene reaches by every method: a change that is meant to change
-//! no number changes none of them. `A3_BLESS=1 cargo test -p a3-simulator --test golden` writes them anew;
-//! the commit then says which and why.
+//! no number changes none of them.
+//! `A3_BLESS=1 cargo test -p a3-simulator --test golden` writes them anew; the commit then says
+//! which and why.
 
 #![allow(missing_docs, reason = "a test")]
 
