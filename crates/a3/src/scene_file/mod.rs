@@ -9,4 +9,4 @@ mod read;
 mod source;
 
 pub use hash::Hash;
-pub use source::{Source, table};
+pub use source::{Source, place, table};

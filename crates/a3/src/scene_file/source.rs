@@ -183,7 +183,7 @@ fn make_whole(value: &mut Value) {
 }
 
 /// An error with its place: `FILE:LINE: error` if it names a line, as compilers write it.
-fn place(file: &str, why: &str) -> String {
+pub fn place(file: &str, why: &str) -> String {
     match why.strip_prefix("line ") {
         Some(rest) => format!("{file}:{rest}"),
         None => format!("{file}: {why}"),

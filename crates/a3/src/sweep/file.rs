@@ -15,7 +15,7 @@ use crate::bounds;
 use crate::cli::{ErrorMeasure, ErrorScope};
 use crate::failure::Failure;
 use crate::output;
-use crate::scene_file::{Source, table};
+use crate::scene_file::{Source, place, table};
 
 /// Size of the largest file (bytes).
 const LARGEST: u64 = 1 << 20;
@@ -42,6 +42,9 @@ struct Text {
 
 /// What is run.
 pub struct Sweep {
+    /// The path of the file as it was typed.
+    pub file: String,
+    /// Name of the file.
     pub name: String,
     pub scenes: Vec<Source>,
     /// The solvers that were asked for; empty if all are meant.
@@ -61,7 +64,7 @@ pub struct Sweep {
 impl Sweep {
     /// Reads the file.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display()));
+        let wrong = |why: String| Failure::usage(place(&path.to_string_lossy(), &why));
         let size = fs::metadata(path)
             .map_err(|e| wrong(format!("it could not be read: {}", output::reason(&e))))?;
         if !size.is_file() || size.len() > LARGEST {
@@ -73,15 +76,11 @@ impl Sweep {
         let _: Text = a3_scenes::read(&text).map_err(|fault| wrong(fault.to_string()))?;
         let table = table(&text).map_err(|fault| wrong(fault.to_string()))?;
         let text: Text = serde_json::from_value(table).map_err(|why| wrong(why.to_string()))?;
-        let name = path
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        Self::new(name, path.parent().unwrap_or(Path::new("")), &text).map_err(wrong)
+        Self::new(path, &text).map_err(wrong)
     }
 
-    fn new(name: String, folder: &Path, text: &Text) -> Result<Self, String> {
+    fn new(path: &Path, text: &Text) -> Result<Self, String> {
+        let folder = path.parent().unwrap_or(Path::new(""));
         let scenes = texts("scene", Some(&text.scene))?;
         let scenes = scenes.iter().map(|name| match a3_scenes::find(name) {
             Some(_) => Source::find(name),
@@ -114,7 +113,12 @@ impl Sweep {
         }
         let factors = 1e-9..=1e9;
         let sweep = Self {
-            name,
+            file: path.display().to_string(),
+            name: path
+                .file_stem()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
             scenes: scenes.collect::<Result<_, _>>()?,
             methods: methods.collect::<Result<_, _>>()?,
             steps: numbers(

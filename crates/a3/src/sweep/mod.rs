@@ -48,8 +48,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         None => (0..plan.runs.len()).collect(),
     };
-    for refusal in &plan.refusals {
-        output::warn(&format!("left out: {refusal}"));
+    // Who asks for all that can run a scene knows that some cannot.
+    if !sweep.methods.is_empty() {
+        for refusal in &plan.refusals {
+            output::warn(&format!("left out: {refusal}"));
+        }
     }
     folder.create()?;
     let left = work::run(&sweep, &plan, &share, &folder)?;

@@ -78,7 +78,7 @@ impl Plan {
         if count > MOST {
             return Err(Failure::usage(format!(
                 "{}: the sweep has {count} runs; at most {MOST} are possible: make several files of it",
-                sweep.name
+                sweep.file
             )));
         }
         let planned = (0..scenes as usize)
@@ -92,7 +92,7 @@ impl Plan {
                 variant(sweep, &methods, k, &places)
             })
             .collect::<Result<Vec<Planned>, String>>()
-            .map_err(|why| Failure::usage(format!("{}: {why}", sweep.name)))?;
+            .map_err(|why| Failure::usage(format!("{}: {why}", sweep.file)))?;
         let mut plan = Self {
             variants: vec![],
             runs: vec![],
@@ -117,7 +117,7 @@ impl Plan {
             let why = plan.refusals.first().map_or("", String::as_str);
             return Err(Failure::usage(format!(
                 "{}: the sweep has no runs: {why}",
-                sweep.name
+                sweep.file
             )));
         }
         Ok(plan)

@@ -249,7 +249,7 @@ fn a_sweep_that_cannot_be_is_refused_in_a_line() {
         (
             "scene = \"chain\"\nstep = 0,5\nuntil = 1".into(),
             "",
-            "line 2",
+            "s.toml:2: ",
         ),
         (base.into(), "--only 4/3", "a share is K/N"),
         (base.into(), "--only 0123456789abcdef", "no run of this id"),
@@ -262,6 +262,8 @@ fn a_sweep_that_cannot_be_is_refused_in_a_line() {
             .collect();
         let line = complaint(&a3(folder.path(), &words), 2);
         assert!(line.contains(why), "{sweep}: {line}");
+        let of_file = words.len() == 2;
+        assert!(!of_file || line.starts_with("error: s.toml:"), "{line}");
         assert_eq!(
             fs::read_dir(folder.path()).unwrap().count(),
             1,
