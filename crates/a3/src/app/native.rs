@@ -8,6 +8,8 @@ use a3_render::Offscreen;
 use arboard::Clipboard;
 use winit::dpi::LogicalSize;
 use winit::event_loop::ActiveEventLoop;
+#[cfg(target_os = "linux")]
+use winit::platform::wayland::WindowAttributesExtWayland;
 use winit::window::{Window, WindowAttributes};
 
 use super::graphics::{self, Graphics};
@@ -21,9 +23,13 @@ use crate::{lessons, output};
 
 /// How the window begins.
 pub fn attributes() -> WindowAttributes {
-    Window::default_attributes()
+    let attributes = Window::default_attributes()
         .with_inner_size(LogicalSize::new(1280.0, 720.0))
-        .with_min_inner_size(LogicalSize::new(64.0, 48.0))
+        .with_min_inner_size(LogicalSize::new(64.0, 48.0));
+    // By this name a desktop finds the icon. On X11 the window has it by itself.
+    #[cfg(target_os = "linux")]
+    let attributes = WindowAttributesExtWayland::with_name(attributes, "a3", "a3");
+    attributes
 }
 
 /// Events that come from elsewhere: none.
