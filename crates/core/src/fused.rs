@@ -7,7 +7,7 @@
     reason = "what is not inlined is not compiled for the processor's vectors"
 )]
 
-use pulp::Simd;
+use pulp::{Simd, cast};
 
 /// a b + c.
 #[inline(always)]
@@ -31,10 +31,14 @@ pub(crate) fn mul_add(a: f64, b: f64, c: f64) -> f64 {
 /// a b + c in each lane.
 #[inline(always)]
 pub(crate) fn mul_adds<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
-    if cfg!(target_arch = "wasm32") {
-        simd.mul_add_e_f64s(a, b, c)
-    } else {
+    if !cfg!(target_arch = "wasm32") {
         simd.mul_add_f64s(a, b, c)
+    } else if S::F64_LANES == 1 {
+        // The end of a row is rounded like the rest of it.
+        let [a, b, c] = [a, b, c].map(cast::<S::f64s, f64>);
+        simd.splat_f64s(mul_add(a, b, c))
+    } else {
+        simd.mul_add_e_f64s(a, b, c)
     }
 }
 
@@ -42,7 +46,7 @@ pub(crate) fn mul_adds<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> 
 #[inline(always)]
 pub(crate) fn negate_mul_adds<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
     if cfg!(target_arch = "wasm32") {
-        simd.negate_mul_add_e_f64s(a, b, c)
+        mul_adds(simd, simd.neg_f64s(a), b, c)
     } else {
         simd.negate_mul_add_f64s(a, b, c)
     }
