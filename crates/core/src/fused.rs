@@ -7,7 +7,7 @@
     reason = "what is not inlined is not compiled for the processor's vectors"
 )]
 
-use pulp::{Simd, cast};
+use pulp::Simd;
 
 /// a b + c.
 #[inline(always)]
@@ -35,7 +35,7 @@ pub(crate) fn mul_adds<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> 
         simd.mul_add_f64s(a, b, c)
     } else if S::F64_LANES == 1 {
         // The end of a row is rounded like the rest of it.
-        let [a, b, c] = [a, b, c].map(cast::<S::f64s, f64>);
+        let [a, b, c] = [a, b, c].map(|lane| simd.reduce_sum_f64s(lane));
         simd.splat_f64s(mul_add(a, b, c))
     } else {
         simd.mul_add_e_f64s(a, b, c)
