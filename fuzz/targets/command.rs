@@ -10,10 +10,14 @@ mod cli;
 mod failure;
 #[path = "../../crates/a3/src/interrupt.rs"]
 mod interrupt;
+#[path = "../../crates/a3/src/lessons.rs"]
+mod lessons;
 #[path = "../../crates/a3/src/output/mod.rs"]
 mod output;
 #[path = "../../crates/a3/src/scene_file/mod.rs"]
 mod scene_file;
+#[path = "../../crates/a3/src/share.rs"]
+mod share;
 
 use clap::Parser;
 use clap::error::ErrorKind;
