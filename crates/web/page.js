@@ -11,10 +11,12 @@ const canvas = document.getElementById("a3");
 const panel = document.getElementById("panel");
 
 try {
-  if (!navigator.gpu) {
-    throw new Error("a3 draws with WebGPU, which this browser does not have, or not here: try another browser, or https");
+  // A browser may know WebGPU and have no adapter for it. The other build draws with WebGL 2.
+  const fast = relaxed && await navigator.gpu?.requestAdapter().catch(() => null);
+  if (!fast && !document.createElement("canvas").getContext("webgl2")) {
+    throw new Error("a3 draws with WebGPU or WebGL 2, and this browser has neither, or not here: try another browser");
   }
-  const program = await import(relaxed ? "./fast/a3_web.js" : "./plain/a3_web.js");
+  const program = await import(fast ? "./fast/a3_web.js" : "./plain/a3_web.js");
   await program.default();
   program.start();
   if (words.textContent.startsWith("a3 is loading")) words.textContent = "";

@@ -8,6 +8,7 @@
 mod buffers;
 mod camera;
 mod gpu;
+mod list;
 mod mesh;
 mod offscreen;
 mod picture;

@@ -5,8 +5,10 @@
 struct Line {
     @builtin(position) clip: vec4<f32>,
     @location(0) color: vec4<f32>,
-    // Distance from the middle of the line, and half its width (px).
-    @location(1) @interpolate(linear) across: f32,
+    // Distance from the middle of the line (px) and 1, both times the depth: their ratio changes
+    // evenly on the screen, also where there is no linear interpolation, as in WebGL.
+    @location(1) across: vec2<f32>,
+    // Half the width of the line (px).
     @location(2) @interpolate(flat) half_width: f32,
 };
 
@@ -31,7 +33,7 @@ fn line(a: vec3<f32>, b: vec3<f32>, points_wide: f32, color: vec4<f32>, i: u32) 
     // The line lies a little nearer to the eye, so that a line on a surface is not hidden by it.
     out.clip = vec4(end.xy + offset * end.w, end.z - 2e-4 * end.w, end.w);
     out.color = color;
-    out.across = side * reach;
+    out.across = vec2(side * reach, 1.0) * end.w;
     out.half_width = half_width;
     return out;
 }
@@ -44,11 +46,11 @@ fn faded(a: vec3<f32>, b: vec3<f32>) -> f32 {
 }
 
 @vertex fn wire_vertex(@builtin(vertex_index) i: u32, @location(0) ends: vec2<u32>) -> Line {
-    let a = points[ends.x].xyz;
-    let b = points[ends.y].xyz;
-    let value = -1.0 - select(points[ends.x].w, points[ends.y].w, i >= 2u);
-    if value >= 0.0 { return line(a, b, 2.0, vec4(ramp(value), 1.0), i); }
-    return line(a, b, 1.35, vec4(inked(INK), faded(a, b)), i);
+    let a = point(ends.x);
+    let b = point(ends.y);
+    let value = -1.0 - select(a.w, b.w, i >= 2u);
+    if value >= 0.0 { return line(a.xyz, b.xyz, 2.0, vec4(ramp(value), 1.0), i); }
+    return line(a.xyz, b.xyz, 1.35, vec4(inked(INK), faded(a.xyz, b.xyz)), i);
 }
 
 // A spring between two particles, in the colour of its kind or of a value.
@@ -56,12 +58,13 @@ fn faded(a: vec3<f32>, b: vec3<f32>) -> f32 {
     @builtin(vertex_index) i: u32,
     @location(0) ends: vec2<u32>, @location(1) points_wide: f32, @location(2) color: vec3<f32>
 ) -> Line {
-    let a = points[ends.x].xyz;
-    let b = points[ends.y].xyz;
-    let value = -1.0 - select(points[ends.x].w, points[ends.y].w, i >= 2u);
-    if value >= 0.0 { return line(a, b, points_wide, vec4(ramp(value), 1.0), i); }
+    let a = point(ends.x);
+    let b = point(ends.y);
+    let value = -1.0 - select(a.w, b.w, i >= 2u);
+    if value >= 0.0 { return line(a.xyz, b.xyz, points_wide, vec4(ramp(value), 1.0), i); }
     // Opaque, so that no colour shines through another.
-    return line(a, b, points_wide, vec4(mix(paper(), inked(color), 0.75 + 0.25 * faded(a, b)), 1.0), i);
+    let strength = 0.75 + 0.25 * faded(a.xyz, b.xyz);
+    return line(a.xyz, b.xyz, points_wide, vec4(mix(paper(), inked(color), strength), 1.0), i);
 }
 
 @vertex fn line_vertex(
@@ -76,7 +79,7 @@ struct LineShadow {
     @builtin(position) clip: vec4<f32>,
     @location(0) world: vec3<f32>,
     @location(1) height: f32,
-    @location(2) @interpolate(linear) across: f32,
+    @location(2) across: vec2<f32>,
     @location(3) @interpolate(flat) half_width: f32,
 };
 
@@ -94,14 +97,14 @@ fn line_shadow(a: vec3<f32>, b: vec3<f32>, points_wide: f32, i: u32) -> LineShad
 }
 
 @vertex fn wire_shadow_vertex(@builtin(vertex_index) i: u32, @location(0) ends: vec2<u32>) -> LineShadow {
-    return line_shadow(points[ends.x].xyz, points[ends.y].xyz, 1.35, i);
+    return line_shadow(point(ends.x).xyz, point(ends.y).xyz, 1.35, i);
 }
 
 @vertex fn spring_shadow_vertex(
     @builtin(vertex_index) i: u32,
     @location(0) ends: vec2<u32>, @location(1) points_wide: f32, @location(2) color: vec3<f32>
 ) -> LineShadow {
-    return line_shadow(points[ends.x].xyz, points[ends.y].xyz, points_wide, i);
+    return line_shadow(point(ends.x).xyz, point(ends.y).xyz, points_wide, i);
 }
 
 @vertex fn line_shadow_vertex(
@@ -113,12 +116,12 @@ fn line_shadow(a: vec3<f32>, b: vec3<f32>, points_wide: f32, i: u32) -> LineShad
 }
 
 @fragment fn line_shadow_fragment(in: LineShadow) -> @location(0) vec4<f32> {
-    let edge = clamp(in.half_width + 0.5 - abs(in.across), 0.0, 1.0) * step(0.01, in.half_width);
+    let edge = clamp(in.half_width + 0.5 - abs(in.across.x / in.across.y), 0.0, 1.0) * step(0.01, in.half_width);
     // The stencil counts what is drawn: pixels outside must stay free.
     if edge < 0.05 { discard; }
     return shadow_color(in.world, in.height) * vec4(1.0, 1.0, 1.0, edge);
 }
 
 @fragment fn line_fragment(in: Line) -> @location(0) vec4<f32> {
-    return vec4(in.color.rgb, in.color.a * clamp(in.half_width + 0.5 - abs(in.across), 0.0, 1.0));
+    return vec4(in.color.rgb, in.color.a * clamp(in.half_width + 0.5 - abs(in.across.x / in.across.y), 0.0, 1.0));
 }

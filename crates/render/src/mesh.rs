@@ -1,18 +1,19 @@
 //! Meshes on the GPU: the triangles, wires and springs of a topology.
 
-use wgpu::BufferUsages;
+use wgpu::{BufferUsages, TextureFormat};
 
 use crate::buffers::filled;
 use crate::gpu::Gpu;
+use crate::list::List;
 use crate::picture::Topology;
 
 /// The buffers of a topology. Clones share them.
 #[derive(Clone)]
 pub(crate) struct Mesh {
     /// For each point, the index in `around` of the first of its triangles.
-    pub(crate) first: wgpu::Buffer,
+    pub(crate) first: List,
     /// The triangles around each point, as their other two corners.
-    pub(crate) around: wgpu::Buffer,
+    pub(crate) around: List,
     triangles: wgpu::Buffer,
     pub(crate) wires: wgpu::Buffer,
     pub(crate) points: usize,
@@ -28,12 +29,8 @@ impl Mesh {
         let (first, around) = triangles_around(topology);
         let filled = |label, usage, bytes| filled(gpu, label, usage, bytes);
         Self {
-            first: filled("first", BufferUsages::STORAGE, bytemuck::cast_slice(&first)),
-            around: filled(
-                "around",
-                BufferUsages::STORAGE,
-                bytemuck::cast_slice(&around),
-            ),
+            first: List::filled(gpu, "first", TextureFormat::R32Uint, &first),
+            around: List::filled(gpu, "around", TextureFormat::Rg32Uint, &around),
             triangles: filled(
                 "triangles",
                 BufferUsages::INDEX,

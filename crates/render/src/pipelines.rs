@@ -1,7 +1,10 @@
 //! Render pipelines: the shader and the data of each kind of thing, and how it is combined with the
 //! picture so far.
 
-use wgpu::{CompareFunction, PrimitiveTopology, ShaderStages, StencilOperation, VertexStepMode};
+use wgpu::{
+    CompareFunction, PrimitiveTopology, ShaderStages, StencilOperation, TextureSampleType,
+    VertexStepMode,
+};
 
 use crate::gpu::DEPTH;
 use crate::picture::{Ball, Corner, Line, Solid, Spring};
@@ -37,25 +40,28 @@ pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry {
         binding,
         visibility,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
+        ty,
         count: None,
     };
-    let storage = wgpu::BufferBindingType::Storage { read_only: true };
+    let globals = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let list = |sample_type| wgpu::BindingType::Texture {
+        sample_type,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let points = list(TextureSampleType::Float { filterable: false });
+    let numbers = list(TextureSampleType::Uint);
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("particles"),
         entries: &[
-            entry(
-                0,
-                ShaderStages::VERTEX_FRAGMENT,
-                wgpu::BufferBindingType::Uniform,
-            ),
-            entry(1, ShaderStages::VERTEX, storage),
-            entry(2, ShaderStages::VERTEX, storage),
-            entry(3, ShaderStages::VERTEX, storage),
+            entry(0, ShaderStages::VERTEX_FRAGMENT, globals),
+            entry(1, ShaderStages::VERTEX, points),
+            entry(2, ShaderStages::VERTEX, numbers),
+            entry(3, ShaderStages::VERTEX, numbers),
         ],
     })
 }

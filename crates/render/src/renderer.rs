@@ -257,18 +257,18 @@ mod tests {
         };
         let right = ridge(&gpu, SOURCE);
         assert_eq!(ridge(&gpu, SOURCE), right);
-        let sum = "n += cross(points[around[k].x].xyz - p, points[around[k].y].xyz - p);";
+        let sum = "n += cross(point(others.x).xyz - p, point(others.y).xyz - p);";
         for (good, bad) in [
             ("out.normal = n;", "out.normal = -n;"),
             ("out.normal = n;", "out.normal = vec3(0.0, 0.0, 1.0);"),
             // Only one of the triangles; then all of them with equal weights.
             (
                 sum,
-                "n = cross(points[around[k].x].xyz - p, points[around[k].y].xyz - p);",
+                "n = cross(point(others.x).xyz - p, point(others.y).xyz - p);",
             ),
             (
                 sum,
-                "n += normalize(cross(points[around[k].x].xyz - p, points[around[k].y].xyz - p));",
+                "n += normalize(cross(point(others.x).xyz - p, point(others.y).xyz - p));",
             ),
             (
                 "select(-1.0, 1.0, front)",

@@ -1,6 +1,7 @@
 // The shaders of all pipelines. One bind group serves all of them: the camera and the light, and
 // the positions of the particles with the triangles that give them normals. Positions are sent once
-// a frame; the mesh, the wireframe and the shadow read the same copy.
+// a frame; the mesh, the wireframe and the shadow read the same copy. Lists lie in the rows of
+// textures, because WebGL has no storage buffers.
 
 struct Globals {
     view_proj: mat4x4<f32>,
@@ -17,11 +18,20 @@ struct Globals {
 };
 
 @group(0) @binding(0) var<uniform> globals: Globals;
-@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
-// The triangles around point i are around[first[i]] to around[first[i + 1] - 1]. Each is given by
+@group(0) @binding(1) var points: texture_2d<f32>;
+// The triangles around point i are items first[i] to first[i + 1] - 1 of `around`. Each is given by
 // its other two corners.
-@group(0) @binding(2) var<storage, read> first: array<u32>;
-@group(0) @binding(3) var<storage, read> around: array<vec2<u32>>;
+@group(0) @binding(2) var first: texture_2d<u32>;
+@group(0) @binding(3) var around: texture_2d<u32>;
+
+// The items in a row of a list.
+const ROW = 2048u;
+
+// Where item i of a list is.
+fn item(i: u32) -> vec2<u32> { return vec2(i % ROW, i / ROW); }
+
+// Position of point i (m), and what its surface looks like.
+fn point(i: u32) -> vec4<f32> { return textureLoad(points, item(i), 0); }
 
 const PAPER = vec3(0.86, 0.855, 0.835);
 const SHADE = vec3(0.56, 0.60, 0.655);
@@ -154,7 +164,7 @@ fn shadow_color(world: vec3<f32>, height: f32) -> vec4<f32> {
 }
 
 @vertex fn mesh_shadow_vertex(@builtin(vertex_index) i: u32) -> Shadow {
-    return shadow(points[i].xyz);
+    return shadow(point(i).xyz);
 }
 
 @vertex fn ball_shadow_vertex(
@@ -196,17 +206,20 @@ struct Mesh {
 };
 
 @vertex fn mesh_vertex(@builtin(vertex_index) i: u32) -> Mesh {
-    let p = points[i].xyz;
+    let here = point(i);
+    let p = here.xyz;
+    let end = textureLoad(first, item(i + 1u), 0).x;
     var n = vec3(0.0);
-    for (var k = first[i]; k < first[i + 1u]; k++) {
-        n += cross(points[around[k].x].xyz - p, points[around[k].y].xyz - p);
+    for (var k = textureLoad(first, item(i), 0).x; k < end; k++) {
+        let others = textureLoad(around, item(k), 0).xy;
+        n += cross(point(others.x).xyz - p, point(others.y).xyz - p);
     }
     var out: Mesh;
     out.clip = globals.view_proj * vec4(p, 1.0);
     out.world = p;
     out.normal = n;
-    out.look = u32(max(points[i].w, 0.0));
-    out.value = select(-1.0, -1.0 - points[i].w, points[i].w < 0.0);
+    out.look = u32(max(here.w, 0.0));
+    out.value = select(-1.0, -1.0 - here.w, here.w < 0.0);
     return out;
 }
 

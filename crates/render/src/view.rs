@@ -1,10 +1,11 @@
 //! Views: the place of each picture in the target, and the buffers of what is in it.
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::BufferUsages;
+use wgpu::{BufferUsages, TextureFormat};
 
 use crate::buffers::{Instances, buffer};
 use crate::gpu::Gpu;
+use crate::list::List;
 use crate::mesh::Mesh;
 use crate::picture::{Picture, Style, Tile};
 
@@ -31,7 +32,7 @@ struct Globals {
 /// The buffers of a picture.
 pub(crate) struct View {
     globals: wgpu::Buffer,
-    points: wgpu::Buffer,
+    points: List,
     pub(crate) bind: wgpu::BindGroup,
     pub(crate) balls: Instances,
     pub(crate) solids: Instances,
@@ -78,14 +79,12 @@ impl View {
             BufferUsages::UNIFORM,
             size_of::<Globals>(),
         );
-        let points = buffer(device, "points", BufferUsages::STORAGE, 16 * mesh.points);
-        let buffers = [&globals, &points, &mesh.first, &mesh.around];
+        let points = List::new(device, "points", TextureFormat::Rgba32Float, mesh.points);
+        let lists = [&points, &mesh.first, &mesh.around];
+        let lists = lists.map(|list| wgpu::BindingResource::TextureView(&list.view));
         let entries: Vec<_> = (0..)
-            .zip(buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
+            .zip([globals.as_entire_binding()].into_iter().chain(lists))
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
             .collect();
         Self {
             bind: device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -110,7 +109,7 @@ impl View {
     /// Sends a picture to the GPU, to be drawn in this part of the target.
     pub(crate) fn prepare(&mut self, gpu: &Gpu, picture: &Picture, tile: Tile) {
         let queue = &gpu.queue;
-        queue.write_buffer(&self.points, 0, bytemuck::cast_slice(picture.points));
+        self.points.write(gpu, picture.points);
         let mut balls = picture.balls.to_vec();
         balls.sort_by(|a, b| a.radius.total_cmp(&b.radius));
         self.balls.write(gpu, &balls);
