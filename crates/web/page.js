@@ -11,12 +11,13 @@ const canvas = document.getElementById("a3");
 const panel = document.getElementById("panel");
 
 try {
-  // A browser may know WebGPU and have no adapter for it. The other build draws with WebGL 2.
-  const fast = relaxed && await navigator.gpu?.requestAdapter().catch(() => null);
-  if (!fast && !document.createElement("canvas").getContext("webgl2")) {
+  // A browser may know WebGPU and have no adapter for it.
+  const adapter = relaxed && await navigator.gpu?.requestAdapter().catch(() => null);
+  const build = adapter ? "webgpu" : relaxed ? "webgl" : "plain";
+  if (!adapter && !document.createElement("canvas").getContext("webgl2")) {
     throw new Error("a3 draws with WebGPU or WebGL 2, and this browser has neither, or not here: try another browser");
   }
-  const program = await import(fast ? "./fast/a3_web.js" : "./plain/a3_web.js");
+  const program = await import(`./${build}/a3_web.js`);
   await program.default();
   program.start();
   if (words.textContent.startsWith("a3 is loading")) words.textContent = "";

@@ -4,27 +4,19 @@ use crate::gpu::{Gpu, GpuError};
 use crate::picture::{Picture, Tile};
 use crate::renderer::Renderer;
 use crate::targets::{GAP, Targets};
+use crate::transfer::Transfer;
 
 /// The format of offscreen pictures: eight bits each of red, green, blue and opacity, in sRGB.
 pub const OFFSCREEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// The same format without sRGB, so that bytes are blended as they are.
-const TEXT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-
-/// The format of the view that text is written to: without sRGB, if the backend can have views of
-/// two formats of a texture.
-fn text_format(gpu: &Gpu) -> wgpu::TextureFormat {
-    let flags = gpu.adapter.get_downlevel_capabilities().flags;
-    if flags.contains(wgpu::DownlevelFlags::VIEW_FORMATS) {
-        TEXT_FORMAT
-    } else {
-        OFFSCREEN_FORMAT
-    }
-}
+/// The format of text over them: the same bytes, which are blended as they are.
+pub const TEXT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// A texture to draw into, and the buffer by which its pixels come back from the GPU.
 pub struct Offscreen {
+    /// Has the format of text, and is seen in that of pictures too where that is possible.
     texture: wgpu::Texture,
-    view: wgpu::TextureView,
+    /// Is drawn into where it is not.
+    transfer: Option<Transfer>,
     targets: Targets,
     buffer: wgpu::Buffer,
     /// The number of bytes in a row of the buffer, which is a multiple of 256.
@@ -42,6 +34,8 @@ impl Offscreen {
         if !fits(size.0) || !fits(size.1) {
             return Err(GpuError::Size { asked: size, limit });
         }
+        let flags = gpu.adapter.get_downlevel_capabilities().flags;
+        let two_views = flags.contains(wgpu::DownlevelFlags::VIEW_FORMATS);
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("offscreen"),
             size: wgpu::Extent3d {
@@ -52,13 +46,9 @@ impl Offscreen {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: OFFSCREEN_FORMAT,
+            format: TEXT_FORMAT,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: if text_format(gpu) == OFFSCREEN_FORMAT {
-                &[]
-            } else {
-                &[TEXT_FORMAT]
-            },
+            view_formats: if two_views { &[OFFSCREEN_FORMAT] } else { &[] },
         });
         let stride = (size.0 * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -68,7 +58,7 @@ impl Offscreen {
             mapped_at_creation: false,
         });
         Ok(Self {
-            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            transfer: (!two_views).then(|| Transfer::new(gpu, size, TEXT_FORMAT)),
             targets: Targets::new(gpu, size, OFFSCREEN_FORMAT, gpu.samples(OFFSCREEN_FORMAT)),
             texture,
             buffer,
@@ -94,11 +84,11 @@ impl Offscreen {
         picture: &Picture,
     ) -> Result<Vec<u8>, GpuError> {
         let tile = Tile::whole(self.size());
-        self.render_tiles(gpu, renderer, &[(*picture, tile)], |_, _, _| vec![])
+        self.render_tiles(gpu, renderer, &[(*picture, tile)], |_, _| vec![])
     }
 
     /// Draws several pictures, each in its own part of the target, and returns the pixels as
-    /// [`render`](Self::render) does. `text` draws over them, into a view of the given format; the
+    /// [`render`](Self::render) does. `text` draws over them, into a view of [`TEXT_FORMAT`]; the
     /// commands that it returns are submitted first.
     ///
     /// # Errors
@@ -108,11 +98,7 @@ impl Offscreen {
         gpu: &Gpu,
         renderer: &mut Renderer,
         pictures: &[(Picture, Tile)],
-        text: impl FnOnce(
-            &mut wgpu::CommandEncoder,
-            &wgpu::TextureView,
-            wgpu::TextureFormat,
-        ) -> Vec<wgpu::CommandBuffer>,
+        text: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::TextureView) -> Vec<wgpu::CommandBuffer>,
     ) -> Result<Vec<u8>, GpuError> {
         let size = self.size();
         renderer.prepare(gpu, pictures);
@@ -126,13 +112,20 @@ impl Offscreen {
             GAP
         };
         let targets = &self.targets;
-        renderer.draw(&mut targets.pass_over(&mut encoder, &self.view, clear));
-        let format = text_format(gpu);
-        let view = self.texture.create_view(&wgpu::TextureViewDescriptor {
-            format: Some(format),
-            ..Default::default()
-        });
-        let before = text(&mut encoder, &view, format);
+        let view = |format| {
+            self.texture.create_view(&wgpu::TextureViewDescriptor {
+                format: Some(format),
+                ..Default::default()
+            })
+        };
+        let bytes = view(TEXT_FORMAT);
+        if let Some(transfer) = &self.transfer {
+            renderer.draw(&mut targets.pass_over(&mut encoder, transfer.picture(), clear));
+            transfer.copy(&mut encoder, &bytes);
+        } else {
+            renderer.draw(&mut targets.pass_over(&mut encoder, &view(OFFSCREEN_FORMAT), clear));
+        }
+        let before = text(&mut encoder, &bytes);
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(self.stride),

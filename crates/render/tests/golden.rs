@@ -253,7 +253,7 @@ fn pictures_side_by_side() {
     let size = (2 * SIZE.0 + 10, SIZE.1 + 40);
     let offscreen = Offscreen::new(&gpu, size).unwrap();
     let pixels = offscreen
-        .render_tiles(&gpu, &mut renderer, &pictures, |_, _, _| vec![])
+        .render_tiles(&gpu, &mut renderer, &pictures, |_, _| vec![])
         .unwrap();
     let both = RgbaImage::from_raw(size.0, size.1, pixels).unwrap();
     for (alone, tile) in alone.iter().zip(tiles) {

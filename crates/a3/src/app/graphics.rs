@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use a3_render::{Gpu, GpuError, Renderer, Targets, Tile};
+use a3_render::{Gpu, GpuError, Renderer, Targets, Tile, Transfer};
 use egui::CursorIcon;
 use wgpu::CurrentSurfaceTexture;
 use winit::event_loop::OwnedDisplayHandle;
@@ -31,6 +31,8 @@ pub struct Graphics {
     format: wgpu::TextureFormat,
     renderer: Renderer,
     targets: Targets,
+    /// Is drawn into, where the surface cannot be seen in two formats.
+    transfer: Option<Transfer>,
     /// Number of broken springs when the topology of each pane was made.
     tears: Vec<usize>,
     overlay: Overlay,
@@ -55,7 +57,8 @@ impl Graphics {
         let mut config = surface
             .get_default_config(&gpu.adapter, size.0, size.1)
             .ok_or_else(|| GpuError::Device("it cannot draw to this window".into()))?;
-        let format = choose_formats(&gpu, &surface, &mut config);
+        choose_format(&gpu, &surface, &mut config);
+        let format = config.format.add_srgb_suffix();
         config.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &config);
         let samples = window_samples(&gpu, format);
@@ -71,6 +74,7 @@ impl Graphics {
         Ok(Self {
             renderer: Renderer::new(&gpu, format, samples, &session.panes[0].topology()),
             targets: Targets::new(&gpu, size, format, samples),
+            transfer: transfer(&gpu, &config),
             tears: vec![],
             overlay,
             egui_winit,
@@ -166,6 +170,7 @@ impl Graphics {
                 self.format,
                 window_samples(&self.gpu, self.format),
             );
+            self.transfer = transfer(&self.gpu, &self.config);
         }
     }
 
@@ -219,17 +224,23 @@ impl Graphics {
             .gpu
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let view = frame.texture.create_view(&wgpu::TextureViewDescriptor {
-            format: Some(self.format),
-            ..Default::default()
-        });
-        self.renderer
-            .draw(&mut self.targets.pass(&mut encoder, &view));
+        let view = |format| {
+            frame.texture.create_view(&wgpu::TextureViewDescriptor {
+                format: Some(format),
+                ..Default::default()
+            })
+        };
+        let text_view = view(self.config.format);
+        if let Some(transfer) = &self.transfer {
+            self.renderer
+                .draw(&mut self.targets.pass(&mut encoder, transfer.picture()));
+            transfer.copy(&mut encoder, &text_view);
+        } else {
+            self.renderer
+                .draw(&mut self.targets.pass(&mut encoder, &view(self.format)));
+        }
         // egui's renderer panics on a device that has just been lost.
         self.gpu.check()?;
-        let text_view = frame
-            .texture
-            .create_view(&wgpu::TextureViewDescriptor::default());
         let (before, again, request) = self.write_text(&mut encoder, &text_view, session, cursor);
         self.gpu
             .queue
@@ -320,33 +331,27 @@ pub async fn open(
     result
 }
 
-/// Chooses the format of the surface, and returns that of the picture. The text needs a view that
-/// is not sRGB, the picture one that is: a texture with two views where the backend has them, and
-/// one sRGB surface for both on GL.
-fn choose_formats(
-    gpu: &Gpu,
-    surface: &wgpu::Surface,
-    config: &mut wgpu::SurfaceConfiguration,
-) -> wgpu::TextureFormat {
+/// Chooses the format of the surface: bytes that are blended as they are, for text. Pictures are
+/// drawn to the sRGB format of the same bytes.
+fn choose_format(gpu: &Gpu, surface: &wgpu::Surface, config: &mut wgpu::SurfaceConfiguration) {
     use wgpu::TextureFormat::{Bgra8Unorm, Rgba8Unorm};
-    let flags = gpu.adapter.get_downlevel_capabilities().flags;
-    let two_views = flags.contains(wgpu::DownlevelFlags::SURFACE_VIEW_FORMATS);
     let formats = surface.get_capabilities(&gpu.adapter).formats;
-    let eight_bits =
-        |f: &wgpu::TextureFormat| matches!(f.remove_srgb_suffix(), Bgra8Unorm | Rgba8Unorm);
-    let found = formats
-        .into_iter()
-        .find(|f| eight_bits(f) && f.is_srgb() != two_views);
-    config.format = found.unwrap_or(config.format);
-    let format = if two_views {
-        config.format.add_srgb_suffix()
-    } else {
-        config.format
-    };
-    config.view_formats = if format == config.format {
-        vec![]
-    } else {
-        vec![format]
-    };
-    format
+    let bytes = |f: &wgpu::TextureFormat| matches!(f, Bgra8Unorm | Rgba8Unorm);
+    config.format = formats.into_iter().find(bytes).unwrap_or(config.format);
+    if has_two_views(gpu) {
+        config.view_formats = vec![config.format.add_srgb_suffix()];
+    }
+}
+
+/// Whether a surface can be seen in two formats. On GL it cannot.
+fn has_two_views(gpu: &Gpu) -> bool {
+    let flags = gpu.adapter.get_downlevel_capabilities().flags;
+    flags.contains(wgpu::DownlevelFlags::SURFACE_VIEW_FORMATS)
+}
+
+/// What is drawn into where the surface cannot be seen in two formats.
+fn transfer(gpu: &Gpu, config: &wgpu::SurfaceConfiguration) -> Option<Transfer> {
+    let size = (config.width, config.height);
+    let needed = !has_two_views(gpu) && !config.format.is_srgb();
+    needed.then(|| Transfer::new(gpu, size, config.format))
 }

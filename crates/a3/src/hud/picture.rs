@@ -1,6 +1,6 @@
 //! Pictures of all panes, drawn without a window.
 
-use a3_render::{Camera, Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer};
+use a3_render::{Camera, Gpu, OFFSCREEN_FORMAT, Offscreen, Renderer, TEXT_FORMAT};
 
 use super::layout;
 use super::overlay::Overlay;
@@ -63,11 +63,11 @@ impl Studio {
             .map(|pane| pane.show.picture(camera, scale))
             .zip(layout::tiles(panes.len(), size, scale))
             .collect();
-        let write = |encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView, format| {
+        let write = |encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView| {
             if panes.len() == 1 {
                 return vec![];
             }
-            let mut overlay = Overlay::new(gpu, format);
+            let mut overlay = Overlay::new(gpu, TEXT_FORMAT);
             overlay.dark = panes[0].show.dark;
             overlay.write(gpu, encoder, view, (size, scale), |ctx| {
                 text::show(ctx, panes, readings);

@@ -1,0 +1,99 @@
+//! Pictures under text, where a texture cannot be seen in two formats.
+
+use wgpu::{PipelineCompilationOptions, TextureFormat, TextureUsages};
+
+use crate::gpu::Gpu;
+
+/// A texture of linear light that pictures are drawn into, and its copy into a target whose bytes
+/// are blended as they are. Text is written to that target, because its colours, their opacity and
+/// its edges are meant for sRGB. Elsewhere, one texture has a view for each.
+pub struct Transfer {
+    picture: wgpu::TextureView,
+    bind: wgpu::BindGroup,
+    pipeline: wgpu::RenderPipeline,
+}
+
+impl Transfer {
+    /// A texture of `size` (px) and of the sRGB format that belongs to the format of the target.
+    #[must_use]
+    pub fn new(gpu: &Gpu, size: (u32, u32), target: TextureFormat) -> Self {
+        let device = &gpu.device;
+        let picture = device
+            .create_texture(&wgpu::TextureDescriptor {
+                label: Some("picture"),
+                size: wgpu::Extent3d {
+                    width: size.0,
+                    height: size.1,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: target.add_srgb_suffix(),
+                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            })
+            .create_view(&wgpu::TextureViewDescriptor::default());
+        let shader = device.create_shader_module(wgpu::include_wgsl!("transfer.wgsl"));
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("transfer"),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &shader,
+                entry_point: None,
+                compilation_options: PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &shader,
+                entry_point: None,
+                compilation_options: PipelineCompilationOptions::default(),
+                targets: &[Some(target.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let bind = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("picture"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(&picture),
+            }],
+        });
+        Self {
+            picture,
+            bind,
+            pipeline,
+        }
+    }
+
+    /// What pictures are drawn into.
+    #[must_use]
+    pub fn picture(&self) -> &wgpu::TextureView {
+        &self.picture
+    }
+
+    /// Copies the picture into the target.
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("transfer"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bind, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
