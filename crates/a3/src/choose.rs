@@ -124,6 +124,7 @@ fn milliseconds(
         candidate.method,
         candidate.control,
         &reference.frames,
+        None,
     )?;
     Ok(time.map(|time| 1e3 * time.as_secs_f64() * FRAME / reference.frames.until))
 }

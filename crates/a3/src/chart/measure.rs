@@ -29,10 +29,10 @@ const IMPLICIT: f64 = 25.0;
 /// Uncertainty of the reference over the motion of the scene, below which it is fine enough for any
 /// run.
 const FINE: f64 = 1e-10;
-/// Most times that a run is timed. The shortest time counts.
+/// Most times that a run is timed, with the run that is compared. The shortest time counts.
 const RUNS: u32 = 3;
 /// Total computing time after which a run is timed no more, if it was timed twice.
-const TOGETHER: Duration = Duration::from_millis(200);
+const TOGETHER: Duration = Duration::from_millis(100);
 /// Computing time of a single run after which it is timed no more.
 const ALONE: Duration = Duration::from_millis(250);
 
@@ -232,12 +232,12 @@ impl<'a> Study<'a> {
         let Some(reference) = &self.reference else {
             return Ok(None);
         };
-        let Some(record) = compared(like, &self.scene, method, reference)? else {
+        let Some((record, once)) = compared(like, &self.scene, method, reference)? else {
             return Ok(None);
         };
         let seconds = if self.timed && record.lost_at.is_none() {
             let control = method.control(record.setting);
-            let Some(time) = time(&self.scene, method, control, &self.frames)? else {
+            let Some(time) = time(&self.scene, method, control, &self.frames, Some(once))? else {
                 return Ok(None);
             };
             Some(time.as_secs_f64())
@@ -249,21 +249,25 @@ impl<'a> Study<'a> {
 }
 
 /// The record of a run by a method with the setting of `like`, compared with the reference of its
-/// scene. `None` if it was interrupted.
+/// scene, and the computing time of that run. `None` if it was interrupted.
 pub fn compared(
     like: Record,
     scene: &Scene,
     method: &'static Method,
     reference: &Reference,
-) -> Result<Option<Record>, Failure> {
+) -> Result<Option<(Record, Duration)>, Failure> {
     let control = method.control(like.setting);
-    let outcome = accuracy::measure(scene, method, control, reference, &interrupt::go_on)
+    let begun = Instant::now();
+    let clock = || begun.elapsed();
+    let go_on = &interrupt::go_on;
+    let outcome = accuracy::measure_by(&clock, scene, method, control, reference, go_on)
         .map_err(Failure::run)?;
     let Some(Outcome {
         errors,
         work,
         guarded,
         lost,
+        time,
     }) = outcome
     else {
         return Ok(None);
@@ -278,7 +282,7 @@ pub fn compared(
         impact,
     } = errors;
     let (floor, still) = (reference.floor, reference.still);
-    Ok(Some(Record {
+    let record = Record {
         error_position: position,
         error_energy: energy,
         error_strain: strain,
@@ -308,7 +312,8 @@ pub fn compared(
         factorizations: work.factorizations,
         rejections: work.rejections,
         ..like
-    }))
+    };
+    Ok(Some((record, time)))
 }
 
 /// Precision of a reference for all errors that a chart may show, of a scene whose particles move
@@ -351,15 +356,20 @@ fn each(method: &Method) -> f64 {
     }
 }
 
-/// Computing time of a whole run, the shortest of several. `None` if it was interrupted.
+/// Computing time of a whole run, the shortest of several, of which one may have been made before.
+/// `None` if it was interrupted.
 pub fn time(
     scene: &Scene,
     method: &'static Method,
     control: Control,
     frames: &Frames,
+    before: Option<Duration>,
 ) -> Result<Option<Duration>, Failure> {
-    let (mut best, mut sum) = (Duration::MAX, Duration::ZERO);
-    for runs in 1..=RUNS {
+    let (mut best, mut sum) = (before.unwrap_or(Duration::MAX), before.unwrap_or_default());
+    for runs in u32::from(before.is_some())..RUNS {
+        if runs > 0 && sum > if runs == 1 { ALONE } else { TOGETHER } {
+            break;
+        }
         let mut run = Simulation::new(scene.clone(), method, control).map_err(Failure::run)?;
         let begun = Instant::now();
         let end = accuracy::run(&mut run, frames, &interrupt::go_on, None);
@@ -369,9 +379,6 @@ pub fn time(
         }
         best = best.min(elapsed);
         sum += elapsed;
-        if elapsed > ALONE || (runs >= 2 && sum > TOGETHER) {
-            break;
-        }
     }
     Ok(Some(best))
 }

@@ -73,7 +73,7 @@ fn together(
             setting: run.setting,
             ..blank.clone()
         };
-        if let Some(record) = compared(like, &scene, run.method, &reference)? {
+        if let Some((record, _)) = compared(like, &scene, run.method, &reference)? {
             folder.write(run.id, record)?;
             done();
         }

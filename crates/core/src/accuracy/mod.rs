@@ -10,6 +10,8 @@ mod ladder;
 mod reference;
 mod run;
 
+use std::time::Duration;
+
 use crate::contact::Guarded;
 use crate::control::Control;
 use crate::error::{BlowUp, Error};
@@ -22,6 +24,7 @@ pub use errors::{Errors, Metric, Scope};
 pub use horizon::{Horizon, horizon};
 pub use ladder::{coarser, ladder};
 pub use reference::{Precision, Reference};
+use run::{Looks, looked_at};
 pub use run::{Visit, run};
 
 /// Function that is called between frames and returns whether to go on.
@@ -81,6 +84,8 @@ pub struct Outcome {
     pub guarded: Guarded,
     /// Blow-up of the run, if it was lost.
     pub lost: Option<BlowUp>,
+    /// Computing time of the run alone, by the clock that was given.
+    pub time: Duration,
 }
 
 /// Runs a scene and compares the run with its reference. Returns `None` if `go_on` returned false.
@@ -88,6 +93,22 @@ pub struct Outcome {
 /// # Errors
 /// The method does not support the scene or the control, or the run fails without a blow-up.
 pub fn measure(
+    scene: &Scene,
+    method: &'static Method,
+    control: Control,
+    reference: &Reference,
+    go_on: GoOn,
+) -> Result<Option<Outcome>, Error> {
+    measure_by(&|| Duration::ZERO, scene, method, control, reference, go_on)
+}
+
+/// As [`measure`], with the computing time by a clock: a function that returns the time since some
+/// moment.
+///
+/// # Errors
+/// The method does not support the scene or the control, or the run fails without a blow-up.
+pub fn measure_by(
+    clock: &dyn Fn() -> Duration,
     scene: &Scene,
     method: &'static Method,
     control: Control,
@@ -103,8 +124,16 @@ pub fn measure(
             errors = errors.max(reference.errors(k, &last));
         }
     };
-    let end = run(&mut simulation, &reference.frames, go_on, Some(&mut visit))?;
+    let mut looks = Looks {
+        visit: &mut visit,
+        clock,
+        spent: Duration::ZERO,
+    };
+    let begun = clock();
+    let end = looked_at(&mut simulation, &reference.frames, go_on, Some(&mut looks))?;
+    let time = clock().saturating_sub(begun + looks.spent);
     Ok(end.map(|lost| Outcome {
+        time,
         errors,
         work: simulation.work(),
         guarded: simulation.guarded(),

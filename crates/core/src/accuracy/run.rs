@@ -1,5 +1,7 @@
 //! Runs that are looked at in frames, at whatever times their steps end.
 
+use std::time::Duration;
+
 use super::hermite::weights;
 use super::{Frames, GoOn};
 use crate::error::{BlowUp, Error};
@@ -14,6 +16,23 @@ const PORTION: u64 = 1000;
 
 /// Use of the state y at frame k, counted from 1, of a run.
 pub type Visit<'a> = &'a mut dyn FnMut(u64, &Simulation, &[f64]);
+
+/// Looks at a run, and the time that they take, which is not the run's.
+pub(super) struct Looks<'a> {
+    pub(super) visit: Visit<'a>,
+    /// The time that has passed since some moment.
+    pub(super) clock: &'a dyn Fn() -> Duration,
+    pub(super) spent: Duration,
+}
+
+impl Looks<'_> {
+    /// Does what only a look needs.
+    fn look(&mut self, work: impl FnOnce(&mut dyn FnMut(u64, &Simulation, &[f64]))) {
+        let begun = (self.clock)();
+        work(&mut *self.visit);
+        self.spent += (self.clock)().saturating_sub(begun);
+    }
+}
 
 /// Runs a simulation from its beginning to the last frame, in whole steps of equal length or by an
 /// adaptive method, and calls `visit` with the state at each frame.
@@ -31,10 +50,26 @@ pub fn run(
     go_on: GoOn,
     visit: Option<Visit>,
 ) -> Result<Option<Option<BlowUp>>, Error> {
-    let result = match (simulation.control().step(), visit) {
-        (Some(step), Some(visit)) => in_steps(simulation, frames, step, go_on, visit),
+    let mut looks = visit.map(|visit| Looks {
+        visit,
+        clock: &|| Duration::ZERO,
+        spent: Duration::ZERO,
+    });
+    looked_at(simulation, frames, go_on, looks.as_mut())
+}
+
+/// As [`run`], with the time of its looks.
+#[expect(clippy::option_option, reason = "this is what `run` returns")]
+pub(super) fn looked_at(
+    simulation: &mut Simulation,
+    frames: &Frames,
+    go_on: GoOn,
+    looks: Option<&mut Looks>,
+) -> Result<Option<Option<BlowUp>>, Error> {
+    let result = match (simulation.control().step(), looks) {
+        (Some(step), Some(looks)) => in_steps(simulation, frames, step, go_on, looks),
         (Some(step), None) => to_step(simulation, frames, frames.steps(step), go_on),
-        (None, visit) => to_a_tolerance(simulation, frames, go_on, visit),
+        (None, looks) => to_a_tolerance(simulation, frames, go_on, looks),
     };
     match result {
         Ok(true) => Ok(Some(None)),
@@ -49,15 +84,15 @@ fn to_a_tolerance(
     simulation: &mut Simulation,
     frames: &Frames,
     go_on: GoOn,
-    mut visit: Option<Visit>,
+    mut looks: Option<&mut Looks>,
 ) -> Result<bool, Error> {
     for k in 1..=frames.count {
         if !go_on() {
             return Ok(false);
         }
         simulation.advance_to(frames.time(k))?;
-        if let Some(visit) = &mut visit {
-            visit(k, simulation, simulation.state());
+        if let Some(looks) = &mut looks {
+            looks.look(|visit| visit(k, simulation, simulation.state()));
         }
     }
     Ok(true)
@@ -102,7 +137,7 @@ fn in_steps(
     frames: &Frames,
     step: f64,
     go_on: GoOn,
-    visit: Visit,
+    looks: &mut Looks,
 ) -> Result<bool, Error> {
     let last = frames.steps(step);
     let (mut ends, mut state) = (vec![], simulation.state().to_vec());
@@ -118,7 +153,7 @@ fn in_steps(
                 if !to_step(simulation, frames, n, go_on)? {
                     return Ok(false);
                 }
-                visit(k, simulation, simulation.state());
+                looks.look(|visit| visit(k, simulation, simulation.state()));
                 continue;
             }
         }
@@ -133,7 +168,7 @@ fn in_steps(
         }
         if ends.last().is_none_or(|end: &End| end.number != at) {
             ends.clear();
-            keep(&mut ends, simulation);
+            looks.look(|_| keep(&mut ends, simulation));
         }
         let newest = (begun + 1).max(ends[0].number + NODES - 1).min(last);
         while simulation.steps() < newest {
@@ -141,10 +176,12 @@ fn in_steps(
             if !to_step(simulation, frames, next, go_on)? {
                 return Ok(false);
             }
-            keep(&mut ends, simulation);
+            looks.look(|_| keep(&mut ends, simulation));
         }
-        interpolate(simulation, &ends, time, &mut state);
-        visit(k, simulation, &state);
+        looks.look(|visit| {
+            interpolate(simulation, &ends, time, &mut state);
+            visit(k, simulation, &state);
+        });
     }
     Ok(true)
 }

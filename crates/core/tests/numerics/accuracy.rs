@@ -1,9 +1,12 @@
 //! Accuracy: the uncertainty of references, the errors of methods, and the choice of the cheapest
 //! one.
 
+use std::cell::Cell;
+use std::time::Duration;
+
 use crate::common::{described, method, scene};
 use a3_core::accuracy::{
-    Frames, Metric, Precision, Reference, Scope, choose, horizon, ladder, measure,
+    Frames, Metric, Precision, Reference, Scope, choose, horizon, ladder, measure, measure_by,
 };
 use a3_core::stability::{Mode, spectrum};
 use a3_core::{Control, Scene, integrators};
@@ -258,6 +261,30 @@ fn ladders_go_down_from_just_past_the_limit() {
                 assert!((steps - steps.round()).abs() < 1e-6 && steps < 20_001.0);
             }
         }
+    }
+}
+
+#[test]
+fn looks_are_not_a_part_of_the_time_of_a_run() {
+    let mit = scene("mit");
+    let reference = reference(&mit, 0.5);
+    // Steps that end at frames, steps that do not, and those of an adaptive method.
+    let runs = [
+        ("rk4", Control::Step(1.0 / 240.0)),
+        ("rk4", Control::Step(0.5 / 77.0)),
+        ("dopri5", Control::Tolerance(1e-4)),
+    ];
+    for (name, control) in runs {
+        // This clock goes on by a second whenever it is read, before and after each look as well.
+        let reads = Cell::new(0);
+        let clock = || {
+            reads.set(reads.get() + 1);
+            Duration::from_secs(reads.get())
+        };
+        let outcome = measure_by(&clock, &mit, method(name), control, &reference, GO_ON);
+        let looks = (reads.get() - 2) / 2;
+        assert!(looks >= reference.frames.count, "{name}: {looks}");
+        assert_eq!(outcome.unwrap().unwrap().time.as_secs(), looks + 1);
     }
 }
 
