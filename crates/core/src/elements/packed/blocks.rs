@@ -30,12 +30,11 @@ impl Blocks {
         self.ends.len()
     }
 
-    /// Adds a block of springs with their ends.
-    pub fn push(&mut self, springs: &[([u32; 2], &Spring)]) {
+    /// Adds a block of springs with their ends, which are counted from a particle on.
+    pub fn push(&mut self, springs: &[([u32; 2], &Spring)], start: u32) {
         let own = |m: usize| {
-            springs
-                .get(m)
-                .map_or([springs[0].0[0]; 2], |(ends, _)| *ends)
+            let ends = springs.get(m).map(|(ends, _)| *ends);
+            ends.unwrap_or([springs[0].0[0]; 2]).map(|i| i - start)
         };
         self.ends.push(std::array::from_fn(own));
         self.laws

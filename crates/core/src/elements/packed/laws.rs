@@ -5,6 +5,8 @@
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
 )]
 
+use std::collections::HashMap;
+
 use pulp::Scalar;
 
 use crate::elements::inverse_root::inverse_root;
@@ -78,11 +80,38 @@ pub(super) type Each<T> = [T; BLOCK];
 #[derive(Debug, Default)]
 pub(super) struct Laws {
     /// k (N/m).
-    stiffness: Vec<Each<f64>>,
+    stiffness: Shared,
     /// k r (N).
-    push: Vec<Each<f64>>,
+    push: Shared,
     /// c (N s/m).
-    damping: Vec<Each<f64>>,
+    damping: Shared,
+}
+
+/// A number of each spring, block by block. Blocks of the same numbers share them, so that what is
+/// alike for many springs stays in the cache.
+#[derive(Debug, Default)]
+struct Shared {
+    different: Vec<Each<f64>>,
+    /// The place of each block's numbers among those.
+    of_blocks: Vec<u32>,
+    /// These places by the bits of the numbers.
+    places: HashMap<Each<u64>, u32>,
+}
+
+impl Shared {
+    fn push(&mut self, numbers: Each<f64>) {
+        let next = self.different.len() as u32;
+        let place = *self.places.entry(numbers.map(f64::to_bits)).or_insert(next);
+        if place == next {
+            self.different.push(numbers);
+        }
+        self.of_blocks.push(place);
+    }
+
+    #[inline(always)]
+    fn of(&self, block: usize) -> &Each<f64> {
+        &self.different[self.of_blocks[block] as usize]
+    }
 }
 
 /// The laws of a block.
@@ -121,9 +150,9 @@ impl Laws {
     #[inline(always)]
     pub fn of(&self, block: usize) -> Law<'_> {
         Law {
-            stiffness: &self.stiffness[block],
-            push: &self.push[block],
-            damping: &self.damping[block],
+            stiffness: self.stiffness.of(block),
+            push: self.push.of(block),
+            damping: self.damping.of(block),
         }
     }
 }

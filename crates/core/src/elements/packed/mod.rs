@@ -12,6 +12,7 @@ mod blocks;
 mod laws;
 mod order;
 mod runs;
+mod window;
 
 use std::ops::Range;
 use std::sync::{Mutex, TryLockError};
@@ -23,9 +24,9 @@ use super::force::At;
 use crate::spring::Spring;
 use crate::system::Matrix;
 use crate::threads::threads;
-use blocks::Numbers;
 use laws::Quantity;
-use order::{Order, Stretch};
+use order::{Order, Stretch, TILE};
+use window::{Places, Window, add_at};
 
 /// Number of springs from which on it pays to pack them.
 const LEAST: usize = 1024;
@@ -43,14 +44,19 @@ pub(crate) struct Packed {
     bands: Mutex<Vec<Band>>,
 }
 
-/// Scratch of a band: x, v, dx and dv of its particles and of those that their springs reach, and
-/// what is summed; by the numbers that all particles have.
+/// Scratch of a band of particles.
 #[derive(Debug, Default)]
 struct Band {
-    /// For runs, in three columns.
-    columns: [Vec<f64>; 5],
-    /// For blocks, three numbers side by side.
-    rows: [Vec<Numbers>; 5],
+    window: Window,
+    /// Sums on its particles, in three columns, where there are several bands.
+    sums: Vec<f64>,
+}
+
+/// What is computed, and of which n x 3 matrices: x, v, dx and dv, as far as it needs them.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    quantity: Quantity,
+    fields: [Option<&'a [f64]>; 4],
 }
 
 impl Packed {
@@ -90,59 +96,84 @@ impl Packed {
 
     fn add(&self, quantity: Quantity, fields: [Option<&[f64]>; 4], f: &mut [f64]) {
         let most = threads(self.order.particles.len());
-        self.add_in(self.order.bands(most), quantity, fields, f);
+        self.add_in(self.order.bands(most), Task { quantity, fields }, f);
     }
 
     /// Adds to f in so many bands.
-    fn add_in(&self, count: usize, quantity: Quantity, fields: [Option<&[f64]>; 4], f: &mut [f64]) {
+    fn add_in(&self, count: usize, task: Task, f: &mut [f64]) {
         self.lend(|bands| {
             if bands.len() < count {
                 bands.resize_with(count, Band::default);
             }
             let bands = &mut bands[..count];
             if count == 1 {
-                self.sum(&mut bands[0], &self.order.stretch(0, 1), quantity, fields);
-            } else {
-                bands.par_iter_mut().enumerate().for_each(|(k, band)| {
-                    self.sum(band, &self.order.stretch(k, count), quantity, fields);
+                let stretch = self.order.stretch(0, 1);
+                self.sum(&mut bands[0].window, &stretch, task, |sums, of| {
+                    sums.give(f, self.order.places(of));
                 });
+                return;
             }
+            bands.par_iter_mut().enumerate().for_each(|(k, band)| {
+                let stretch = self.order.stretch(k, count);
+                let start = stretch.own.start;
+                band.sums.clear();
+                band.sums.resize(3 * stretch.own.len(), 0.0);
+                self.sum(&mut band.window, &stretch, task, |sums, of| {
+                    sums.give(&mut band.sums, Places::From(of.start - start));
+                });
+            });
             for (k, band) in bands.iter().enumerate() {
-                self.give(band, self.order.stretch(k, count).own, f);
+                let own = self.order.stretch(k, count).own;
+                add_at(f, self.order.places(own), &band.sums);
             }
         });
     }
 
-    /// Sums a quantity on a band of particles.
+    /// Gives the sums on a band of particles, some after others.
     fn sum(
         &self,
-        band: &mut Band,
+        window: &mut Window,
         stretch: &Stretch,
-        quantity: Quantity,
-        fields: [Option<&[f64]>; 4],
+        task: Task,
+        mut give: impl FnMut(window::Sums, Range<usize>),
     ) {
-        self.take(band, stretch, fields);
-        if !stretch.runs.is_empty() {
-            Arch::new().dispatch(self.sum_of_runs(band, stretch, quantity));
-        }
-        if !stretch.blocks.is_empty() {
-            Arch::new().dispatch(self.sum_of_blocks(band, stretch, quantity));
+        let order = &self.order;
+        let mut tiles = stretch.tiles.clone();
+        window.clear();
+        while !tiles.is_empty() {
+            let panel = tiles.start..tiles.end.min(tiles.start + order.panel);
+            let start = panel.start * TILE;
+            window.take(order, start, &task.fields);
+            for tile in panel.clone() {
+                let [runs, blocks] = order.of_tile(tile);
+                let offset = tile * TILE - start;
+                if !runs.is_empty() {
+                    Arch::new().dispatch(self.sum_of_runs(window, runs, offset, task.quantity));
+                }
+                if !blocks.is_empty() {
+                    Arch::new().dispatch(self.sum_of_blocks(window, blocks, offset, task.quantity));
+                }
+            }
+            let of = start.max(stretch.own.start)..(panel.end * TILE).min(stretch.own.end);
+            give(window.sums(of.start - start..of.end - start), of);
+            tiles.start = panel.end;
         }
     }
 
     fn sum_of_runs<'a>(
         &'a self,
-        band: &'a mut Band,
-        of: &Stretch,
+        window: &'a mut Window,
+        which: Range<usize>,
+        offset: usize,
         quantity: Quantity,
     ) -> runs::Sum<'a> {
-        let [fields @ .., f] = &mut band.columns;
+        let [fields @ .., f] = &mut window.columns;
         runs::Sum {
             runs: &self.order.runs,
-            which: of.runs.clone(),
-            stride: self.order.stride(),
-            fields: fields.each_ref().map(Vec::as_slice),
-            f,
+            which,
+            stride: self.order.window(),
+            fields: fields.each_ref().map(|a| a.get(offset..).unwrap_or(&[])),
+            f: &mut f[offset..],
             is_damped: self.is_damped,
             quantity,
         }
@@ -150,83 +181,19 @@ impl Packed {
 
     fn sum_of_blocks<'a>(
         &'a self,
-        band: &'a mut Band,
-        of: &Stretch,
+        window: &'a mut Window,
+        which: Range<usize>,
+        offset: usize,
         quantity: Quantity,
     ) -> blocks::Sum<'a> {
-        let [fields @ .., f] = &mut band.rows;
+        let [fields @ .., f] = &mut window.rows;
         blocks::Sum {
             blocks: &self.order.blocks,
-            which: of.blocks.clone(),
-            fields: fields.each_ref().map(Vec::as_slice),
-            f,
+            which,
+            fields: fields.each_ref().map(|a| a.get(offset..).unwrap_or(&[])),
+            f: &mut f[offset..],
             is_damped: self.is_damped,
             quantity,
-        }
-    }
-
-    /// Copies what a band needs of n x 3 matrices to its scratch, whose sums begin at 0.
-    fn take(&self, band: &mut Band, stretch: &Stretch, fields: [Option<&[f64]>; 4]) {
-        let (stride, all) = (self.order.stride(), &stretch.all);
-        let particles = &self.order.particles;
-        let of_all = &particles[all.start..all.end.min(particles.len())];
-        // After the fields, the sums, which have no source.
-        let sources = fields
-            .into_iter()
-            .map(|field| field.map(Some))
-            .chain([Some(None)]);
-        for (k, source) in sources.enumerate() {
-            let Some(source) = source else { continue };
-            if !stretch.runs.is_empty() {
-                let columns = &mut band.columns[k];
-                columns.resize(3 * stride, 0.0);
-                for (axis, column) in columns.chunks_exact_mut(stride).enumerate() {
-                    let column = &mut column[all.clone()];
-                    let Some(from) = source else {
-                        column.fill(0.0);
-                        continue;
-                    };
-                    let from = &from[axis * from.len() / 3..(axis + 1) * from.len() / 3];
-                    for (to, i) in column.iter_mut().zip(of_all) {
-                        *to = from[*i as usize];
-                    }
-                }
-            }
-            if !stretch.blocks.is_empty() {
-                let rows = &mut band.rows[k];
-                rows.resize(stride, [0.0; 4]);
-                let rows = &mut rows[all.clone()];
-                let Some(from) = source else {
-                    rows.fill([0.0; 4]);
-                    continue;
-                };
-                let n = from.len() / 3;
-                for (to, i) in rows.iter_mut().zip(of_all) {
-                    let i = *i as usize;
-                    *to = [from[i], from[n + i], from[2 * n + i], 0.0];
-                }
-            }
-        }
-    }
-
-    /// Adds the sums of a band to the rows of its own particles in an n x 3 matrix.
-    fn give(&self, band: &Band, own: Range<usize>, f: &mut [f64]) {
-        let (n, stride) = (f.len() / 3, self.order.stride());
-        let [.., columns] = &band.columns;
-        let [.., rows] = &band.rows;
-        for (axis, f) in f.chunks_exact_mut(n).enumerate() {
-            let particles = &self.order.particles[own.clone()];
-            if !columns.is_empty() {
-                let found = &columns[axis * stride..][own.clone()];
-                for (i, found) in particles.iter().zip(found) {
-                    f[*i as usize] += found;
-                }
-            }
-            if !rows.is_empty() {
-                for (i, found) in particles.iter().zip(&rows[own.clone()]) {
-                    f[*i as usize] += found[axis];
-                }
-            }
         }
     }
 

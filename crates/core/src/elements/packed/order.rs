@@ -5,11 +5,15 @@ use std::ops::Range;
 use super::blocks::Blocks;
 use super::laws::BLOCK;
 use super::runs::Runs;
+use super::window::Places;
 use crate::elements::force::ends;
 use crate::spring::Spring;
 
 /// Particles of a tile, whose springs follow one another.
-const TILE: usize = 256;
+pub(super) const TILE: usize = 256;
+
+/// Least number of tiles of a panel.
+const PANEL: usize = 4;
 
 /// Least number of springs of a block between consecutive particles.
 const DENSE: usize = BLOCK / 2;
@@ -26,17 +30,17 @@ pub(super) struct Order {
     /// The first run and the first block of each tile, and the numbers of both.
     tiles: Vec<[usize; 2]>,
     /// The most by which the numbers of the ends of a spring differ.
-    reach: usize,
+    pub reach: usize,
+    /// Tiles of a panel: as many particles as springs reach beyond it, or more.
+    pub panel: usize,
 }
 
 /// A part of the particles with all springs that reach it.
 pub(super) struct Stretch {
     /// The particles.
     pub own: Range<usize>,
-    /// These and all others at the ends of the springs, with those that runs have beyond the last.
-    pub all: Range<usize>,
-    pub runs: Range<usize>,
-    pub blocks: Range<usize>,
+    /// The tiles of which the springs reach them.
+    pub tiles: Range<usize>,
 }
 
 /// A spring with its ends as numbered here.
@@ -54,37 +58,59 @@ impl Order {
         let numbered = |spring| (ends(spring).map(|i| numbers[i]), spring);
         let mut all: Vec<Entry> = springs.iter().map(numbered).collect();
         let reach = all.iter().map(|([i, j], _)| (j - i) as usize).max();
+        let reach = reach.unwrap_or(0);
         let (dense, rest) = split(&mut all);
         let rest = by_rank(rest);
         let (mut dense, mut rest) = (dense.as_slice(), rest.as_slice());
         let (mut runs, mut blocks, mut tiles) = (Runs::default(), Blocks::default(), vec![]);
         for tile in 0..particles.len().div_ceil(TILE) {
             tiles.push([runs.places.len(), blocks.len()]);
+            let first = (tile * TILE) as u32;
             let own;
             let is_own = |([i, _], _): &Entry| *i as usize / TILE == tile;
             (own, dense) = dense.split_at(dense.partition_point(|run| is_own(&run[0])));
             for run in own {
-                runs.push(run);
+                runs.push(run, first);
             }
             let own;
             (own, rest) = rest.split_at(rest.partition_point(is_own));
             for chunk in own.chunks(BLOCK) {
-                blocks.push(chunk);
+                blocks.push(chunk, first);
             }
         }
         tiles.push([runs.places.len(), blocks.len()]);
         Self {
+            panel: reach.div_ceil(TILE).max(PANEL).min(tiles.len() - 1),
             runs,
             blocks,
             particles: particles.iter().map(|i| *i as u32).collect(),
             tiles,
-            reach: reach.unwrap_or(0),
+            reach,
         }
     }
 
-    /// Length of a column of numbers of all particles, with what runs have beyond the last.
-    pub fn stride(&self) -> usize {
-        (self.tiles.len() - 1) * TILE + self.reach
+    /// Number of particles of a window: those of a panel and those that its springs reach, with
+    /// what runs have beyond the last.
+    pub fn window(&self) -> usize {
+        self.panel * TILE + self.reach
+    }
+
+    /// The particles of some numbers.
+    pub fn places(&self, of: Range<usize>) -> Places<'_> {
+        let all = &self.particles[of];
+        match (all.first(), all.last()) {
+            // They are in ascending order.
+            (Some(first), Some(last)) if (last - first) as usize == all.len() - 1 => {
+                Places::From(*first as usize)
+            }
+            _ => Places::Each(all),
+        }
+    }
+
+    /// The runs and the blocks of a tile.
+    pub fn of_tile(&self, tile: usize) -> [Range<usize>; 2] {
+        let (start, end) = (self.tiles[tile], self.tiles[tile + 1]);
+        [0, 1].map(|kind| start[kind]..end[kind])
     }
 
     /// The number of bands, up to the `most`, of which none is much smaller than what its springs
@@ -98,12 +124,8 @@ impl Order {
     pub fn stretch(&self, k: usize, bands: usize) -> Stretch {
         let n = self.particles.len();
         let own = n * k / bands..n * (k + 1) / bands;
-        let first = own.start.saturating_sub(self.reach) / TILE;
-        let last = own.end.div_ceil(TILE);
         Stretch {
-            all: first * TILE..last * TILE + self.reach,
-            runs: self.tiles[first][0]..self.tiles[last][0],
-            blocks: self.tiles[first][1]..self.tiles[last][1],
+            tiles: own.start.saturating_sub(self.reach) / TILE..own.end.div_ceil(TILE),
             own,
         }
     }
@@ -139,6 +161,6 @@ fn by_rank(mut all: Vec<Entry>) -> Vec<Entry> {
     let mut ranked: Vec<_> = of_particles
         .flat_map(|chunk| chunk.iter().enumerate())
         .collect();
-    ranked.sort_by_key(|(rank, ([i, _], _))| (*i as usize / TILE, *rank, *i));
+    ranked.sort_by_key(|(rank, ([i, _], _))| (*i as usize / TILE, *rank, *i % 8, *i));
     ranked.into_iter().map(|(_, entry)| *entry).collect()
 }

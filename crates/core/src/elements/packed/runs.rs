@@ -29,11 +29,12 @@ pub(super) struct Runs {
 
 impl Runs {
     /// Adds springs of consecutive particles, in their order, of which the first ends are in one
-    /// block of all particles.
-    pub fn push(&mut self, springs: &[([u32; 2], &Spring)]) {
+    /// block of all particles. Places are counted from a particle on.
+    pub fn push(&mut self, springs: &[([u32; 2], &Spring)], start: u32) {
         let [i, j] = springs[0].0;
         let first = i - i % BLOCK as u32;
-        self.places.push([first, first + (j - i)]);
+        self.places
+            .push([first, first + (j - i)].map(|i| i - start));
         let at = |(ends, spring): &([u32; 2], _)| ((ends[0] - first) as usize, *spring);
         self.laws.push(springs.iter().map(at));
     }
@@ -84,7 +85,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 #[inline(always)]
 fn give(g: &[Each<f64>; 3], [i, j]: [u32; 2], stride: usize, f: &mut [f64]) {
     for (axis, g) in g.iter().enumerate() {
-        let column = &mut f[axis * stride..(axis + 1) * stride];
+        let column = &mut f[axis * stride..];
         let first: &mut Each<f64> = column[i as usize..].first_chunk_mut().unwrap();
         for m in 0..BLOCK {
             first[m] -= g[m];

@@ -80,7 +80,7 @@ fn in_bands(packed: &Packed, bands: usize, all: &[Vec<f64>; 4]) -> [Vec<f64>; 4]
     ]
     .map(|(quantity, fields)| {
         let mut f = vec![0.0; all[0].len()];
-        packed.add_in(bands, quantity, fields, &mut f);
+        packed.add_in(bands, Task { quantity, fields }, &mut f);
         f
     })
 }
@@ -157,28 +157,31 @@ fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
             for bands in [2, 3, 8] {
                 assert!(in_bands(&packed, bands, &all) == found, "{what}: {bands}");
             }
-            let whole = packed.order.stretch(0, 1);
-            let mut band = Band::default();
             let fields = all.each_ref().map(|a| Some(a.as_slice()));
-            packed.sum(&mut band, &whole, Quantity::Differential, fields);
-            let (columns, rows) = (band.columns[4].clone(), band.rows[4].clone());
-            packed.take(&mut band, &whole, fields);
-            assert_eq!(whole.runs.is_empty(), dense == 0, "{what}");
-            if !whole.runs.is_empty() {
-                packed
-                    .sum_of_runs(&mut band, &whole, Quantity::Differential)
-                    .with_simd(Scalar::new());
-            }
-            if !whole.blocks.is_empty() {
-                packed
-                    .sum_of_blocks(&mut band, &whole, Quantity::Differential)
-                    .with_simd(Scalar::new());
-            }
-            assert!(
-                columns == band.columns[4] && rows == band.rows[4],
-                "{what}: one by one"
-            );
+            let [by_vectors, one_by_one] = [true, false].map(|has_vectors| {
+                let (mut window, [runs, blocks]) = (Window::default(), packed.order.of_tile(0));
+                window.take(&packed.order, 0, &fields);
+                assert_eq!(runs.is_empty(), dense == 0, "{what}");
+                if !runs.is_empty() {
+                    let sum = packed.sum_of_runs(&mut window, runs, 0, Quantity::Differential);
+                    run(sum, has_vectors);
+                }
+                if !blocks.is_empty() {
+                    let sum = packed.sum_of_blocks(&mut window, blocks, 0, Quantity::Differential);
+                    run(sum, has_vectors);
+                }
+                (window.columns, window.rows)
+            });
+            assert!(by_vectors == one_by_one, "{what}: one by one");
         }
+    }
+}
+
+fn run(sum: impl WithSimd<Output = ()>, has_vectors: bool) {
+    if has_vectors {
+        Arch::new().dispatch(sum);
+    } else {
+        sum.with_simd(Scalar::new());
     }
 }
 

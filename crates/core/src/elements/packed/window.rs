@@ -1,0 +1,162 @@
+//! What is seen of the particles at a time: those of a panel and those that their springs reach.
+//! It moves on from panel to panel, so that it stays in the cache.
+
+use std::ops::Range;
+
+use super::blocks::Numbers;
+use super::order::Order;
+
+/// x, v, dx and dv of the particles, and what is summed.
+#[derive(Debug, Default)]
+pub(super) struct Window {
+    /// For runs, in three columns.
+    pub columns: [Vec<f64>; 5],
+    /// For blocks, three numbers side by side.
+    pub rows: [Vec<Numbers>; 5],
+    /// Particles at its end that stay when it moves on.
+    stays: usize,
+}
+
+/// Rows of an n x 3 matrix.
+#[derive(Clone, Copy)]
+pub(super) enum Places<'a> {
+    /// Consecutive ones.
+    From(usize),
+    /// In ascending order.
+    Each(&'a [u32]),
+}
+
+/// Sums on some particles.
+pub(super) struct Sums<'a> {
+    columns: Option<[&'a [f64]; 3]>,
+    rows: Option<&'a [Numbers]>,
+}
+
+impl Window {
+    /// Forgets what it saw.
+    pub fn clear(&mut self) {
+        self.stays = 0;
+    }
+
+    /// Moves on, so that it starts at a particle: takes what it did not see of n x 3 matrices, of
+    /// which the sums begin at 0.
+    pub fn take(&mut self, order: &Order, start: usize, fields: &[Option<&[f64]>; 4]) {
+        let (size, stays) = (order.window(), self.stays);
+        let n = order.particles.len();
+        let new = n.min(start + stays)..n.min(start + size);
+        let places = order.places(new.clone());
+        // After the fields, the sums, which have no source.
+        let sources = fields.iter().map(|field| field.map(Some));
+        for (k, source) in sources.chain([Some(None)]).enumerate() {
+            let Some(source) = source else { continue };
+            if !order.runs.places.is_empty() {
+                let columns = &mut self.columns[k];
+                columns.resize(3 * size, 0.0);
+                for (axis, column) in columns.chunks_exact_mut(size).enumerate() {
+                    column.copy_within(size - stays.., 0);
+                    let (taken, beyond) = column[stays..].split_at_mut(new.len());
+                    match source {
+                        Some(from) => copy(from, axis, places, taken),
+                        None => taken.fill(0.0),
+                    }
+                    // Runs go on beyond the last particle, without stiffness.
+                    beyond.fill(0.0);
+                }
+            }
+            if order.blocks.len() > 0 {
+                let rows = &mut self.rows[k];
+                rows.resize(size, [0.0; 4]);
+                rows.copy_within(size - stays.., 0);
+                let taken = &mut rows[stays..][..new.len()];
+                match source {
+                    Some(from) => copy_rows(from, places, taken),
+                    None => taken.fill([0.0; 4]),
+                }
+            }
+        }
+        self.stays = order.reach;
+    }
+
+    /// The sums on some of its particles.
+    pub fn sums(&self, of: Range<usize>) -> Sums<'_> {
+        let [.., columns] = &self.columns;
+        let [.., rows] = &self.rows;
+        let column = |axis: usize| &columns[axis * (columns.len() / 3)..][of.clone()];
+        Sums {
+            columns: (!columns.is_empty()).then(|| [0, 1, 2].map(column)),
+            rows: (!rows.is_empty()).then(|| &rows[of.clone()]),
+        }
+    }
+}
+
+impl Sums<'_> {
+    /// Adds them to rows of an n x 3 matrix: those of runs, then those of blocks.
+    pub fn give(&self, f: &mut [f64], places: Places) {
+        for axis in 0..3 {
+            if let Some(columns) = self.columns {
+                add(f, axis, places, columns[axis].iter().copied());
+            }
+            if let Some(rows) = self.rows {
+                add(f, axis, places, rows.iter().map(|row| row[axis]));
+            }
+        }
+    }
+}
+
+/// Adds the rows of an n x 3 matrix to rows of another.
+pub(super) fn add_at(f: &mut [f64], places: Places, sums: &[f64]) {
+    for (axis, column) in sums.chunks_exact(sums.len() / 3).enumerate() {
+        add(f, axis, places, column.iter().copied());
+    }
+}
+
+/// Adds to rows of a column of an n x 3 matrix.
+fn add(f: &mut [f64], axis: usize, places: Places, sums: impl Iterator<Item = f64>) {
+    let n = f.len() / 3;
+    let f = &mut f[axis * n..][..n];
+    match places {
+        Places::From(first) => {
+            for (f, sum) in f[first..].iter_mut().zip(sums) {
+                *f += sum;
+            }
+        }
+        Places::Each(places) => {
+            for (i, sum) in places.iter().zip(sums) {
+                f[*i as usize] += sum;
+            }
+        }
+    }
+}
+
+/// Copies rows of a column of an n x 3 matrix.
+fn copy(from: &[f64], axis: usize, places: Places, to: &mut [f64]) {
+    let n = from.len() / 3;
+    let from = &from[axis * n..][..n];
+    match places {
+        Places::From(first) => to.copy_from_slice(&from[first..][..to.len()]),
+        Places::Each(places) => {
+            for (to, i) in to.iter_mut().zip(places) {
+                *to = from[*i as usize];
+            }
+        }
+    }
+}
+
+/// Copies rows of an n x 3 matrix.
+fn copy_rows(from: &[f64], places: Places, to: &mut [Numbers]) {
+    let [x, y, z] = [0, 1, 2].map(|axis| &from[axis * (from.len() / 3)..][..from.len() / 3]);
+    match places {
+        Places::From(first) => {
+            let [x, y, z] = [x, y, z].map(|column| &column[first..][..to.len()]);
+            for (i, to) in to.iter_mut().enumerate() {
+                *to = [x[i], y[i], z[i], 0.0];
+            }
+        }
+        Places::Each(places) => {
+            for (to, i) in to.iter_mut().zip(places) {
+                let i = *i as usize;
+                *to = [x[i], y[i], z[i], 0.0];
+            }
+        }
+    }
+}
