@@ -10,12 +10,14 @@ use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-use super::laws::{self, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity};
+use super::laws::{self, Aligned, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity};
 use crate::fused::mul_add;
 use crate::spring::Spring;
 
-/// Three numbers of a particle and a zero.
-pub(super) type Numbers = [f64; 4];
+/// Three numbers of a particle and a zero, in one line of the cache.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(32))]
+pub(super) struct Numbers(pub [f64; 4]);
 
 /// Springs one after another. Blocks that are not full end with springs from a particle to itself.
 #[derive(Debug, Default)]
@@ -73,8 +75,8 @@ impl Kernels for Sum<'_> {
             ..
         } = self;
         let [x, v, ..] = fields;
-        let mut d = [[0.0; 4]; BLOCK];
-        let (mut s, mut rate) = ([0.0; BLOCK], [0.0; BLOCK]);
+        let mut d = [Numbers::default(); BLOCK];
+        let [Aligned(mut s), Aligned(mut rate)] = [Aligned::ZERO; 2];
         for block in which {
             let (ends, law) = (&blocks.ends[block], blocks.laws.of(block));
             for m in 0..BLOCK {
@@ -111,7 +113,7 @@ impl Kernels for Sum<'_> {
             ..
         } = self;
         let [x, v, dx, dv] = fields;
-        let (mut d, mut e) = ([[0.0; 4]; BLOCK], [[0.0; 4]; BLOCK]);
+        let [mut d, mut e] = [[Numbers::default(); BLOCK]; 2];
         let [mut dd, mut de, mut wd, mut we, mut gd] = [[0.0; BLOCK]; 5];
         for block in which {
             let (ends, law) = (&blocks.ends[block], blocks.laws.of(block));
@@ -137,7 +139,7 @@ impl Kernels for Sum<'_> {
             }
             for m in 0..BLOCK {
                 let [i, j] = pair(ends[m]);
-                let change = plus(d[m].map(|d| de[m] * d), dd[m], e[m]);
+                let change = plus(Numbers(d[m].0.map(|d| de[m] * d)), dd[m], e[m]);
                 f[i] = plus(f[i], -1.0, change);
                 f[j] = plus(f[j], 1.0, change);
             }
@@ -152,22 +154,22 @@ fn pair(ends: [u32; 2]) -> [usize; 2] {
 
 #[inline(always)]
 fn apart(a: &[Numbers], [i, j]: [usize; 2]) -> Numbers {
-    let (a, b) = (&a[i], &a[j]);
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
+    let (a, b) = (&a[i].0, &a[j].0);
+    Numbers([a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]])
 }
 
 #[inline(always)]
-fn dot(a: Numbers, b: Numbers) -> f64 {
+fn dot(Numbers(a): Numbers, Numbers(b): Numbers) -> f64 {
     mul_add(a[2], b[2], mul_add(a[1], b[1], a[0] * b[0]))
 }
 
 /// a + s b.
 #[inline(always)]
-fn plus(a: Numbers, s: f64, b: Numbers) -> Numbers {
-    [
+fn plus(Numbers(a): Numbers, s: f64, Numbers(b): Numbers) -> Numbers {
+    Numbers([
         mul_add(s, b[0], a[0]),
         mul_add(s, b[1], a[1]),
         mul_add(s, b[2], a[2]),
         mul_add(s, b[3], a[3]),
-    ]
+    ])
 }

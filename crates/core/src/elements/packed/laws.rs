@@ -76,6 +76,15 @@ pub(super) trait Kernels: Sized {
 /// A number of each spring of a block.
 pub(super) type Each<T> = [T; BLOCK];
 
+/// Numbers that begin with a line of the cache, so that no vector of them lies in two.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Aligned(pub Each<f64>);
+
+impl Aligned {
+    pub const ZERO: Self = Self([0.0; BLOCK]);
+}
+
 /// Laws of springs, each of their numbers in a list of its own, which the processor reads ahead.
 #[derive(Debug, Default)]
 pub(super) struct Laws {
@@ -91,7 +100,7 @@ pub(super) struct Laws {
 /// alike for many springs stays in the cache.
 #[derive(Debug, Default)]
 struct Shared {
-    different: Vec<Each<f64>>,
+    different: Vec<Aligned>,
     /// The place of each block's numbers among those.
     of_blocks: Vec<u32>,
     /// These places by the bits of the numbers.
@@ -103,14 +112,14 @@ impl Shared {
         let next = self.different.len() as u32;
         let place = *self.places.entry(numbers.map(f64::to_bits)).or_insert(next);
         if place == next {
-            self.different.push(numbers);
+            self.different.push(Aligned(numbers));
         }
         self.of_blocks.push(place);
     }
 
     #[inline(always)]
     fn of(&self, block: usize) -> &Each<f64> {
-        &self.different[self.of_blocks[block] as usize]
+        &self.different[self.of_blocks[block] as usize].0
     }
 }
 

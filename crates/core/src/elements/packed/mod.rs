@@ -155,7 +155,7 @@ impl Packed {
                 }
             }
             let of = start.max(stretch.own.start)..(panel.end * TILE).min(stretch.own.end);
-            give(window.sums(of.start - start..of.end - start), of);
+            give(window.sums(order, of.start - start..of.end - start), of);
             tiles.start = panel.end;
         }
     }
@@ -172,8 +172,8 @@ impl Packed {
             runs: &self.order.runs,
             which,
             stride: self.order.window(),
-            fields: fields.each_ref().map(|a| a.get(offset..).unwrap_or(&[])),
-            f: &mut f[offset..],
+            fields: fields.each_ref().map(|a| a.get().get(offset..).unwrap_or(&[])),
+            f: &mut f.get_mut()[offset..],
             is_damped: self.is_damped,
             quantity,
         }

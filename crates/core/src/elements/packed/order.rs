@@ -13,7 +13,7 @@ use crate::spring::Spring;
 pub(super) const TILE: usize = 256;
 
 /// Least number of tiles of a panel.
-const PANEL: usize = 4;
+const PANEL: usize = 8;
 
 /// Least number of springs of a block between consecutive particles.
 const DENSE: usize = BLOCK / 2;
@@ -92,7 +92,7 @@ impl Order {
     /// Number of particles of a window: those of a panel and those that its springs reach, with
     /// what runs have beyond the last.
     pub fn window(&self) -> usize {
-        self.panel * TILE + self.reach
+        (self.panel * TILE + self.reach).next_multiple_of(8)
     }
 
     /// The particles of some numbers.

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-use super::laws::{self, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity};
+use super::laws::{self, Aligned, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity};
 use crate::fused::mul_add;
 use crate::spring::Spring;
 
@@ -83,8 +83,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// Takes g from the forces on the first ends, and gives it to the second.
 #[inline(always)]
-fn give(g: &[Each<f64>; 3], [i, j]: [u32; 2], stride: usize, f: &mut [f64]) {
-    for (axis, g) in g.iter().enumerate() {
+fn give(g: &[Aligned; 3], [i, j]: [u32; 2], stride: usize, f: &mut [f64]) {
+    for (axis, Aligned(g)) in g.iter().enumerate() {
         let column = &mut f[axis * stride..];
         let first: &mut Each<f64> = column[i as usize..].first_chunk_mut().unwrap();
         for m in 0..BLOCK {
@@ -102,7 +102,7 @@ impl Kernels for Sum<'_> {
     fn forces<const DAMPED: bool>(self) {
         let (runs, stride) = (self.runs, self.stride);
         let [x, v, ..] = self.fields;
-        let mut g = [[0.0; BLOCK]; 3];
+        let mut g = [Aligned::ZERO; 3];
         for block in self.which {
             let law = runs.laws.of(block);
             let [i, j] = runs.places[block];
@@ -126,7 +126,7 @@ impl Kernels for Sum<'_> {
                 };
                 let s = laws::force::<DAMPED>(law, m, of);
                 for axis in 0..3 {
-                    g[axis][m] = s * d[axis];
+                    g[axis].0[m] = s * d[axis];
                 }
             }
             give(&g, [i, j], stride, self.f);
@@ -136,7 +136,7 @@ impl Kernels for Sum<'_> {
     #[inline(always)]
     fn changes<const DAMPED: bool, const PRODUCT: bool>(self, factors: Factors) {
         let (runs, stride) = (self.runs, self.stride);
-        let mut g = [[0.0; BLOCK]; 3];
+        let mut g = [Aligned::ZERO; 3];
         for block in self.which {
             let law = runs.laws.of(block);
             let [i, j] = runs.places[block];
@@ -167,7 +167,7 @@ impl Kernels for Sum<'_> {
                 }
                 let [a, b] = laws::change::<DAMPED, PRODUCT>(law, m, of, factors);
                 for axis in 0..3 {
-                    g[axis][m] = mul_add(a, e[axis], b * d[axis]);
+                    g[axis].0[m] = mul_add(a, e[axis], b * d[axis]);
                 }
             }
             give(&g, [i, j], stride, self.f);

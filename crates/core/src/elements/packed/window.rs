@@ -4,17 +4,46 @@
 use std::ops::Range;
 
 use super::blocks::Numbers;
-use super::order::Order;
+use super::order::{Order, TILE};
 
 /// x, v, dx and dv of the particles, and what is summed.
 #[derive(Debug, Default)]
 pub(super) struct Window {
     /// For runs, in three columns.
-    pub columns: [Vec<f64>; 5],
+    pub columns: [Columns; 5],
     /// For blocks, three numbers side by side.
     pub rows: [Vec<Numbers>; 5],
     /// Particles at its end that stay when it moves on.
     stays: usize,
+}
+
+/// Three columns, which begin where vectors of the processor are loaded at once.
+#[derive(Debug, Default)]
+pub(super) struct Columns(Vec<f64>);
+
+impl Columns {
+    /// Bytes of a line of the cache.
+    const LINE: usize = 64;
+
+    fn start(&self) -> usize {
+        self.0.as_ptr().align_offset(Self::LINE)
+    }
+
+    fn of_length(&mut self, len: usize) -> &mut [f64] {
+        self.0.resize(3 * len + Self::LINE, 0.0);
+        let start = self.start();
+        &mut self.0[start..start + 3 * len]
+    }
+
+    pub fn get(&self) -> &[f64] {
+        let start = self.start().min(self.0.len());
+        &self.0[start..]
+    }
+
+    pub fn get_mut(&mut self) -> &mut [f64] {
+        let start = self.start();
+        &mut self.0[start..]
+    }
 }
 
 /// Rows of an n x 3 matrix.
@@ -50,8 +79,7 @@ impl Window {
         for (k, source) in sources.chain([Some(None)]).enumerate() {
             let Some(source) = source else { continue };
             if !order.runs.places.is_empty() {
-                let columns = &mut self.columns[k];
-                columns.resize(3 * size, 0.0);
+                let columns = self.columns[k].of_length(size);
                 for (axis, column) in columns.chunks_exact_mut(size).enumerate() {
                     column.copy_within(size - stays.., 0);
                     let (taken, beyond) = column[stays..].split_at_mut(new.len());
@@ -65,25 +93,25 @@ impl Window {
             }
             if order.blocks.len() > 0 {
                 let rows = &mut self.rows[k];
-                rows.resize(size, [0.0; 4]);
+                rows.resize(size, Numbers::default());
                 rows.copy_within(size - stays.., 0);
                 let taken = &mut rows[stays..][..new.len()];
                 match source {
                     Some(from) => copy_rows(from, places, taken),
-                    None => taken.fill([0.0; 4]),
+                    None => taken.fill(Numbers::default()),
                 }
             }
         }
-        self.stays = order.reach;
+        self.stays = size - order.panel * TILE;
     }
 
     /// The sums on some of its particles.
-    pub fn sums(&self, of: Range<usize>) -> Sums<'_> {
+    pub fn sums(&self, order: &Order, of: Range<usize>) -> Sums<'_> {
         let [.., columns] = &self.columns;
         let [.., rows] = &self.rows;
-        let column = |axis: usize| &columns[axis * (columns.len() / 3)..][of.clone()];
+        let column = |axis: usize| &columns.get()[axis * order.window()..][of.clone()];
         Sums {
-            columns: (!columns.is_empty()).then(|| [0, 1, 2].map(column)),
+            columns: (!columns.get().is_empty()).then(|| [0, 1, 2].map(column)),
             rows: (!rows.is_empty()).then(|| &rows[of.clone()]),
         }
     }
@@ -97,7 +125,7 @@ impl Sums<'_> {
                 add(f, axis, places, columns[axis].iter().copied());
             }
             if let Some(rows) = self.rows {
-                add(f, axis, places, rows.iter().map(|row| row[axis]));
+                add(f, axis, places, rows.iter().map(|row| row.0[axis]));
             }
         }
     }
@@ -149,13 +177,13 @@ fn copy_rows(from: &[f64], places: Places, to: &mut [Numbers]) {
         Places::From(first) => {
             let [x, y, z] = [x, y, z].map(|column| &column[first..][..to.len()]);
             for (i, to) in to.iter_mut().enumerate() {
-                *to = [x[i], y[i], z[i], 0.0];
+                *to = Numbers([x[i], y[i], z[i], 0.0]);
             }
         }
         Places::Each(places) => {
             for (to, i) in to.iter_mut().zip(places) {
                 let i = *i as usize;
-                *to = [x[i], y[i], z[i], 0.0];
+                *to = Numbers([x[i], y[i], z[i], 0.0]);
             }
         }
     }
