@@ -161,6 +161,6 @@ fn by_rank(mut all: Vec<Entry>) -> Vec<Entry> {
     let mut ranked: Vec<_> = of_particles
         .flat_map(|chunk| chunk.iter().enumerate())
         .collect();
-    ranked.sort_by_key(|(rank, ([i, _], _))| (*i as usize / TILE, *rank, *i % 8, *i));
+    ranked.sort_by_key(|(rank, ([i, _], _))| (*i as usize / TILE, *rank, *i));
     ranked.into_iter().map(|(_, entry)| *entry).collect()
 }
