@@ -108,11 +108,11 @@ struct Shared {
 }
 
 impl Shared {
-    fn push(&mut self, numbers: Each<f64>) {
+    fn push(&mut self, numbers: &Each<f64>) {
         let next = self.different.len() as u32;
         let place = *self.places.entry(numbers.map(f64::to_bits)).or_insert(next);
         if place == next {
-            self.different.push(Aligned(numbers));
+            self.different.push(Aligned(*numbers));
         }
         self.of_blocks.push(place);
     }
@@ -151,9 +151,9 @@ impl Laws {
             push[m] = law.stiffness * law.rest_length;
             damping[m] = law.damping;
         }
-        self.stiffness.push(stiffness);
-        self.push.push(push);
-        self.damping.push(damping);
+        self.stiffness.push(&stiffness);
+        self.push.push(&push);
+        self.damping.push(&damping);
     }
 
     #[inline(always)]

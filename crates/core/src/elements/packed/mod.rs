@@ -2,15 +2,15 @@
 //!
 //! Springs between consecutive particles make runs, for which positions are kept in columns. The
 //! others make blocks, for which a particle's three numbers lie side by side, so that each end of
-//! a spring is one load, and one store of its force. Springs of blocks are in an order in which
-//! neighbours have no particle in common, so that no sum waits for the one before. Both stay
-//! among a few particles for a while, so that these stay in the cache. The forces on each
+//! a spring is one load, and one store of its force. Springs are sorted by tiles of particles, and
+//! a window moves over these, so that what they need stays in the cache. The forces on each
 //! particle are summed in that order, whatever the number of threads: a thread has a band of
 //! particles, and evaluates all springs that reach it.
 
 mod blocks;
 mod laws;
 mod order;
+mod places;
 mod runs;
 mod window;
 
@@ -26,7 +26,8 @@ use crate::system::Matrix;
 use crate::threads::threads;
 use laws::Quantity;
 use order::{Order, Stretch, TILE};
-use window::{Places, Window, add_at};
+use places::{Places, add_at};
+use window::Window;
 
 /// Number of springs from which on it pays to pack them.
 const LEAST: usize = 1024;

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::blocks::Blocks;
 use super::laws::BLOCK;
+use super::places::Places;
 use super::runs::Runs;
-use super::window::Places;
 use crate::elements::force::ends;
 use crate::spring::Spring;
 

@@ -2,10 +2,6 @@
 //! The numbers of neighbours are then loaded at once, and nothing is gathered.
 
 #![expect(
-    clippy::needless_range_loop,
-    reason = "a place of a block is one in several arrays"
-)]
-#![expect(
     clippy::inline_always,
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
 )]
