@@ -14,7 +14,7 @@ use a3_core::{Grid, Integrator, Linearized, Network, Scene, integrators};
 const LIMITS: [(&str, u64); 9] = [
     ("forces of a sheet", 155),
     ("forces of a damped sheet", 185),
-    ("forces of single springs", 570),
+    ("forces of single springs", 255),
     ("force differential", 510),
     ("step of rk4", 970),
     ("step of verlet", 450),
