@@ -1,0 +1,100 @@
+//! Rows of n x 3 matrices, and how they are copied and added.
+
+use super::blocks::Numbers;
+
+/// Bytes of a line of the cache.
+const LINE: usize = 64;
+
+/// Three columns, which begin where vectors of the processor are loaded at once.
+#[derive(Debug, Default)]
+pub(super) struct Columns(Vec<f64>);
+
+impl Columns {
+    fn start(&self) -> usize {
+        self.0.as_ptr().align_offset(LINE)
+    }
+
+    /// The columns, each of that length.
+    pub fn of_length(&mut self, len: usize) -> &mut [f64] {
+        self.0.resize(3 * len + LINE / size_of::<f64>(), 0.0);
+        let start = self.start();
+        &mut self.0[start..start + 3 * len]
+    }
+
+    pub fn get(&self) -> &[f64] {
+        let start = self.start().min(self.0.len());
+        &self.0[start..]
+    }
+
+    pub fn get_mut(&mut self) -> &mut [f64] {
+        let start = self.start();
+        &mut self.0[start..]
+    }
+}
+
+/// Rows of an n x 3 matrix.
+#[derive(Clone, Copy)]
+pub(super) enum Places<'a> {
+    /// Consecutive ones.
+    From(usize),
+    /// In ascending order.
+    Each(&'a [u32]),
+}
+
+/// Adds the rows of an n x 3 matrix to rows of another.
+pub(super) fn add_at(f: &mut [f64], places: Places, sums: &[f64]) {
+    for (axis, column) in sums.chunks_exact(sums.len() / 3).enumerate() {
+        add(f, axis, places, column.iter().copied());
+    }
+}
+
+/// Adds to rows of a column of an n x 3 matrix.
+pub(super) fn add(f: &mut [f64], axis: usize, places: Places, sums: impl Iterator<Item = f64>) {
+    let n = f.len() / 3;
+    let f = &mut f[axis * n..][..n];
+    match places {
+        Places::From(first) => {
+            for (f, sum) in f[first..].iter_mut().zip(sums) {
+                *f += sum;
+            }
+        }
+        Places::Each(places) => {
+            for (i, sum) in places.iter().zip(sums) {
+                f[*i as usize] += sum;
+            }
+        }
+    }
+}
+
+/// Copies rows of a column of an n x 3 matrix.
+pub(super) fn copy(from: &[f64], axis: usize, places: Places, to: &mut [f64]) {
+    let n = from.len() / 3;
+    let from = &from[axis * n..][..n];
+    match places {
+        Places::From(first) => to.copy_from_slice(&from[first..][..to.len()]),
+        Places::Each(places) => {
+            for (to, i) in to.iter_mut().zip(places) {
+                *to = from[*i as usize];
+            }
+        }
+    }
+}
+
+/// Copies rows of an n x 3 matrix.
+pub(super) fn copy_rows(from: &[f64], places: Places, to: &mut [Numbers]) {
+    let [x, y, z] = [0, 1, 2].map(|axis| &from[axis * (from.len() / 3)..][..from.len() / 3]);
+    match places {
+        Places::From(first) => {
+            let [x, y, z] = [x, y, z].map(|column| &column[first..][..to.len()]);
+            for (i, to) in to.iter_mut().enumerate() {
+                *to = Numbers([x[i], y[i], z[i], 0.0]);
+            }
+        }
+        Places::Each(places) => {
+            for (to, i) in to.iter_mut().zip(places) {
+                let i = *i as usize;
+                *to = Numbers([x[i], y[i], z[i], 0.0]);
+            }
+        }
+    }
+}
