@@ -62,18 +62,19 @@ const INSIDE = array(
     vec3(0.30, 0.36, 0.44),
 );
 
-// The colours of values from 0 to 1, at equal distances.
-const RAMP = array(
-    vec3(0.058, 0.0, 0.089), vec3(0.061, 0.032, 0.209), vec3(0.037, 0.107, 0.266), vec3(0.02, 0.212,
-    0.27), vec3(0.014, 0.356, 0.242), vec3(0.068, 0.533, 0.153), vec3(0.352, 0.701, 0.041), vec3(0.982,
-    0.799, 0.019),
-);
-
+// The colours of values from 0 to 1, at equal distances: each takes over where the one before ends. A list of them would
+// be copied for every pixel by software adapters.
 fn ramp(value: f32) -> vec3<f32> {
-    var stops = RAMP;
     let at = clamp(value, 0.0, 1.0) * 7.0;
-    let below = min(u32(at), 6u);
-    return mix(stops[below], stops[below + 1u], at - f32(below));
+    var color = vec3(0.058, 0.0, 0.089);
+    color = mix(color, vec3(0.061, 0.032, 0.209), saturate(at));
+    color = mix(color, vec3(0.037, 0.107, 0.266), saturate(at - 1.0));
+    color = mix(color, vec3(0.02, 0.212, 0.27), saturate(at - 2.0));
+    color = mix(color, vec3(0.014, 0.356, 0.242), saturate(at - 3.0));
+    color = mix(color, vec3(0.068, 0.533, 0.153), saturate(at - 4.0));
+    color = mix(color, vec3(0.352, 0.701, 0.041), saturate(at - 5.0));
+    color = mix(color, vec3(0.982, 0.799, 0.019), saturate(at - 6.0));
+    return color;
 }
 
 // ---- Background: paper, darker towards the corners, drawn where nothing else is.
@@ -187,8 +188,14 @@ fn lit(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>, gloss: f32, sheen: f32)
     let sky = 0.5 + 0.5 * n.y;
     let head = max(dot(n, eye), 0.0);
     let bright = 1.2 * key * vec3(1.0, 0.97, 0.92) + 0.22 * sky * vec3(0.82, 0.9, 1.0) + 0.16 * head + 0.04;
-    let spark = gloss * pow(max(dot(n, normalize(lamp + eye)), 0.0), 48.0) * step(0.0, facing);
-    let rim = sheen * pow(1.0 - head, 3.5) * (0.35 + 0.65 * sky);
+    // Powers of 48 and of 3.5.
+    let mirrored = max(dot(n, normalize(lamp + eye)), 0.0);
+    let squared = mirrored * mirrored;
+    let fourth = squared * squared;
+    let sixteenth = (fourth * fourth) * (fourth * fourth);
+    let spark = gloss * sixteenth * sixteenth * sixteenth * step(0.0, facing);
+    let edge = max(1.0 - head, 0.0);
+    let rim = sheen * edge * edge * edge * sqrt(edge) * (0.35 + 0.65 * sky);
     return color * bright + spark + rim * mix(color, vec3(1.0), 0.45);
 }
 
@@ -200,10 +207,19 @@ struct Mesh {
     @builtin(position) clip: vec4<f32>,
     @location(0) world: vec3<f32>,
     @location(1) normal: vec3<f32>,
-    @location(2) @interpolate(flat) look: u32,
+    // Colours outside and inside, and the finish.
+    @location(2) @interpolate(flat) outside: vec3<f32>,
+    @location(3) @interpolate(flat) inside: vec3<f32>,
+    @location(4) @interpolate(flat) finish: vec3<f32>,
     // Value from 0 to 1, where the surface is coloured by one; -1 elsewhere.
-    @location(3) value: f32,
+    @location(5) value: f32,
 };
+
+// Finishes of surfaces: gloss, sheen, and how much light comes through.
+const CLOTH = vec3(0.07, 0.35, 0.0);
+const JELLY = vec3(0.55, 0.5, 1.0);
+const STEEL = vec3(0.5, 0.25, 0.0);
+const CHART = vec3(0.0, 0.1, 0.0);
 
 @vertex fn mesh_vertex(@builtin(vertex_index) i: u32) -> Mesh {
     let here = point(i);
@@ -218,19 +234,25 @@ struct Mesh {
     out.clip = globals.view_proj * vec4(p, 1.0);
     out.world = p;
     out.normal = n;
-    out.look = u32(max(here.w, 0.0));
+    let look = u32(max(here.w, 0.0));
+    var outside = OUTSIDE;
+    var inside = INSIDE;
+    out.outside = outside[look];
+    out.inside = inside[look];
+    out.finish = select(select(CLOTH, JELLY, look >= 4u), STEEL, look == 8u);
     out.value = select(-1.0, -1.0 - here.w, here.w < 0.0);
     return out;
 }
 
-// The light of jelly, to which light that entered on the other side adds: more along the outline,
-// where jelly is thin, and where the lamp is opposite the eye.
-fn jelly(color: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
+// The light of a surface. To that of jelly, light adds that entered on the other side: more along
+// the outline, where jelly is thin, and where the lamp is opposite the eye.
+fn finished(color: vec3<f32>, finish: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
     let eye = normalize(globals.eye.xyz - world);
     let lamp = globals.light.xyz;
-    let thin = pow(1.0 - max(dot(n, eye), 0.0), 2.0);
-    let through = 0.30 + 0.45 * thin + 0.35 * max(dot(-lamp, eye), 0.0) + 0.2 * max(-dot(n, lamp), 0.0);
-    return lit(0.75 * color, n, world, 0.55, 0.5) + through * color;
+    let thin = 1.0 - max(dot(n, eye), 0.0);
+    let through = 0.30 + 0.45 * thin * thin + 0.35 * max(dot(-lamp, eye), 0.0) + 0.2 * max(-dot(n, lamp), 0.0);
+    let own = mix(1.0, 0.75, finish.z) * color;
+    return lit(own, n, world, finish.x, finish.y) + finish.z * through * color;
 }
 
 // The colour of a value, with a thin dark line at each tenth of the scale. `change` is its fwidth, which has to be
@@ -244,17 +266,19 @@ fn banded(value: f32, change: f32) -> vec3<f32> {
     return mix(ramp(value), INK, 0.55 * line);
 }
 
+// The light of a surface that is coloured by a value, if it has one. No light is computed twice: software adapters
+// take every branch.
+fn valued(value: f32, change: f32, color: vec3<f32>, finish: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec4<f32> {
+    let has_value = value >= 0.0;
+    let shown = select(color, banded(value, change), has_value);
+    return vec4(finished(shown, select(finish, CHART, has_value), n, world), 1.0);
+}
+
 @fragment fn mesh_fragment(in: Mesh, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     // A degenerate triangle has no normal; it must not become NaN.
     let n = in.normal / max(length(in.normal), 1e-20) * select(-1.0, 1.0, front);
-    let change = fwidth(in.value);
-    if in.value >= 0.0 { return vec4(lit(banded(in.value, change), n, in.world, 0.0, 0.1), 1.0); }
-    var outside = OUTSIDE;
-    var inside = INSIDE;
-    let color = select(inside[in.look], outside[in.look], front);
-    if in.look == 8u { return vec4(lit(color, n, in.world, 0.5, 0.25), 1.0); }
-    if in.look >= 4u { return vec4(jelly(color, n, in.world), 1.0); }
-    return vec4(lit(color, n, in.world, 0.07, 0.35), 1.0);
+    let color = select(in.inside, in.outside, front);
+    return valued(in.value, fwidth(in.value), color, in.finish, n, in.world);
 }
 
 // ---- Liquid: a surface with its own normals.
@@ -276,10 +300,7 @@ fn banded(value: f32, change: f32) -> vec3<f32> {
 
 @fragment fn liquid_fragment(in: Ball) -> @location(0) vec4<f32> {
     let n = in.normal / max(length(in.normal), 1e-20);
-    let value = length(in.value.xyz);
-    let change = fwidth(value);
-    if in.value.w < 0.5 { return vec4(lit(banded(value, change), n, in.world, 0.0, 0.1), 1.0); }
-    return vec4(jelly(in.color, n, in.world), 1.0);
+    return valued(ball_value(in.value), fwidth(length(in.value.xyz)), in.color, JELLY, n, in.world);
 }
 
 // ---- Balls: particles, pins and spherical obstacles.
@@ -292,6 +313,9 @@ struct Ball {
     // Vector whose length, from 0 to 1, colours it; the fourth number is 1 for its own colour.
     @location(3) value: vec4<f32>,
 };
+
+// The value of a ball, or -1.
+fn ball_value(value: vec4<f32>) -> f32 { return select(length(value.xyz), -1.0, value.w >= 0.5); }
 
 @vertex fn ball_vertex(
     @location(0) unit: vec3<f32>, @location(1) ball: vec4<f32>, @location(2) color: vec4<f32>
@@ -306,12 +330,8 @@ struct Ball {
 }
 
 @fragment fn ball_fragment(in: Ball) -> @location(0) vec4<f32> {
-    let value = length(in.value.xyz);
-    let change = fwidth(value);
-    if in.value.w < 0.5 {
-        return vec4(lit(banded(value, change), normalize(in.normal), in.world, 0.0, 0.1), 1.0);
-    }
-    return vec4(lit(in.color, normalize(in.normal), in.world, 0.5, 0.25), 1.0);
+    let change = fwidth(length(in.value.xyz));
+    return valued(ball_value(in.value), change, in.color, STEEL, normalize(in.normal), in.world);
 }
 
 // ---- Solids: boxes with round edges, which are the pieces of a ball, moved apart.
