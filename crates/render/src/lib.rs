@@ -29,7 +29,7 @@ pub use picture::{
 pub use ramp::{ramp, shaded_by};
 pub use renderer::Renderer;
 pub use targets::Targets;
-pub use transfer::Transfer;
+pub use transfer::{Part, Transfer};
 
 /// The example of the README, compiled as a test of documentation.
 #[cfg(doctest)]

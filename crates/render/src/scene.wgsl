@@ -62,8 +62,8 @@ const INSIDE = array(
     vec3(0.30, 0.36, 0.44),
 );
 
-// The colours of values from 0 to 1, at equal distances: each takes over where the one before ends. A list of them would
-// be copied for every pixel by software adapters.
+// The colours of values from 0 to 1, at equal distances: each takes over where the one before ends.
+// A list of them would be copied for every pixel by software adapters.
 fn ramp(value: f32) -> vec3<f32> {
     let at = clamp(value, 0.0, 1.0) * 7.0;
     var color = vec3(0.058, 0.0, 0.089);
@@ -255,8 +255,8 @@ fn finished(color: vec3<f32>, finish: vec3<f32>, n: vec3<f32>, world: vec3<f32>)
     return lit(own, n, world, finish.x, finish.y) + finish.z * through * color;
 }
 
-// The colour of a value, with a thin dark line at each tenth of the scale. `change` is its fwidth, which has to be
-// found where all pixels pass.
+// The colour of a value, with a thin dark line at each tenth of the scale. `change` is its fwidth,
+// which has to be found where all pixels pass.
 fn banded(value: f32, change: f32) -> vec3<f32> {
     let tenths = 10.0 * value;
     let width = max(10.0 * change, 1e-5);
@@ -266,8 +266,8 @@ fn banded(value: f32, change: f32) -> vec3<f32> {
     return mix(ramp(value), INK, 0.55 * line);
 }
 
-// The light of a surface that is coloured by a value, if it has one. No light is computed twice: software adapters
-// take every branch.
+// The light of a surface that is coloured by a value, if it has one. It is computed once, because
+// software adapters take every branch.
 fn valued(value: f32, change: f32, color: vec3<f32>, finish: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec4<f32> {
     let has_value = value >= 0.0;
     let shown = select(color, banded(value, change), has_value);

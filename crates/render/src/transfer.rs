@@ -1,4 +1,5 @@
-//! Pictures under text, where a texture cannot be seen in two formats.
+//! Pictures under text, where a texture cannot be seen in two formats, and text over pictures, where
+//! it is not drawn in each frame.
 
 use wgpu::{PipelineCompilationOptions, TextureFormat, TextureUsages};
 
@@ -11,12 +12,38 @@ pub struct Transfer {
     picture: wgpu::TextureView,
     bind: wgpu::BindGroup,
     pipeline: wgpu::RenderPipeline,
+    /// What becomes of the target.
+    below: wgpu::LoadOp<wgpu::Color>,
 }
+
+/// Left, top, width and height of a part of a texture (px).
+pub type Part = [u32; 4];
 
 impl Transfer {
     /// A texture of `size` (px) and of the sRGB format that belongs to the format of the target.
     #[must_use]
     pub fn new(gpu: &Gpu, size: (u32, u32), target: TextureFormat) -> Self {
+        let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        let own = target.add_srgb_suffix();
+        Self::with(gpu, size, [own, target], ("transfer_fragment", None), clear)
+    }
+
+    /// A texture of `size` (px) and of the target's format, for text that is laid over a target. Its
+    /// colours are multiplied by their opacity.
+    #[must_use]
+    pub fn layer(gpu: &Gpu, size: (u32, u32), target: TextureFormat) -> Self {
+        let blend = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+        let how = ("layer_fragment", blend);
+        Self::with(gpu, size, [target, target], how, wgpu::LoadOp::Load)
+    }
+
+    fn with(
+        gpu: &Gpu,
+        size: (u32, u32),
+        [own, target]: [TextureFormat; 2],
+        (fragment, blend): (&str, Option<wgpu::BlendState>),
+        below: wgpu::LoadOp<wgpu::Color>,
+    ) -> Self {
         let device = &gpu.device;
         let picture = device
             .create_texture(&wgpu::TextureDescriptor {
@@ -29,7 +56,7 @@ impl Transfer {
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
-                format: target.add_srgb_suffix(),
+                format: own,
                 usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
                 view_formats: &[],
             })
@@ -49,9 +76,13 @@ impl Transfer {
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &shader,
-                entry_point: None,
+                entry_point: Some(fragment),
                 compilation_options: PipelineCompilationOptions::default(),
-                targets: &[Some(target.into())],
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: target,
+                    blend,
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
             }),
             multiview_mask: None,
             cache: None,
@@ -68,17 +99,40 @@ impl Transfer {
             picture,
             bind,
             pipeline,
+            below,
         }
     }
 
-    /// What pictures are drawn into.
+    /// What pictures, or text, are drawn into.
     #[must_use]
     pub fn picture(&self) -> &wgpu::TextureView {
         &self.picture
     }
 
-    /// Copies the picture into the target.
+    /// Copies the picture into the target, or lays the text over it.
     pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView) {
+        self.pass(encoder, target).draw(0..3, 0..1);
+    }
+
+    /// Does so for parts of the target alone.
+    pub fn copy_parts(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        parts: &[Part],
+    ) {
+        let mut pass = self.pass(encoder, target);
+        for [left, top, width, height] in parts {
+            pass.set_scissor_rect(*left, *top, *width, *height);
+            pass.draw(0..3, 0..1);
+        }
+    }
+
+    fn pass<'a>(
+        &self,
+        encoder: &'a mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+    ) -> wgpu::RenderPass<'a> {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("transfer"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -86,7 +140,7 @@ impl Transfer {
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    load: self.below,
                     store: wgpu::StoreOp::Store,
                 },
             })],
@@ -94,6 +148,6 @@ impl Transfer {
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.bind, &[]);
-        pass.draw(0..3, 0..1);
+        pass
     }
 }

@@ -1,4 +1,5 @@
-// Copies a picture of linear light into a target whose bytes are written as they are.
+// Copies a picture of linear light into a target whose bytes are written as they are, and text as
+// it is.
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 
@@ -11,4 +12,8 @@
     // IEC 61966-2-1.
     let bright = 1.055 * pow(light.rgb, vec3(1.0 / 2.4)) - 0.055;
     return vec4(select(bright, 12.92 * light.rgb, light.rgb <= vec3(0.0031308)), light.a);
+}
+
+@fragment fn layer_fragment(@builtin(position) pixel: vec4<f32>) -> @location(0) vec4<f32> {
+    return textureLoad(picture, vec2<i32>(pixel.xy), 0);
 }

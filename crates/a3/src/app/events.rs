@@ -104,6 +104,9 @@ impl ApplicationHandler<Event> for App {
         let Some(graphics) = &mut self.graphics else {
             return;
         };
+        if !matches!(event, WindowEvent::RedrawRequested) {
+            graphics.touch();
+        }
         // Keys are for the table of keys: egui gets none.
         let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
         let taken = !is_key && (graphics.on_event(&event) || self.session.list.is_some())

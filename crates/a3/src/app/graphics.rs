@@ -10,6 +10,7 @@ use wgpu::CurrentSurfaceTexture;
 use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
+use super::layer::Layer;
 use crate::hud::panel::{self, Request};
 use crate::hud::{self, Overlay, layout};
 use crate::session::Session;
@@ -33,6 +34,8 @@ pub struct Graphics {
     targets: Targets,
     /// Is drawn into, where the surface cannot be seen in two formats.
     transfer: Option<Transfer>,
+    /// Holds the text, where it is not drawn in each frame.
+    layer: Option<Layer>,
     /// Number of broken springs when the topology of each pane was made.
     tears: Vec<usize>,
     overlay: Overlay,
@@ -75,6 +78,7 @@ impl Graphics {
             renderer: Renderer::new(&gpu, format, samples, &session.panes[0].topology()),
             targets: Targets::new(&gpu, size, format, samples),
             transfer: transfer(&gpu, &config),
+            layer: Layer::new(&gpu, &config),
             tears: vec![],
             overlay,
             egui_winit,
@@ -127,6 +131,13 @@ impl Graphics {
             .consumed
     }
 
+    /// Notes that something happened that the text may tell of.
+    pub fn touch(&mut self) {
+        if let Some(layer) = &mut self.layer {
+            layer.touch();
+        }
+    }
+
     /// Notes that the window has another size. The surface follows at the next frame, once for
     /// however many changes.
     pub fn resized(&mut self) {
@@ -171,6 +182,7 @@ impl Graphics {
                 window_samples(&self.gpu, self.format),
             );
             self.transfer = transfer(&self.gpu, &self.config);
+            self.layer = Layer::new(&self.gpu, &self.config);
         }
     }
 
@@ -241,7 +253,7 @@ impl Graphics {
         }
         // egui's renderer panics on a device that has just been lost.
         self.gpu.check()?;
-        let (before, again, request) = self.write_text(&mut encoder, &text_view, session, cursor);
+        let (before, again, request) = self.text(&mut encoder, &text_view, session, cursor);
         self.gpu
             .queue
             .submit(before.into_iter().chain([encoder.finish()]));
@@ -251,12 +263,41 @@ impl Graphics {
         Ok(FrameOutcome::Drawn(again, request))
     }
 
-    /// Writes the text in a second pass over the picture. Returns the commands to submit before it,
-    /// the time after which it must be drawn again, and what the mouse asks of the panel.
+    /// Writes the text over the picture, or on its layer, if that is due, and lays the layer over the
+    /// picture. Returns the commands to submit before it, the time after which it must be drawn
+    /// again, and what the mouse asks of the panel.
+    fn text(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &wgpu::TextureView,
+        session: &Session,
+        cursor: CursorIcon,
+    ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
+        let Some(mut layer) = self.layer.take() else {
+            return self.write_text(encoder, view, wgpu::LoadOp::Load, session, cursor);
+        };
+        let written = if let Some(stays) = layer.stays() {
+            (vec![], Some(stays), None)
+        } else {
+            let empty = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+            let on_layer = layer.texture.picture();
+            let written = self.write_text(encoder, on_layer, empty, session, cursor);
+            layer.drawn(written.1);
+            written
+        };
+        layer
+            .texture
+            .copy_parts(encoder, view, &self.overlay.filled);
+        self.layer = Some(layer);
+        written
+    }
+
+    /// Writes the text in a pass of its own.
     fn write_text(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         view: &wgpu::TextureView,
+        below: wgpu::LoadOp<wgpu::Color>,
         session: &Session,
         cursor: CursorIcon,
     ) -> (Vec<wgpu::CommandBuffer>, Option<Duration>, Option<Request>) {
@@ -284,7 +325,8 @@ impl Graphics {
         let again = again.filter(|delay| *delay < Duration::from_mins(1));
         let size = (self.config.width, self.config.height);
         self.overlay.dark = session.panes[0].show.dark;
-        let before = self.overlay.paint(&self.gpu, encoder, view, size, output);
+        let target = (view, below);
+        let before = self.overlay.paint(&self.gpu, encoder, target, size, output);
         (before, again, request)
     }
 }

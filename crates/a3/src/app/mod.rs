@@ -7,6 +7,7 @@ mod frame;
 mod graphics;
 mod hover;
 mod keyboard;
+mod layer;
 mod mouse;
 mod pick;
 #[cfg_attr(not(target_arch = "wasm32"), path = "native.rs")]

@@ -1,8 +1,8 @@
 //! egui's text and shapes, drawn over a picture.
 
-use a3_render::Gpu;
-use egui::ClippedPrimitive;
-use egui::epaint::Primitive;
+use a3_render::{Gpu, Part};
+use egui::epaint::{ClippedShape, Primitive};
+use egui::{ClippedPrimitive, Pos2, Rect, vec2};
 
 use super::style::{context, exchanged};
 
@@ -12,6 +12,8 @@ pub struct Overlay {
     pub context: egui::Context,
     /// Whether light and dark are exchanged.
     pub dark: bool,
+    /// The parts of the view that the layout fills, which do not overlap.
+    pub filled: Vec<Part>,
     renderer: egui_wgpu::Renderer,
 }
 
@@ -21,6 +23,7 @@ impl Overlay {
         Self {
             context: context(),
             dark: false,
+            filled: vec![],
             renderer: egui_wgpu::Renderer::new(
                 &gpu.device,
                 format,
@@ -47,17 +50,18 @@ impl Overlay {
         output
     }
 
-    /// Draws the layout over a `view` of `size` (px), and returns the commands to submit before
-    /// those of the encoder.
+    /// Draws the layout over a view of `size` (px), and over what is below in it, and returns the
+    /// commands to submit before those of the encoder.
     pub fn paint(
         &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        view: &wgpu::TextureView,
+        (view, below): (&wgpu::TextureView, wgpu::LoadOp<wgpu::Color>),
         size: (u32, u32),
         mut output: egui::FullOutput,
     ) -> Vec<wgpu::CommandBuffer> {
         let pixels_per_point = output.pixels_per_point;
+        self.filled = filled(&output.shapes, pixels_per_point, size);
         let mut shapes = self.context.tessellate(output.shapes, pixels_per_point);
         if self.dark {
             shapes.iter_mut().for_each(darken);
@@ -77,7 +81,7 @@ impl Overlay {
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Load,
+                    load: below,
                     store: wgpu::StoreOp::Store,
                 },
             })],
@@ -118,8 +122,39 @@ impl Overlay {
             output.textures_delta.free.drain().for_each(drop);
             output = self.lay_out(gpu, input(f64::from(pass)), &mut contents);
         }
-        self.paint(gpu, encoder, view, size, output)
+        self.paint(gpu, encoder, (view, wgpu::LoadOp::Load), size, output)
     }
+}
+
+/// The parts of a view of `size` (px) that shapes fill.
+fn filled(shapes: &[ClippedShape], pixels_per_point: f32, size: (u32, u32)) -> Vec<Part> {
+    let view = Rect::from_min_size(Pos2::ZERO, vec2(size.0 as f32, size.1 as f32));
+    let mut apart: Vec<Rect> = vec![];
+    for ClippedShape {
+        clip_rect,
+        shape,
+        transform_after_tessellation: moved,
+    } in shapes
+    {
+        let bounds = shape.visual_bounding_rect();
+        let bounds = *moved * bounds;
+        let bounds = bounds.intersect(*clip_rect) * pixels_per_point;
+        // Edges are smooth, a pixel wide.
+        let (min, max) = (
+            bounds.min.floor() - vec2(1.0, 1.0),
+            bounds.max.ceil() + vec2(1.0, 1.0),
+        );
+        let mut part = Rect::from_min_max(min, max).intersect(view);
+        if !bounds.is_positive() || !part.is_positive() {
+            continue;
+        }
+        while let Some(k) = apart.iter().position(|other| other.intersects(part)) {
+            part = part.union(apart.swap_remove(k));
+        }
+        apart.push(part);
+    }
+    let part = |rect: Rect| [rect.min.x, rect.min.y, rect.width(), rect.height()].map(|a| a as u32);
+    apart.into_iter().map(part).collect()
 }
 
 /// Exchanges light and dark in all colours of a shape.
@@ -128,5 +163,34 @@ fn darken(shape: &mut ClippedPrimitive) {
         for vertex in &mut mesh.vertices {
             vertex.color = exchanged(vertex.color);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::epaint::{RectShape, Shape};
+    use egui::{Color32, pos2};
+
+    use super::*;
+
+    #[test]
+    fn what_is_filled_is_covered_once() {
+        let shape = |[left, top, right, bottom]: [f32; 4]| {
+            let rect = Rect::from_min_max(pos2(left, top), pos2(right, bottom));
+            ClippedShape {
+                clip_rect: Rect::from_min_max(Pos2::ZERO, pos2(100.0, 30.0)),
+                shape: Shape::Rect(RectShape::filled(rect, 0.0, Color32::RED)),
+                transform_after_tessellation: egui::emath::TSTransform::default(),
+            }
+        };
+        let two = [[2.0, 2.0, 8.0, 8.0], [50.0, 20.0, 90.0, 60.0]].map(shape);
+        // At two pixels a point, with a pixel around each.
+        let apart = [[3, 3, 14, 14], [99, 39, 82, 22]];
+        assert_eq!(filled(&two, 2.0, (200, 100)), apart);
+        let bridged = [two.as_slice(), &[shape([7.0, 7.0, 51.0, 21.0])]].concat();
+        assert_eq!(filled(&bridged, 2.0, (200, 100)), [[3, 3, 178, 58]]);
+        // What lies outside the view is left out.
+        assert_eq!(filled(&two, 2.0, (40, 100)), [[3, 3, 14, 14]]);
+        assert_eq!(filled(&[], 2.0, (40, 100)), [[0; 4]; 0]);
     }
 }
