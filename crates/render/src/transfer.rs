@@ -1,5 +1,5 @@
-//! Pictures under text, where a texture cannot be seen in two formats, and text over pictures, where
-//! it is not drawn in each frame.
+//! Pictures under text, where a texture cannot be seen in two formats, and text over pictures,
+//! where it is not drawn in each frame.
 
 use wgpu::{PipelineCompilationOptions, TextureFormat, TextureUsages};
 
@@ -28,8 +28,8 @@ impl Transfer {
         Self::with(gpu, size, [own, target], ("transfer_fragment", None), clear)
     }
 
-    /// A texture of `size` (px) and of the target's format, for text that is laid over a target. Its
-    /// colours are multiplied by their opacity.
+    /// A texture of `size` (px) and of the target's format, for text that is laid over a target.
+    /// Its colours are multiplied by their opacity.
     #[must_use]
     pub fn layer(gpu: &Gpu, size: (u32, u32), target: TextureFormat) -> Self {
         let blend = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);

@@ -263,9 +263,9 @@ impl Graphics {
         Ok(FrameOutcome::Drawn(again, request))
     }
 
-    /// Writes the text over the picture, or on its layer, if that is due, and lays the layer over the
-    /// picture. Returns the commands to submit before it, the time after which it must be drawn
-    /// again, and what the mouse asks of the panel.
+    /// Writes the text over the picture, or on its layer, if that is due, and lays the layer over
+    /// the picture. Returns the commands to submit before it, the time after which it must be
+    /// drawn again, and what the mouse asks of the panel.
     fn text(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
