@@ -23,7 +23,7 @@ pub(super) struct Numbers(pub [f64; 4]);
 #[derive(Debug, Default)]
 pub(super) struct Blocks {
     ends: Vec<Each<[u32; 2]>>,
-    laws: Laws,
+    pub laws: Laws,
 }
 
 impl Blocks {

@@ -103,7 +103,7 @@ struct Shared {
     different: Vec<Aligned>,
     /// The place of each block's numbers among those.
     of_blocks: Vec<u32>,
-    /// These places by the bits of the numbers.
+    /// These places by the bits of the numbers, until all blocks are there.
     places: HashMap<Each<u64>, u32>,
 }
 
@@ -154,6 +154,13 @@ impl Laws {
         self.stiffness.push(&stiffness);
         self.push.push(&push);
         self.damping.push(&damping);
+    }
+
+    /// Forgets what only further blocks would need.
+    pub fn end(&mut self) {
+        for numbers in [&mut self.stiffness, &mut self.push, &mut self.damping] {
+            numbers.places = HashMap::new();
+        }
     }
 
     #[inline(always)]

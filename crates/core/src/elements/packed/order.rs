@@ -79,6 +79,8 @@ impl Order {
             }
         }
         tiles.push([runs.places.len(), blocks.len()]);
+        runs.laws.end();
+        blocks.laws.end();
         Self {
             panel: reach.div_ceil(TILE).max(PANEL).min(tiles.len() - 1),
             runs,
