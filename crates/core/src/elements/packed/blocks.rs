@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-use super::laws::{self, Aligned, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity};
+use super::laws::{self, BLOCK, Each, Factors, Kernels, Laws, Products, Quantity};
 use crate::fused::mul_add;
 use crate::spring::Spring;
 
@@ -76,7 +76,7 @@ impl Kernels for Sum<'_> {
         } = self;
         let [x, v, ..] = fields;
         let mut d = [Numbers::default(); BLOCK];
-        let [Aligned(mut s), Aligned(mut rate)] = [Aligned::ZERO; 2];
+        let [mut s, mut rate] = [[0.0; BLOCK]; 2];
         for block in which {
             let (ends, law) = (&blocks.ends[block], blocks.laws.of(block));
             for m in 0..BLOCK {

@@ -20,7 +20,7 @@ const DENSE: usize = BLOCK / 2;
 
 /// Springs in runs and, where there are none, in blocks, tile by tile. The springs of a tile begin
 /// at its particles. In blocks, first come the first springs of all of them, then the second, and
-/// so on: neighbours have no end in common.
+/// so on.
 #[derive(Debug)]
 pub(super) struct Order {
     pub runs: Runs,
