@@ -6,6 +6,9 @@ use a3_render::ramp;
 use super::quantity::Quantity;
 use crate::rounding::{MANY, round_up};
 
+/// What is not larger is the rounding of nothing.
+const NOTHING: f64 = 1e-9;
+
 /// The end of a scale shrinks where all that it measures is less than this share of it.
 const SHRINKS: f64 = 0.2;
 
@@ -23,8 +26,7 @@ impl Scale {
     pub fn follow(&mut self, largest: f64) {
         let fits = largest <= self.fitting && largest >= SHRINKS * self.fitting;
         if !fits && largest.is_finite() {
-            // What is smaller is the rounding of nothing.
-            self.fitting = if largest > 1e-9 {
+            self.fitting = if largest > NOTHING {
                 round_up(largest, MANY)
             } else {
                 0.0
@@ -42,7 +44,8 @@ impl Scale {
         if value > 0.0 && value < self.end() {
             (value / self.end()) as f32
         } else {
-            f32::from(value.is_nan() || value > 0.0)
+            let least = if self.end() > 0.0 { 0.0 } else { NOTHING };
+            f32::from(value.is_nan() || value > least)
         }
     }
 }
@@ -137,6 +140,8 @@ mod tests {
             (scale.end(), scale.share(0.0), scale.share(1.0)),
             (0.0, 0.0, 1.0)
         );
+        scale.follow(1e-12);
+        assert_eq!(scale.share(1e-12), 0.0, "the rounding of nothing");
         for (largest, end) in [(1.3, 1.5), (1.4, 1.5), (0.4, 1.5), (0.29, 0.3), (8.5, 10.0)] {
             scale.follow(largest);
             assert_eq!(scale.end(), end, "{largest}");
