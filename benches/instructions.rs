@@ -20,7 +20,7 @@ const LIMITS: [(&str, [u64; 2]); 9] = [
     ("step of rk4", [970, 1020]),
     ("step of verlet", [450, 490]),
     ("step of pefrl", [3700, 3900]),
-    ("step of dopri5", [1670, 1740]),
+    ("step of dopri5", [1670, 2010]),
     ("step of implicit", [5600, 6700]),
 ];
 
