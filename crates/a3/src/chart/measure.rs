@@ -32,9 +32,9 @@ const FINE: f64 = 1e-10;
 /// Most times that a run is timed, with the run that is compared. The shortest time counts.
 const RUNS: u32 = 3;
 /// Total computing time after which a run is timed no more, if it was timed twice.
-const TOGETHER: Duration = Duration::from_millis(100);
+const TOGETHER: Duration = Duration::from_millis(20);
 /// Computing time of a single run after which it is timed no more.
-const ALONE: Duration = Duration::from_millis(250);
+const ALONE: Duration = Duration::from_millis(50);
 
 /// A scene at one stiffness, and how it is measured.
 pub struct Study<'a> {
