@@ -154,6 +154,12 @@ impl Method {
         Ok((self.create)(system))
     }
 
+    /// Whether its integrator is that of another method, by which it takes all fixed steps.
+    #[must_use]
+    pub fn shares_integrator(&self, other: &Self) -> bool {
+        std::ptr::fn_addr_eq(self.create, other.create)
+    }
+
     /// Integrator that chooses its steps to this tolerance; `None` if the method estimates no
     /// error.
     #[must_use]

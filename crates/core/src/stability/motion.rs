@@ -37,6 +37,8 @@ const SWING: f64 = 100.0;
 const PRECISION: f64 = 0.02;
 /// Largest error of an accurate run, over the size of the motion.
 const ACCURATE: f64 = 0.01;
+/// Ratio of two steps, of which one is accurate and one is not, at which the search ends.
+const CLOSE: f64 = 1.1;
 /// Number of times at which the error of a run is taken, about.
 const CHECKS: u64 = 100;
 /// Most [work](Model::work) of the accurate run; it ends before.
@@ -234,41 +236,44 @@ impl Motion {
         if self.size == 0.0 {
             return Ok(None);
         }
-        let accurate =
-            |h: f64| -> Result<bool, Error> { Ok(self.error(method, h, &go_on)? <= 1.0) };
-        let mut high = longest.min(0.25 * self.predictable);
+        let order = f64::from(method.order);
+        // Runs with errors beyond this are all followed by a fifth of their step.
+        let most = 0.9 * 5f64.powf(order);
+        let mut high = (longest.min(0.25 * self.predictable), f64::INFINITY);
         let mut low = high;
         loop {
-            if low < shortest || !go_on() {
+            if low.0 < shortest || !go_on() {
                 return Ok(None);
             }
-            let error = self.error(method, low, &go_on)?;
-            if error <= 1.0 {
+            low.1 = self.error(method, low.0, most, &go_on)?;
+            if low.1 <= 1.0 {
                 break;
             }
             high = low;
             // The error falls as a power of the step.
-            low *= (0.9 / error)
-                .powf(1.0 / f64::from(method.order))
-                .clamp(0.2, 0.95);
+            low.0 *= (0.9 / low.1).powf(1.0 / order).clamp(0.2, 0.95);
         }
-        while high > 1.1 * low {
-            let middle = (low * high).sqrt();
-            if accurate(middle)? {
-                low = middle;
-            } else {
-                high = middle;
-            }
+        while high.0 > CLOSE * low.0 {
+            // By that power between two errors, but so that one more run may be the last.
+            let gap = (high.0 / low.0).ln();
+            let part = low.1.ln() / (low.1 / high.1).ln();
+            let known = low.1 > 0.0 && high.1.is_finite();
+            let part = if known { part } else { 0.5 };
+            let edge = 0.99 * CLOSE.ln();
+            let middle = low.0 * (gap * part).clamp(edge, (gap - edge).max(edge)).exp();
+            let error = self.error(method, middle, most, &go_on)?;
+            *(if error <= 1.0 { &mut low } else { &mut high }) = (middle, error);
         }
-        Ok(Some(low).filter(|_| go_on()))
+        Ok(Some(low.0).filter(|_| go_on()))
     }
 
     /// Largest error of a run in whole steps of about h (s) within the predictable time, over that
-    /// of an accurate run; infinite if the run fails.
+    /// of an accurate run; infinite if the run fails. The run ends once its error exceeds `most`.
     fn error(
         &self,
         method: &'static Method,
         h: f64,
+        most: f64,
         go_on: impl Fn() -> bool,
     ) -> Result<f64, Error> {
         let count = (self.predictable / h).ceil().max(1.0);
@@ -276,16 +281,17 @@ impl Motion {
         let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
         let (mut left, mut error) = (count as u64, 0.0f64);
         let stride = (left / CHECKS).max(1);
-        while left > 0 {
+        while left > 0 && error <= most {
             let steps = stride.min(left);
             if !go_on() || run.take_steps(steps).is_err() {
                 return Ok(f64::INFINITY);
             }
             left -= steps;
             let truth = self.at(run.time());
-            error = error.max(distance(&run.state()[..truth.len()], &truth));
+            let apart = distance(&run.state()[..truth.len()], &truth);
+            error = error.max(apart / (ACCURATE * self.size));
         }
-        Ok(error / (ACCURATE * self.size))
+        Ok(error)
     }
 
     /// True positions (m) at a time (s), by a cubic polynomial between the states that are kept.

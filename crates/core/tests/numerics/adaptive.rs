@@ -325,3 +325,14 @@ fn pairs_take_fixed_steps_too() {
         assert!(found < error, "{name}: {found:e}");
     }
 }
+
+#[test]
+fn fixed_steps_of_bdf_alone_are_those_of_another_method() {
+    let all = integrators::METHODS;
+    for (k, a) in all.iter().enumerate() {
+        for b in &all[..k] {
+            let same = a.shares_integrator(b);
+            assert_eq!(same, [b.name, a.name] == ["tr-bdf2", "bdf"], "{}", a.name);
+        }
+    }
+}
