@@ -25,7 +25,7 @@ const TOLERANCE: &str = "1e-6";
 const LARGE: [(&str, &str, u32); 3] = [
     ("cloth", "64x64", 20),
     ("mit", "70x64", 20),
-    ("flag", "64x66", 20),
+    ("flag", "64x66", 12),
 ];
 const STEPS: u32 = 300;
 /// Step (s) and steps in scenes whose surfaces touch, where each frame is checked for surfaces that

@@ -7,7 +7,7 @@
 use std::array;
 use std::ops::Range;
 
-use super::block::{inverse, symmetric};
+use super::block::inverse;
 use super::multigrid::Multigrid;
 use super::tangent::Tangent;
 use crate::columns::{columns, columns_mut};
@@ -110,9 +110,9 @@ impl ConjugateGradients {
             column.fill(0.0);
         }
         let mut columns = self.inverses.each_mut().map(Vec::as_mut_slice);
-        tangent.blocks(|i, j, block| {
-            // The blocks of a particle have a symmetric sum.
-            for (column, part) in columns.iter_mut().zip(symmetric(block)) {
+        // The blocks of a particle have a symmetric sum.
+        tangent.symmetric_blocks(|i, j, block| {
+            for (column, part) in columns.iter_mut().zip(block) {
                 column[i] += part;
                 if j != i {
                     column[j] += part;

@@ -2,13 +2,12 @@
 //! gathered once, and multiplied without square roots. Pinned particles are filtered: their rows
 //! are those of the identity, and vectors that are solved for are zero there.
 
+use super::block::{Block, symmetric};
 use crate::system::{AxialCoupling, Coupling, GeneralCoupling, Linearized, Matrix, full};
 
 /// A and K.
 pub(crate) struct Tangent {
     axial: Vec<AxialCoupling>,
-    /// Factors of each axial coupling in A: over all directions, and along it in addition.
-    weights: Vec<[f64; 2]>,
     blocks: Vec<GeneralCoupling>,
     /// Mass of each particle in A (kg); 0 where it is pinned.
     masses: Vec<f64>,
@@ -31,7 +30,6 @@ impl Tangent {
         let n = system.inverse_masses().len();
         let mut tangent = Self {
             axial: vec![],
-            weights: vec![],
             blocks: vec![],
             masses: vec![0.0; n],
             free: vec![0.0; n],
@@ -44,7 +42,6 @@ impl Tangent {
         if system.couples_always_the_same() {
             tangent.collect(system, 0.0, &vec![0.0; 3 * n]);
         }
-        tangent.weights.resize(tangent.axial.len(), [0.0; 2]);
         tangent
     }
 
@@ -107,11 +104,6 @@ impl Tangent {
     ) {
         self.clamped = clamped;
         self.collect(system, t, x);
-        self.weights.clear();
-        self.weights.extend(self.axial.iter().map(|c| {
-            let (across, along) = (a * a * c.across, a * a * (c.along - c.across));
-            [across, along + a * c.damping]
-        }));
         let drag = a * system.drag_coefficient();
         let particles = self.masses.iter_mut().zip(&mut self.free);
         for ((m, free), w) in particles.zip(system.inverse_masses()) {
@@ -136,6 +128,28 @@ impl Tangent {
         &self.free
     }
 
+    /// Factors of an axial coupling in A: over all directions, and along it in addition.
+    #[inline]
+    fn factors(&self, c: &AxialCoupling) -> [f64; 2] {
+        let a = self.a;
+        let (across, along) = (a * a * c.across, a * a * (c.along - c.across));
+        [across, along + a * c.damping]
+    }
+
+    /// The block of an axial coupling in A.
+    #[inline]
+    fn axial_block(&self, c: &AxialCoupling) -> Block {
+        let ([iso, along], [x, y, z]) = (self.factors(c), c.direction);
+        [
+            iso + along * x * x,
+            iso + along * y * y,
+            iso + along * z * z,
+            along * x * y,
+            along * x * z,
+            along * y * z,
+        ]
+    }
+
     /// The block of a coupling in A.
     fn block(&self, coupling: &GeneralCoupling) -> [f64; 9] {
         let (a, [k, c]) = (self.a, [coupling.stiffness, coupling.damping]);
@@ -145,20 +159,21 @@ impl Tangent {
     /// Visits the ends i and j of each coupling and its 3 x 3 block B in A, row by row: -B is in
     /// the rows of i and the columns of j.
     pub fn blocks(&self, mut visit: impl FnMut(usize, usize, [f64; 9])) {
-        for (c, [iso, along]) in self.axial.iter().zip(&self.weights) {
-            let [x, y, z] = c.direction;
-            let block = [
-                iso + along * x * x,
-                iso + along * y * y,
-                iso + along * z * z,
-                along * x * y,
-                along * x * z,
-                along * y * z,
-            ];
-            visit(c.i, c.j, full(block));
+        for c in &self.axial {
+            visit(c.i, c.j, full(self.axial_block(c)));
         }
         for c in &self.blocks {
             visit(c.i, c.j, self.block(c));
+        }
+    }
+
+    /// Visits the ends of each coupling and the symmetric part of its block in A.
+    pub fn symmetric_blocks(&self, mut visit: impl FnMut(usize, usize, Block)) {
+        for c in &self.axial {
+            visit(c.i, c.j, self.axial_block(c));
+        }
+        for c in &self.blocks {
+            visit(c.i, c.j, symmetric(self.block(c)));
         }
     }
 
@@ -168,8 +183,9 @@ impl Tangent {
         let n = self.particles();
         let sums = &mut scratch[..n];
         sums.fill(0.0);
-        for (c, [iso, along]) in self.axial.iter().zip(&self.weights) {
-            let k = (iso + along).max(*iso);
+        for c in &self.axial {
+            let [iso, along] = self.factors(c);
+            let k = (iso + along).max(iso);
             sums[c.i] += k;
             sums[c.j] += k;
         }
@@ -207,8 +223,9 @@ impl Tangent {
         } else if done == self.couplings() {
             return;
         }
-        for (c, [iso, along]) in self.axial.iter().zip(&self.weights).skip(done) {
-            add_axial(c, *iso, *along, p, out);
+        for c in &self.axial[done..] {
+            let [iso, along] = self.factors(c);
+            add_axial(c, iso, along, p, out);
         }
         for c in &self.blocks {
             add_block(c, self.block(c), p, out);

@@ -108,3 +108,21 @@ fn stiff_motion_dies_out_in_a_few_steps() {
     println!("{steps} steps to {t} s, {:e}", size(&y));
     assert!(t >= 1.0 && size(&y[..6]) < 1e-16);
 }
+
+#[test]
+fn steps_grow_where_each_has_no_past() {
+    let circle = scene("simple");
+    let system = circle.model.system();
+    let tolerance = Tolerance::new(1e-4).unwrap();
+    let mut bdf = method("bdf").adaptive(system, tolerance).unwrap();
+    let (mut t, mut y, mut steps) = (0.0, circle.state.clone(), 0);
+    while t < 1.0 && steps < 1000 {
+        t += bdf.advance(system, t, &mut y).unwrap().h;
+        steps += 1;
+        // As contact does.
+        y[0] += 1e-9;
+    }
+    println!("{steps} steps to {t} s");
+    // Steps of order 1 with errors of 1e-4, h^2 / 2, would be 70.
+    assert!(t >= 1.0 && steps < 140);
+}

@@ -4,9 +4,11 @@ use super::super::axial;
 use super::super::finish::Finish;
 use super::super::force::{At, Cost, Force, check_particle};
 use super::model::Sheet;
+use super::offsets::OFFSETS;
 use super::strips::{Quantity, set};
 use crate::energy::Energy;
 use crate::error::Error;
+use crate::spring::Spring;
 use crate::system::Coupling;
 
 /// How many times as fast the kernel is as the same springs one by one, on the grids that people
@@ -48,8 +50,13 @@ impl Force for Sheet {
     }
 
     fn couplings(&self, _t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
-        self.springs()
-            .for_each(|spring| visit(axial::coupling(&spring, x, clamped)));
+        for (direction, begins, further) in self.runs() {
+            let (kind, law) = (OFFSETS[direction].0, self.laws()[direction]);
+            for i in begins {
+                let j = i + further;
+                visit(axial::coupling(&Spring { kind, i, j, law }, x, clamped));
+            }
+        }
     }
 
     fn energy(&self, at: &At) -> Energy {

@@ -123,31 +123,39 @@ impl Sheet {
     /// Each spring by itself, direction by direction, those of one in the order of their first
     /// ends.
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
-        let (first, grid, laws) = (self.first, self.grid, self.laws);
-        let mut lost = self.lost().iter().copied().peekable();
-        (0..OFFSETS.len())
-            .flat_map(move |direction| {
-                let (_, down, right) = OFFSETS[direction];
-                let cols = grid.cols() as isize;
-                let ends = (-right).max(0)..cols.min(cols - right);
-                (0..grid.rows().saturating_sub(down)).flat_map(move |row| {
-                    ends.clone().map(move |col| {
-                        let i = grid.index_of(row, col as usize);
-                        (
-                            direction,
-                            i,
-                            grid.index_of(row + down, (col + right) as usize),
-                        )
-                    })
-                })
-            })
-            .filter(move |(direction, i, _)| lost.next_if_eq(&(*direction, *i)).is_none())
-            .map(move |(direction, i, j)| Spring {
+        let laws = self.laws;
+        self.runs().flat_map(move |(direction, begins, further)| {
+            begins.map(move |i| Spring {
                 kind: OFFSETS[direction].0,
-                i: first + i,
-                j: first + j,
+                i,
+                j: i + further,
                 law: laws[direction],
             })
+        })
+    }
+
+    /// The springs of each direction in each row, between those that are missing: the direction,
+    /// first ends next to each other, and by how much their second ends are further on.
+    pub(super) fn runs(&self) -> impl Iterator<Item = (usize, Range<usize>, usize)> {
+        let (first, grid, lost) = (self.first, self.grid, self.lost());
+        let rows = (0..OFFSETS.len()).flat_map(move |direction| {
+            let (_, down, right) = OFFSETS[direction];
+            let cols = grid.cols();
+            let from = right.min(0).unsigned_abs();
+            let to = cols.saturating_sub(right.max(0).unsigned_abs());
+            (0..grid.rows().saturating_sub(down)).map(move |row| {
+                let begins = row * cols + from..row * cols + to;
+                (direction, begins, (down * cols).wrapping_add_signed(right))
+            })
+        });
+        rows.flat_map(move |(direction, begins, further)| {
+            let at = |i: usize| lost.partition_point(|lost| *lost < (direction, i));
+            let gaps = &lost[at(begins.start)..at(begins.end.max(begins.start))];
+            let from = std::iter::once(begins.start).chain(gaps.iter().map(|(_, i)| i + 1));
+            let to = gaps.iter().map(|(_, i)| *i).chain([begins.end]);
+            from.zip(to)
+                .map(move |(from, to)| (direction, first + from..first + to, further))
+        })
     }
 
     /// Removes the springs between pairs of particles, the lower number of each first.

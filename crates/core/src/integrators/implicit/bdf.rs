@@ -71,6 +71,8 @@ struct Bdf {
     /// Whether the solver does not have the tangent yet.
     resumed: bool,
     orders: Orders,
+    /// Whether no step has been taken since the beginning.
+    first: bool,
     /// Ratio of the next step to the last.
     change: f64,
     predicted: Vec<f64>,
@@ -94,6 +96,7 @@ impl Bdf {
                 next: 1,
                 equal: 0,
             },
+            first: true,
             change: 1.0,
             predicted: zeros(),
             base: zeros(),
@@ -190,11 +193,15 @@ impl Bdf {
         self.orders.last = order;
         self.orders.equal += 1;
         self.change = 1.0;
-        if self.orders.equal <= order {
+        let mut best = (Self::ratio(error, order), order);
+        // The length of a first step is a guess, and where contact changes each of its ends every
+        // step is a first one: it may be longer at once.
+        let first = std::mem::take(&mut self.first);
+        let settled = self.orders.equal > order;
+        if !first && !settled {
             return;
         }
-        let mut best = (Self::ratio(error, order), order);
-        if order > 1 {
+        if order > 1 && settled {
             let lower = (
                 Self::ratio(self.error_of(order - 1, system, norm), order - 1),
                 order - 1,
@@ -203,7 +210,7 @@ impl Bdf {
                 best = lower;
             }
         }
-        if order < ORDERS {
+        if order < ORDERS && settled {
             let higher = (
                 Self::ratio(self.error_of(order + 1, system, norm), order + 1),
                 order + 1,
@@ -249,6 +256,7 @@ impl Trial for Bdf {
         system.eval_f(t, &self.step.y0, &mut self.step.k[0]);
         // The difference is f times the distance of the states.
         self.step.h = 1.0;
+        self.first = true;
         self.orders = Orders {
             last: 1,
             next: 1,
@@ -349,6 +357,7 @@ impl Trial for Bdf {
             return Err(Error::Invalid(format!("there is no BDF of order {next}")));
         }
         self.step.resume(step)?;
+        self.first = false;
         self.orders = Orders { last, next, equal };
         self.solver.at.copy_from_slice(&step.k[DIFFERENCES]);
         self.solver.tangent = Tangent {

@@ -1,7 +1,8 @@
 //! Implicit stages of a small system without masses, or of rigid bodies, by Newton's method with
 //! the Jacobian J from central differences.
 
-use super::{CLOSE, MOST, Newton, norm};
+use super::changes::Changes;
+use super::{MOST, Newton, norm};
 use crate::error::Error;
 use crate::integrators::{Work, check_dim};
 use crate::system::ParticleSystem;
@@ -67,30 +68,25 @@ impl Dense {
     ) -> Result<Work, Error> {
         check_dim(self.dim, y)?;
         let mut work = Work::default();
-        let (mut first, mut last) = (f64::NAN, f64::INFINITY);
+        let mut changes = Changes::new(true);
         for iteration in 0..MOST {
-            let (formed, of_use) = self.keep(system, t, a, y);
-            work += formed;
-            if !of_use {
-                break;
+            if iteration == 0 || changes.shrink_fast() == Some(false) {
+                let (formed, of_use) = self.keep(system, t, a, y);
+                work += formed;
+                if !of_use {
+                    break;
+                }
             }
             work += self.correct(system, t, a, base, y);
-            let size = norm(&self.change);
-            if iteration == 0 {
-                first = size;
-            }
-            let settled = size <= CLOSE * norm(y) || (size >= 0.5 * last && size < 1e-9 * norm(y));
-            if newton == Newton::Once || settled {
+            changes.add(norm(&self.change));
+            if newton == Newton::Once || changes.are_over(norm(y), 1e-9) {
                 return Ok(work);
             }
-            last = size;
-            if !size.is_finite() {
+            if !changes.are_finite() {
                 break;
             }
         }
-        Err(Error::NoConvergence {
-            residual: last / first,
-        })
+        Err(changes.failure())
     }
 
     /// Writes 1 - a J at y into the matrix.

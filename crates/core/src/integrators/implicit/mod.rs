@@ -9,6 +9,7 @@
 //! the equations are solved by elimination.
 
 mod bdf;
+mod changes;
 mod dense;
 mod euler;
 mod kept;
@@ -19,6 +20,7 @@ mod tr_bdf2;
 use crate::error::Error;
 use crate::linear::Solver;
 use crate::system::{Linearized, Mechanics, ParticleSystem, place_pins};
+use changes::{CLOSE, Changes};
 use dense::Dense;
 use secants::Secants;
 
@@ -31,9 +33,6 @@ use super::{Work, add_scaled};
 
 /// Largest number of iterations of Newton's method.
 const MOST: u32 = 30;
-/// Change relative to the state at which the iteration ends: the next change would be lost in
-/// rounding.
-const CLOSE: f64 = 1e-11;
 /// Most iterations where contact acts, whose tangent is not exact.
 const MOST_IN_CONTACT: u32 = 150;
 /// Change relative to the state that counts as none where contact acts, if several in a row are so
@@ -47,6 +46,8 @@ const STAYS: u32 = 6;
 const OVERSHOT: f64 = 0.5;
 /// Most times that a change is shortened.
 const SHORTENED: u32 = 12;
+/// Gap relative to positions that is rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Relative residual to which the linear systems of Newton's method are solved.
 const FORCING: f64 = 1e-5;
 
@@ -172,8 +173,8 @@ impl Mechanical {
         let (x, v) = y.split_at_mut(bx.len());
         place_pins(mechanics, t, x, v);
         let mut work = Work::default();
-        let (mut first, mut last) = (f64::NAN, f64::INFINITY);
         let searches = newton == Newton::Full && mechanics.reach().is_finite();
+        let mut changes = Changes::new(!searches);
         let most = if searches { MOST_IN_CONTACT } else { MOST };
         self.evaluated = false;
         self.secants.clear();
@@ -186,7 +187,8 @@ impl Mechanical {
         }
         let mut settled = 0;
         for iteration in 0..most {
-            let mut change = self.iterate(mechanics, t, a, [bx, bv], [x, v], newton, &mut work)?;
+            let how = (newton, searches || !changes.shrink_fast().unwrap_or(false));
+            let mut change = self.iterate(mechanics, t, a, [bx, bv], [x, v], how, &mut work)?;
             if searches {
                 let share = self.search(mechanics, t, a, [bx, bv], [x, v], &mut work);
                 self.secants.add(&self.dv, share, &self.before, &self.rhs);
@@ -195,15 +197,12 @@ impl Mechanical {
             if newton == Newton::Once {
                 return Ok(work);
             }
-            if iteration == 0 {
-                first = change;
-            }
+            changes.add(change);
             let size = norm(v) + norm(x) / a.abs();
-            if change <= CLOSE * size || (change <= 1e3 * CLOSE * size && change >= 0.5 * last) {
+            if changes.are_over(size, 1e3 * CLOSE) {
                 return Ok(work);
             }
-            last = change;
-            if !change.is_finite() {
+            if !changes.are_finite() {
                 break;
             }
             settled = if change <= SETTLED * size {
@@ -215,9 +214,7 @@ impl Mechanical {
                 return Ok(work);
             }
         }
-        Err(Error::NoConvergence {
-            residual: last / first,
-        })
+        Err(changes.failure())
     }
 
     /// One iteration of Newton's method. Returns the norm of the change of v.
@@ -229,15 +226,18 @@ impl Mechanical {
         a: f64,
         [bx, bv]: [&[f64]; 2],
         [x, v]: [&mut [f64]; 2],
-        newton: Newton,
+        (newton, gathers): (Newton, bool),
         work: &mut Work,
     ) -> Result<f64, Error> {
         if !std::mem::take(&mut self.evaluated) {
             *work += self.evaluate(mechanics, t, a, bx, [x, v]);
         }
         let mut clamped = newton == Newton::Once;
+        let mut gathers = gathers;
         loop {
-            *work += self.solver.gather(mechanics, (t, a), x, clamped);
+            if gathers {
+                *work += self.solver.gather(mechanics, (t, a), x, clamped);
+            }
             self.reduce(mechanics, a, bv, v);
             let tolerance = match newton {
                 Newton::Full => FORCING,
@@ -256,7 +256,7 @@ impl Mechanical {
                 Some(_) => break,
                 // Compressed springs can make the matrix indefinite. With these clamped, Newton's
                 // method converges more slowly.
-                None if !clamped => clamped = true,
+                None if !clamped => (clamped, gathers) = (true, true),
                 None => return Err(Error::NoConvergence { residual: 1.0 }),
             }
         }
@@ -315,7 +315,8 @@ impl Mechanical {
         share
     }
 
-    /// Evaluates the forces at (x, v), and the gap. Returns the cost.
+    /// Evaluates the forces at (x, v), and the gap: none where it is rounding everywhere. Returns
+    /// the cost.
     fn evaluate(
         &mut self,
         mechanics: &dyn Linearized,
@@ -325,8 +326,14 @@ impl Mechanical {
         [x, v]: [&[f64]; 2],
     ) -> Work {
         mechanics.forces(t, x, v, &mut self.f);
+        let mut most: f64 = 0.0;
         for (((gap, bx), x), v) in self.gap.iter_mut().zip(bx).zip(x).zip(v) {
             *gap = bx + a * v - x;
+            most = most.max(gap.abs() - ROUNDING * (bx.abs() + x.abs()));
+        }
+        // After an iteration there is no gap: its rounding is not worth a product.
+        if most <= 0.0 {
+            self.gap.fill(0.0);
         }
         Work::of(1)
     }
@@ -352,7 +359,9 @@ impl Mechanical {
                 (bv[k] - v[k]) / w + a * f[k]
             };
         }
-        solver.tangent.subtract_stiffness(a, gap, rhs);
+        if gap.iter().any(|gap| *gap != 0.0) {
+            solver.tangent.subtract_stiffness(a, gap, rhs);
+        }
         solver.tangent.filter(rhs);
     }
 }

@@ -7,7 +7,6 @@ mod aggregates;
 mod level;
 mod lists;
 
-use super::block::symmetric;
 use super::tangent::Tangent;
 use aggregates::Graph;
 use level::Level;
@@ -72,8 +71,8 @@ impl Multigrid {
             first.add_own(i, &[*m, *m, *m, 0.0, 0.0, 0.0]);
         }
         let mut coupling = 0;
-        tangent.blocks(|i, j, block| {
-            first.add_coupling(coupling, [i as u32, j as u32], &symmetric(block));
+        tangent.symmetric_blocks(|i, j, block| {
+            first.add_coupling(coupling, [i as u32, j as u32], &block);
             coupling += 1;
         });
         first.finish();
