@@ -50,6 +50,7 @@
 #![forbid(unsafe_code)]
 
 pub mod accuracy;
+mod cholesky;
 mod columns;
 pub mod constraints;
 pub mod contact;

@@ -10,7 +10,6 @@
 //! inverse inertia too, and J the lever r x g of the force along g.
 
 mod constraint;
-#[cfg_attr(not(feature = "sparse"), path = "no_direct.rs")]
 mod direct;
 mod pool;
 mod row;

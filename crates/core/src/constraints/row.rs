@@ -83,7 +83,6 @@ impl Row {
     }
 
     /// Whether no force can do what is wanted.
-    #[cfg(feature = "sparse")]
     pub fn is_left_out(&self) -> bool {
         self.scale == 0.0
     }

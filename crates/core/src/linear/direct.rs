@@ -1,94 +1,127 @@
-//! The factorisation of a matrix by whichever of two kinds serves its pattern, with its price.
+//! The factorisation of a matrix by 3 x 3 blocks, one for each particle and each coupling, with its
+//! price. Pinned particles keep rows of the identity, so that pinning one changes no pattern.
 
-use super::blocks::BlockCholesky;
-use super::sparse::Cholesky;
 use super::tangent::Tangent;
+use crate::cholesky::{Block, Factor, Pattern, Place};
 
-/// Price of a factorisation by blocks, in evaluations of forces spring by spring: that of its
-/// products of blocks over the number of couplings. Measured on chains, see the tests.
-const BLOCK_PRODUCT: f64 = 6.5;
-/// Price of a solve by blocks, in evaluations of forces spring by spring: that of the factor's
-/// blocks over the number of couplings.
-const BLOCK_SOLVE: f64 = 4.2;
+/// Prices of a factorisation, in evaluations of forces spring by spring over the number of
+/// couplings: of each column, and of each product of two blocks. Measured on chains and cloths, see
+/// the tests.
+const FACTORISATION: [f64; 2] = [10.0, 0.9];
+/// Prices of a solve, in the same measure: of each column, and of each block below the diagonal.
+const SOLUTION: [f64; 2] = [3.0, 2.0];
 /// Number of couplings in the time that an evaluation takes beside its couplings: in relation to
 /// it, the algebra of a few couplings costs less than that of many.
 const OVERHEAD: f64 = 10.0;
-/// Price of a sparse factorisation, in evaluations of forces spring by spring: the least, and that
-/// of its operations over the number of couplings to the power 2/3.
-const SPARSE_FACTORISATION: [f64; 2] = [45.0, 0.33];
-/// Price of a solve with a sparse factor, in evaluations of forces spring by spring: the least, and
-/// that of its numbers over the number of couplings.
-const SPARSE_SOLVE: [f64; 2] = [6.0, 0.2];
 
-/// Price of a sparse factorisation of so many operations for each coupling, in evaluations of
-/// forces spring by spring.
-pub(super) fn sparse_factorisation(operations: f64) -> f64 {
-    SPARSE_FACTORISATION[0] + SPARSE_FACTORISATION[1] * libm::cbrt(operations).powi(2)
+/// Price of so many products of blocks for each coupling, in evaluations of forces spring by spring.
+pub(super) fn price_of_products(products: f64) -> f64 {
+    FACTORISATION[1] * products
 }
 
 /// Factorisation of a matrix whose pattern was analysed.
 pub(super) struct Direct {
-    factor: Factor,
-    pattern: u64,
+    pattern: Pattern,
+    factor: Factor<3, 4>,
+    /// Place of the block of each coupling.
+    places: Vec<Place>,
+    /// What tells the pattern of the couplings from others.
+    couplings: u64,
     /// Price of a factorisation, in evaluations of forces spring by spring.
     pub factorisation: f64,
     /// Price of a solve with the factor, in evaluations of forces spring by spring.
     pub solution: f64,
 }
 
-enum Factor {
-    /// Factor of a chain, a tree, or of another pattern that it hardly fills.
-    Blocks(Box<BlockCholesky>),
-    /// Factor of any other pattern.
-    Sparse(Box<Cholesky>),
-}
-
 impl Direct {
     /// The pattern of a tangent; `None` if the factor takes more memory than there is.
     pub fn new(tangent: &Tangent) -> Option<Self> {
-        let couplings = tangent.couplings().max(1) as f64;
-        let pattern = tangent.pattern();
-        if let Some(blocks) = BlockCholesky::new(tangent) {
-            return Some(Self {
-                factorisation: BLOCK_PRODUCT * blocks.products / (couplings + OVERHEAD),
-                solution: BLOCK_SOLVE * blocks.size / (couplings + OVERHEAD),
-                pattern,
-                factor: Factor::Blocks(Box::new(blocks)),
-            });
-        }
-        let sparse = Cholesky::new(tangent)?;
+        let pattern = Pattern::new(tangent.particles(), tangent.pairs());
+        let couplings = tangent.couplings() as f64 + OVERHEAD;
+        let columns = pattern.len() as f64 / couplings;
         Some(Self {
-            factorisation: sparse_factorisation(sparse.operations / couplings),
-            solution: SPARSE_SOLVE[0] + SPARSE_SOLVE[1] * sparse.size / couplings,
+            factor: Factor::new(&pattern)?,
+            places: tangent.pairs().map(|[i, j]| pattern.place(i, j)).collect(),
+            couplings: tangent.pattern(),
+            factorisation: FACTORISATION[0] * columns
+                + price_of_products(pattern.products() / couplings),
+            solution: SOLUTION[0] * columns + SOLUTION[1] * pattern.size() as f64 / couplings,
             pattern,
-            factor: Factor::Sparse(Box::new(sparse)),
         })
-    }
-
-    /// Whether the matrix is factorised by blocks.
-    #[cfg(test)]
-    pub fn is_by_blocks(&self) -> bool {
-        matches!(self.factor, Factor::Blocks(_))
     }
 
     /// Whether the couplings are still those of the pattern.
     pub fn fits(&self, tangent: &Tangent) -> bool {
-        self.pattern == tangent.pattern()
+        self.couplings == tangent.pattern()
     }
 
     /// Factorises A. Returns whether it is positive definite.
     pub fn factorise(&mut self, tangent: &Tangent) -> bool {
-        match &mut self.factor {
-            Factor::Blocks(blocks) => blocks.factorise(tangent),
-            Factor::Sparse(sparse) => sparse.factorise(tangent),
-        }
+        self.fill(tangent);
+        self.factor.factorise(&self.pattern)
     }
 
     /// Solves A x = b with the factor.
     pub fn solve(&mut self, b: &[f64], x: &mut [f64]) {
-        match &mut self.factor {
-            Factor::Blocks(blocks) => blocks.solve(b, x),
-            Factor::Sparse(sparse) => sparse.solve(b, x),
+        let Self {
+            pattern, factor, ..
+        } = self;
+        let n = pattern.len();
+        for i in 0..n {
+            *factor.unknowns_mut(pattern, i) = [b[i], b[n + i], b[2 * n + i], 0.0];
+        }
+        factor.solve(pattern);
+        for i in 0..n {
+            [x[i], x[n + i], x[2 * n + i], _] = *factor.unknowns_mut(pattern, i);
+        }
+    }
+
+    fn fill(&mut self, tangent: &Tangent) {
+        let Self {
+            pattern,
+            factor,
+            places,
+            ..
+        } = self;
+        factor.clear();
+        let masses = tangent.masses();
+        for (i, m) in masses.iter().enumerate() {
+            let m = if *m == 0.0 { 1.0 } else { *m };
+            let diagonal = factor.diagonal_mut(pattern, i);
+            for (axis, column) in diagonal.iter_mut().enumerate() {
+                column[axis] = m;
+            }
+        }
+        let mut places = places.iter();
+        tangent.blocks(|i, j, block| {
+            let Some(place) = places.next().filter(|_| i != j) else {
+                return;
+            };
+            let at = |row: usize, column: usize| block[3 * row + column];
+            for end in [i, j] {
+                if masses[end] != 0.0 {
+                    // The blocks of a particle have a symmetric sum.
+                    let half = |r, c| 0.5 * (at(r, c) + at(c, r));
+                    add(factor.diagonal_mut(pattern, end), half);
+                }
+            }
+            if masses[i] != 0.0 && masses[j] != 0.0 {
+                let block = factor.block_mut(*place);
+                if place.transposed {
+                    add(block, |r, c| -at(c, r));
+                } else {
+                    add(block, |r, c| -at(r, c));
+                }
+            }
+        });
+    }
+}
+
+/// Adds numbers by row and column to a block.
+fn add(block: &mut Block<3, 4>, number: impl Fn(usize, usize) -> f64) {
+    for (c, column) in block.iter_mut().enumerate() {
+        for (r, sum) in column[..3].iter_mut().enumerate() {
+            *sum += number(r, c);
         }
     }
 }

@@ -1,13 +1,10 @@
-//! Linear systems of implicit steps: conjugate gradients, with multigrid or without, or a sparse
+//! Linear systems of implicit steps: conjugate gradients, with multigrid or without, or a
 //! factorisation, whichever costs least.
 
 mod block;
-mod blocks;
 mod conjugate_gradients;
 mod direct;
 mod multigrid;
-#[cfg_attr(not(feature = "sparse"), path = "no_sparse.rs")]
-mod sparse;
 mod tangent;
 
 use conjugate_gradients::ConjugateGradients;
@@ -29,9 +26,9 @@ const SPREAD: f64 = 0.3;
 const MULTIGRID: [f64; 2] = [5.0, 10.0];
 /// Iterations with multigrid, over (1 + a2 w2)^(1/4) ln(2/tolerance).
 const MULTIGRID_SPREAD: f64 = 0.45;
-/// Least operations of a factorisation for each coupling of particles in two dimensions, over the
-/// root of their number: no need to analyse the pattern where that is too dear.
-const PLANAR: f64 = 150.0;
+/// Least number of products of blocks in a factorisation for each coupling of particles in two
+/// dimensions, over the root of their number: no need to analyse the pattern where that is too dear.
+const PLANAR: f64 = 3.0;
 /// Largest number of iterations.
 const MOST: u64 = 10_000;
 
@@ -79,7 +76,7 @@ impl Solver {
         };
         if !system.couples_always_the_same() {
             (solver.direct_always, solver.multigrid_always) = (Some(false), Some(false));
-        } else if solver.least_operations() == 0.0 {
+        } else if solver.least_products() == 0.0 {
             solver.analyse();
         }
         solver
@@ -91,9 +88,9 @@ impl Solver {
         self.analysed = true;
     }
 
-    /// Least number of operations of a factorisation for each coupling, as far as it is known
+    /// Least number of products in a factorisation for each coupling, as far as it is known
     /// beforehand.
-    fn least_operations(&self) -> f64 {
+    fn least_products(&self) -> f64 {
         let particles = self.tangent.particles() as f64;
         if self.tangent.couplings() as f64 > 1.5 * particles {
             PLANAR * particles.sqrt()
@@ -155,10 +152,7 @@ impl Solver {
     fn goes_direct(&mut self, tolerance: f64) -> bool {
         let [alone, with] = self.prices(tolerance);
         let iterative = alone.min(with);
-        let least = match self.least_operations() {
-            0.0 => 0.0,
-            operations => direct::sparse_factorisation(operations),
-        };
+        let least = direct::price_of_products(self.least_products());
         let worth_analysing = self.factorised || least * self.speed < iterative;
         if self.direct_always.unwrap_or(worth_analysing) && !self.analysed {
             self.analyse();

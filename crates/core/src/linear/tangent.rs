@@ -88,9 +88,9 @@ impl Tangent {
     }
 
     /// Ends of the couplings.
-    pub fn pairs(&self) -> impl Iterator<Item = (u32, u32)> {
-        let axial = self.axial.iter().map(|c| (c.i as u32, c.j as u32));
-        axial.chain(self.blocks.iter().map(|c| (c.i as u32, c.j as u32)))
+    pub fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
+        let axial = self.axial.iter().map(|c| [c.i as u32, c.j as u32]);
+        axial.chain(self.blocks.iter().map(|c| [c.i as u32, c.j as u32]))
     }
 
     /// Gathers the couplings at time t (s) at x for steps of length a (s). With `clamped`, A is

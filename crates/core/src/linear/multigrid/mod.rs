@@ -27,7 +27,7 @@ pub(super) struct Multigrid {
 impl Multigrid {
     /// Levels for the pattern of a tangent; there are none where particles form no aggregates.
     pub fn new(tangent: &Tangent) -> Self {
-        let ends: Vec<_> = tangent.pairs().map(|(i, j)| [i, j]).collect();
+        let ends: Vec<_> = tangent.pairs().collect();
         let mut graph = Graph {
             particles: tangent.particles(),
             // By the pattern alone: the stiffness of a coupling may depend on where particles are,

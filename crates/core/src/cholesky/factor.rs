@@ -1,0 +1,289 @@
+//! The numbers of a factor.
+
+#![expect(
+    clippy::inline_always,
+    clippy::needless_range_loop,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found; zipped iterators are not"
+)]
+
+use pulp::{Arch, Simd, WithSimd};
+
+use super::{Pattern, Place};
+use crate::fused::mul_add;
+
+/// Columns of a matrix of B x B numbers, each of P, of which those beyond B are zero.
+pub(crate) type Block<const B: usize, const P: usize> = [[f64; P]; B];
+
+/// No column.
+const NONE: u32 = u32::MAX;
+
+/// A factor of B x B blocks, which begins as the matrix.
+#[derive(Debug)]
+pub(crate) struct Factor<const B: usize, const P: usize> {
+    /// Blocks on the diagonal, with the inverses of their own diagonals once they are factorised.
+    diagonal: Vec<Block<B, P>>,
+    /// Blocks below the diagonal.
+    blocks: Vec<Block<B, P>>,
+    /// Right-hand side, and later the solution.
+    unknowns: Vec<[f64; P]>,
+    /// The block of each row in the column under way.
+    places: Vec<u32>,
+    /// Of the columns that a column is made of, one; and for each column the next one that goes
+    /// into the same, and its block there.
+    first: Vec<u32>,
+    next: Vec<u32>,
+    reached: Vec<u32>,
+}
+
+impl<const B: usize, const P: usize> Factor<B, P> {
+    /// Room for a factor; `None` if there is not so much memory.
+    pub fn new(pattern: &Pattern) -> Option<Self> {
+        let (n, size) = (pattern.len(), pattern.size());
+        let mut blocks = vec![];
+        blocks.try_reserve_exact(size).ok()?;
+        blocks.resize(size, [[0.0; P]; B]);
+        Some(Self {
+            diagonal: vec![[[0.0; P]; B]; n],
+            blocks,
+            unknowns: vec![[0.0; P]; n],
+            places: vec![0; n],
+            first: vec![NONE; n],
+            next: vec![NONE; n],
+            reached: vec![0; n],
+        })
+    }
+
+    /// Sets all blocks to zero.
+    pub fn clear(&mut self) {
+        self.diagonal.fill([[0.0; P]; B]);
+        self.blocks.fill([[0.0; P]; B]);
+    }
+
+    /// Columns of the block of a row of the matrix on the diagonal.
+    pub fn diagonal_mut(&mut self, pattern: &Pattern, i: usize) -> &mut Block<B, P> {
+        &mut self.diagonal[pattern.ranks[i] as usize]
+    }
+
+    /// Columns of a block below the diagonal.
+    pub fn block_mut(&mut self, place: Place) -> &mut Block<B, P> {
+        &mut self.blocks[place.block as usize]
+    }
+
+    /// Factorises the matrix that the blocks hold. Returns whether it is positive definite.
+    pub fn factorise(&mut self, pattern: &Pattern) -> bool {
+        let factor = self;
+        Arch::new().dispatch(Factorise { factor, pattern })
+    }
+
+    /// The least square of a number on the diagonal.
+    pub fn least_square(&self) -> f64 {
+        let inverses = |block: &Block<B, P>| std::array::from_fn::<_, B, _>(|k| block[k][k]);
+        let largest = self.diagonal.iter().flat_map(inverses).fold(0.0, f64::max);
+        1.0 / (largest * largest)
+    }
+
+    /// Unknowns of a row of the matrix.
+    pub fn unknowns_mut(&mut self, pattern: &Pattern, i: usize) -> &mut [f64; P] {
+        &mut self.unknowns[pattern.ranks[i] as usize]
+    }
+
+    /// Solves A x = b: the unknowns are b before, and x afterwards.
+    pub fn solve(&mut self, pattern: &Pattern) {
+        let factor = self;
+        Arch::new().dispatch(Solve { factor, pattern });
+    }
+}
+
+struct Factorise<'a, const B: usize, const P: usize> {
+    factor: &'a mut Factor<B, P>,
+    pattern: &'a Pattern,
+}
+
+impl<const B: usize, const P: usize> WithSimd for Factorise<'_, B, P> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> bool {
+        let Factor {
+            diagonal,
+            blocks,
+            places,
+            first,
+            next,
+            reached,
+            ..
+        } = self.factor;
+        let Pattern { starts, rows, .. } = self.pattern;
+        let [places, first, next, reached] =
+            [places, first, next, reached].map(|numbers| &mut numbers[..]);
+        let (rows, starts) = (&rows[..], &starts[..]);
+        first.fill(NONE);
+        for (k, diagonal) in diagonal.iter_mut().enumerate() {
+            let (start, end) = (starts[k] as usize, starts[k + 1] as usize);
+            for place in start..end {
+                places[rows[place] as usize] = (place - start) as u32;
+            }
+            let (before, column) = blocks.split_at_mut(start);
+            let column = &mut column[..end - start];
+            let mut left = first[k];
+            while left != NONE {
+                let j = left as usize;
+                left = next[j];
+                let (place, end) = (reached[j] as usize, starts[j + 1] as usize);
+                let by = before[place];
+                subtract_product(diagonal, &by, &by);
+                for place in place + 1..end {
+                    let target = places[rows[place] as usize] as usize;
+                    subtract_product(&mut column[target], &before[place], &by);
+                }
+                if place + 1 < end {
+                    let to = rows[place + 1] as usize;
+                    reached[j] += 1;
+                    (next[j], first[to]) = (first[to], j as u32);
+                }
+            }
+            if !root(diagonal) {
+                return false;
+            }
+            for block in column {
+                divide(block, diagonal);
+            }
+            if start < end {
+                let to = rows[start] as usize;
+                reached[k] = start as u32;
+                (next[k], first[to]) = (first[to], k as u32);
+            }
+        }
+        true
+    }
+}
+
+struct Solve<'a, const B: usize, const P: usize> {
+    factor: &'a mut Factor<B, P>,
+    pattern: &'a Pattern,
+}
+
+impl<const B: usize, const P: usize> WithSimd for Solve<'_, B, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Factor {
+            diagonal,
+            blocks,
+            unknowns,
+            ..
+        } = self.factor;
+        let Pattern { starts, rows, .. } = self.pattern;
+        let (rows, blocks, unknowns) = (&rows[..], &blocks[..], &mut unknowns[..]);
+        for (k, l) in diagonal.iter().enumerate() {
+            let mut y = unknowns[k];
+            for c in 0..B {
+                y[c] *= l[c][c];
+                for r in c + 1..B {
+                    y[r] = mul_add(-l[c][r], y[c], y[r]);
+                }
+            }
+            unknowns[k] = y;
+            for place in starts[k] as usize..starts[k + 1] as usize {
+                subtract(&mut unknowns[rows[place] as usize], &blocks[place], &y);
+            }
+        }
+        for (k, l) in diagonal.iter().enumerate().rev() {
+            let mut sums = [[0.0; P]; B];
+            for place in starts[k] as usize..starts[k + 1] as usize {
+                add_terms(&mut sums, &blocks[place], &unknowns[rows[place] as usize]);
+            }
+            let x = &mut unknowns[k];
+            for c in (0..B).rev() {
+                let mut of_c = x[c];
+                for r in 0..P {
+                    of_c -= sums[c][r];
+                }
+                for r in c + 1..B {
+                    of_c = mul_add(-l[c][r], x[r], of_c);
+                }
+                x[c] = of_c * l[c][c];
+            }
+        }
+    }
+}
+
+/// c -= a bT
+#[inline(always)]
+fn subtract_product<const B: usize, const P: usize>(
+    c: &mut Block<B, P>,
+    a: &Block<B, P>,
+    b: &Block<B, P>,
+) {
+    for m in 0..B {
+        for k in 0..B {
+            for r in 0..P {
+                c[m][r] = mul_add(-b[k][m], a[k][r], c[m][r]);
+            }
+        }
+    }
+}
+
+/// y -= l x
+#[inline(always)]
+fn subtract<const B: usize, const P: usize>(y: &mut [f64; P], l: &Block<B, P>, x: &[f64; P]) {
+    for c in 0..B {
+        for r in 0..P {
+            y[r] = mul_add(-x[c], l[c][r], y[r]);
+        }
+    }
+}
+
+/// Adds the terms of lT x, of which each row is a sum.
+#[inline(always)]
+fn add_terms<const B: usize, const P: usize>(
+    sums: &mut Block<B, P>,
+    l: &Block<B, P>,
+    x: &[f64; P],
+) {
+    for c in 0..B {
+        for r in 0..P {
+            sums[c][r] = mul_add(l[c][r], x[r], sums[c][r]);
+        }
+    }
+}
+
+/// The lower triangle l of which a block is l lT, in its place, its diagonal inverted. Returns
+/// whether there is one.
+#[inline(always)]
+fn root<const B: usize, const P: usize>(a: &mut Block<B, P>) -> bool {
+    for c in 0..B {
+        for before in 0..c {
+            let by = a[before][c];
+            for r in c..B {
+                a[c][r] = mul_add(-a[before][r], by, a[c][r]);
+            }
+        }
+        // Written so that not a number is none.
+        if !(a[c][c] > 0.0 && a[c][c] < f64::INFINITY) {
+            return false;
+        }
+        let inverse = 1.0 / a[c][c].sqrt();
+        a[c][c] = inverse;
+        for r in c + 1..B {
+            a[c][r] *= inverse;
+        }
+    }
+    true
+}
+
+/// a times the inverse of lT, of which the diagonal is inverted.
+#[inline(always)]
+fn divide<const B: usize, const P: usize>(a: &mut Block<B, P>, l: &Block<B, P>) {
+    for c in 0..B {
+        for before in 0..c {
+            for r in 0..P {
+                a[c][r] = mul_add(-l[before][c], a[before][r], a[c][r]);
+            }
+        }
+        for r in 0..P {
+            a[c][r] *= l[c][c];
+        }
+    }
+}

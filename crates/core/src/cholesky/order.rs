@@ -1,0 +1,187 @@
+//! An order of elimination that keeps a factor sparse: the row that meets the fewest others comes
+//! next, by an upper bound of their number (approximate minimum degree; Amestoy, Davis, Duff, SIAM
+//! J. Matrix Anal. Appl. 17, 1996). All rows that an eliminated one meets will meet one another:
+//! they are kept as one list, an element, instead of pair by pair.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// The order in which rows are eliminated, of each of which the others that it meets are given.
+pub(super) fn order(meets: Vec<Vec<u32>>) -> Vec<u32> {
+    let n = meets.len();
+    let mut graph = Graph {
+        left: n as u32,
+        degree: meets.iter().map(|others| others.len() as u32).collect(),
+        meets,
+        elements: vec![vec![]; n],
+        weight: vec![1; n],
+        followers: vec![vec![]; n],
+        members: vec![vec![]; n],
+        size: vec![0; n],
+        outside: vec![0; n],
+        seen: vec![u32::MAX; n],
+        order: Vec::with_capacity(n),
+    };
+    let degrees = graph.degree.iter().zip(0..);
+    let mut queue: BinaryHeap<_> = degrees.map(|(degree, i)| Reverse((*degree, i))).collect();
+    while let Some(Reverse((degree, i))) = queue.pop() {
+        if graph.weight[i as usize] == 0 || graph.degree[i as usize] != degree {
+            continue;
+        }
+        graph.eliminate(i);
+        let members = &graph.members[i as usize];
+        queue.extend(
+            members
+                .iter()
+                .map(|j| Reverse((graph.degree[*j as usize], *j))),
+        );
+    }
+    graph.order
+}
+
+/// What is left of the rows, and the elements. An element has the number of the row whose
+/// elimination made it.
+struct Graph {
+    /// Rows that have not been eliminated.
+    left: u32,
+    /// Bound of the number of rows that each meets, without those that it stands for.
+    degree: Vec<u32>,
+    /// Rows that each meets, except in elements.
+    meets: Vec<Vec<u32>>,
+    /// Elements that each is in.
+    elements: Vec<Vec<u32>>,
+    /// Number of rows that each stands for; 0 once it is eliminated, or another stands for it.
+    weight: Vec<u32>,
+    /// Rows that each stands for beside itself.
+    followers: Vec<Vec<u32>>,
+    /// Rows of each element; none once it lies within others.
+    members: Vec<Vec<u32>>,
+    /// Number of rows in each element, followers included.
+    size: Vec<u32>,
+    /// Number of those that the element made last does not have.
+    outside: Vec<u32>,
+    /// Last element for which a row, or an element, was looked at.
+    seen: Vec<u32>,
+    order: Vec<u32>,
+}
+
+impl Graph {
+    /// Eliminates a row: what it meets becomes an element.
+    fn eliminate(&mut self, pivot: u32) {
+        let p = pivot as usize;
+        self.finish(pivot);
+        self.seen[p] = pivot;
+        let mut members = std::mem::take(&mut self.meets[p]);
+        let absorbed = std::mem::take(&mut self.elements[p]);
+        for e in &absorbed {
+            members.append(&mut self.members[*e as usize]);
+        }
+        members.retain(|i| {
+            let i = *i as usize;
+            let is_new = self.weight[i] > 0 && self.seen[i] != pivot;
+            self.seen[i] = pivot;
+            is_new
+        });
+        self.measure(pivot, &members);
+        // Rows that meet nothing else would be next without making the factor any larger.
+        members.retain(|i| {
+            self.shorten(pivot, *i);
+            let i = *i as usize;
+            let follows = self.meets[i].is_empty() && self.elements[i].is_empty();
+            if follows {
+                self.finish(i as u32);
+            }
+            self.elements[i].push(pivot);
+            !follows
+        });
+        let size = members.iter().map(|i| self.weight[*i as usize]).sum();
+        self.size[p] = size;
+        for i in &members {
+            let i = *i as usize;
+            let met = self.meets[i].iter().map(|j| self.weight[*j as usize]);
+            let (_, elements) = self.elements[i].split_last().unwrap_or((&0, &[]));
+            let outside = elements.iter().map(|e| self.outside[*e as usize]);
+            let others = size - self.weight[i];
+            let degree = met.sum::<u32>() + outside.sum::<u32>() + others;
+            let grown = self.degree[i] + others;
+            self.degree[i] = degree.min(grown).min(self.left - self.weight[i]);
+        }
+        self.merge(&mut members);
+        self.members[p] = members;
+    }
+
+    /// Puts a row, and those that it stands for, into the order.
+    fn finish(&mut self, row: u32) {
+        self.left -= self.weight[row as usize];
+        self.weight[row as usize] = 0;
+        let mut rows = vec![row];
+        while let Some(row) = rows.pop() {
+            self.order.push(row);
+            rows.append(&mut self.followers[row as usize]);
+        }
+    }
+
+    /// Counts for each element how many of its rows are not among these.
+    fn measure(&mut self, pivot: u32, members: &[u32]) {
+        for i in members {
+            let weight = self.weight[*i as usize];
+            for e in &self.elements[*i as usize] {
+                let e = *e as usize;
+                if self.seen[e] != pivot {
+                    (self.seen[e], self.outside[e]) = (pivot, self.size[e]);
+                }
+                self.outside[e] -= weight;
+            }
+        }
+    }
+
+    /// Takes from the lists of a row what the element of the pivot has as well.
+    fn shorten(&mut self, pivot: u32, i: u32) {
+        let i = i as usize;
+        let (members, outside) = (&mut self.members, &self.outside);
+        self.elements[i].retain(|e| {
+            let e = *e as usize;
+            if outside[e] == 0 {
+                members[e] = vec![];
+            }
+            !members[e].is_empty()
+        });
+        let (weight, seen) = (&self.weight, &self.seen);
+        self.meets[i].retain(|j| weight[*j as usize] > 0 && seen[*j as usize] != pivot);
+        self.meets[i].sort_unstable();
+        self.elements[i].sort_unstable();
+    }
+
+    /// Lets one row stand for all of those that meet the same.
+    fn merge(&mut self, members: &mut Vec<u32>) {
+        let key = |i: u32| {
+            let lists = [&self.meets[i as usize], &self.elements[i as usize]];
+            lists
+                .into_iter()
+                .flatten()
+                .fold(0u32, |sum, j| sum.wrapping_add(*j))
+        };
+        let mut keyed: Vec<_> = members.iter().map(|i| (key(*i), *i)).collect();
+        keyed.sort_unstable();
+        members.clear();
+        for group in keyed.chunk_by(|a, b| a.0 == b.0) {
+            let first = members.len();
+            for (_, i) in group {
+                let i = *i as usize;
+                let alike = |j: &&u32| {
+                    let j = **j as usize;
+                    self.meets[i] == self.meets[j] && self.elements[i] == self.elements[j]
+                };
+                let Some(&j) = members[first..].iter().find(alike) else {
+                    members.push(i as u32);
+                    continue;
+                };
+                let (j, weight) = (j as usize, std::mem::take(&mut self.weight[i]));
+                self.weight[j] += weight;
+                self.degree[j] -= weight;
+                self.followers[j].push(i as u32);
+                (self.meets[i], self.elements[i]) = (vec![], vec![]);
+            }
+        }
+    }
+}
