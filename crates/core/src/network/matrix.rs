@@ -24,7 +24,7 @@ impl Network {
         for sheet in self.sheets() {
             let quantity = Quantity::Tangent { clamped };
             let sheet = sheet.scaled(a * a, a);
-            set(quantity, &sheet, [matrix.x, p], out, false, &finish);
+            set(quantity, &sheet, &[matrix.x, p], out, false, &finish);
         }
         self.finish_single(p, out, &finish);
         let Some(packed) = packed else {

@@ -91,7 +91,7 @@ impl Network {
         }
         others.for_each(|element| element.force().add_forces(at, f));
         for sheet in elements.filter_map(Element::sheet) {
-            set(Quantity::Forces, sheet, [at.x, at.v], f, added, finish);
+            set(Quantity::Forces, sheet, &[at.x, at.v], f, added, finish);
         }
         self.finish_single(at.v, f, finish);
     }

@@ -26,26 +26,18 @@ impl Force for Sheet {
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
         let finish = Finish::default();
-        set(Quantity::Forces, self, [at.x, at.v], f, true, &finish);
+        set(Quantity::Forces, self, &[at.x, at.v], f, true, &finish);
     }
 
     fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
         let is_zero = |a: &[f64]| a.iter().all(|a| *a == 0.0);
-        // The turning of damped springs changes their forces, which the kernel leaves out.
-        if self.is_damped() && !is_zero(at.v) {
-            for spring in self.springs() {
-                axial::add_differential(&spring, at, [dx, dv], df);
-            }
-            return;
-        }
-        let mut add = |stiffness, damping, p: &[f64]| {
-            let quantity = Quantity::Tangent { clamped: false };
-            let sheet = self.scaled(stiffness, damping);
-            set(quantity, &sheet, [at.x, p], df, true, &Finish::default());
-        };
-        add(1.0, 0.0, dx);
-        if self.is_damped() && !is_zero(dv) {
-            add(0.0, 1.0, dv);
+        let finish = Finish::default();
+        if self.is_damped() && !(is_zero(at.v) && is_zero(dv)) {
+            let fields = [at.x, at.v, dx, dv];
+            set(Quantity::Differential, self, &fields, df, true, &finish);
+        } else {
+            let (quantity, sheet) = (Quantity::Tangent { clamped: false }, self.scaled(1.0, 0.0));
+            set(quantity, &sheet, &[at.x, dx], df, true, &finish);
         }
     }
 

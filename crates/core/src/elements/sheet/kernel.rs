@@ -13,7 +13,9 @@ use std::ops::Range;
 use pulp::Simd;
 
 use super::super::finish::Finish;
-use super::lanes::{Columns, Lanes, Numbers, Vectors, add, dot, pick, plus, put, replace, sub};
+use super::lanes::{
+    Columns, Lanes, Numbers, Point, Points, Vectors, add, dot, pick, plus, put, replace, sub,
+};
 use super::laws::{Law, kind};
 use super::missing::Masks;
 use crate::elements::inverse_root::inverse_root;
@@ -23,12 +25,13 @@ use crate::fused::{mul_adds, negate_mul_adds};
 /// row and of the one above), down and left (the same), two down (the same).
 pub(crate) const SPRING_FORCES: usize = 3 * 9;
 
-/// Quantities of springs: forces, undamped or damped; or products of their tangents with a vector,
-/// clamped or not.
+/// Quantities of springs: forces, undamped or damped; products of their tangents with a vector,
+/// clamped or not; or the change of the forces.
 pub(super) const PLAIN: u8 = 0;
 pub(super) const DAMPED: u8 = 1;
 pub(super) const TANGENT: u8 = 2;
 pub(super) const CLAMPED: u8 = 3;
+pub(super) const DIFFERENTIAL: u8 = 4;
 
 /// Addends to the forces of springs on a row, and their finish.
 pub(super) struct Others<'a, S: Simd> {
@@ -104,11 +107,11 @@ impl<'a, S: Simd> Others<'a, S> {
 
 /// Source of the particles of a row, and use of the sums for them.
 pub(super) trait Use<S: Simd> {
-    /// Positions and velocities of vector i.
-    fn here(&self, i: usize) -> (Vectors<S>, Vectors<S>);
+    /// Particles of vector i.
+    fn here(&self, i: usize) -> Point<S>;
 
     /// Uses the finished sum f of vector i.
-    fn put(&mut self, simd: S, i: usize, here: (Vectors<S>, Vectors<S>), f: Vectors<S>);
+    fn put(&mut self, simd: S, i: usize, here: Point<S>, f: Vectors<S>);
 }
 
 /// A row of springs.
@@ -149,10 +152,10 @@ impl RowOfSprings<'_> {
             Law::<S, MASKED>::new(simd, of, direction, self.below, lanes.count)
         };
         let (a, b) = (laws(0), laws(4));
-        let (px, pv) = lanes.places::<S>(here, 0);
-        let (one, two) = (lanes.places::<S>(here, 1), lanes.places::<S>(here, 2));
+        let points = |shift| lanes.points::<S>(here, KIND == DIFFERENTIAL, shift);
+        let [here, one, two] = [points(0), points(1), points(2)];
         for i in 0..lanes.count {
-            let (p, kind) = ((pick::<S>(px, i), pick::<S>(pv, i)), kind(i, lanes.count));
+            let (p, kind) = (here.pick(i), kind(i, lanes.count));
             let force = spring::<S, KIND>(simd, a.at(simd, i, kind), p, one, i);
             put::<S>(&mut right, i, force);
             let force = spring::<S, KIND>(simd, b.at(simd, i, kind), p, two, i);
@@ -207,8 +210,9 @@ impl RowOfSprings<'_> {
             Law::<S, MASKED>::new(simd, of, direction, self.below, lanes.count)
         };
         let (a, b, c, d) = (laws(1), laws(2), laws(3), laws(5));
-        let (ax, bx) = (lanes.places::<S>(next, 0), lanes.places::<S>(next, 1));
-        let (cx, dx) = (lanes.places::<S>(next, -1), lanes.places::<S>(next2, 0));
+        let points = |row, shift| lanes.points::<S>(row, KIND == DIFFERENTIAL, shift);
+        let [ax, bx] = [points(next, 0), points(next, 1)];
+        let [cx, dx] = [points(next, -1), points(next2, 0)];
         let (mut to_a, mut to_b) = (lanes.at_mut::<S>(down), lanes.at_mut::<S>(backslash));
         let (mut to_c, mut to_d) = (lanes.at_mut::<S>(slash), lanes.at_mut::<S>(down2));
         let (left, left2) = (lanes.at::<S>(right, 0, -1), lanes.at::<S>(right2, 0, -2));
@@ -232,53 +236,81 @@ impl RowOfSprings<'_> {
             let force = spring::<S, KIND>(simd, d.at(simd, i, kind), p, dx, i);
             let above2 = replace::<S>(&mut to_d, i, force);
             all = add::<S>(simd, all, sub::<S>(simd, above2, force));
-            then.put(simd, i, p, others.apply(simd, i, p.1, all));
+            then.put(simd, i, p, others.apply(simd, i, p[1], all));
         }
     }
 }
 
 /// Forces of springs from particles at p with velocity u on others, at their other ends: s d with s
 /// = k - k r / L + c (w . d) / L2. Of tangents, with w between vectors and q = k - k r / L: q w +
-/// (k - q + c) (w . d) d / L2.
+/// (k - q + c) (w . d) d / L2. Of changes, e of d and g of w: s e + ds d.
 #[inline(always)]
 fn spring<S: Simd, const KIND: u8>(
     simd: S,
     law: Vectors<S>,
-    (p, u): (Vectors<S>, Vectors<S>),
-    (x, v): (Columns<S>, Columns<S>),
+    [p, u, dp, du]: Point<S>,
+    others: Points<S>,
     i: usize,
 ) -> Vectors<S> {
-    let d = sub::<S>(simd, p, pick::<S>(x, i));
+    let [x, v, dx, dv] = others.pick(i);
+    let d = sub::<S>(simd, p, x);
     let square = dot(simd, d, d);
-    let inverse = inverse_root(simd, square);
-    if KIND == TANGENT || KIND == CLAMPED {
+    let mut inverse = inverse_root(simd, square);
+    if KIND == TANGENT || KIND == CLAMPED || KIND == DIFFERENTIAL {
         let zero = simd.splat_f64s(0.0);
         // Without a length there is no direction.
         let has_length = simd.less_than_f64s(zero, square);
-        let inverse = simd.select_f64s(has_length, inverse, zero);
-        let mut across = negate_mul_adds(simd, law[1], inverse, law[0]);
-        if KIND == CLAMPED {
-            across = simd.max_f64s(across, zero);
-        }
-        let w = sub::<S>(simd, u, pick::<S>(v, i));
-        let turn = simd.mul_f64s(simd.mul_f64s(dot(simd, w, d), inverse), inverse);
-        let more = simd.add_f64s(simd.sub_f64s(law[0], across), law[2]);
-        let s = simd.mul_f64s(turn, more);
-        return [
-            mul_adds(simd, s, d[0], simd.mul_f64s(across, w[0])),
-            mul_adds(simd, s, d[1], simd.mul_f64s(across, w[1])),
-            mul_adds(simd, s, d[2], simd.mul_f64s(across, w[2])),
-        ];
+        inverse = simd.select_f64s(has_length, inverse, zero);
     }
     let mut s = negate_mul_adds(simd, law[1], inverse, law[0]);
+    if KIND == TANGENT || KIND == CLAMPED {
+        if KIND == CLAMPED {
+            s = simd.max_f64s(s, simd.splat_f64s(0.0));
+        }
+        let w = sub::<S>(simd, u, v);
+        let turn = twice(simd, dot(simd, w, d), inverse);
+        let more = simd.add_f64s(simd.sub_f64s(law[0], s), law[2]);
+        return sum_of::<S>(simd, s, w, simd.mul_f64s(turn, more), d);
+    }
+    if KIND == DIFFERENTIAL {
+        let (w, e, g) = (
+            sub::<S>(simd, u, v),
+            sub::<S>(simd, dp, dx),
+            sub::<S>(simd, du, dv),
+        );
+        let rate = twice(simd, dot(simd, w, d), inverse);
+        let share = twice(simd, dot(simd, e, d), inverse);
+        // c ((g . d) + (w . e) - 2 (w . d) (e . d) / L2) / L2
+        let turned = simd.add_f64s(dot(simd, g, d), dot(simd, w, e));
+        let lost = simd.mul_f64s(simd.add_f64s(rate, rate), share);
+        let damping = simd.mul_f64s(law[2], simd.sub_f64s(twice(simd, turned, inverse), lost));
+        let ds = mul_adds(simd, simd.sub_f64s(law[0], s), share, damping);
+        let s = mul_adds(simd, law[2], rate, s);
+        return sum_of::<S>(simd, s, e, ds, d);
+    }
     if KIND == DAMPED {
-        let rate = dot(simd, sub::<S>(simd, u, pick::<S>(v, i)), d);
-        let rate = simd.mul_f64s(simd.mul_f64s(rate, inverse), inverse);
+        let rate = twice(simd, dot(simd, sub::<S>(simd, u, v), d), inverse);
         s = mul_adds(simd, law[2], rate, s);
     }
     [
         simd.mul_f64s(s, d[0]),
         simd.mul_f64s(s, d[1]),
         simd.mul_f64s(s, d[2]),
+    ]
+}
+
+/// a b2
+#[inline(always)]
+fn twice<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s {
+    simd.mul_f64s(simd.mul_f64s(a, b), b)
+}
+
+/// a x + b y
+#[inline(always)]
+fn sum_of<S: Simd>(simd: S, a: S::f64s, x: Vectors<S>, b: S::f64s, y: Vectors<S>) -> Vectors<S> {
+    [
+        mul_adds(simd, b, y[0], simd.mul_f64s(a, x[0])),
+        mul_adds(simd, b, y[1], simd.mul_f64s(a, x[1])),
+        mul_adds(simd, b, y[2], simd.mul_f64s(a, x[2])),
     ]
 }

@@ -21,6 +21,29 @@ pub(super) type ColumnsMut<'a, S> = [&'a mut [<S as Simd>::f64s]; 3];
 pub(super) type Places<'a, S> = (Columns<'a, S>, Columns<'a, S>);
 pub(super) type PlacesMut<'a, S> = (ColumnsMut<'a, S>, ColumnsMut<'a, S>);
 
+/// Positions, velocities and their changes of the particles of a vector.
+pub(super) type Point<S> = [Vectors<S>; 4];
+
+/// Positions, velocities and their changes of the particles of a row.
+#[derive(Clone, Copy)]
+pub(super) struct Points<'a, S: Simd> {
+    places: Places<'a, S>,
+    changes: Places<'a, S>,
+}
+
+impl<S: Simd> Points<'_, S> {
+    #[inline(always)]
+    pub fn pick(&self, i: usize) -> Point<S> {
+        let ((x, v), (dx, dv)) = (self.places, self.changes);
+        [
+            pick::<S>(x, i),
+            pick::<S>(v, i),
+            pick::<S>(dx, i),
+            pick::<S>(dv, i),
+        ]
+    }
+}
+
 /// Layout of a row: numbers from one column to the next, and vectors in each.
 #[derive(Clone, Copy)]
 pub(super) struct Lanes {
@@ -57,6 +80,19 @@ impl Lanes {
     #[inline(always)]
     pub fn places<S: Simd>(self, a: &[f64], shift: isize) -> Places<'_, S> {
         (self.at::<S>(a, 0, shift), self.at::<S>(a, 3, shift))
+    }
+
+    /// Positions and velocities and, if there are such columns, their changes. Otherwise nobody asks
+    /// for these.
+    #[inline(always)]
+    pub fn points<S: Simd>(self, a: &[f64], changes: bool, shift: isize) -> Points<'_, S> {
+        let places = self.places::<S>(a, shift);
+        let changes = if changes {
+            (self.at::<S>(a, 6, shift), self.at::<S>(a, 9, shift))
+        } else {
+            places
+        };
+        Points { places, changes }
     }
 
     /// Vectors of a matrix of three columns.

@@ -12,8 +12,10 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::super::finish::Finish;
-use super::kernel::{CLAMPED, DAMPED, Others, PLAIN, RowOfSprings, SPRING_FORCES, TANGENT, Use};
-use super::lanes::{ColumnsMut, Lanes, Places, Vectors, pick, put};
+use super::kernel::{
+    CLAMPED, DAMPED, DIFFERENTIAL, Others, PLAIN, RowOfSprings, SPRING_FORCES, TANGENT, Use,
+};
+use super::lanes::{ColumnsMut, Lanes, Point, Points, Vectors, put};
 use super::laws::{self, LAWS};
 use super::model::Sheet;
 use crate::columns::columns_mut;
@@ -35,14 +37,20 @@ pub(crate) enum Quantity {
     /// Change of the forces on particles at x by moving them by v, and at v, by the laws'
     /// dampings. With `clamped`, stiffness across compressed springs counts as none.
     Tangent { clamped: bool },
+    /// Change of the forces on particles at x that move at v, by dx and dv.
+    Differential,
 }
 
+/// Columns of particles: positions and velocities, and for differentials their changes.
+const PLACES: usize = 6;
+const CHANGES: usize = 12;
+
 /// Sets f, on the particles of a sheet, to the finished sum of its springs' forces, and of what f
-/// holds before if that is to be `added`.
+/// holds before if that is to be `added`. The `fields` are x and v, and dx and dv of a differential.
 pub(crate) fn set(
     quantity: Quantity,
     sheet: &Sheet,
-    [x, v]: [&[f64]; 2],
+    fields: &[&[f64]],
     f: &mut [f64],
     added: bool,
     finish: &Finish,
@@ -54,8 +62,7 @@ pub(crate) fn set(
         Arch::new().dispatch(Forces {
             quantity,
             sheet,
-            x,
-            v,
+            fields,
             rows,
             f,
             added,
@@ -67,8 +74,7 @@ pub(crate) fn set(
 struct Forces<'a> {
     quantity: Quantity,
     sheet: &'a Sheet,
-    x: &'a [f64],
-    v: &'a [f64],
+    fields: &'a [&'a [f64]],
     /// Rows whose forces are wanted, and the forces there.
     rows: Range<usize>,
     f: [&'a mut [f64]; 3],
@@ -83,29 +89,30 @@ impl WithSimd for Forces<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         match self.quantity {
-            Quantity::Tangent { clamped: true } => strips::<S, CLAMPED>(simd, self),
-            Quantity::Tangent { clamped: false } => strips::<S, TANGENT>(simd, self),
-            Quantity::Forces if self.sheet.is_damped() => strips::<S, DAMPED>(simd, self),
-            Quantity::Forces => strips::<S, PLAIN>(simd, self),
+            Quantity::Tangent { clamped: true } => strips::<S, CLAMPED, PLACES>(simd, self),
+            Quantity::Tangent { clamped: false } => strips::<S, TANGENT, PLACES>(simd, self),
+            Quantity::Differential => strips::<S, DIFFERENTIAL, CHANGES>(simd, self),
+            Quantity::Forces if self.sheet.is_damped() => strips::<S, DAMPED, PLACES>(simd, self),
+            Quantity::Forces => strips::<S, PLAIN, PLACES>(simd, self),
         }
     }
 }
 
 #[inline(always)]
-fn strips<S: Simd, const KIND: u8>(simd: S, forces: Forces) {
+fn strips<S: Simd, const KIND: u8, const C: usize>(simd: S, forces: Forces) {
     const STRIDES: [usize; 3] = [stride(WIDTHS[0]), stride(WIDTHS[1]), stride(WIDTHS[2])];
     match forces.sheet.grid().cols() {
-        cols if cols <= WIDTHS[0] => strips_of::<S, KIND, { STRIDES[0] }>(simd, forces),
-        cols if cols <= WIDTHS[1] => strips_of::<S, KIND, { STRIDES[1] }>(simd, forces),
-        _ => strips_of::<S, KIND, { STRIDES[2] }>(simd, forces),
+        cols if cols <= WIDTHS[0] => strips_of::<S, KIND, C, { STRIDES[0] }>(simd, forces),
+        cols if cols <= WIDTHS[1] => strips_of::<S, KIND, C, { STRIDES[1] }>(simd, forces),
+        _ => strips_of::<S, KIND, C, { STRIDES[2] }>(simd, forces),
     }
 }
 
 /// Numbers of a strip that are kept from row to row.
 #[repr(C, align(64))]
-struct Kept<const P: usize> {
-    /// Positions and velocities of three rows.
-    places: [[[f64; P]; 6]; 3],
+struct Kept<const C: usize, const P: usize> {
+    /// Columns of three rows.
+    places: [[[f64; P]; C]; 3],
     spring_forces: [[f64; P]; SPRING_FORCES],
     addends: [[f64; P]; 3],
     f: [[f64; P]; 3],
@@ -114,7 +121,7 @@ struct Kept<const P: usize> {
 
 /// Cuts the columns into strips of about the same width.
 #[inline(always)]
-fn strips_of<S: Simd, const KIND: u8, const P: usize>(simd: S, mut forces: Forces) {
+fn strips_of<S: Simd, const KIND: u8, const C: usize, const P: usize>(simd: S, mut forces: Forces) {
     let cols = forces.sheet.grid().cols();
     let most = P - 2 * PAD;
     let count = if cols <= most {
@@ -123,7 +130,7 @@ fn strips_of<S: Simd, const KIND: u8, const P: usize>(simd: S, mut forces: Force
         cols.div_ceil(most - LEFT - RIGHT)
     };
     let mut kept = Kept {
-        places: [[[0.0; P]; 6]; 3],
+        places: [[[0.0; P]; C]; 3],
         spring_forces: [[0.0; P]; SPRING_FORCES],
         addends: [[0.0; P]; 3],
         f: [[0.0; P]; 3],
@@ -131,21 +138,20 @@ fn strips_of<S: Simd, const KIND: u8, const P: usize>(simd: S, mut forces: Force
     };
     for k in 0..count {
         let strip = k * cols / count..(k + 1) * cols / count;
-        run::<S, KIND, P>(simd, &mut forces, &strip, &mut kept);
+        run::<S, KIND, C, P>(simd, &mut forces, &strip, &mut kept);
     }
 }
 
 #[inline(always)]
-fn run<S: Simd, const KIND: u8, const P: usize>(
+fn run<S: Simd, const KIND: u8, const C: usize, const P: usize>(
     simd: S,
     forces: &mut Forces,
     strip: &Range<usize>,
-    kept: &mut Kept<P>,
+    kept: &mut Kept<C, P>,
 ) {
     let Forces {
         sheet,
-        x,
-        v,
+        fields,
         rows: wanted,
         f,
         added,
@@ -159,16 +165,20 @@ fn run<S: Simd, const KIND: u8, const P: usize>(
     let inside = PAD + strip.start - first..PAD + strip.end - first;
     laws::fill::<S>(&mut kept.laws, sheet, first, width);
     kept.spring_forces = [[0.0; P]; SPRING_FORCES];
-    let (n, own) = (x.len() / 3, sheet.particles().start);
-    let take = |row: usize, to: &mut [[f64; P]; 6]| {
+    let (n, own) = (fields[0].len() / 3, sheet.particles().start);
+    // Forces of undamped springs read no velocities, unless there is drag.
+    let read = if KIND == PLAIN && finish.drag.is_none() {
+        1
+    } else {
+        C / 3
+    };
+    let take = |row: usize, to: &mut [[f64; P]; C]| {
         if row < rows {
             let seen = row * cols + first..row * cols + cols.min(strip.end + RIGHT + 2);
-            for axis in 0..3 {
-                let from = axis * n + own + seen.start..axis * n + own + seen.end;
-                to[axis][PAD..PAD + seen.len()].copy_from_slice(&x[from.clone()]);
-                if KIND != PLAIN || finish.drag.is_some() {
-                    to[3 + axis][PAD..PAD + seen.len()].copy_from_slice(&v[from]);
-                }
+            for column in 0..3 * read {
+                let start = column % 3 * n + own + seen.start;
+                let from = &fields[column / 3][start..start + seen.len()];
+                to[column][PAD..PAD + seen.len()].copy_from_slice(from);
             }
         }
     };
@@ -198,7 +208,7 @@ fn run<S: Simd, const KIND: u8, const P: usize>(
         let (places, f_row) = (here.as_flattened(), kept.f.as_flattened_mut());
         springs.find_along::<S, KIND>(simd, lanes, places);
         let put = Put::<S> {
-            here: lanes.places::<S>(places, 0),
+            here: lanes.points::<S>(places, KIND == DIFFERENTIAL, 0),
             f: lanes.at_mut::<S>(f_row),
         };
         let addends = added.then_some(kept.addends.as_flattened());
@@ -217,19 +227,18 @@ fn run<S: Simd, const KIND: u8, const P: usize>(
 
 /// Writes forces down.
 struct Put<'a, S: Simd> {
-    here: Places<'a, S>,
+    here: Points<'a, S>,
     f: ColumnsMut<'a, S>,
 }
 
 impl<S: Simd> Use<S> for Put<'_, S> {
     #[inline(always)]
-    fn here(&self, i: usize) -> (Vectors<S>, Vectors<S>) {
-        let (x, v) = self.here;
-        (pick::<S>(x, i), pick::<S>(v, i))
+    fn here(&self, i: usize) -> Point<S> {
+        self.here.pick(i)
     }
 
     #[inline(always)]
-    fn put(&mut self, _: S, i: usize, _: (Vectors<S>, Vectors<S>), f: Vectors<S>) {
+    fn put(&mut self, _: S, i: usize, _: Point<S>, f: Vectors<S>) {
         put::<S>(&mut self.f, i, f);
     }
 }
@@ -237,6 +246,8 @@ impl<S: Simd> Use<S> for Put<'_, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elements::axial;
+    use crate::elements::force::At;
     use crate::grid::Grid;
     use crate::random::SplitMix;
 
@@ -256,36 +267,69 @@ mod tests {
                         .map(|_| random.between(-1.0, 1.0))
                         .collect::<Vec<_>>()
                 };
-                let (x, v) = (numbers(), numbers());
-                let by = |run: &dyn Fn(Forces)| {
-                    let mut f = vec![f64::NAN; x.len()];
-                    run(Forces {
-                        quantity: Quantity::Forces,
-                        sheet: &sheet,
-                        x: &x,
-                        v: &v,
-                        rows: 0..rows,
-                        f: columns_mut(&mut f),
-                        added: false,
-                        finish: &Finish::default(),
-                    });
-                    f
-                };
-                let expected = by(&|forces| forces.with_simd(pulp::Scalar::new()));
-                assert!(expected.iter().all(|f| f.is_finite()));
-                assert_eq!(by(&|forces| Arch::new().dispatch(forces)), expected);
-                for bands in [2, 3, 8] {
-                    let found = by(&|forces| {
-                        let Forces { rows, f, .. } = forces;
-                        fork(bands, rows, cols, f, &|rows, f| {
-                            Arch::new().dispatch(Forces { rows, f, ..forces });
+                let all = [numbers(), numbers(), numbers(), numbers()];
+                let fields = all.each_ref().map(|field| &field[..]);
+                for quantity in [Quantity::Forces, Quantity::Differential] {
+                    let by = |run: &dyn Fn(Forces)| {
+                        let mut f = vec![f64::NAN; fields[0].len()];
+                        run(Forces {
+                            quantity,
+                            sheet: &sheet,
+                            fields: &fields,
+                            rows: 0..rows,
+                            f: columns_mut(&mut f),
+                            added: false,
+                            finish: &Finish::default(),
                         });
-                    });
-                    assert!(found == expected, "{bands} bands");
+                        f
+                    };
+                    let expected = by(&|forces| forces.with_simd(pulp::Scalar::new()));
+                    assert!(expected.iter().all(|f| f.is_finite()));
+                    assert_eq!(by(&|forces| Arch::new().dispatch(forces)), expected);
+                    for bands in [2, 3, 8] {
+                        let found = by(&|forces| {
+                            let Forces { rows, f, .. } = forces;
+                            fork(bands, rows, cols, f, &|rows, f| {
+                                Arch::new().dispatch(Forces { rows, f, ..forces });
+                            });
+                        });
+                        assert!(found == expected, "{bands} bands");
+                    }
+                    #[cfg(target_arch = "x86_64")]
+                    if let Some(avx2) = pulp::x86::V3::try_new() {
+                        assert_eq!(by(&|forces| Simd::vectorize(avx2, forces)), expected);
+                    }
                 }
-                #[cfg(target_arch = "x86_64")]
-                if let Some(avx2) = pulp::x86::V3::try_new() {
-                    assert_eq!(by(&|forces| Simd::vectorize(avx2, forces)), expected);
+                // Spring by spring.
+                let mut expected = vec![0.0; fields[0].len()];
+                let [x, v, dx, dv] = fields;
+                let (masses, triangles) = (&[][..], &[][..]);
+                let at = At {
+                    t: 0.0,
+                    x,
+                    v,
+                    masses,
+                    triangles,
+                };
+                for spring in sheet.springs() {
+                    axial::add_differential(&spring, &at, [dx, dv], &mut expected);
+                }
+                let mut found = vec![0.0; expected.len()];
+                let finish = Finish::default();
+                set(
+                    Quantity::Differential,
+                    &sheet,
+                    &fields,
+                    &mut found,
+                    false,
+                    &finish,
+                );
+                let size = expected.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+                for (found, expected) in found.iter().zip(&expected) {
+                    assert!(
+                        (found - expected).abs() < 1e-13 * size,
+                        "{found} {expected}"
+                    );
                 }
             }
         }

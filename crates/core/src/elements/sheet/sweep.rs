@@ -11,7 +11,9 @@ use pulp::{Arch, Simd, WithSimd};
 use super::super::finish::Finish;
 use super::super::flow::Flow;
 use super::kernel::{DAMPED, Others, PLAIN, RowOfSprings, Use};
-use super::lanes::{Columns, ColumnsMut, Lanes, Places, PlacesMut, Vectors, pick, plus, put};
+use super::lanes::{
+    Columns, ColumnsMut, Lanes, Places, PlacesMut, Point, Vectors, pick, plus, put,
+};
 use super::laws;
 use super::model::Sheet;
 use crate::rows::{Registers, Stage, SweepScratch, Terms, stride};
@@ -136,13 +138,14 @@ struct Combine<'a, S: Simd> {
 
 impl<S: Simd> Use<S> for Combine<'_, S> {
     #[inline(always)]
-    fn here(&self, i: usize) -> (Vectors<S>, Vectors<S>) {
+    fn here(&self, i: usize) -> Point<S> {
         let (x, v) = &self.stage;
-        ([x[0][i], x[1][i], x[2][i]], [v[0][i], v[1][i], v[2][i]])
+        let (x, v) = ([x[0][i], x[1][i], x[2][i]], [v[0][i], v[1][i], v[2][i]]);
+        [x, v, x, v]
     }
 
     #[inline(always)]
-    fn put(&mut self, simd: S, i: usize, (_, u): (Vectors<S>, Vectors<S>), a: Vectors<S>) {
+    fn put(&mut self, simd: S, i: usize, [_, u, ..]: Point<S>, a: Vectors<S>) {
         if self.moves {
             let (y, sum, stage) = (self.y.0, &mut self.sum.0, &mut self.stage.0);
             combine::<S>(simd, i, (self.first, self.b, self.c), y, sum, stage, u);
