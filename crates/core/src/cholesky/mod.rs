@@ -31,8 +31,8 @@ pub(crate) struct Place {
 }
 
 impl Pattern {
-    /// Pattern for a matrix of n rows of blocks, with blocks at these rows and columns, each once or
-    /// several times, in either triangle.
+    /// Pattern for a matrix of n rows of blocks, with blocks at these rows and columns, each once
+    /// or several times, in either triangle.
     pub fn new(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Self {
         let mut meets = vec![vec![]; n];
         for [i, j] in pairs.filter(|[i, j]| i != j) {

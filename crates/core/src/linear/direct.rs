@@ -14,7 +14,8 @@ const SOLUTION: [f64; 2] = [3.0, 2.0];
 /// it, the algebra of a few couplings costs less than that of many.
 const OVERHEAD: f64 = 10.0;
 
-/// Price of so many products of blocks for each coupling, in evaluations of forces spring by spring.
+/// Price of so many products of blocks for each coupling, in evaluations of forces spring by
+/// spring.
 pub(super) fn price_of_products(products: f64) -> f64 {
     FACTORISATION[1] * products
 }

@@ -27,7 +27,8 @@ const MULTIGRID: [f64; 2] = [5.0, 10.0];
 /// Iterations with multigrid, over (1 + a2 w2)^(1/4) ln(2/tolerance).
 const MULTIGRID_SPREAD: f64 = 0.45;
 /// Least number of products of blocks in a factorisation for each coupling of particles in two
-/// dimensions, over the root of their number: no need to analyse the pattern where that is too dear.
+/// dimensions, over the root of their number: no need to analyse the pattern where that is too
+/// dear.
 const PLANAR: f64 = 3.0;
 /// Largest number of iterations.
 const MOST: u64 = 10_000;

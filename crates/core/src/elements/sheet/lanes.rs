@@ -82,8 +82,8 @@ impl Lanes {
         (self.at::<S>(a, 0, shift), self.at::<S>(a, 3, shift))
     }
 
-    /// Positions and velocities and, if there are such columns, their changes. Otherwise nobody asks
-    /// for these.
+    /// Positions and velocities and, if there are such columns, their changes. Otherwise nobody
+    /// asks for these.
     #[inline(always)]
     pub fn points<S: Simd>(self, a: &[f64], changes: bool, shift: isize) -> Points<'_, S> {
         let places = self.places::<S>(a, shift);

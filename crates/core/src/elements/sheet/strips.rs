@@ -46,7 +46,8 @@ const PLACES: usize = 6;
 const CHANGES: usize = 12;
 
 /// Sets f, on the particles of a sheet, to the finished sum of its springs' forces, and of what f
-/// holds before if that is to be `added`. The `fields` are x and v, and dx and dv of a differential.
+/// holds before if that is to be `added`. The `fields` are x and v, and for differentials dx and
+/// dv.
 pub(crate) fn set(
     quantity: Quantity,
     sheet: &Sheet,
