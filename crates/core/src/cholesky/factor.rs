@@ -21,9 +21,9 @@ const NONE: u32 = u32::MAX;
 #[derive(Debug)]
 pub(crate) struct Factor<const B: usize, const P: usize> {
     /// Blocks on the diagonal, with the inverses of their own diagonals once they are factorised.
-    diagonal: Vec<Block<B, P>>,
+    pub(super) diagonal: Vec<Block<B, P>>,
     /// Blocks below the diagonal.
-    blocks: Vec<Block<B, P>>,
+    pub(super) blocks: Vec<Block<B, P>>,
     /// Right-hand side, and later the solution.
     unknowns: Vec<[f64; P]>,
     /// The block of each row in the column under way.
@@ -73,6 +73,13 @@ impl<const B: usize, const P: usize> Factor<B, P> {
     pub fn factorise(&mut self, pattern: &Pattern) -> bool {
         let factor = self;
         Arch::new().dispatch(Factorise { factor, pattern })
+    }
+
+    /// The same by one number at a time.
+    #[cfg(test)]
+    pub fn factorise_by_numbers(&mut self, pattern: &Pattern) -> bool {
+        let factor = self;
+        Factorise { factor, pattern }.with_simd(pulp::Scalar::new())
     }
 
     /// The least square of a number on the diagonal.

@@ -32,8 +32,9 @@ pub(crate) struct Place {
 
 impl Pattern {
     /// Pattern for a matrix of n rows of blocks, with blocks at these rows and columns, each once
-    /// or several times, in either triangle.
-    pub fn new(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Self {
+    /// or several times, in either triangle; `None` if the factor would have more than so many
+    /// blocks below its diagonal.
+    pub fn new(n: usize, pairs: impl Iterator<Item = [u32; 2]>, most: usize) -> Option<Self> {
         let mut meets = vec![vec![]; n];
         for [i, j] in pairs.filter(|[i, j]| i != j) {
             meets[i as usize].push(j);
@@ -43,7 +44,7 @@ impl Pattern {
             others.sort_unstable();
             others.dedup();
         }
-        let order = order::order(meets.clone());
+        let order = order::order(meets.clone(), most)?;
         let (ranks, columns) = columns(&order, &meets);
         let sorted = children_first(&columns);
         let (mut starts, mut rows) = (vec![0], vec![]);
@@ -61,11 +62,11 @@ impl Pattern {
             rows[from..].sort_unstable();
             starts.push(rows.len() as u32);
         }
-        Self {
+        Some(Self {
             ranks: ranks.iter().map(|rank| places[*rank as usize]).collect(),
             starts,
             rows,
-        }
+        })
     }
 
     /// Number of rows of the matrix.

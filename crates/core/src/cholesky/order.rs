@@ -6,11 +6,13 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// The order in which rows are eliminated, of each of which the others that it meets are given.
-pub(super) fn order(meets: Vec<Vec<u32>>) -> Vec<u32> {
+/// The order in which rows are eliminated, of each of which the others that it meets are given;
+/// `None` if the factor would have more than so many blocks below its diagonal.
+pub(super) fn order(meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
     let n = meets.len();
     let mut graph = Graph {
         left: n as u32,
+        blocks: 0,
         degree: meets.iter().map(|others| others.len() as u32).collect(),
         meets,
         elements: vec![vec![]; n],
@@ -29,6 +31,9 @@ pub(super) fn order(meets: Vec<Vec<u32>>) -> Vec<u32> {
             continue;
         }
         graph.eliminate(i);
+        if graph.blocks > most {
+            return None;
+        }
         let members = &graph.members[i as usize];
         queue.extend(
             members
@@ -36,7 +41,7 @@ pub(super) fn order(meets: Vec<Vec<u32>>) -> Vec<u32> {
                 .map(|j| Reverse((graph.degree[*j as usize], *j))),
         );
     }
-    graph.order
+    Some(graph.order)
 }
 
 /// What is left of the rows, and the elements. An element has the number of the row whose
@@ -44,6 +49,8 @@ pub(super) fn order(meets: Vec<Vec<u32>>) -> Vec<u32> {
 struct Graph {
     /// Rows that have not been eliminated.
     left: u32,
+    /// Blocks below the diagonal in the columns of those that have.
+    blocks: usize,
     /// Bound of the number of rows that each meets, without those that it stands for.
     degree: Vec<u32>,
     /// Rows that each meets, except in elements.
@@ -68,7 +75,7 @@ struct Graph {
 impl Graph {
     /// Eliminates a row: what it meets becomes an element.
     fn eliminate(&mut self, pivot: u32) {
-        let p = pivot as usize;
+        let (p, before) = (pivot as usize, self.left);
         self.finish(pivot);
         self.seen[p] = pivot;
         let mut members = std::mem::take(&mut self.meets[p]);
@@ -94,8 +101,10 @@ impl Graph {
             self.elements[i].push(pivot);
             !follows
         });
-        let size = members.iter().map(|i| self.weight[*i as usize]).sum();
+        let size: u32 = members.iter().map(|i| self.weight[*i as usize]).sum();
         self.size[p] = size;
+        let eliminated = (before - self.left) as usize;
+        self.blocks += eliminated * (eliminated - 1) / 2 + eliminated * size as usize;
         for i in &members {
             let i = *i as usize;
             let met = self.meets[i].iter().map(|j| self.weight[*j as usize]);

@@ -70,7 +70,7 @@ fn residual<const B: usize, const P: usize>(
     for (k, row) in a.iter_mut().enumerate() {
         row[k] -= shift;
     }
-    let pattern = Pattern::new(n, pairs.iter().copied());
+    let pattern = Pattern::new(n, pairs.iter().copied(), usize::MAX).unwrap();
     let mut factor = filled::<B, P>(&pattern, pairs, &a);
     if !factor.factorise(&pattern) {
         return None;
@@ -128,6 +128,17 @@ fn random_matrices_are_solved() {
 }
 
 #[test]
+fn vectors_of_any_length_give_the_same_bits() {
+    let (mut random, pairs) = (SplitMix(9), grid(8));
+    let a = matrix::<3>(64, &pairs, &mut random);
+    let pattern = Pattern::new(64, pairs.iter().copied(), usize::MAX).unwrap();
+    let mut by_vectors = filled::<3, 4>(&pattern, &pairs, &a);
+    let mut by_numbers = filled::<3, 4>(&pattern, &pairs, &a);
+    assert!(by_vectors.factorise(&pattern) && by_numbers.factorise_by_numbers(&pattern));
+    assert!(by_vectors.blocks == by_numbers.blocks && by_vectors.diagonal == by_numbers.diagonal);
+}
+
+#[test]
 fn what_is_not_positive_definite_is_noticed() {
     let mut random = SplitMix(5);
     let pairs = grid(6);
@@ -163,7 +174,10 @@ fn factors_are_about_as_sparse_as_by_exact_minimum_degree() {
     let chain: Vec<_> = (1..200).map(|i| [i - 1, i]).collect();
     let star: Vec<_> = (1..200).map(|i| [i, 0]).collect();
     for tree in [chain, star] {
-        assert_eq!(Pattern::new(200, tree.into_iter()).size(), 199);
+        assert_eq!(
+            Pattern::new(200, tree.into_iter(), 199).unwrap().size(),
+            199
+        );
     }
     let mut random = SplitMix(3);
     let mut thicket = |n: u32| -> Vec<[u32; 2]> {
@@ -179,8 +193,12 @@ fn factors_are_about_as_sparse_as_by_exact_minimum_degree() {
         .chain([(150, thicket(150)), (60, thicket(60))])
     {
         let exact = least_degree(n as usize, &pairs);
-        let found = Pattern::new(n as usize, pairs.into_iter()).products();
+        let pattern = Pattern::new(n as usize, pairs.iter().copied(), usize::MAX).unwrap();
+        let found = pattern.products();
         println!("{n}: {found} products, {exact} by exact degrees");
         assert!(found < 1.15 * exact);
+        // What is too large is known before there is a list of it, and counted exactly.
+        let limited = |most| Pattern::new(n as usize, pairs.iter().copied(), most);
+        assert!(limited(pattern.size()).is_some() && limited(pattern.size() - 1).is_none());
     }
 }

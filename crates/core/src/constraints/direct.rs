@@ -43,10 +43,9 @@ impl Pattern {
                 return Self { meeting: None };
             }
         }
-        let pattern = cholesky::Pattern::new(rows.len(), meeting.iter().copied());
-        let fits = pattern.size() + rows.len() <= most;
+        let pattern = cholesky::Pattern::new(rows.len(), meeting.iter().copied(), most);
         Self {
-            meeting: fits.then_some((meeting, pattern)),
+            meeting: pattern.map(|pattern| (meeting, pattern)),
         }
     }
 }

@@ -10,6 +10,9 @@ use crate::cholesky::{Block, Factor, Pattern, Place};
 const FACTORISATION: [f64; 2] = [10.0, 0.9];
 /// Prices of a solve, in the same measure: of each column, and of each block below the diagonal.
 const SOLUTION: [f64; 2] = [3.0, 2.0];
+/// Largest number of blocks in a factor (48 MB), and for each particle, which is enough for any
+/// tree: nets with larger ones are solved faster by iterations.
+const MOST: [usize; 2] = [500_000, 2];
 /// Number of couplings in the time that an evaluation takes beside its couplings: in relation to
 /// it, the algebra of a few couplings costs less than that of many.
 const OVERHEAD: f64 = 10.0;
@@ -35,9 +38,10 @@ pub(super) struct Direct {
 }
 
 impl Direct {
-    /// The pattern of a tangent; `None` if the factor takes more memory than there is.
+    /// The pattern of a tangent; `None` if the factor would be too large.
     pub fn new(tangent: &Tangent) -> Option<Self> {
-        let pattern = Pattern::new(tangent.particles(), tangent.pairs());
+        let n = tangent.particles();
+        let pattern = Pattern::new(n, tangent.pairs(), MOST[0].max(MOST[1] * n))?;
         let couplings = tangent.couplings() as f64 + OVERHEAD;
         let columns = pattern.len() as f64 / couplings;
         Some(Self {
