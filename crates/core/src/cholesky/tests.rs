@@ -146,6 +146,8 @@ fn what_is_not_positive_definite_is_noticed() {
         let solved = residual::<3, 4>(36, &pairs, shift, &mut random);
         assert_eq!(solved.is_some(), shift == 0.0);
     }
+    // The last number too, after which there is none that could not be found.
+    assert!(residual::<1, 1>(1, &[], 1.0, &mut random).is_none());
 }
 
 /// Products of an exact minimum degree order, pair by pair.
