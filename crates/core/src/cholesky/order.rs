@@ -6,17 +6,28 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+/// Number of others from which on a row that meets more is eliminated last, and the same over the
+/// root of the number of rows: its list would be gone through too often.
+const MANY: [f64; 2] = [40.0, 2.0];
+
 /// The order in which rows are eliminated, of each of which the others that it meets are given;
 /// `None` if the factor would have more than so many blocks below its diagonal.
-pub(super) fn order(meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
+pub(super) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
     let n = meets.len();
+    let many = MANY[0].max(MANY[1] * (n as f64).sqrt()) as usize;
+    let is_last: Vec<bool> = meets.iter().map(|others| others.len() > many).collect();
+    for (others, last) in meets.iter_mut().zip(&is_last) {
+        others.retain(|j| !last && !is_last[*j as usize]);
+    }
+    let last = (0..n as u32).filter(|i| is_last[*i as usize]);
+    let count = last.clone().count();
     let mut graph = Graph {
-        left: n as u32,
-        blocks: 0,
+        left: (n - count) as u32,
+        blocks: count * (n - count) + count * count.saturating_sub(1) / 2,
         degree: meets.iter().map(|others| others.len() as u32).collect(),
         meets,
         elements: vec![vec![]; n],
-        weight: vec![1; n],
+        weight: is_last.iter().map(|last| u32::from(!last)).collect(),
         followers: vec![vec![]; n],
         members: vec![vec![]; n],
         size: vec![0; n],
@@ -26,14 +37,15 @@ pub(super) fn order(meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
     };
     let degrees = graph.degree.iter().zip(0..);
     let mut queue: BinaryHeap<_> = degrees.map(|(degree, i)| Reverse((*degree, i))).collect();
-    while let Some(Reverse((degree, i))) = queue.pop() {
+    while graph.blocks <= most {
+        let Some(Reverse((degree, i))) = queue.pop() else {
+            graph.order.extend(last);
+            return Some(graph.order);
+        };
         if graph.weight[i as usize] == 0 || graph.degree[i as usize] != degree {
             continue;
         }
         graph.eliminate(i);
-        if graph.blocks > most {
-            return None;
-        }
         let members = &graph.members[i as usize];
         queue.extend(
             members
@@ -41,7 +53,7 @@ pub(super) fn order(meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
                 .map(|j| Reverse((graph.degree[*j as usize], *j))),
         );
     }
-    Some(graph.order)
+    None
 }
 
 /// What is left of the rows, and the elements. An element has the number of the row whose
@@ -49,7 +61,8 @@ pub(super) fn order(meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
 struct Graph {
     /// Rows that have not been eliminated.
     left: u32,
-    /// Blocks below the diagonal in the columns of those that have.
+    /// Blocks below the diagonal in the columns of those that have, and at most in the rows that
+    /// come last.
     blocks: usize,
     /// Bound of the number of rows that each meets, without those that it stands for.
     degree: Vec<u32>,
