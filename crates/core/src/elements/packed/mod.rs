@@ -18,15 +18,14 @@ use std::ops::Range;
 use std::sync::{Mutex, TryLockError};
 
 use pulp::Arch;
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
 use super::force::At;
+use crate::columns::columns_mut;
 use crate::spring::Spring;
 use crate::system::Matrix;
-use crate::threads::threads;
+use crate::threads::{Columns, split_off, threads};
 use laws::Quantity;
-use order::{Order, Stretch, TILE};
-use places::{Places, add_at};
+use order::{Order, TILE};
 use window::Window;
 
 /// Number of springs from which on it pays to pack them.
@@ -41,16 +40,8 @@ pub(crate) struct Packed {
     len: usize,
     order: Order,
     is_damped: bool,
-    /// Scratch, no part of the value.
-    bands: Mutex<Vec<Band>>,
-}
-
-/// Scratch of a band of particles.
-#[derive(Debug, Default)]
-struct Band {
-    window: Window,
-    /// Sums on its particles, in three columns, where there are several bands.
-    sums: Vec<f64>,
+    /// Scratch of each band of particles, no part of the value.
+    windows: Mutex<Vec<Window>>,
 }
 
 /// What is computed, and of which n x 3 matrices: x, v, dx and dv, as far as it needs them.
@@ -67,7 +58,7 @@ impl Packed {
             len: springs.len(),
             order: Order::of(springs),
             is_damped: springs.iter().any(|spring| spring.law.damping > 0.0),
-            bands: Mutex::default(),
+            windows: Mutex::default(),
         })
     }
 
@@ -102,44 +93,50 @@ impl Packed {
 
     /// Adds to f in so many bands.
     fn add_in(&self, count: usize, task: Task, f: &mut [f64]) {
-        self.lend(|bands| {
-            if bands.len() < count {
-                bands.resize_with(count, Band::default);
+        self.lend(|windows| {
+            if windows.len() < count {
+                windows.resize_with(count, Window::default);
             }
-            let bands = &mut bands[..count];
-            if count == 1 {
-                let stretch = self.order.stretch(0, 1);
-                self.sum(&mut bands[0].window, &stretch, task, |sums, of| {
-                    sums.give(f, self.order.places(of));
-                });
-                return;
-            }
-            bands.par_iter_mut().enumerate().for_each(|(k, band)| {
-                let stretch = self.order.stretch(k, count);
-                let start = stretch.own.start;
-                band.sums.clear();
-                band.sums.resize(3 * stretch.own.len(), 0.0);
-                self.sum(&mut band.window, &stretch, task, |sums, of| {
-                    sums.give(&mut band.sums, Places::From(of.start - start));
-                });
-            });
-            for (k, band) in bands.iter().enumerate() {
-                let own = self.order.stretch(k, count).own;
-                add_at(f, self.order.places(own), &band.sums);
-            }
+            self.fork(&mut windows[..count], [0, count], task, columns_mut(f), 0);
         });
     }
 
-    /// Gives the sums on a band of particles, some after others.
+    /// Adds to columns that begin at a row, in as many bands as there are windows. So many come
+    /// before, of so many in all.
+    fn fork(
+        &self,
+        windows: &mut [Window],
+        [before, count]: [usize; 2],
+        task: Task,
+        mut f: Columns<3>,
+        row: usize,
+    ) {
+        if let [window] = windows {
+            self.sum(window, [before, count], task, f, row);
+            return;
+        }
+        let (firsts, others) = windows.split_at_mut(windows.len() / 2);
+        let middle = before + firsts.len();
+        let at = self.order.particles[self.order.stretch(middle, count).own.start] as usize;
+        let above = split_off(&mut f, at - row);
+        rayon::join(
+            || self.fork(firsts, [before, count], task, above, row),
+            || self.fork(others, [middle, count], task, f, at),
+        );
+    }
+
+    /// Adds the sums on a band of particles, some after others.
     fn sum(
         &self,
         window: &mut Window,
-        stretch: &Stretch,
+        [band, count]: [usize; 2],
         task: Task,
-        mut give: impl FnMut(window::Sums, Range<usize>),
+        mut f: Columns<3>,
+        row: usize,
     ) {
         let order = &self.order;
-        let mut tiles = stretch.tiles.clone();
+        let stretch = order.stretch(band, count);
+        let mut tiles = stretch.tiles;
         window.clear();
         while !tiles.is_empty() {
             let panel = tiles.start..tiles.end.min(tiles.start + order.panel);
@@ -155,8 +152,11 @@ impl Packed {
                     Arch::new().dispatch(self.sum_of_blocks(window, blocks, offset, task.quantity));
                 }
             }
+            // The first panel may end before the band begins.
             let of = start.max(stretch.own.start)..(panel.end * TILE).min(stretch.own.end);
-            give(window.sums(order, of.start - start..of.end - start), of);
+            if !of.is_empty() {
+                window.give(order, start, of, (&mut f, row));
+            }
             tiles.start = panel.end;
         }
     }
@@ -201,9 +201,9 @@ impl Packed {
     }
 
     /// Lends the scratch; evaluations that run meanwhile bring their own.
-    fn lend(&self, run: impl FnOnce(&mut Vec<Band>)) {
-        match self.bands.try_lock() {
-            Ok(mut bands) => run(&mut bands),
+    fn lend(&self, run: impl FnOnce(&mut Vec<Window>)) {
+        match self.windows.try_lock() {
+            Ok(mut windows) => run(&mut windows),
             Err(TryLockError::Poisoned(poisoned)) => run(&mut poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => run(&mut vec![]),
         }

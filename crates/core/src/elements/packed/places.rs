@@ -41,26 +41,22 @@ pub(super) enum Places<'a> {
     Each(&'a [u32]),
 }
 
-/// Adds the rows of an n x 3 matrix to rows of another.
-pub(super) fn add_at(f: &mut [f64], places: Places, sums: &[f64]) {
-    for (axis, column) in sums.chunks_exact(sums.len() / 3).enumerate() {
-        add(f, axis, places, column.iter().copied());
-    }
-}
-
-/// Adds to rows of a column of an n x 3 matrix.
-pub(super) fn add(f: &mut [f64], axis: usize, places: Places, sums: impl Iterator<Item = f64>) {
-    let n = f.len() / 3;
-    let f = &mut f[axis * n..][..n];
+/// Adds to rows of a column, which begins at the row `start`.
+pub(super) fn add(
+    column: &mut [f64],
+    start: usize,
+    places: Places,
+    sums: impl Iterator<Item = f64>,
+) {
     match places {
         Places::From(first) => {
-            for (f, sum) in f[first..].iter_mut().zip(sums) {
+            for (f, sum) in column[first - start..].iter_mut().zip(sums) {
                 *f += sum;
             }
         }
         Places::Each(places) => {
             for (i, sum) in places.iter().zip(sums) {
-                f[*i as usize] += sum;
+                column[*i as usize - start] += sum;
             }
         }
     }

@@ -122,6 +122,8 @@ fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
         (0, 9000, 3000, 300),
         (5, 0, 400, 0),
         (7, 9000, 3000, 300),
+        // As far as a panel is long, which then ends before a band begins.
+        (0, 20_000, 9000, 2048),
         (70, 0, 1300, 0),
     ] {
         for damping in [0.0, 3.0] {

@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use super::blocks::Numbers;
 use super::order::{Order, TILE};
-use super::places::{Columns, Places, add, copy, copy_rows};
+use super::places::{Columns, add, copy, copy_rows};
+use crate::threads;
 
 /// x, v, dx and dv of the particles, and what is summed.
 #[derive(Debug, Default)]
@@ -16,12 +17,6 @@ pub(super) struct Window {
     pub rows: [Vec<Numbers>; 5],
     /// Particles at its end that stay when it moves on.
     stays: usize,
-}
-
-/// Sums on some particles.
-pub(super) struct Sums<'a> {
-    columns: Option<[&'a [f64]; 3]>,
-    rows: Option<&'a [Numbers]>,
 }
 
 impl Window {
@@ -68,27 +63,27 @@ impl Window {
         self.stays = size - order.panel * TILE;
     }
 
-    /// The sums on some of its particles.
-    pub fn sums(&self, order: &Order, of: Range<usize>) -> Sums<'_> {
+    /// Adds the sums on some of its particles, of which the first has the number `start`, to rows
+    /// of columns, which begin at a row: those of runs, then those of blocks.
+    pub fn give(
+        &self,
+        order: &Order,
+        start: usize,
+        of: Range<usize>,
+        (f, row): (&mut threads::Columns<3>, usize),
+    ) {
         let [.., columns] = &self.columns;
         let [.., rows] = &self.rows;
-        let column = |axis: usize| &columns.get()[axis * order.window()..][of.clone()];
-        Sums {
-            columns: (!columns.get().is_empty()).then(|| [0, 1, 2].map(column)),
-            rows: (!rows.is_empty()).then(|| &rows[of.clone()]),
-        }
-    }
-}
-
-impl Sums<'_> {
-    /// Adds them to rows of an n x 3 matrix: those of runs, then those of blocks.
-    pub fn give(&self, f: &mut [f64], places: Places) {
-        for axis in 0..3 {
-            if let Some(columns) = self.columns {
-                add(f, axis, places, columns[axis].iter().copied());
+        let places = order.places(of.clone());
+        let of = of.start - start..of.end - start;
+        for (axis, f) in f.iter_mut().enumerate() {
+            if !columns.get().is_empty() {
+                let column = &columns.get()[axis * order.window()..][of.clone()];
+                add(f, row, places, column.iter().copied());
             }
-            if let Some(rows) = self.rows {
-                add(f, axis, places, rows.iter().map(|row| row.0[axis]));
+            if !rows.is_empty() {
+                let rows = &rows[of.clone()];
+                add(f, row, places, rows.iter().map(|row| row.0[axis]));
             }
         }
     }
