@@ -71,6 +71,7 @@ mod rows;
 mod scene;
 mod serial;
 mod simulation;
+mod sine;
 mod spring;
 pub mod stability;
 mod system;

@@ -4,6 +4,13 @@
 //! whichever side is the front. After Keckeisen, Kimmerle, Thomaszewski, Wacker, *Modelling effects
 //! of wind fields in cloth animations*, 2004.
 
+#![expect(
+    clippy::inline_always,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
+)]
+
+use std::array;
+
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -36,20 +43,35 @@ impl Air {
         })
     }
 
-    /// The force (N), and its differential, of the differentials of u and N.
-    #[inline]
-    pub(super) fn force(
+    /// The force (N) by u and N.
+    #[inline(always)]
+    pub(super) fn force(self, u: [f64; 3], area: [f64; 3]) -> [f64; 3] {
+        let (speed, size) = (dot(u, u).sqrt(), dot(area, area).sqrt());
+        let through = dot(u, area);
+        let half = 0.5 * self.density;
+        let drag = half * self.drag * through.abs();
+        let lift = half * self.lift * through / size;
+        let share = through / speed;
+        let none = speed == 0.0 || size == 0.0;
+        array::from_fn(|axis| {
+            let across = speed * area[axis] - share * u[axis];
+            let force = drag * u[axis] + lift * across;
+            if none { 0.0 } else { force }
+        })
+    }
+
+    /// The differential of the force, by those of u and N.
+    pub(super) fn differential(
         self,
         [u, area]: [Vector3<f64>; 2],
         [du, darea]: [Vector3<f64>; 2],
-    ) -> [Vector3<f64>; 2] {
+    ) -> Vector3<f64> {
         let (speed, size) = (u.norm(), area.norm());
         if speed == 0.0 || size == 0.0 {
-            return [Vector3::zeros(); 2];
+            return Vector3::zeros();
         }
         let through = u.dot(&area);
         let dthrough = du.dot(&area) + u.dot(&darea);
-        let drag = through.abs() * u;
         let ddrag = through.signum() * dthrough * u + through.abs() * du;
         let (dspeed, dsize) = (u.dot(&du) / speed, area.dot(&darea) / size);
         let (slope, share) = (through / size, through / speed);
@@ -60,9 +82,11 @@ impl Air {
         let across = speed * area - share * u;
         let dacross = dspeed * area + speed * darea - dshare * u - share * du;
         let half = 0.5 * self.density;
-        [
-            half * (self.drag * drag + self.lift * slope * across),
-            half * (self.drag * ddrag + self.lift * (dslope * across + slope * dacross)),
-        ]
+        half * (self.drag * ddrag + self.lift * (dslope * across + slope * dacross))
     }
+}
+
+#[inline(always)]
+fn dot([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> f64 {
+    a * x + b * y + c * z
 }

@@ -1,11 +1,21 @@
 //! Wind that blows on triangles: at each, the [force of the air](Air) that streams past its middle
 //! less the mean velocity of its corners, a third of it on each corner.
 
+#![expect(
+    clippy::inline_always,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
+)]
+
+use std::ops::Range;
+
 use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::air::Air;
 use super::force::{At, Force};
-use super::wind::Wind;
+use super::wind::{BLOCK, Wind};
+use crate::columns::columns_mut;
+use crate::threads::{Columns, fork, threads};
 
 /// A wind whose air streams past the triangles of a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,13 +32,7 @@ impl Force for Airflow {
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
-        let At { t, x, v, .. } = *at;
-        for corners in at.triangles {
-            let [a, b, c] = corners.map(|i| vector(x, i));
-            let u = self.wind.at(t, ((a + b + c) / 3.0).into()) - mean(v, *corners);
-            let [force, _] = self.air.force([u, area(a, b, c)], [Vector3::zeros(); 2]);
-            spread(force, *corners, f);
-        }
+        self.add_in(threads(at.triangles.len()), at, f);
     }
 
     fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
@@ -40,8 +44,8 @@ impl Force for Airflow {
             let u = self.wind.at(t, middle) - mean(v, *corners);
             let du = self.wind.differential(t, middle, towards) - mean(dv, *corners);
             let darea = 0.5 * ((db - da).cross(&(c - a)) + (b - a).cross(&(dc - da)));
-            let [_, dforce] = self.air.force([u, area(a, b, c)], [du, darea]);
-            spread(dforce, *corners, df);
+            let dforce = self.air.differential([u, area(a, b, c)], [du, darea]);
+            spread(dforce.into(), *corners, df);
         }
     }
 
@@ -50,25 +54,163 @@ impl Force for Airflow {
     }
 }
 
+impl Airflow {
+    /// Adds the forces in so many bands of particles. Each finds those on all triangles that reach
+    /// it, and adds them in the order of the triangles.
+    fn add_in(&self, bands: usize, at: &At, f: &mut [f64]) {
+        let n = f.len() / 3;
+        fork(bands, 0..n, 1, columns_mut(f), &|particles, f| {
+            Arch::new().dispatch(Push {
+                airflow: self,
+                at,
+                particles,
+                f,
+            });
+        });
+    }
+}
+
+/// The forces on some particles, added to f.
+struct Push<'a> {
+    airflow: &'a Airflow,
+    at: &'a At<'a>,
+    particles: Range<usize>,
+    f: Columns<'a, 3>,
+}
+
+impl WithSimd for Push<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, _: S) {
+        let (mut block, mut count) = ([[0; 3]; BLOCK], 0);
+        for corners in self.at.triangles {
+            let [a, b, c] = *corners;
+            if self.has(a) || self.has(b) || self.has(c) {
+                block[count] = *corners;
+                count += 1;
+            }
+            if count == BLOCK {
+                self.add(&block);
+                count = 0;
+            }
+        }
+        if count > 0 {
+            self.add(&block[..count]);
+        }
+    }
+}
+
+impl Push<'_> {
+    #[inline(always)]
+    fn has(&self, i: u32) -> bool {
+        self.particles.contains(&(i as usize))
+    }
+
+    /// Adds the forces on a block of triangles.
+    #[inline(always)]
+    fn add(&mut self, triangles: &[[u32; 3]]) {
+        let At { t, x, v, .. } = *self.at;
+        let Airflow { wind, air } = self.airflow;
+        let [mut middles, mut speeds, mut areas] = [[[0.0; BLOCK]; 3]; 3];
+        for (m, corners) in triangles.iter().enumerate() {
+            let [a, b, c] = corners.map(|i| vector(x, i));
+            let (middle, speed) = ((a + b + c) / 3.0, mean(v, *corners));
+            let area = area(a, b, c);
+            for axis in 0..3 {
+                middles[axis][m] = middle[axis];
+                speeds[axis][m] = speed[axis];
+                areas[axis][m] = area[axis];
+            }
+        }
+        let winds = wind.over(t, &middles);
+        let mut forces = [[0.0; BLOCK]; 3];
+        for m in 0..BLOCK {
+            let u = [0, 1, 2].map(|axis| winds[axis][m] - speeds[axis][m]);
+            let force = air.force(u, [0, 1, 2].map(|axis| areas[axis][m]));
+            for axis in 0..3 {
+                forces[axis][m] = force[axis] / 3.0;
+            }
+        }
+        for (m, corners) in triangles.iter().enumerate() {
+            for i in corners
+                .iter()
+                .filter(|i| self.particles.contains(&(**i as usize)))
+            {
+                let k = *i as usize - self.particles.start;
+                for axis in 0..3 {
+                    self.f[axis][k] += forces[axis][m];
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
 fn area(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> Vector3<f64> {
     0.5 * (b - a).cross(&(c - a))
 }
 
+#[inline(always)]
 fn vector(of: &[f64], i: u32) -> Vector3<f64> {
     let (n, i) = (of.len() / 3, i as usize);
     Vector3::new(of[i], of[n + i], of[2 * n + i])
 }
 
+#[inline(always)]
 fn mean(of: &[f64], corners: [u32; 3]) -> Vector3<f64> {
     let [a, b, c] = corners.map(|i| vector(of, i));
     (a + b + c) / 3.0
 }
 
-fn spread(force: Vector3<f64>, corners: [u32; 3], f: &mut [f64]) {
+fn spread(force: [f64; 3], corners: [u32; 3], f: &mut [f64]) {
     let n = f.len() / 3;
     for i in corners {
         for axis in 0..3 {
             f[axis * n + i as usize] += force[axis] / 3.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::SplitMix;
+
+    #[test]
+    fn any_number_of_bands_finds_what_triangles_one_by_one_do() {
+        let (n, mut random) = (3000, SplitMix(5));
+        let [x, v] = [(); 2].map(|()| (0..3 * n).map(|_| random.between(-1.0, 1.0)).collect());
+        let (x, v): (Vec<f64>, Vec<f64>) = (x, v);
+        let corner = |k: usize| (k * 7919 % n) as u32;
+        let mut triangles: Vec<_> = (0..9001)
+            .map(|k| [0, 1, 2].map(|c| corner(3 * k + c)))
+            .collect();
+        // One without an area.
+        triangles[17] = [4, 4, 9];
+        let at = At {
+            t: 0.3,
+            x: &x,
+            v: &v,
+            masses: &[],
+            triangles: &triangles,
+        };
+        let airflow = Airflow {
+            wind: Wind::new(2, Vector3::new(0.0, 1.0, 4.0)),
+            air: Air::new(1.2, 1.1, 0.6).unwrap(),
+        };
+        let mut expected = vec![0.0; 3 * n];
+        for corners in &triangles {
+            let [a, b, c] = corners.map(|i| vector(&x, i));
+            let u = airflow.wind.at(0.3, ((a + b + c) / 3.0).into()) - mean(&v, *corners);
+            let force = airflow.air.force(u.into(), area(a, b, c).into());
+            spread(force, *corners, &mut expected);
+        }
+        assert!(expected.iter().all(|f| f.is_finite()));
+        for bands in [1, 2, 3, 8] {
+            let mut found = vec![0.0; 3 * n];
+            airflow.add_in(bands, &at, &mut found);
+            assert!(found == expected, "{bands}");
         }
     }
 }

@@ -3,16 +3,30 @@
 //! step feels the same wind and a run can be repeated. It pushes each particle alike, or it is the
 //! velocity of air that streams past triangles.
 
+#![expect(
+    clippy::inline_always,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
+)]
+
 use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use super::air::Air;
 use super::force::{At, ByParticle, Force};
 use crate::columns::{columns, columns_mut};
+use crate::fused::mul_add;
 use crate::random::SplitMix;
+use crate::sine::{sine, sines};
 use crate::threads::{fork, threads};
 
 const WAVES: usize = 4;
+
+/// Number of places at which the wind is found at a time.
+pub(super) const BLOCK: usize = 32;
+
+/// A number of each place of a block.
+pub(super) type Each = [f64; BLOCK];
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Wave {
@@ -29,9 +43,11 @@ struct Wave {
 }
 
 impl Wave {
-    fn argument(&self, t: f64, x: [f64; 3]) -> f64 {
+    #[inline(always)]
+    fn argument(&self, t: f64, [x, y, z]: [f64; 3]) -> f64 {
         let q = self.number;
-        q.x * x[0] + q.y * x[1] + q.z * x[2] - self.rate * t + self.phase
+        let begun = mul_add(-self.rate, t, self.phase);
+        mul_add(q.x, x, mul_add(q.y, y, mul_add(q.z, z, begun)))
     }
 }
 
@@ -113,8 +129,28 @@ impl Wind {
     #[must_use]
     pub fn at(&self, t: f64, x: [f64; 3]) -> Vector3<f64> {
         self.waves.iter().fold(self.breeze, |f, wave| {
-            f + wave.amplitude * libm::sin(wave.argument(t, x))
+            let sine = sine(wave.argument(t, x));
+            f.zip_map(&wave.amplitude, |f, most| mul_add(most, sine, f))
         })
+    }
+
+    /// The same at the places of a block, to the same bits.
+    #[inline(always)]
+    pub(super) fn over(&self, t: f64, [x, y, z]: &[Each; 3]) -> [Each; 3] {
+        let mut f = [self.breeze.x, self.breeze.y, self.breeze.z].map(|f| [f; BLOCK]);
+        for wave in &self.waves {
+            let mut gust = [0.0; BLOCK];
+            for m in 0..BLOCK {
+                gust[m] = wave.argument(t, [x[m], y[m], z[m]]);
+            }
+            sines(&mut gust);
+            for axis in 0..3 {
+                for m in 0..BLOCK {
+                    f[axis][m] = mul_add(wave.amplitude[axis], gust[m], f[axis][m]);
+                }
+            }
+        }
+        f
     }
 
     /// The differential of [`at`](Self::at), as x moves by `towards`.
@@ -127,10 +163,40 @@ impl Wind {
 
 impl ByParticle for Wind {
     fn add(&self, t: f64, x: [&[f64]; 3], f: &mut [&mut [f64]; 3]) {
-        for i in 0..x[0].len() {
-            let force = self.at(t, x.map(|x| x[i]));
-            for axis in 0..3 {
-                f[axis][i] += force[axis];
+        Arch::new().dispatch(Blow {
+            wind: self,
+            t,
+            x,
+            f,
+        });
+    }
+}
+
+/// Forces on particles at x, added to f.
+struct Blow<'a, 'b> {
+    wind: &'a Wind,
+    t: f64,
+    x: [&'a [f64]; 3],
+    f: &'a mut [&'b mut [f64]; 3],
+}
+
+impl WithSimd for Blow<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let n = self.x[0].len();
+        let mut x = [[0.0; BLOCK]; 3];
+        for start in (0..n).step_by(BLOCK) {
+            let block = start..n.min(start + BLOCK);
+            for (x, from) in x.iter_mut().zip(self.x) {
+                x[..block.len()].copy_from_slice(&from[block.clone()]);
+            }
+            let forces = self.wind.over(self.t, &x);
+            for (f, forces) in self.f.iter_mut().zip(&forces) {
+                for (f, force) in f[block.clone()].iter_mut().zip(forces) {
+                    *f += force;
+                }
             }
         }
     }
@@ -173,6 +239,25 @@ mod tests {
         let (a, b) = (Wind::new(7, Vector3::z()), Wind::new(7, Vector3::z()));
         assert_eq!(a.at(1.5, [0.1, 0.2, 0.3]), b.at(1.5, [0.1, 0.2, 0.3]));
         assert_ne!(a, Wind::new(8, Vector3::z()));
+    }
+
+    #[test]
+    fn blocks_of_particles_feel_what_one_does() {
+        let wind = Wind::new(3, Vector3::new(1.0, -0.5, 2.0));
+        // A whole block, a part of one, and a particle far away.
+        let n = BLOCK + 5;
+        let x = [1.7, -0.3, 0.9].map(|q| (0..n).map(|i| q * i as f64).collect::<Vec<_>>());
+        let [mut x, y, z] = x;
+        x[2] = 1e9;
+        let mut f = [[1.0; BLOCK + 5]; 3];
+        let [fx, fy, fz] = &mut f;
+        wind.add(0.7, [&x, &y, &z], &mut [fx, fy, fz]);
+        for i in 0..n {
+            let expected = wind.at(0.7, [x[i], y[i], z[i]]);
+            for axis in 0..3 {
+                assert_eq!(f[axis][i], 1.0 + expected[axis], "{i}");
+            }
+        }
     }
 
     #[test]
