@@ -3,12 +3,11 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use epaint_default_fonts::UBUNTU_LIGHT;
 use resvg::{tiny_skia, usvg};
 
 use crate::error::Error;
 use crate::geometry::{Point, Rect};
-use crate::label::{Anchor, GREY, Label, RAISED, pieces};
+use crate::label::{Anchor, FONT, GREY, Label, RAISED, pieces};
 
 /// Fonts in order of preference. Labels are measured with the first.
 const FONTS: &str = "Ubuntu, 'Ubuntu Light', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif";
@@ -196,7 +195,7 @@ impl Figure {
     pub fn png(&self, scale: f64) -> Result<Vec<u8>, Error> {
         let wrong = |why: &dyn std::fmt::Display| Error::Pixels(why.to_string());
         let mut fonts = usvg::fontdb::Database::new();
-        fonts.load_font_source(usvg::fontdb::Source::Binary(Arc::new(UBUNTU_LIGHT)));
+        fonts.load_font_source(usvg::fontdb::Source::Binary(Arc::new(FONT)));
         let options = usvg::Options {
             fontdb: Arc::new(fonts),
             ..usvg::Options::default()

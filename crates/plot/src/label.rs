@@ -2,7 +2,6 @@
 
 use std::sync::LazyLock;
 
-use epaint_default_fonts::UBUNTU_LIGHT;
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, MetadataProvider};
 
@@ -95,6 +94,9 @@ pub fn pieces(text: &str) -> impl Iterator<Item = (&str, bool)> {
     })
 }
 
+/// The font of charts, as a file. A constant would be copied to each place that names it.
+pub static FONT: &[u8] = epaint_default_fonts::UBUNTU_LIGHT;
+
 /// The size of a superscript over that of the text.
 pub const RAISED: f64 = 0.7;
 /// The height of letters and superscripts above the base line, over the size of the text.
@@ -102,9 +104,8 @@ const UP: f64 = 0.84;
 
 /// The length of a text of this size.
 pub fn width(text: &str, size: f64) -> f64 {
-    static FONT: LazyLock<Option<FontRef<'static>>> =
-        LazyLock::new(|| FontRef::new(UBUNTU_LIGHT).ok());
-    let Some(font) = &*FONT else {
+    static LETTERS: LazyLock<Option<FontRef<'static>>> = LazyLock::new(|| FontRef::new(FONT).ok());
+    let Some(font) = &*LETTERS else {
         return 0.6 * size * text.chars().count() as f64;
     };
     let (letters, metrics) = (

@@ -18,6 +18,7 @@ mod work_precision;
 pub use axis::{Axis, Tick};
 pub use error::Error;
 pub use figure::Figure;
+pub use label::FONT;
 pub use stability::{Region, StabilityRegions};
 pub use style::{CurveStyle, Marker};
 pub use work_precision::{Curve, Measurement, Problem, WorkPrecision};

@@ -6,7 +6,7 @@ use egui::{
     Align2, Area, Color32, Context, FontData, FontDefinitions, FontTweak, Frame, Id, Margin,
     RichText, Ui,
 };
-use epaint_default_fonts::{EMOJI_ICON, UBUNTU_LIGHT};
+use epaint_default_fonts::EMOJI_ICON;
 
 /// Colour of text.
 pub const TEXT: Color32 = Color32::from_rgb(24, 28, 40);
@@ -61,7 +61,10 @@ pub fn exchanged(color: Color32) -> Color32 {
 /// A layout with its fonts: letters, and the symbols of the marks.
 pub fn context() -> Context {
     let mut fonts = FontDefinitions::empty();
-    for (name, bytes, scale) in [("letters", UBUNTU_LIGHT, 1.0), ("symbols", EMOJI_ICON, 0.9)] {
+    for (name, bytes, scale) in [
+        ("letters", a3_plot::FONT, 1.0),
+        ("symbols", EMOJI_ICON, 0.9),
+    ] {
         let tweak = FontTweak {
             scale,
             ..FontTweak::default()
