@@ -138,8 +138,8 @@ impl Push<'_> {
                 .filter(|i| self.particles.contains(&(**i as usize)))
             {
                 let k = *i as usize - self.particles.start;
-                for axis in 0..3 {
-                    self.f[axis][k] += forces[axis][m];
+                for (f, force) in self.f.iter_mut().zip(&forces) {
+                    f[k] += force[m];
                 }
             }
         }

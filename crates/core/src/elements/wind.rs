@@ -144,9 +144,9 @@ impl Wind {
                 gust[m] = wave.argument(t, [x[m], y[m], z[m]]);
             }
             sines(&mut gust);
-            for axis in 0..3 {
+            for (f, most) in f.iter_mut().zip(wave.amplitude.iter()) {
                 for m in 0..BLOCK {
-                    f[axis][m] = mul_add(wave.amplitude[axis], gust[m], f[axis][m]);
+                    f[m] = mul_add(*most, gust[m], f[m]);
                 }
             }
         }

@@ -103,7 +103,7 @@ impl WithSimd for Forces<'_> {
 fn strips<S: Simd, const KIND: u8, const C: usize>(simd: S, forces: Forces) {
     const STRIDES: [usize; 3] = [stride(WIDTHS[0]), stride(WIDTHS[1]), stride(WIDTHS[2])];
     match forces.sheet.grid().cols() {
-        // Numbers that are taken one at a time meet the cache less often: one width serves them all.
+        // Numbers that are taken one at a time need the cache less: one width serves them all.
         _ if const { S::F64_LANES == 1 } => strips_of::<S, KIND, C, { STRIDES[1] }>(simd, forces),
         cols if cols <= WIDTHS[0] => strips_of::<S, KIND, C, { STRIDES[0] }>(simd, forces),
         cols if cols <= WIDTHS[1] => strips_of::<S, KIND, C, { STRIDES[1] }>(simd, forces),
