@@ -50,21 +50,49 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     let bar = Bar::new(2.0 + 3.0 * measured.len() as f64);
     bar.say("the true motion and the state of rest ".into());
     let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
+    let say = |method: &Method, stage| bar.say(format!("{} {stage} ", method.name));
     // Nothing is timed here, so methods may be measured beside one another.
-    let (motion, hanging) = rayon::join(|| Motion::of(&scene, interrupt::go_on), || rest(&scene));
-    let motion = motion.map_err(Failure::run)?.ok_or_else(nothing)?;
-    let hanging = hanging.map_err(Failure::run)?;
-    bar.advance(2.0);
-    let rows = measured.into_par_iter().map(|method| {
-        let row = measure(method, &motion, hanging.as_ref(), |what| {
-            bar.say(format!("{} {what} ", method.name));
-            bar.advance(if what == STAGES[0] { 0.0 } else { 1.0 });
-        });
+    let in_motion = || {
+        let motion = Motion::of(&scene, interrupt::go_on)?;
         bar.advance(1.0);
-        row.map(|row| interrupt::go_on().then_some(row))
-    });
-    let rows: Vec<_> = rows.collect::<Result<_, _>>().map_err(Failure::run)?;
-    let rows: Vec<MethodLimits> = rows.into_iter().flatten().collect();
+        let limits = each(&measured, |method| {
+            let Some(motion) = &motion else {
+                return Ok(None);
+            };
+            say(method, "in motion");
+            let bounded = motion.bounded(method, interrupt::go_on)?;
+            bar.advance(1.0);
+            say(method, "its errors");
+            let longest = bounded.map_or(f64::INFINITY, |seen| seen.step);
+            let accurate = motion.accurate(method, longest, interrupt::go_on)?;
+            bar.advance(1.0);
+            Ok(interrupt::go_on().then_some((bounded, accurate)))
+        });
+        Ok::<_, Error>((motion, limits?))
+    };
+    let at_rest = || {
+        let hanging = rest(&scene)?;
+        bar.advance(1.0);
+        let limits = each(&measured, |method| {
+            say(method, "at rest");
+            let by_modes = |rest: &RestState| largest_step(method, &rest.modes);
+            let limit = hanging.as_ref().map(by_modes).transpose()?.flatten();
+            let seen = match &hanging {
+                Some(rest) => observe_at_rest(rest, method, limit.as_ref(), interrupt::go_on)?,
+                None => None,
+            };
+            bar.advance(1.0);
+            Ok(interrupt::go_on().then_some((limit, seen)))
+        });
+        Ok::<_, Error>((hanging, limits?))
+    };
+    let (moving, resting) = rayon::join(in_motion, at_rest);
+    let (motion, moving) = moving.map_err(Failure::run)?;
+    let (hanging, resting) = resting.map_err(Failure::run)?;
+    let motion = motion.ok_or_else(nothing)?;
+    let rows: Vec<_> = (measured.iter().zip(resting).zip(moving))
+        .filter_map(|((method, rest), moving)| Some(limits(method, rest?, moving?)))
+        .collect();
     let row = |method: &'static Method| {
         let row = (rows.iter()).find(|row| row.method.shares_integrator(method))?;
         Some(MethodLimits { method, ..*row })
@@ -95,41 +123,41 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     }
 }
 
-/// What is measured of a method, in this order.
-const STAGES: [&str; 3] = ["at rest", "in motion", "its errors"];
+/// What is found of each method, in their order. The runs of implicit methods take longest, so they
+/// begin first.
+fn each<T: Send>(
+    methods: &[&'static Method],
+    find: impl Fn(&'static Method) -> Result<T, Error> + Sync,
+) -> Result<Vec<T>, Error> {
+    let mut places: Vec<_> = (0..methods.len()).collect();
+    places.sort_by_key(|k| !methods[*k].implicit);
+    let found = places.into_iter().par_bridge();
+    let found = found.map(|k| find(methods[k]).map(|found| (k, found)));
+    let mut found: Vec<_> = found.collect::<Result<_, _>>()?;
+    found.sort_by_key(|(k, _)| *k);
+    Ok(found.into_iter().map(|(_, found)| found).collect())
+}
 
-/// The limits of a method; `say` is called with each of [`STAGES`] as it begins.
-fn measure(
+/// The limits of a method, from those at rest and those in motion.
+fn limits(
     method: &'static Method,
-    motion: &Motion,
-    hanging: Option<&RestState>,
-    say: impl Fn(&str),
-) -> Result<MethodLimits, Error> {
-    say(STAGES[0]);
-    let by_modes = |rest: &RestState| largest_step(method, &rest.modes);
-    let at_rest = hanging.map(by_modes).transpose()?.flatten();
-    let seen_at_rest = match hanging {
-        Some(rest) => observe_at_rest(rest, method, at_rest.as_ref(), interrupt::go_on)?,
-        None => None,
-    };
-    say(STAGES[1]);
-    let mut bounded = motion.bounded(method, interrupt::go_on)?;
+    (rest, seen_at_rest): (Option<Limit>, Option<Observation>),
+    (mut bounded, accurate): (Option<Observation>, Option<f64>),
+) -> MethodLimits {
     // What fails at rest at a shorter step may not blow up from the start, but it never rests.
-    if let (Some(seen), Some(limit)) = (&mut bounded, at_rest)
+    if let (Some(seen), Some(limit)) = (&mut bounded, rest)
         && seen.edge == Edge::Sharp
         && seen.step > 1.1 * limit.step
     {
         seen.edge = Edge::Blurred;
     }
-    say(STAGES[2]);
-    let longest = bounded.map_or(f64::INFINITY, |seen| seen.step);
-    Ok(MethodLimits {
+    MethodLimits {
         method,
-        rest: at_rest,
+        rest,
         seen_at_rest,
         bounded,
-        accurate: motion.accurate(method, longest, interrupt::go_on)?,
-    })
+        accurate,
+    }
 }
 
 /// A step in words, to three digits (ms).

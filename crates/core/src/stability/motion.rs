@@ -197,7 +197,7 @@ impl Motion {
                 |count| go_on() && run.take_steps(count).is_ok() && level(&run) < most,
             ))
         };
-        let mut seen = bisect(expected, work, PRECISION, |h| holds(h, 1))?;
+        let mut seen = bisect(expected, work, PRECISION, false, |h| holds(h, 1))?;
         let sharp = limit.is_none_or(|limit| limit.is_sharp());
         if let Some(Observation { step, edge, .. }) = &mut seen
             && *edge == Edge::Sharp
@@ -207,7 +207,7 @@ impl Motion {
             } else if !holds(*step / NEAR, LONGER)? {
                 // The energy grows slowly at shorter steps: the long runs tell which of them hold.
                 let long = |h| holds(h, LONGER);
-                seen = bisect(*step / NEAR, work, PRECISION, long)?;
+                seen = bisect(*step / NEAR, work, PRECISION, false, long)?;
                 if let Some(seen) = &mut seen {
                     seen.edge = Edge::Blurred;
                 }
@@ -261,6 +261,8 @@ impl Motion {
             let part = if known { part } else { 0.5 };
             let edge = 0.99 * CLOSE.ln();
             let middle = low.0 * (gap * part).clamp(edge, (gap - edge).max(edge)).exp();
+            // The search ends if this run fails, whatever its error is.
+            let most = if middle <= CLOSE * low.0 { 1.0 } else { most };
             let error = self.error(method, middle, most, &go_on)?;
             *(if error <= 1.0 { &mut low } else { &mut high }) = (middle, error);
         }

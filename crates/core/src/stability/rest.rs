@@ -186,7 +186,7 @@ pub fn observe_at_rest(
             held && size.of(dx, dv) < GROWTH * nudge
         }))
     };
-    let mut seen = bisect(guess, still.model.work(), PRECISION, holds)?;
+    let mut seen = bisect(guess, still.model.work(), PRECISION, true, holds)?;
     if let Some(seen) = seen
         .as_mut()
         .filter(|s| s.edge == Edge::Sharp && !limit.is_sharp())

@@ -59,11 +59,15 @@ pub(super) fn step_and_look(steps: u64, mut look: impl FnMut(u64) -> bool) -> bo
 /// limit (s), infinity if there is none, to a relative precision. `None` if runs would take too
 /// long; `work` is that of an evaluation.
 ///
+/// With `near`, the step next to the limit is tried before the others: two runs are enough where
+/// the limit is as expected, if steps shorter than one that holds hold too.
+///
 /// The limit is open or sharp: whoever calls this finds out whether it is blurred.
 pub(super) fn bisect(
     expected: f64,
     work: f64,
     precision: f64,
+    near: bool,
     holds: impl Fn(f64) -> Result<bool, Error>,
 ) -> Result<Option<Observation>, Error> {
     let mut runs = 0;
@@ -81,19 +85,27 @@ pub(super) fn bisect(
     let (mut low, mut high);
     if holds(guess)? {
         (low, high) = (guess, (guess * 1.05).min(longest));
-        while holds(high)? {
-            if high == longest {
-                let (step, edge) = (longest, Edge::Open);
-                return Ok(Some(Observation { step, edge, runs }));
-            }
+        if near && guess < longest && !holds(next(low, high, precision))? {
+            high = low;
+        }
+        while low < high && holds(high)? {
             (low, high) = (high, (high * 1.4).min(longest));
+        }
+        if low == longest {
+            let (step, edge) = (longest, Edge::Open);
+            return Ok(Some(Observation { step, edge, runs }));
         }
     } else {
         (low, high) = (guess / 1.05, guess);
-        while !holds(low)? {
-            (low, high) = (low / 1.4, low);
-            if low < shortest {
-                return Ok(None);
+        let close = next(high, low, precision);
+        if near && holds(close)? {
+            low = close;
+        } else {
+            while !holds(low)? {
+                (low, high) = (low / 1.4, low);
+                if low < shortest {
+                    return Ok(None);
+                }
             }
         }
     }
@@ -107,4 +119,13 @@ pub(super) fn bisect(
     }
     let (step, edge) = (low, Edge::Sharp);
     Ok(Some(Observation { step, edge, runs }))
+}
+
+/// Step next to one end of an interval that is bisected to a relative precision.
+fn next(end: f64, other: f64, precision: f64) -> f64 {
+    let mut step = other;
+    while (step / end).max(end / step) > 1.0 + precision {
+        step = (end * step).sqrt();
+    }
+    step
 }
