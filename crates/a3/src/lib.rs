@@ -48,8 +48,6 @@ mod settings;
 mod show;
 
 // The program.
-#[cfg(all(feature = "window", not(target_arch = "wasm32")))]
-mod caught;
 #[cfg(not(target_arch = "wasm32"))]
 mod chart;
 #[cfg(not(target_arch = "wasm32"))]

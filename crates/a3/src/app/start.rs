@@ -7,8 +7,6 @@ use winit::event_loop::EventLoop;
 
 use super::platform::{Event, Outside};
 use super::state::App;
-#[cfg(not(target_arch = "wasm32"))]
-use crate::caught::caught;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::settings::Settings;
@@ -88,18 +86,27 @@ fn prepare(session: &mut Session, settings: Option<&Settings>) {
     }
 }
 
-/// The event loop. Without a display winit returns an error; without a library that it needs it
-/// panics, which is caught here.
+/// The event loop, where there is a display and what is needed to talk to it.
 #[cfg(not(target_arch = "wasm32"))]
 fn event_loop() -> Result<EventLoop<Event>, String> {
-    match caught(|| EventLoop::with_user_event().build()) {
-        Some(Ok(event_loop)) => Ok(event_loop),
-        Some(Err(_)) => {
-            Err("no display (DISPLAY and WAYLAND_DISPLAY are unset or lead nowhere)".into())
-        }
-        None => Err(
+    #[cfg(all(unix, not(target_vendor = "apple")))]
+    if lacks_keyboard() {
+        return Err(
             "no window (a library is missing: `apt install libxkbcommon-x11-0 libxcursor1 libxi6`)"
                 .into(),
-        ),
+        );
     }
+    let built = EventLoop::with_user_event().build();
+    built.map_err(|_| "no display (DISPLAY and WAYLAND_DISPLAY are unset or lead nowhere)".into())
+}
+
+/// Whether a library is missing that winit reads the keys of a display with. Without it, winit
+/// panics, where it returns an error without others.
+#[cfg(all(unix, not(target_vendor = "apple")))]
+fn lacks_keyboard() -> bool {
+    use xkbcommon_dl::{x11::xkbcommon_x11_option, xkbcommon_option};
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let wayland = is_set("WAYLAND_DISPLAY") || is_set("WAYLAND_SOCKET");
+    let x11 = !wayland && is_set("DISPLAY");
+    (wayland || x11) && xkbcommon_option().is_none() || x11 && xkbcommon_x11_option().is_none()
 }

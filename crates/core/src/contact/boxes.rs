@@ -1,12 +1,10 @@
 //! Courses of vertices, and trees of the boxes of items on them.
 
 use nalgebra::Vector3;
-use parry3d_f64::bounding_volume::Aabb;
-use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 
 use super::items::Items;
 use super::surface::Surface;
+use crate::geometry::bvh::{Aabb, Bvh};
 
 /// Straight courses of all vertices, from which they may stray by half of the reach.
 pub(super) struct Course<'a> {
@@ -23,7 +21,7 @@ pub(super) struct Course<'a> {
 }
 
 /// Boxes along the axes at the beginning of the courses and at their end.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     low: [[f64; 3]; 2],
     high: [[f64; 3]; 2],
@@ -71,21 +69,14 @@ fn most(a: f64, b: f64) -> f64 {
 }
 
 /// Tree of the boxes of items, with the boxes of their vertices and edges.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(super) struct Tree {
     pub bvh: Bvh,
-    pub workspace: BvhWorkspace,
     /// Half of the reach of the list (m).
     half: f64,
     pub items: Vec<Bounds>,
     pub vertices: Vec<Bounds>,
     pub edges: Vec<Bounds>,
-}
-
-impl std::fmt::Debug for Tree {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "a tree of {} boxes", self.items.len())
-    }
 }
 
 impl Tree {
@@ -115,7 +106,7 @@ impl Tree {
             self.edges = edges.map(|[i, j]| around(*i).with(&around(*j))).collect();
             self.items = items.corners.iter().map(triangle).collect();
             let leaves: Vec<_> = self.items.iter().map(|item| self.leaf(item)).collect();
-            self.bvh = Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves);
+            self.bvh = Bvh::new(&leaves);
             return;
         }
         for (i, bounds) in items.vertices.iter().zip(&mut self.vertices) {
@@ -132,19 +123,16 @@ impl Tree {
             if is_new(corners) {
                 self.items[k] = triangle(corners);
                 let leaf = self.leaf(&self.items[k]);
-                self.bvh.insert_or_update_partially(leaf, k as u32, 0.0);
+                self.bvh.set(k, leaf);
             }
         }
-        self.bvh.refit(&mut self.workspace);
+        self.bvh.refit();
     }
 
     /// Box of an item in the tree: around both its boxes, with half of the reach.
     fn leaf(&self, item: &Bounds) -> Aabb {
-        let [a, b] = item.low.map(|low| Vector::from(low.map(|x| x - self.half)));
-        let [c, d] = item
-            .high
-            .map(|high| Vector::from(high.map(|x| x + self.half)));
-        Aabb::new(a.min(b), c.max(d))
+        let ([a, b], [c, d]) = (item.low, item.high);
+        Aabb::around([a, b, c, d].map(Vector3::from)).grown(self.half)
     }
 
     /// Visits the items with new courses, each with every item of another tree that its box meets.
@@ -158,10 +146,7 @@ impl Tree {
         for (k, corners) in items.corners.iter().enumerate() {
             if is_new(corners) {
                 let leaf = self.leaf(&self.items[k]);
-                other
-                    .bvh
-                    .intersect_aabb(&leaf)
-                    .for_each(|l| visit(k as u32, l));
+                other.bvh.meeting(&leaf, |l| visit(k as u32, l));
             }
         }
     }

@@ -2,22 +2,19 @@
 
 use std::fmt;
 
-use parry3d_f64::bounding_volume::Aabb;
-use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
-
 use super::advance::rounded;
 use super::candidates::Stretch;
 use super::exact::crossings;
 use super::layer::{ContactLayer, Scratch};
 use super::listing::Candidate;
 use crate::error::Vertex;
+use crate::geometry::bvh::{Aabb, Bvh};
 use crate::geometry::{PairKind, closest};
 
-/// Numbers of ordered pairs of boxes that may meet at the beginning: in all, or for each box, of
-/// which a cloth has some thirty.
-const MOST_PAIRS: usize = 2_000_000;
-const PAIRS_OF_ONE: usize = 100;
+/// Numbers of pairs of boxes that may meet at the beginning: in all, or for each box, of which a
+/// cloth has some fifteen.
+const MOST_PAIRS: usize = 1_000_000;
+const PAIRS_OF_ONE: usize = 50;
 
 /// Two primitives that have a point in common, by their vertices.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -72,12 +69,7 @@ impl ContactLayer {
         let mut places = vec![];
         surface.place(self.obstacles(), t, x, &mut places);
         let around = |corners: &[u32; 3]| {
-            let [a, b, c] = corners.map(|i| places[i as usize]);
-            let thickness = 0.5 * surface.thickest();
-            let low = a.inf(&b).inf(&c).add_scalar(-thickness);
-            let high = a.sup(&b).sup(&c).add_scalar(thickness);
-            let [low, high] = [low, high].map(|corner| Vector::from(<[f64; 3]>::from(corner)));
-            Aabb::new(low, high)
+            Aabb::around(corners.map(|i| places[i as usize])).grown(0.5 * surface.thickest())
         };
         let corners = surface
             .bodies
@@ -85,11 +77,12 @@ impl ContactLayer {
             .iter()
             .chain(&surface.obstacles.corners);
         let boxes: Vec<_> = corners.map(around).collect();
-        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
         let most = MOST_PAIRS.max(PAIRS_OF_ONE * boxes.len());
-        tree.leaf_pairs(&tree, BvhNode::intersects)
-            .nth(most)
-            .is_some()
+        let mut pairs = 0;
+        !Bvh::new(&boxes).pairs(|_, _| {
+            pairs += 1;
+            pairs <= most
+        })
     }
 
     fn crossed_with(&self, scratch: &mut Scratch, t: f64, x: &[f64]) -> Vec<Crossed> {

@@ -3,10 +3,9 @@
 //! 1997).
 
 use nalgebra::Vector3;
-use parry3d_f64::bounding_volume::Aabb;
-use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use robust::{Coord, Coord3D, orient2d, orient3d};
+
+use crate::geometry::bvh::{Aabb, Bvh};
 
 /// Edge and triangle that have a point in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -51,32 +50,23 @@ pub fn crossings(
     };
     let edges_tree = tree(edges.iter().map(|corners| corners.map(point)));
     let triangles_tree = tree(triangles.iter().map(|corners| corners.map(point)));
-    let mut found: Vec<Crossing> = edges_tree
-        .leaf_pairs(&triangles_tree, BvhNode::intersects)
-        .map(|(edge, triangle)| (edge as usize, triangle as usize))
-        .filter(|&(edge, triangle)| {
-            let (edge, triangle) = (edges[edge], triangles[triangle]);
-            !edge.iter().any(|i| triangle.contains(i))
-                && edge_meets_triangle(edge.map(point), triangle.map(point))
-        })
-        .map(|(edge, triangle)| Crossing { edge, triangle })
-        .collect();
+    let mut found = vec![];
+    edges_tree.pairs_with(&triangles_tree, |edge, triangle| {
+        let (edge, triangle) = (edge as usize, triangle as usize);
+        let (ends, corners) = (edges[edge], triangles[triangle]);
+        if !ends.iter().any(|i| corners.contains(i))
+            && edge_meets_triangle(ends.map(point), corners.map(point))
+        {
+            found.push(Crossing { edge, triangle });
+        }
+    });
     found.sort_unstable();
     found
 }
 
 /// Tree of the boxes around primitives.
 fn tree<const N: usize>(primitives: impl Iterator<Item = [Vector3<f64>; N]>) -> Bvh {
-    let boxes: Vec<Aabb> = primitives
-        .map(|points| {
-            let mut around = Aabb::new_invalid();
-            for x in points {
-                around.take_point(Vector::new(x.x, x.y, x.z));
-            }
-            around
-        })
-        .collect();
-    Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+    Bvh::new(&primitives.map(Aabb::around).collect::<Vec<_>>())
 }
 
 /// Whether a closed edge and a closed triangle have a point in common.

@@ -2,7 +2,6 @@
 //! and planes between their primitives bound how near.
 
 use nalgebra::Vector3;
-use parry3d_f64::partitioning::BvhNode;
 use rayon::prelude::*;
 
 use super::boxes::{Course, Tree};
@@ -93,10 +92,11 @@ impl Listing {
         let overlaps = &mut self.overlaps;
         if surface.touches_itself {
             overlaps.clear();
-            let tree = &self.bodies.bvh;
             if renewed.is_none() {
-                let mut add = |s, t| overlaps.push([s, t]);
-                tree.traverse_bvtt_single_tree::<false>(&mut self.bodies.workspace, &mut add);
+                self.bodies.bvh.pairs(|s, t| {
+                    overlaps.push([s, t]);
+                    true
+                });
             } else {
                 self.bodies.meet(&self.bodies, bodies, &is_new, |s, t| {
                     if s < t || s > t && !is_new(&bodies.corners[t as usize]) {
@@ -108,14 +108,10 @@ impl Listing {
         }
         if !obstacles.corners.is_empty() && !bodies.corners.is_empty() {
             overlaps.clear();
+            let mut add = |s, t| overlaps.push([s, t]);
             if renewed.is_none() {
-                let both = self
-                    .bodies
-                    .bvh
-                    .leaf_pairs(&self.obstacles.bvh, BvhNode::intersects);
-                overlaps.extend(both.map(|(s, t)| [s, t]));
+                self.bodies.bvh.pairs_with(&self.obstacles.bvh, add);
             } else {
-                let mut add = |s, t| overlaps.push([s, t]);
                 self.bodies.meet(&self.obstacles, bodies, &is_new, &mut add);
                 self.obstacles
                     .meet(&self.bodies, obstacles, &is_new, |t, s| {

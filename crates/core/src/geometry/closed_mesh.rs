@@ -4,12 +4,9 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
-use parry3d_f64::bounding_volume::Aabb;
-use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhLeafCost, BvhNode};
-use parry3d_f64::query::PointQuery;
 
-use super::closest::{Closest, PairKind, closest};
+use super::bvh::{Aabb, Bvh};
+use super::closest::{PairKind, closest};
 use super::nearest::Nearest;
 use crate::error::{Error, finite};
 
@@ -37,12 +34,6 @@ impl PartialEq for ClosedMesh {
     /// Whether points and triangles are the same, on which all else depends.
     fn eq(&self, other: &Self) -> bool {
         (&self.points, &self.triangles) == (&other.points, &other.triangles)
-    }
-}
-
-impl BvhLeafCost for Closest {
-    fn cost(&self) -> f64 {
-        self.offset.norm_squared()
     }
 }
 
@@ -124,19 +115,11 @@ impl ClosedMesh {
 
     /// Nearest point of the surface to a point d inside.
     pub(crate) fn nearest(&self, d: Vector3<f64>) -> Option<Nearest> {
-        let from = Vector::new(d.x, d.y, d.z);
-        if !self.tree.root_aabb().contains_local_point(from) {
-            return None;
-        }
-        let of_box = |node: &BvhNode, _: f64| {
-            let distance = node.aabb().distance_to_local_point(from, true);
-            distance * distance
-        };
-        let of_triangle = |k: u32, _: f64| {
+        let (k, nearest) = self.tree.nearest(&d, |k| {
             let [a, b, c] = self.triangles[k as usize].map(|i| self.points[i as usize]);
-            Some(closest(PairKind::VertexTriangle, &[d, a, b, c]))
-        };
-        let (k, nearest) = self.tree.find_best(f64::MAX, of_box, of_triangle)?;
+            let closest = closest(PairKind::VertexTriangle, &[d, a, b, c]);
+            (closest.offset.norm_squared(), closest)
+        })?;
         let normal = self.normal(k as usize, &nearest.weights);
         (normal.dot(&nearest.offset) < 0.0).then(|| Nearest {
             point: d - nearest.offset,
@@ -220,14 +203,6 @@ fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>
 
 /// Tree of boxes around the triangles.
 fn tree(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Bvh {
-    let boxes = triangles.iter().map(|t| {
-        let [a, b, c] = t.map(|i| points[i as usize]);
-        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
-        Aabb::new(
-            Vector::new(low.x, low.y, low.z),
-            Vector::new(high.x, high.y, high.z),
-        )
-    });
-    let boxes: Vec<_> = boxes.collect();
-    Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes)
+    let around = |t: &[u32; 3]| Aabb::around(t.map(|i| points[i as usize]));
+    Bvh::new(&triangles.iter().map(around).collect::<Vec<_>>())
 }

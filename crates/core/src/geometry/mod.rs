@@ -1,6 +1,7 @@
 //! Shapes: their points, edges and triangles, the points of them that are nearest, and what is
 //! inside.
 
+pub(crate) mod bvh;
 pub(crate) mod closed_mesh;
 pub(crate) mod closest;
 pub(crate) mod nearest;

@@ -147,10 +147,19 @@ impl Watch {
         }
     }
 
-    /// Notes a step to y at time t (s), in which obstacles were met. Returns the gain by which the
-    /// run is lost.
-    pub fn met(&mut self, model: &Model, now: (f64, &[f64]), met: &Statistics) -> Option<Cause> {
-        let network = model.network()?;
+    /// Notes a step to y at time t (s), in which obstacles were met, and after which a particle
+    /// seems lost. Returns why the run is lost: what is far away because it fell or was thrown
+    /// there has gained nothing, and is not.
+    pub fn met(
+        &mut self,
+        model: &Model,
+        now: (f64, &[f64]),
+        met: &Statistics,
+        lost: Option<Cause>,
+    ) -> Option<Cause> {
+        let Some(network) = model.network() else {
+            return lost;
+        };
         let impulse = met.impulse.max(met.guarded.impulse);
         if impulse > 0.0 {
             // Most of the work that obstacles did.
@@ -158,16 +167,23 @@ impl Watch {
             let speeds = network.obstacles().iter().map(speed);
             self.balance.work += impulse * speeds.fold(0.0, f64::max);
         }
-        self.look(network, now)
+        match lost {
+            Some(Cause::Away { .. }) => {
+                self.look(network, now, true);
+                lost.filter(|_| !self.is_sound())
+            }
+            Some(_) => lost,
+            None => self.look(network, now, false),
+        }
     }
 
-    /// Looks at the energy of y at time t (s), if it is time to. Returns the gain by which the run
-    /// is lost.
-    fn look(&mut self, network: &Network, (t, y): (f64, &[f64])) -> Option<Cause> {
+    /// Looks at the energy of y at time t (s), if it is time to, or at once. Returns the gain by
+    /// which the run is lost.
+    fn look(&mut self, network: &Network, (t, y): (f64, &[f64]), at_once: bool) -> Option<Cause> {
         let driven = is_driven(network);
         let balance = &mut self.balance;
         let since = t - balance.time;
-        let early = since < if driven { DRIVEN } else { REST };
+        let early = !at_once && since < if driven { DRIVEN } else { REST };
         if early && !(network.contact_layer().is_some() && balance.is_exceeded(network, y)) {
             return None;
         }

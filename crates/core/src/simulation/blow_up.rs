@@ -7,7 +7,8 @@ use crate::error::{BlowUp, Cause, Error};
 use crate::rigid::{Body, ROTATION};
 use crate::scene::Model;
 
-/// Distance from the scene's middle, in its radii, at which a particle is lost.
+/// Distance from the scene's middle, in its radii, at which a particle is lost, unless it is there
+/// without gaining energy.
 const LOST: f64 = 100.0;
 
 /// Distance, in radii, within which all particles of a state are that one goes back to: still a
@@ -18,7 +19,7 @@ const GOOD: f64 = 3.0;
 const BLOCK: usize = 64;
 
 impl Simulation {
-    /// The cause of a blow-up, if a particle of y is lost.
+    /// The cause of a blow-up, if a particle of y seems lost.
     pub(super) fn lost(&self, y: &[f64]) -> Option<Cause> {
         self.beyond(LOST, y)
     }

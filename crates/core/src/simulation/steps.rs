@@ -109,8 +109,9 @@ impl Simulation {
                     Ok(Settled { strained, met }) => {
                         self.work.algebra += SWEEP * strained.sweeps as f64;
                         self.guarded += met.guarded;
-                        self.lost(&self.y)
-                            .or_else(|| self.watch.met(&self.model, (t + h, &self.y), &met))
+                        let lost = self.lost(&self.y);
+                        let now = (t + h, self.y.as_slice());
+                        self.watch.met(&self.model, now, &met, lost)
                     }
                     Err(cause) => Some(cause),
                 }
@@ -199,10 +200,8 @@ impl Simulation {
             let Stepper::Adaptive { end, .. } = &self.stepper else {
                 return Ok(now);
             };
-            let lost = self.lost(end);
-            let watch = &mut self.watch;
-            let lost = lost.or_else(|| watch.met(&self.model, (reached, end), &met));
-            break (lost, reached);
+            let (lost, now) = (self.lost(end), (reached, end.as_slice()));
+            break (self.watch.met(&self.model, now, &met, lost), reached);
         };
         self.judge(cause, reached)?;
         Ok(reached)

@@ -96,3 +96,37 @@ fn what_obstacles_and_hands_do_is_no_gain() {
         assert_eq!(run.gained(), None, "{name}");
     }
 }
+
+#[test]
+fn what_falls_or_is_thrown_far_away_is_not_lost() {
+    // Hundreds of metres, of a particle in a scene of 1 m.
+    let particle = "[particles]\npositions = [[0, 0, 0]]\nmass = 1\n";
+    let weight = "gravity = [0, -9.81, 0]\n";
+    let thrown = "velocities = [[100, 50, 0]]\n";
+    let gusts = "[wind]\non = true\nforce_per_mass = [40, 0, 0]\n";
+    for (before, after, end) in [
+        (weight, "", Some(Vector3::new(0.0, -490.5, 0.0))),
+        (weight, thrown, Some(Vector3::new(1000.0, 9.5, 0.0))),
+        ("drag = 0.1\n", gusts, None),
+    ] {
+        let text = format!("name = \"far\"\n{before}{particle}{after}");
+        for (name, value) in [("verlet", 0.01), ("rk4", 0.01), ("dop853", 1e-6)] {
+            let method = method(name);
+            let control = method.control(value);
+            let mut run = Simulation::new(described(&text), method, control).unwrap();
+            run.advance_to(10.0).unwrap();
+            let x = run.position(0);
+            assert!(x.norm() > 200.0 && run.gained().is_none(), "{name}: {x}");
+            let is_there = end.is_none_or(|end| (x - end).norm() < 1e-6);
+            assert!(is_there, "{name}: {x}");
+        }
+    }
+    // A step that is too long takes them as far, which is still a blow-up.
+    let pair = "name = \"pair\"\nsprings = [[0, 1, 1e6, 1, 0]]\n\
+                [particles]\npositions = [[0, 0, 0], [1.1, 0, 0]]\nmass = 1\n";
+    let mut run = Simulation::new(described(pair), method("rk4"), Control::Step(0.003)).unwrap();
+    let Err(Error::BlowUp(lost)) = run.advance_to(10.0) else {
+        panic!("it went on");
+    };
+    assert!(matches!(lost.cause, Cause::Away { distance, .. } if distance > 50.0));
+}
