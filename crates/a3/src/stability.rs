@@ -218,7 +218,8 @@ fn text(
         ]);
     }
     let frequency = |modes: &[Mode]| {
-        modes.first().map_or("-".to_owned(), |mode| {
+        let returning = modes.first().filter(|mode| mode.frequency() > 0.0);
+        returning.map_or("none that returns".to_owned(), |mode| {
             let damping = 0.5 * (mode.drag + mode.damping) / mode.frequency();
             format!("{:.1} rad/s, damping ratio {damping:.3}", mode.frequency())
         })

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::items::Items;
 use super::surface::Surface;
-use crate::geometry::bvh::{Aabb, Bvh};
+use crate::geometry::bvh::{Aabb, Bvh, least, most};
 
 /// Straight courses of all vertices, from which they may stray by half of the reach.
 pub(super) struct Course<'a> {
@@ -56,16 +56,6 @@ impl Bounds {
         }
         squared
     }
-}
-
-/// The smaller of two numbers, as one instruction.
-fn least(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// The larger of two numbers, as one instruction.
-fn most(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 /// Tree of the boxes of items, with the boxes of their vertices and edges.

@@ -3,6 +3,16 @@
 
 use nalgebra::Vector3;
 
+/// The smaller of two numbers, as one instruction.
+pub(crate) fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, as one instruction.
+pub(crate) fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 /// Box along the axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aabb {
@@ -33,21 +43,17 @@ impl Aabb {
 
     /// The smallest box around both.
     fn with(&self, other: &Self) -> Self {
-        let pick = |a: [f64; 3], b: [f64; 3], pick: fn(f64, f64) -> f64| {
-            [0, 1, 2].map(|k| pick(a[k], b[k]))
-        };
         Self {
-            low: pick(self.low, other.low, |a, b| if a < b { a } else { b }),
-            high: pick(self.high, other.high, |a, b| if a > b { a } else { b }),
+            low: [0, 1, 2].map(|k| least(self.low[k], other.low[k])),
+            high: [0, 1, 2].map(|k| most(self.high[k], other.high[k])),
         }
     }
 
     /// Whether they have a point in common, such as a corner.
     fn meets(&self, other: &Self) -> bool {
-        // Without branches.
-        (0..3).fold(true, |meets, k| {
-            meets & (self.low[k] <= other.high[k]) & (other.low[k] <= self.high[k])
-        })
+        // One branch for all axes.
+        let gap = |k: usize| most(self.low[k] - other.high[k], other.low[k] - self.high[k]);
+        most(most(gap(0), gap(1)), gap(2)) <= 0.0
     }
 
     /// Squared distance of a point: 0 inside.
