@@ -8,6 +8,15 @@ pub(super) const CLOSE: f64 = 1e-11;
 /// Rate of convergence, a change over the one before it, up to which the tangent is kept for the
 /// next iteration.
 const KEPT: f64 = 0.03;
+/// Relative residual to which the linear system of an iteration is solved that is not the last: a
+/// more exact solution would change little, because the equations are not linear (Dembo, Eisenstat,
+/// Steihaug, *Inexact Newton methods*, 1982).
+const FORCING: f64 = 1e-3;
+/// Least and largest relative residual of the iteration that is foretold to be the last.
+const LAST: [f64; 2] = [1e-6, 0.1];
+/// Part of a change that counts as none that the linear system of the last iteration may leave:
+/// invariants, such as the momentum, drift by what it leaves in each step.
+const LEFT: f64 = 1e-2;
 
 /// The changes in one solution of the equations.
 pub(super) struct Changes {
@@ -17,6 +26,10 @@ pub(super) struct Changes {
     last: f64,
     /// The last one over the one before it, infinite if there was none.
     rate: f64,
+    /// Size of the state after the last one.
+    size: f64,
+    /// Relative residual to which the linear system of the last one was solved.
+    residual: f64,
 }
 
 impl Changes {
@@ -26,16 +39,31 @@ impl Changes {
             first: f64::NAN,
             last: f64::NAN,
             rate: f64::INFINITY,
+            size: f64::NAN,
+            residual: 0.0,
         }
     }
 
-    pub fn add(&mut self, change: f64) {
+    /// Adds one, which left a state of this size, and whose linear system was solved to this
+    /// relative residual.
+    pub fn add(&mut self, change: f64, size: f64, residual: f64) {
         if self.first.is_nan() {
             self.first = change;
         } else {
             self.rate = change / self.last;
         }
-        self.last = change;
+        (self.last, self.size, self.residual) = (change, size, residual);
+    }
+
+    /// Relative residual to which the linear system of the next one is solved.
+    pub fn forcing(&self) -> f64 {
+        // A tenth, because the next one may be larger than foretold.
+        let enough = 0.1 * LEFT * CLOSE * self.size / (self.last * self.rate);
+        if self.foretell && enough >= LAST[0] {
+            enough.min(LAST[1])
+        } else {
+            FORCING
+        }
     }
 
     /// Whether they shrink so fast that the tangent can be kept; `None` if that is not known yet.
@@ -44,16 +72,18 @@ impl Changes {
     }
 
     /// Whether the last one, or the next one where it is known to be about as much smaller again,
-    /// is none relative to the `size` of the state; or whether they no longer shrink, if the last
-    /// one is below this `noise`.
-    pub fn are_over(&self, size: f64, noise: f64) -> bool {
+    /// is none relative to the size of the state, and solved so; or whether they no longer shrink,
+    /// if the last one is below this `noise`.
+    pub fn are_over(&self, noise: f64) -> bool {
         let shrinks = if self.foretell {
             self.rate.min(1.0)
         } else {
             1.0
         };
         let stay = self.rate.is_finite() && self.rate >= 0.5;
-        self.last * shrinks <= CLOSE * size || stay && self.last <= noise * size
+        let none = CLOSE * self.size;
+        self.last * shrinks <= none && self.last * self.residual <= LEFT * none
+            || stay && self.last <= noise * self.size
     }
 
     /// Whether the last one is a number, so that there can be a next one.

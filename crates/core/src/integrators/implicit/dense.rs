@@ -78,8 +78,8 @@ impl Dense {
                 }
             }
             work += self.correct(system, t, a, base, y);
-            changes.add(norm(&self.change));
-            if newton == Newton::Once || changes.are_over(norm(y), 1e-9) {
+            changes.add(norm(&self.change), norm(y), 0.0);
+            if newton == Newton::Once || changes.are_over(1e-9) {
                 return Ok(work);
             }
             if !changes.are_finite() {

@@ -48,8 +48,6 @@ const OVERSHOT: f64 = 0.5;
 const SHORTENED: u32 = 12;
 /// Gap relative to positions that is rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// Relative residual to which the linear systems of Newton's method are solved.
-const FORCING: f64 = 1e-5;
 
 /// `Ok` if implicit methods support this system.
 ///
@@ -187,7 +185,9 @@ impl Mechanical {
         }
         let mut settled = 0;
         for iteration in 0..most {
-            let how = (newton, searches || !changes.shrink_fast().unwrap_or(false));
+            let gathers = searches || !changes.shrink_fast().unwrap_or(false);
+            let forcing = changes.forcing();
+            let how = (newton, gathers, forcing);
             let mut change = self.iterate(mechanics, t, a, [bx, bv], [x, v], how, &mut work)?;
             if searches {
                 let share = self.search(mechanics, t, a, [bx, bv], [x, v], &mut work);
@@ -197,9 +197,9 @@ impl Mechanical {
             if newton == Newton::Once {
                 return Ok(work);
             }
-            changes.add(change);
             let size = norm(v) + norm(x) / a.abs();
-            if changes.are_over(size, 1e3 * CLOSE) {
+            changes.add(change, size, forcing);
+            if changes.are_over(1e3 * CLOSE) {
                 return Ok(work);
             }
             if !changes.are_finite() {
@@ -226,7 +226,7 @@ impl Mechanical {
         a: f64,
         [bx, bv]: [&[f64]; 2],
         [x, v]: [&mut [f64]; 2],
-        (newton, gathers): (Newton, bool),
+        (newton, gathers, forcing): (Newton, bool, f64),
         work: &mut Work,
     ) -> Result<f64, Error> {
         if !std::mem::take(&mut self.evaluated) {
@@ -240,7 +240,7 @@ impl Mechanical {
             }
             self.reduce(mechanics, a, bv, v);
             let tolerance = match newton {
-                Newton::Full => FORCING,
+                Newton::Full => forcing,
                 // Short steps are solved more closely, so that errors fall with the step to the
                 // method's order.
                 Newton::Once => 1e-4 * self.solver.stiffness().clamp(1e-2, 1.0).powi(4),
