@@ -186,9 +186,9 @@ impl Mechanical {
         let mut settled = 0;
         for iteration in 0..most {
             let gathers = searches || !changes.shrink_fast().unwrap_or(false);
-            let forcing = changes.forcing();
-            let how = (newton, gathers, forcing);
-            let mut change = self.iterate(mechanics, t, a, [bx, bv], [x, v], how, &mut work)?;
+            let how = (newton, gathers, changes.forcing());
+            let (mut change, residual) =
+                self.iterate(mechanics, t, a, [bx, bv], [x, v], how, &mut work)?;
             if searches {
                 let share = self.search(mechanics, t, a, [bx, bv], [x, v], &mut work);
                 self.secants.add(&self.dv, share, &self.before, &self.rhs);
@@ -198,7 +198,7 @@ impl Mechanical {
                 return Ok(work);
             }
             let size = norm(v) + norm(x) / a.abs();
-            changes.add(change, size, forcing);
+            changes.add(change, size, residual);
             if changes.are_over(1e3 * CLOSE) {
                 return Ok(work);
             }
@@ -217,7 +217,8 @@ impl Mechanical {
         Err(changes.failure())
     }
 
-    /// One iteration of Newton's method. Returns the norm of the change of v.
+    /// One iteration of Newton's method. Returns the norm of the change of v, and the relative
+    /// residual to which the linear system was solved.
     #[expect(clippy::too_many_arguments, reason = "the stage's equation has them")]
     fn iterate(
         &mut self,
@@ -228,13 +229,13 @@ impl Mechanical {
         [x, v]: [&mut [f64]; 2],
         (newton, gathers, forcing): (Newton, bool, f64),
         work: &mut Work,
-    ) -> Result<f64, Error> {
+    ) -> Result<(f64, f64), Error> {
         if !std::mem::take(&mut self.evaluated) {
             *work += self.evaluate(mechanics, t, a, bx, [x, v]);
         }
         let mut clamped = newton == Newton::Once;
         let mut gathers = gathers;
-        loop {
+        let residual = loop {
             if gathers {
                 *work += self.solver.gather(mechanics, (t, a), x, clamped);
             }
@@ -253,19 +254,19 @@ impl Mechanical {
             self.secants.complete(&mut self.dv);
             *work += cost;
             match solved {
-                Some(_) => break,
+                Some(residual) => break residual,
                 // Compressed springs can make the matrix indefinite. With these clamped, Newton's
                 // method converges more slowly.
                 None if !clamped => (clamped, gathers) = (true, true),
                 None => return Err(Error::NoConvergence { residual: 1.0 }),
             }
-        }
+        };
         let changes = self.gap.iter().zip(&self.dv);
         for ((x, v), (gap, dv)) in x.iter_mut().zip(v.iter_mut()).zip(changes) {
             *x += gap + a * dv;
             *v += dv;
         }
-        Ok(norm(&self.dv))
+        Ok((norm(&self.dv), residual))
     }
 
     /// Takes back a share of the change that an iteration made, if it overshot: until the power of
