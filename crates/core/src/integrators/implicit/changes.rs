@@ -16,7 +16,7 @@ const FORCING: f64 = 1e-3;
 const LAST: [f64; 2] = [1e-6, 0.1];
 /// Part of a change that counts as none that the linear system of the last iteration may leave:
 /// invariants, such as the momentum, drift by what it leaves in each step.
-const LEFT: f64 = 1e-2;
+const LEFT: f64 = 1e-3;
 
 /// The changes in one solution of the equations.
 pub(super) struct Changes {
