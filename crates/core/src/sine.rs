@@ -1,8 +1,8 @@
 //! The sine of many numbers at a time, with the same bits on every processor: plain code that the
-//! compiler turns into vectors. With n pi the multiple of pi that is nearest to a, and r = a - n pi,
-//! sin a = (-1)^n sin r. Products with the two parts of pi are fused, and sin r, with r at most
-//! pi / 2, is its Taylor series up to r^21, of which the next term is below 2e-18. The results are
-//! those of `libm` but for the last digit or two.
+//! compiler turns into vectors. With n pi the multiple of pi that is nearest to a, and
+//! r = a - n pi, sin a = (-1)^n sin r. Products with the two parts of pi are fused, and sin r, with
+//! r at most pi / 2, is its Taylor series up to r^21, of which the next term is below 2e-18. The
+//! results are those of `libm` but for the last digit or two.
 
 #![expect(
     clippy::inline_always,
