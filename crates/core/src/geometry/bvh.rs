@@ -160,7 +160,9 @@ impl Bvh {
     fn meeting_below(&self, place: usize, bounds: &Aabb, visit: &mut impl FnMut(u32)) {
         let node = &self.nodes[place];
         if !node.bounds.meets(bounds) {
-        } else if node.second == 0 {
+            return;
+        }
+        if node.second == 0 {
             visit(node.item);
         } else {
             self.meeting_below(place + 1, bounds, visit);
