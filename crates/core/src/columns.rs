@@ -8,9 +8,9 @@ pub(crate) fn columns<'a>(a: &'a [f64], particles: &Range<usize>) -> [&'a [f64];
     [0, n, 2 * n].map(|column| &a[column + particles.start..column + particles.end])
 }
 
-/// The three columns of an n x 3 matrix.
-pub(crate) fn columns_mut(a: &mut [f64]) -> [&mut [f64]; 3] {
-    let (x, rest) = a.split_at_mut(a.len() / 3);
-    let (y, z) = rest.split_at_mut(x.len());
-    [x, y, z]
+/// The columns of an n x 3 matrix, or of one with another number of columns.
+pub(crate) fn columns_mut<const N: usize>(a: &mut [f64]) -> [&mut [f64]; N] {
+    let n = a.len() / N;
+    let mut rest = a;
+    std::array::from_fn(|_| rest.split_off_mut(..n).unwrap_or_default())
 }

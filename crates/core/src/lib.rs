@@ -95,8 +95,8 @@ pub use scene::{FirstOrder, Model, Scene, Swing};
 pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, Simulation};
 pub use spring::{Spring, SpringKind, SpringLaw};
 pub use system::{
-    AxialCoupling, BlockCoupling, Compliant, Coupling, GeneralCoupling, Linearized, Matrix,
-    Mechanics, ParticleSystem, Rigid, Splitting,
+    AxialCoupling, BlockCoupling, Compliant, Coupling, Diagonal, GeneralCoupling, Linearized,
+    Matrix, Mechanics, ParticleSystem, Rigid, Splitting,
 };
 
 /// Example of the README, compiled as a documentation test.

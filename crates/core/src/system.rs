@@ -161,6 +161,18 @@ pub trait Linearized: Mechanics {
         0
     }
 
+    /// Adds the blocks on the diagonal of the matrix that come from the couplings that
+    /// [`multiply`](Self::multiply) multiplies; the number of these.
+    fn add_diagonal(&self, _matrix: &Matrix, _diagonal: &mut Diagonal) -> usize {
+        0
+    }
+
+    /// Visits the [`couplings`](Self::couplings) but for those that [`multiply`](Self::multiply)
+    /// multiplies.
+    fn other_couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+        self.couplings(t, x, clamped, visit);
+    }
+
     /// Whether the same particles are coupled at all x, as they are where no force begins and ends
     /// within its [`reach`](Self::reach). If not, no factorisation is tried, because
     /// the pattern of each would have to be analysed.
@@ -298,20 +310,30 @@ pub(crate) fn full([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [f64; 9] {
     [xx, xy, xz, xy, yy, yz, xz, yz, zz]
 }
 
-/// The matrix A = M + a (C + D) + a2 K of an implicit step, from the
+/// The matrix A = M + a (C + D) + a2 K of an implicit step of length a, from the
 /// [couplings](Linearized::couplings) at x and from the drag D.
 #[derive(Clone, Copy, Debug)]
 pub struct Matrix<'a> {
     /// Positions (m).
     pub x: &'a [f64],
-    /// Length a of the step (s).
-    pub a: f64,
+    /// Factor of K: a2 (s2).
+    pub stiffness: f64,
+    /// Factor of C: a (s).
+    pub damping: f64,
     /// Whether couplings are clamped.
     pub clamped: bool,
     /// Diagonal of M + a D for each particle (kg).
     pub masses: &'a [f64],
     /// Factor of each particle's part of the product: 1, or 0 where it is pinned.
     pub free: &'a [f64],
+}
+
+/// The blocks on the diagonal of a matrix, one for each particle.
+#[derive(Debug)]
+pub struct Diagonal<'a> {
+    /// The columns xx, yy, zz, xy, xz and yz of the blocks (kg), and the sums of the largest
+    /// eigenvalues of each particle's couplings (kg).
+    pub columns: [&'a mut [f64]; 7],
 }
 
 /// Makes accelerations of forces.

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::spring::Spring;
-use crate::system::Coupling;
+use crate::system::{Coupling, Diagonal, Matrix};
 
 /// The time, the state and the particles for which an element is evaluated.
 #[derive(Clone, Copy)]
@@ -64,6 +64,12 @@ pub(crate) trait Force {
     /// Visits the pairs of particles that the element couples, always in the same order. With
     /// `clamped`, each stiffness is positive semi-definite.
     fn couplings(&self, _t: f64, _x: &[f64], _clamped: bool, _visit: &mut dyn FnMut(Coupling)) {}
+
+    /// Adds the blocks on the diagonal of an implicit step's matrix that come from the couplings,
+    /// where these are multiplied together and not one by one; their number.
+    fn add_diagonal(&self, _matrix: &Matrix, _diagonal: &mut Diagonal) -> usize {
+        0
+    }
 
     /// Potential energy; none for forces without a potential.
     fn energy(&self, _at: &At) -> Energy {

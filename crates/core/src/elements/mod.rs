@@ -6,6 +6,7 @@ mod attraction;
 mod axial;
 mod buckling;
 mod contact_layer;
+mod diagonal;
 mod drag;
 mod element;
 mod finish;

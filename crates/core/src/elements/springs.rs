@@ -3,12 +3,13 @@
 use std::sync::OnceLock;
 
 use super::axial::{add_all, add_differential, coupling, energy};
+use super::diagonal::add_springs;
 use super::force::{At, Cost, Force, check_ends, ends};
 use super::packed::{Packed, SPEED};
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::spring::Spring;
-use crate::system::Coupling;
+use crate::system::{Coupling, Diagonal, Matrix};
 
 /// Single springs. Few are evaluated in their order, and many in blocks.
 #[derive(Debug, Default)]
@@ -100,6 +101,13 @@ impl Force for Springs {
         for spring in &self.all {
             visit(coupling(spring, x, clamped));
         }
+    }
+
+    fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {
+        self.packed().map_or(0, |packed| {
+            add_springs(&self.all, matrix, diagonal);
+            packed.len()
+        })
     }
 
     fn energy(&self, at: &At) -> Energy {

@@ -102,25 +102,9 @@ impl ConjugateGradients {
             return;
         }
         self.version = tangent.version();
-        let [xx, yy, zz, ..] = &mut self.inverses;
-        for diagonal in [xx, yy, zz] {
-            diagonal.copy_from_slice(tangent.masses());
-        }
-        for column in &mut self.inverses[3..] {
-            column.fill(0.0);
-        }
-        let mut columns = self.inverses.each_mut().map(Vec::as_mut_slice);
-        // The blocks of a particle have a symmetric sum.
-        tangent.symmetric_blocks(|i, j, block| {
-            for (column, part) in columns.iter_mut().zip(block) {
-                column[i] += part;
-                if j != i {
-                    column[j] += part;
-                }
-            }
-        });
+        let diagonal = tangent.diagonal();
         for (i, m) in tangent.masses().iter().enumerate() {
-            let block = array::from_fn(|k| self.inverses[k][i]);
+            let block = diagonal.map(|column| column[i]);
             let inverse = if *m == 0.0 { [0.0; 6] } else { inverse(block) };
             for (column, part) in self.inverses.iter_mut().zip(inverse) {
                 column[i] = part;

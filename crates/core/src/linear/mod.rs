@@ -50,7 +50,6 @@ pub(crate) struct Solver {
     multigrid: Option<Multigrid>,
     /// Evaluations of the system's forces in the time of one spring by spring.
     speed: f64,
-    scratch: Vec<f64>,
     /// Bound of a2 w2 for the matrix that was gathered last.
     stiffness: f64,
     /// Whether the matrix that was gathered last is factorised.
@@ -68,7 +67,6 @@ impl Solver {
             analysed: false,
             multigrid: None,
             speed: system.speed(),
-            scratch: vec![0.0; n],
             tangent,
             direct_always: None,
             multigrid_always: None,
@@ -78,13 +76,14 @@ impl Solver {
         if !system.couples_always_the_same() {
             (solver.direct_always, solver.multigrid_always) = (Some(false), Some(false));
         } else if solver.least_products() == 0.0 {
-            solver.analyse();
+            solver.analyse(system);
         }
         solver
     }
 
     /// Analyses the pattern for a factorisation.
-    fn analyse(&mut self) {
+    fn analyse(&mut self, system: &dyn Linearized) {
+        self.tangent.list(system);
         self.direct = Direct::new(&self.tangent);
         self.analysed = true;
     }
@@ -117,7 +116,7 @@ impl Solver {
         clamped: bool,
     ) -> Work {
         self.tangent.gather(system, (t, a), x, clamped);
-        self.stiffness = self.tangent.stiffness(&mut self.scratch);
+        self.stiffness = self.tangent.stiffness();
         self.factorised = false;
         if self.direct.as_ref().is_some_and(|d| !d.fits(&self.tangent)) {
             (self.direct, self.analysed) = (None, false);
@@ -150,13 +149,13 @@ impl Solver {
 
     /// Whether a solve to a relative residual is cheaper by a factorisation than by conjugate
     /// gradients. Analyses the pattern where that may be so.
-    fn goes_direct(&mut self, tolerance: f64) -> bool {
+    fn goes_direct(&mut self, system: &dyn Linearized, tolerance: f64) -> bool {
         let [alone, with] = self.prices(tolerance);
         let iterative = alone.min(with);
         let least = direct::price_of_products(self.least_products());
         let worth_analysing = self.factorised || least * self.speed < iterative;
         if self.direct_always.unwrap_or(worth_analysing) && !self.analysed {
-            self.analyse();
+            self.analyse(system);
         }
         let price = self.direct.as_ref().map_or(f64::INFINITY, |direct| {
             let factorisation = if self.factorised {
@@ -172,9 +171,13 @@ impl Solver {
 
     /// Factorises A, or takes it up for multigrid, if solves to a relative residual are cheaper so.
     /// Returns the work, and whether A may be positive definite.
-    pub fn prepare(&mut self, tolerance: f64) -> (Work, bool) {
+    pub fn prepare(&mut self, system: &dyn Linearized, tolerance: f64) -> (Work, bool) {
         let mut work = Work::default();
-        if self.goes_direct(tolerance) {
+        if self.goes_direct(system, tolerance) {
+            self.tangent.list(system);
+            if self.direct.as_ref().is_some_and(|d| !d.fits(&self.tangent)) {
+                self.analyse(system);
+            }
             if let Some(direct) = &mut self.direct
                 && !self.factorised
             {
@@ -184,6 +187,7 @@ impl Solver {
                 return (work, self.factorised);
             }
         } else if self.goes_multigrid(tolerance) {
+            self.tangent.list(system);
             let fits = self.multigrid.take().filter(|m| m.fits(&self.tangent));
             let used = fits.unwrap_or_else(|| Multigrid::new(&self.tangent));
             if self.multigrid.insert(used).prepare(&self.tangent) {
@@ -207,7 +211,7 @@ impl Solver {
         x: &mut [f64],
         tolerance: f64,
     ) -> (Work, Option<f64>) {
-        let (mut work, may_be_definite) = self.prepare(tolerance);
+        let (mut work, may_be_definite) = self.prepare(system, tolerance);
         work.solves = 1;
         if !may_be_definite {
             return (work, None);

@@ -1,14 +1,22 @@
-//! The matrix of an implicit step, A = M + a (C + D) + a2 K, from the couplings between particles:
-//! gathered once, and multiplied without square roots. Pinned particles are filtered: their rows
+//! The matrix of an implicit step, A = M + a (C + D) + a2 K. Couplings between particles that the
+//! system does not multiply itself are gathered once, and multiplied without square roots; all are
+//! listed where a factorisation or multigrid needs them. Pinned particles are filtered: their rows
 //! are those of the identity, and vectors that are solved for are zero there.
 
 use super::block::{Block, symmetric};
-use crate::system::{AxialCoupling, Coupling, GeneralCoupling, Linearized, Matrix, full};
+use crate::columns::columns_mut;
+use crate::system::{
+    AxialCoupling, Coupling, Diagonal, GeneralCoupling, Linearized, Matrix, full,
+};
 
 /// A and K.
 pub(crate) struct Tangent {
+    /// Axial couplings, of which the first are those that the system multiplies.
     axial: Vec<AxialCoupling>,
     blocks: Vec<GeneralCoupling>,
+    /// Number of couplings that the system multiplies, and whether they are listed too.
+    fast: usize,
+    listed: bool,
     /// Mass of each particle in A (kg); 0 where it is pinned.
     masses: Vec<f64>,
     /// 0 where it is pinned, 1 elsewhere.
@@ -19,9 +27,16 @@ pub(crate) struct Tangent {
     pattern: u64,
     /// Number of times that couplings were gathered.
     version: u64,
-    /// Positions (m) and step (s) of the last gathering.
+    /// Time (s), positions (m) and step (s) of the last gathering.
+    t: f64,
     x: Vec<f64>,
     a: f64,
+    /// Columns of the blocks on the diagonal of A (kg), and of the sums of the largest eigenvalues
+    /// of each particle's couplings (kg).
+    diagonal: Vec<f64>,
+    /// Product with a matrix, and a mass of zero for each particle.
+    scratch: Vec<f64>,
+    zeros: Vec<f64>,
 }
 
 impl Tangent {
@@ -31,25 +46,46 @@ impl Tangent {
         let mut tangent = Self {
             axial: vec![],
             blocks: vec![],
+            fast: 0,
+            listed: false,
             masses: vec![0.0; n],
             free: vec![0.0; n],
             clamped: false,
             pattern: 0,
             version: 0,
+            t: 0.0,
             x: vec![0.0; 3 * n],
             a: 0.0,
+            diagonal: vec![0.0; 7 * n],
+            scratch: vec![0.0; 3 * n],
+            zeros: vec![0.0; n],
         };
         if system.couples_always_the_same() {
-            tangent.collect(system, 0.0, &vec![0.0; 3 * n]);
+            tangent.list(system);
         }
         tangent
     }
 
-    fn collect(&mut self, system: &dyn Linearized, t: f64, x: &[f64]) {
+    /// Lists all couplings where they were gathered last, unless they are listed.
+    pub fn list(&mut self, system: &dyn Linearized) {
+        if !self.listed {
+            self.listed = true;
+            self.collect(0, |t, x, clamped, visit| {
+                system.couplings(t, x, clamped, visit);
+            });
+        }
+    }
+
+    /// Puts couplings in the lists, axial ones after so many that are left as they are.
+    fn collect(
+        &mut self,
+        left: usize,
+        visit: impl FnOnce(f64, &[f64], bool, &mut dyn FnMut(Coupling)),
+    ) {
         let (axial, blocks) = (&mut self.axial, &mut self.blocks);
         let counts = [axial.len(), blocks.len()];
-        let (mut axial_count, mut block_count, mut same) = (0, 0, true);
-        system.couplings(t, x, self.clamped, &mut |coupling| {
+        let (mut axial_count, mut block_count, mut same) = (left, 0, true);
+        visit(self.t, &self.x, self.clamped, &mut |coupling| {
             let block = match coupling {
                 Coupling::Axial(new) => {
                     same &= put(axial, axial_count, new, |c| [c.i, c.j]);
@@ -102,8 +138,9 @@ impl Tangent {
         x: &[f64],
         clamped: bool,
     ) {
-        self.clamped = clamped;
-        self.collect(system, t, x);
+        (self.t, self.a, self.clamped) = (t, a, clamped);
+        self.x.copy_from_slice(x);
+        self.version += 1;
         let drag = a * system.drag_coefficient();
         let particles = self.masses.iter_mut().zip(&mut self.free);
         for ((m, free), w) in particles.zip(system.inverse_masses()) {
@@ -113,9 +150,65 @@ impl Tangent {
                 (1.0 / w + drag, 1.0)
             };
         }
-        self.x.copy_from_slice(x);
-        self.a = a;
-        self.version += 1;
+        self.add_up_diagonal(system);
+    }
+
+    /// Adds up the blocks on the diagonal, and lists the couplings that the system does not
+    /// multiply.
+    fn add_up_diagonal(&mut self, system: &dyn Linearized) {
+        let n = self.particles();
+        let mut sums = std::mem::take(&mut self.diagonal);
+        sums.fill(0.0);
+        for column in sums.chunks_exact_mut(n).take(3) {
+            column.copy_from_slice(&self.masses);
+        }
+        let mut diagonal = Diagonal {
+            columns: columns_mut(&mut sums),
+        };
+        let fast = system.add_diagonal(&self.matrix(), &mut diagonal);
+        self.listed = false;
+        if fast == self.fast && fast <= self.axial.len() {
+            self.collect(fast, |t, x, clamped, visit| {
+                system.other_couplings(t, x, clamped, visit);
+            });
+            self.listed = fast == 0;
+        } else {
+            self.fast = fast;
+            self.list(system);
+        }
+        for c in &self.axial[fast..] {
+            let [iso, along] = self.factors(c);
+            let k = (iso + along).max(iso);
+            add_own(&mut diagonal, [c.i, c.j], self.axial_block(c), k);
+        }
+        for c in &self.blocks {
+            let block = self.block(c);
+            let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = block.map(f64::abs);
+            // The largest sum of a row bounds the largest eigenvalue.
+            let rows = (xx + xy + xz).max(yx + yy + yz).max(zx + zy + zz);
+            let k = rows.max(xx + yx + zx).max(xy + yy + zy).max(xz + yz + zz);
+            // The blocks of a particle have a symmetric sum.
+            add_own(&mut diagonal, [c.i, c.j], symmetric(block), k);
+        }
+        self.diagonal = sums;
+    }
+
+    /// The matrix as the system sees it.
+    fn matrix(&self) -> Matrix<'_> {
+        Matrix {
+            x: &self.x,
+            stiffness: self.a * self.a,
+            damping: self.a,
+            clamped: self.clamped,
+            masses: &self.masses,
+            free: &self.free,
+        }
+    }
+
+    /// Columns xx, yy, zz, xy, xz and yz of the blocks on the diagonal of A (kg).
+    pub fn diagonal(&self) -> [&[f64]; 6] {
+        let n = self.particles();
+        std::array::from_fn(|k| &self.diagonal[k * n..(k + 1) * n])
     }
 
     /// The mass of each particle in A (kg); 0 where it is pinned.
@@ -179,24 +272,8 @@ impl Tangent {
 
     /// A bound of the largest a2 w2 of the particles: the square of the step's length in the
     /// fastest motion.
-    pub fn stiffness(&self, scratch: &mut [f64]) -> f64 {
-        let n = self.particles();
-        let sums = &mut scratch[..n];
-        sums.fill(0.0);
-        for c in &self.axial {
-            let [iso, along] = self.factors(c);
-            let k = (iso + along).max(iso);
-            sums[c.i] += k;
-            sums[c.j] += k;
-        }
-        for c in &self.blocks {
-            let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = self.block(c).map(f64::abs);
-            // The largest sum of a row bounds the largest eigenvalue.
-            let rows = (xx + xy + xz).max(yx + yy + yz).max(zx + zy + zz);
-            let k = rows.max(xx + yx + zx).max(xy + yy + zy).max(xz + yz + zz);
-            sums[c.i] += k;
-            sums[c.j] += k;
-        }
+    pub fn stiffness(&self) -> f64 {
+        let sums = &self.diagonal[6 * self.particles()..];
         let ratios = sums.iter().zip(&self.masses);
         ratios
             .filter(|(_, m)| **m > 0.0)
@@ -205,14 +282,7 @@ impl Tangent {
 
     /// Writes A p to `out`, for a p that is zero on pinned particles; so is `out`.
     pub fn product(&self, system: &dyn Linearized, p: &[f64], out: &mut [f64]) {
-        let matrix = Matrix {
-            x: &self.x,
-            a: self.a,
-            clamped: self.clamped,
-            masses: &self.masses,
-            free: &self.free,
-        };
-        let done = system.multiply(&matrix, p, out);
+        let done = system.multiply(&self.matrix(), p, out);
         if done == 0 {
             let n = self.particles();
             for (out, p) in out.chunks_exact_mut(n).zip(p.chunks_exact(n)) {
@@ -233,10 +303,30 @@ impl Tangent {
         self.filter(out);
     }
 
-    /// Subtracts a K d from out, for a d that may move pinned particles: adds what moving by d
-    /// changes the forces, times a.
-    pub fn subtract_stiffness(&self, a: f64, d: &[f64], out: &mut [f64]) {
-        for c in &self.axial {
+    /// Subtracts a K d from out on free particles, for a d that may move pinned ones: adds what
+    /// moving by d changes the forces, times a.
+    pub fn subtract_stiffness(
+        &mut self,
+        system: &dyn Linearized,
+        a: f64,
+        d: &[f64],
+        out: &mut [f64],
+    ) {
+        let mut product = std::mem::take(&mut self.scratch);
+        let matrix = Matrix {
+            stiffness: 1.0,
+            damping: 0.0,
+            masses: &self.zeros,
+            ..self.matrix()
+        };
+        let done = system.multiply(&matrix, d, &mut product);
+        if done > 0 {
+            for (out, product) in out.iter_mut().zip(&product) {
+                *out -= a * product;
+            }
+        }
+        self.scratch = product;
+        for c in &self.axial[done..] {
             add_axial(c, -a * c.across, -a * (c.along - c.across), d, out);
         }
         for c in &self.blocks {
@@ -268,6 +358,19 @@ fn put<C>(list: &mut Vec<C>, place: usize, new: C, ends: impl Fn(&C) -> [usize; 
         list.push(new);
         false
     }
+}
+
+/// Adds a coupling's block to those of its ends on the diagonal, and its largest eigenvalue.
+fn add_own(diagonal: &mut Diagonal, [i, j]: [usize; 2], block: Block, largest: f64) {
+    let [columns @ .., sums] = &mut diagonal.columns;
+    for (column, part) in columns.iter_mut().zip(block) {
+        column[i] += part;
+        if j != i {
+            column[j] += part;
+        }
+    }
+    sums[i] += largest;
+    sums[j] += largest;
 }
 
 /// Adds (iso + along u uT) d at one end of a coupling, and subtracts it at the other.

@@ -237,7 +237,7 @@ fn solves_measured() {
             });
             solver.multigrid_always = None;
             let pcg = alone.0.min(with.0);
-            solver.analyse();
+            solver.analyse(&network);
             let direct = solver.direct.as_mut().unwrap();
             let prices = (direct.factorisation, direct.solution);
             let factor = time(|| {

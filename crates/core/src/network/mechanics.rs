@@ -12,7 +12,7 @@ use crate::elements::{Element, Finish, Flow, Sheet, flow_each};
 use crate::path::Place;
 use crate::rows::{Patch, Registers, Rows, Stage, SweepScratch, Terms};
 use crate::system::{
-    Compliant, Coupling, Linearized, Matrix, Mechanics, Rigid, Splitting, divide_by_masses,
+    Compliant, Coupling, Diagonal, Linearized, Matrix, Mechanics, Rigid, Splitting, divide_by_masses,
     place_pins,
 };
 
@@ -255,6 +255,14 @@ impl Linearized for Network {
 
     fn multiply(&self, matrix: &Matrix, p: &[f64], out: &mut [f64]) -> usize {
         self.multiply_fast(matrix, p, out)
+    }
+
+    fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {
+        self.add_fast_diagonal(matrix, diagonal)
+    }
+
+    fn other_couplings(&self, t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
+        self.slow_couplings(t, x, clamped, visit);
     }
 
     fn lists_all_couplings(&self) -> bool {

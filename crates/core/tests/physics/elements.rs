@@ -77,7 +77,8 @@ fn the_product_with_the_matrix_is_that_of_its_couplings() {
         for clamped in [false, true] {
             let matrix = Matrix {
                 x,
-                a: 0.02,
+                stiffness: 0.02 * 0.02,
+                damping: 0.02,
                 clamped,
                 masses: network.masses(),
                 free: &free,
@@ -102,8 +103,8 @@ fn the_product_with_the_matrix_is_that_of_its_couplings() {
                 let share: f64 = d.iter().zip(c.direction).map(|(d, u)| d * u).sum();
                 for axis in 0..3 {
                     let along = share * c.direction[axis];
-                    let a = matrix.a;
-                    let force = a * a * (c.along * along + c.across * (d[axis] - along))
+                    let [a2, a] = [matrix.stiffness, matrix.damping];
+                    let force = a2 * (c.along * along + c.across * (d[axis] - along))
                         + a * c.damping * along;
                     expected[axis * n + c.i] += force;
                     expected[axis * n + c.j] -= force;

@@ -41,8 +41,8 @@ impl Quantity {
     pub fn product(matrix: &Matrix) -> Self {
         // Changes of forces have the opposite sign.
         Self::Product(Factors {
-            stiffness: -matrix.a * matrix.a,
-            damping: -matrix.a,
+            stiffness: -matrix.stiffness,
+            damping: -matrix.damping,
             least: if matrix.clamped {
                 0.0
             } else {

@@ -89,7 +89,8 @@ fn in_bands(packed: &Packed, bands: usize, all: &[Vec<f64>; 4]) -> [Vec<f64>; 4]
 fn matrix(x: &[f64], clamped: bool) -> Matrix<'_> {
     Matrix {
         x,
-        a: 0.7,
+        stiffness: 0.49,
+        damping: 0.7,
         clamped,
         masses: &[],
         free: &[],
@@ -101,12 +102,12 @@ fn add_product(spring: &Spring, matrix: &Matrix, p: &[f64], out: &mut [f64]) {
     let Coupling::Axial(c) = coupling(spring, matrix.x, matrix.clamped) else {
         unreachable!("a spring couples along its direction");
     };
-    let (n, a) = (p.len() / 3, matrix.a);
+    let (n, [a2, a]) = (p.len() / 3, [matrix.stiffness, matrix.damping]);
     let apart: [f64; 3] = std::array::from_fn(|axis| p[axis * n + c.i] - p[axis * n + c.j]);
     let along: f64 = (0..3).map(|axis| c.direction[axis] * apart[axis]).sum();
-    let turned = (a * a * (c.along - c.across) + a * c.damping) * along;
+    let turned = (a2 * (c.along - c.across) + a * c.damping) * along;
     for axis in 0..3 {
-        let part = a * a * c.across * apart[axis] + turned * c.direction[axis];
+        let part = a2 * c.across * apart[axis] + turned * c.direction[axis];
         out[axis * n + c.i] += part;
         out[axis * n + c.j] -= part;
     }

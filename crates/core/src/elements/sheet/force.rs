@@ -1,6 +1,7 @@
 //! The springs of a sheet as a force.
 
 use super::super::axial;
+use super::super::diagonal::add_runs;
 use super::super::finish::Finish;
 use super::super::force::{At, Cost, Force, check_particle};
 use super::model::Sheet;
@@ -9,7 +10,7 @@ use super::strips::{Quantity, set};
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::spring::Spring;
-use crate::system::Coupling;
+use crate::system::{Coupling, Diagonal, Matrix};
 
 /// How many times as fast the kernel is as the same springs one by one, on the grids that people
 /// look at.
@@ -49,6 +50,16 @@ impl Force for Sheet {
                 visit(axial::coupling(&Spring { kind, i, j, law }, x, clamped));
             }
         }
+    }
+
+    fn add_diagonal(&self, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {
+        let runs = self.runs();
+        let with_laws = runs.map(|(direction, begins, further)| {
+            let law = self.laws()[direction];
+            (law, begins, further)
+        });
+        add_runs(with_laws, matrix, diagonal);
+        self.len()
     }
 
     fn energy(&self, at: &At) -> Energy {

@@ -361,7 +361,7 @@ impl Mechanical {
             };
         }
         if gap.iter().any(|gap| *gap != 0.0) {
-            solver.tangent.subtract_stiffness(a, gap, rhs);
+            solver.tangent.subtract_stiffness(mechanics, a, gap, rhs);
         }
         solver.tangent.filter(rhs);
     }
