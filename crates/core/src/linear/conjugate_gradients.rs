@@ -4,8 +4,15 @@
 //! is one (Bramble, Pasciak, Xu, *Parallel multilevel preconditioners*, 1990), and takes no further
 //! product with the matrix.
 
+#![expect(
+    clippy::inline_always,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
+)]
+
 use std::array;
 use std::ops::Range;
+
+use pulp::{Arch, Simd, WithSimd};
 
 use super::block::inverse;
 use super::multigrid::Multigrid;
@@ -198,6 +205,26 @@ fn add_up<const N: usize>(
         .fold([0.0; 2], |[a, b], sums| [a + sums[0], b + sums[1]])
 }
 
+/// A call of `run` on a block, compiled for the processor's vectors.
+struct OnBlock<'a, 'b, const N: usize, R> {
+    run: &'a R,
+    block: Range<usize>,
+    columns: Columns<'b, N>,
+    sums: &'a mut [f64],
+}
+
+impl<const N: usize, R> WithSimd for OnBlock<'_, '_, N, R>
+where
+    R: Fn(Range<usize>, Columns<N>, &mut [f64]),
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        (self.run)(self.block, self.columns, self.sums);
+    }
+}
+
 fn each_block<const N: usize>(
     bands: usize,
     particles: Range<usize>,
@@ -209,7 +236,13 @@ fn each_block<const N: usize>(
         let starts = particles.clone().step_by(BLOCK);
         for (start, sums) in starts.zip(sums.chunks_exact_mut(2)) {
             let block = start..particles.end.min(start + BLOCK);
-            run(block.clone(), split_off(&mut columns, block.len()), sums);
+            let columns = split_off(&mut columns, block.len());
+            Arch::new().dispatch(OnBlock {
+                run,
+                block,
+                columns,
+                sums,
+            });
         }
         return;
     }
@@ -241,7 +274,7 @@ fn each_block<const N: usize>(
 }
 
 /// Writes z = B^-1 r on a block of particles.
-#[inline]
+#[inline(always)]
 fn precondition(
     inverses: &[Vec<f64>; 6],
     block: &Range<usize>,
@@ -258,6 +291,7 @@ fn precondition(
 }
 
 /// The scalar product, in sixteen sums that do not wait for one another.
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 16];
     let (blocks, rest) = a.as_chunks::<16>();

@@ -5,9 +5,7 @@
 
 use super::block::{Block, symmetric};
 use crate::columns::columns_mut;
-use crate::system::{
-    AxialCoupling, Coupling, Diagonal, GeneralCoupling, Linearized, Matrix, full,
-};
+use crate::system::{AxialCoupling, Coupling, Diagonal, GeneralCoupling, Linearized, Matrix, full};
 
 /// A and K.
 pub(crate) struct Tangent {

@@ -12,8 +12,8 @@ use crate::elements::{Element, Finish, Flow, Sheet, flow_each};
 use crate::path::Place;
 use crate::rows::{Patch, Registers, Rows, Stage, SweepScratch, Terms};
 use crate::system::{
-    Compliant, Coupling, Diagonal, Linearized, Matrix, Mechanics, Rigid, Splitting, divide_by_masses,
-    place_pins,
+    Compliant, Coupling, Diagonal, Linearized, Matrix, Mechanics, Rigid, Splitting,
+    divide_by_masses, place_pins,
 };
 
 impl Network {

@@ -141,6 +141,9 @@ fn strips_of<S: Simd, const KIND: u8, const C: usize, const P: usize>(simd: S, m
     };
     for k in 0..count {
         let strip = k * cols / count..(k + 1) * cols / count;
+        if k > 0 {
+            kept.spring_forces = [[0.0; P]; SPRING_FORCES];
+        }
         run::<S, KIND, C, P>(simd, &mut forces, &strip, &mut kept);
     }
 }
@@ -167,7 +170,6 @@ fn run<S: Simd, const KIND: u8, const C: usize, const P: usize>(
     let width = cols.min(strip.end + RIGHT) - first;
     let inside = PAD + strip.start - first..PAD + strip.end - first;
     laws::fill::<S>(&mut kept.laws, sheet, first, width);
-    kept.spring_forces = [[0.0; P]; SPRING_FORCES];
     let (n, own) = (fields[0].len() / 3, sheet.particles().start);
     // Forces of undamped springs read no velocities, unless there is drag.
     let read = if KIND == PLAIN && finish.drag.is_none() {

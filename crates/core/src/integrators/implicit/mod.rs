@@ -352,13 +352,14 @@ impl Mechanical {
         solver.tangent.filter(gap);
         let inverse_masses = mechanics.inverse_masses();
         let n = inverse_masses.len();
-        for (k, rhs) in rhs.iter_mut().enumerate() {
-            let w = inverse_masses[k % n];
-            *rhs = if w == 0.0 {
-                0.0
-            } else {
-                (bv[k] - v[k]) / w + a * f[k]
-            };
+        for start in (0..rhs.len()).step_by(n) {
+            let column = start..start + n;
+            let [bv, v, f] = [bv, v, f].map(|a| &a[column.clone()]);
+            let rhs = &mut rhs[column];
+            for ((((rhs, bv), v), f), w) in rhs.iter_mut().zip(bv).zip(v).zip(f).zip(inverse_masses)
+            {
+                *rhs = if *w == 0.0 { 0.0 } else { (bv - v) / w + a * f };
+            }
         }
         if gap.iter().any(|gap| *gap != 0.0) {
             solver.tangent.subtract_stiffness(mechanics, a, gap, rhs);
