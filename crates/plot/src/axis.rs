@@ -1,8 +1,9 @@
 //! Axes: the map from numbers to the sheet, and the ticks.
 
-use crate::figure::{Figure, stroke};
+use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
 use crate::label::{Anchor, Label, width};
+use crate::paint::Pen;
 
 /// One direction of a chart, linear or logarithmic: a map from numbers to the sheet.
 ///
@@ -173,7 +174,7 @@ pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
         } else {
             ("#d9d9d9", 0.07)
         };
-        stroke(colour, width * size)
+        Pen::new(colour, width * size)
     };
     let (xs, ys) = (
         x.ticks(if x.log { 3.4 } else { 2.3 } * size),
@@ -183,17 +184,14 @@ pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
     for named in [false, true] {
         for tick in xs.iter().filter(|tick| tick.label.is_empty() != named) {
             let at = x.at(tick.value);
-            figure.line(&[[at, area.y0], [at, area.y1]], &grid(&tick.label));
+            figure.line(&[[at, area.y0], [at, area.y1]], grid(&tick.label));
         }
         for tick in ys.iter().filter(|tick| tick.label.is_empty() != named) {
             let at = y.at(tick.value);
-            figure.line(&[[area.x0, at], [area.x1, at]], &grid(&tick.label));
+            figure.line(&[[area.x0, at], [area.x1, at]], grid(&tick.label));
         }
     }
-    figure.rect(
-        area,
-        &format!("fill=\"none\" {}", stroke("#8a8a8a", 0.07 * size)),
-    );
+    figure.rect(area, Pen::new("#8a8a8a", 0.07 * size).into());
     let mut number = |at: Point, label: Label| {
         if figure.is_free(label.room(at)) {
             figure.text(at, label);

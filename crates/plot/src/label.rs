@@ -6,6 +6,7 @@ use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, MetadataProvider};
 
 use crate::geometry::{Point, Rect};
+use crate::paint::{Paint, Pen};
 
 /// The colour of text that is to be read first.
 pub const INK: &str = "#1b1b1b";
@@ -20,61 +21,104 @@ pub enum Anchor {
     End,
 }
 
-/// A line of text, in which `10^{-3}` has a superscript.
+impl Anchor {
+    /// The part of the label before that point.
+    pub fn part(self) -> f64 {
+        match self {
+            Self::Start => 0.0,
+            Self::Middle => 0.5,
+            Self::End => 1.0,
+        }
+    }
+}
+
+/// How a label looks.
 #[derive(Clone, Copy, Debug)]
-pub struct Label<'a> {
-    pub text: &'a str,
+pub struct Look {
+    /// The size of the font, in units of the sheet.
     pub size: f64,
-    pub colour: &'a str,
+    pub colour: &'static str,
     pub anchor: Anchor,
     pub bold: bool,
     /// Whether it is read from below.
     pub turned: bool,
 }
 
+impl Look {
+    /// The width of the line around the letters of a bold label, in units of the sheet.
+    pub fn weight(&self) -> f64 {
+        0.035 * self.size
+    }
+
+    /// The height of a superscript above the base line, in units of the sheet.
+    pub fn rise(&self) -> f64 {
+        0.33 * self.size
+    }
+
+    /// The paint of the letters. The font has no bold face; its outlines are drawn instead.
+    pub fn paint(&self) -> Paint {
+        let plain = Paint::fill(self.colour);
+        if self.bold {
+            plain.outlined(Pen::new(self.colour, self.weight()))
+        } else {
+            plain
+        }
+    }
+}
+
+/// A line of text, in which `10^{-3}` has a superscript.
+#[derive(Clone, Copy, Debug)]
+pub struct Label<'a> {
+    pub text: &'a str,
+    pub look: Look,
+}
+
 impl<'a> Label<'a> {
     pub fn new(text: &'a str, size: f64) -> Self {
-        Self {
-            text,
+        let look = Look {
             size,
             colour: INK,
             anchor: Anchor::Start,
             bold: false,
             turned: false,
-        }
+        };
+        Self { text, look }
     }
 
-    pub fn colour(self, colour: &'a str) -> Self {
-        Self { colour, ..self }
+    pub fn colour(mut self, colour: &'static str) -> Self {
+        self.look.colour = colour;
+        self
     }
 
-    pub fn anchor(self, anchor: Anchor) -> Self {
-        Self { anchor, ..self }
+    pub fn anchor(mut self, anchor: Anchor) -> Self {
+        self.look.anchor = anchor;
+        self
     }
 
-    pub fn bold(self) -> Self {
-        Self { bold: true, ..self }
+    pub fn bold(mut self) -> Self {
+        self.look.bold = true;
+        self
     }
 
     /// The label, read from below.
-    pub fn turned(self) -> Self {
-        Self {
-            turned: true,
-            ..self
-        }
+    pub fn turned(mut self) -> Self {
+        self.look.turned = true;
+        self
+    }
+
+    /// The length that the text is stretched to, in units of the sheet, unless it has superscripts.
+    pub fn fixed_length(self) -> Option<f64> {
+        let plain = !self.text.contains("^{");
+        plain.then(|| width(self.text, self.look.size))
     }
 
     /// The room that the label takes with its anchor, on the base line, at a point.
     pub fn room(self, [x, y]: Point) -> Rect {
-        let length = width(self.text, self.size);
-        let before = length
-            * match self.anchor {
-                Anchor::Start => 0.0,
-                Anchor::Middle => 0.5,
-                Anchor::End => 1.0,
-            };
-        let (up, down) = (UP * self.size, 0.22 * self.size);
-        if self.turned {
+        let Look { size, anchor, .. } = self.look;
+        let length = width(self.text, size);
+        let before = length * anchor.part();
+        let (up, down) = (UP * size, 0.22 * size);
+        if self.look.turned {
             Rect::new(x - up, y + before - length, x + down, y + before)
         } else {
             Rect::new(x - before, y - up, x - before + length, y + down)

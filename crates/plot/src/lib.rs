@@ -6,10 +6,14 @@ mod contour;
 mod error;
 mod figure;
 mod geometry;
+mod glyphs;
 mod label;
 mod layout;
+mod paint;
+mod raster;
 mod stability;
 mod style;
+mod svg;
 // Whole charts take hours under Miri.
 #[cfg(all(test, not(miri)))]
 mod tests;

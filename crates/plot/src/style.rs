@@ -3,13 +3,14 @@
 
 use std::f64::consts::TAU;
 
-use crate::figure::{Figure, stroke};
+use crate::figure::Figure;
 use crate::geometry::Point;
+use crate::paint::{Paint, Pen};
 
 /// The colour, dash and marker of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurveStyle {
-    /// The colour as SVG has it, such as `#0072b2`.
+    /// The colour, as `#` and six hexadecimal digits, such as `#0072b2`.
     pub colour: &'static str,
     /// The lengths of dashes and gaps in turn, in widths of the line; none for a solid line.
     pub dash: &'static [f64],
@@ -51,19 +52,14 @@ pub(crate) enum Filling {
 }
 
 impl CurveStyle {
-    /// A line in this style, as attributes of SVG.
-    pub(crate) fn stroke(self, width: f64) -> String {
+    /// The pen of a line in this style.
+    pub(crate) fn pen(self, width: f64) -> Pen {
         let dash: Vec<_> = self
             .dash
             .iter()
             .map(|d| format!("{:.2}", d * width))
             .collect();
-        let dash = if dash.is_empty() {
-            String::new()
-        } else {
-            format!(" stroke-dasharray=\"{}\"", dash.join(" "))
-        };
-        stroke(self.colour, width) + &dash
+        Pen::new(self.colour, width).dashed(dash.join(" "))
     }
 
     /// Draws a marker.
@@ -76,21 +72,21 @@ impl CurveStyle {
     ) {
         let (colour, line) = (self.colour, 0.22 * radius);
         let outline = self.outline(centre, radius);
-        let open = format!("fill=\"#ffffff\" {}", stroke(colour, 1.3 * line));
+        let open = Paint::fill("#ffffff").outlined(Pen::new(colour, 1.3 * line));
         match filling {
             Filling::Full => {
-                let style = format!("fill=\"{colour}\" {}", stroke("#ffffff", line));
-                figure.area(&[outline], &style);
+                let paint = Paint::fill(colour).outlined(Pen::new("#ffffff", line));
+                figure.area(vec![outline], paint);
             }
-            Filling::None => figure.area(&[outline], &open),
+            Filling::None => figure.area(vec![outline], open),
             Filling::Half => {
                 // The left half: what of the outline is to the right lies on the middle.
                 let left: Vec<_> = outline
                     .iter()
                     .map(|[x, y]| [x.min(centre[0]), *y])
                     .collect();
-                figure.area(&[outline], &open);
-                figure.area(&[left], &format!("fill=\"{colour}\""));
+                figure.area(vec![outline], open);
+                figure.area(vec![left], Paint::fill(colour));
             }
         }
     }

@@ -1,7 +1,5 @@
 //! Whole charts of made-up data at many sizes. With `A3_KEEP_CHARTS=folder` they are kept there.
 
-use resvg::usvg::roxmltree;
-
 use crate::{
     Curve, CurveStyle, Error, Figure, Marker, Measurement, Problem, Region, StabilityRegions,
     WorkPrecision,

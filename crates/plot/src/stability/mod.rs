@@ -10,7 +10,7 @@ use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
 use crate::label::{GREY, Label};
 use crate::layout::{self, Level, Sign};
-use region::{Extent, Fate, beyond, region_style, sign};
+use region::{Extent, Fate, beyond, region_paint, sign};
 
 /// A chart of the stability regions of several methods.
 pub struct StabilityRegions {
@@ -169,7 +169,7 @@ impl StabilityRegions {
                 x + 1.2 * size,
                 y + 0.45 * size,
             );
-            figure.rect(room, &region_style(GREY, 0.1 * size));
+            figure.rect(room, region_paint(GREY, 0.1 * size));
         });
         let mark =
             |fate| -> Sign { Box::new(move |figure, at| sign(figure, at, 0.85 * size, fate)) };

@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 
 use crate::axis::{self, Axis};
 use crate::contour;
-use crate::figure::{Figure, stroke};
+use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
+use crate::paint::{Paint, Pen};
 use crate::style::CurveStyle;
 
 /// The colour of eigenvalues in the region.
@@ -170,12 +171,12 @@ impl Region {
         let colour = self.style.colour;
         figure.clipped(area, |figure| {
             if !outlines.is_empty() {
-                figure.area(&outlines, &region_style(colour, 0.13 * size));
+                figure.area(outlines, region_paint(colour, 0.13 * size));
             }
             let zero = at([0.0, 0.0]);
-            let style = stroke("#555555", 0.07 * size);
-            figure.line(&[[area.x0, zero[1]], [area.x1, zero[1]]], &style);
-            figure.line(&[[zero[0], area.y0], [zero[0], area.y1]], &style);
+            let pen = Pen::new("#555555", 0.07 * size);
+            figure.line(&[[area.x0, zero[1]], [area.x1, zero[1]]], pen.clone());
+            figure.line(&[[zero[0], area.y0], [zero[0], area.y1]], pen);
             // Dots are smaller the more there are, and those that would coincide are drawn once.
             let small = size * (40.0 / self.eigenvalues.len().max(40) as f64).powf(0.25);
             let mut seen = HashSet::new();
@@ -204,12 +205,10 @@ impl Region {
     }
 }
 
-/// The style of a region in this colour, as attributes of SVG.
-pub fn region_style(colour: &str, width: f64) -> String {
-    format!(
-        "fill=\"{colour}\" fill-opacity=\"0.2\" {}",
-        stroke(colour, width)
-    )
+/// The paint of a region in this colour.
+pub fn region_paint(colour: &'static str, width: f64) -> Paint {
+    let inside = Paint::fill(colour).opacity(0.2);
+    inside.outlined(Pen::new(colour, width))
 }
 
 /// Draws an eigenvalue: a dot in the region, outside it a ring if it grows slowly, else a cross.
@@ -219,27 +218,27 @@ pub fn sign(figure: &mut Figure, [x, y]: Point, size: f64, fate: Fate) {
         let at = |(sin, cos): (f64, f64)| [x + r * size * cos, y + r * size * sin];
         (0..=12).map(corner).map(at).collect()
     };
-    let style = stroke(fate.colour(), 0.15 * size);
+    let pen = Pen::new(fate.colour(), 0.15 * size);
     match fate {
-        Fate::Bounded => figure.area(&[circle(0.2)], &format!("fill=\"{INSIDE}\"")),
-        Fate::Slow => figure.line(&circle(0.24), &style),
+        Fate::Bounded => figure.area(vec![circle(0.2)], Paint::fill(INSIDE)),
+        Fate::Slow => figure.line(&circle(0.24), pen),
         Fate::Lost => {
             let r = 0.26 * size;
-            figure.line(&[[x - r, y - r], [x + r, y + r]], &style);
-            figure.line(&[[x - r, y + r], [x + r, y - r]], &style);
+            figure.line(&[[x - r, y - r], [x + r, y + r]], pen.clone());
+            figure.line(&[[x - r, y + r], [x + r, y - r]], pen);
         }
     }
 }
 
 /// Draws a wedge at a point, which leads to another that is outside the panel.
-pub fn beyond(figure: &mut Figure, [x, y]: Point, to: Point, r: f64, colour: &str) {
+pub fn beyond(figure: &mut Figure, [x, y]: Point, to: Point, r: f64, colour: &'static str) {
     let (dx, dy) = (to[0] - x, to[1] - y);
     let length = dx.hypot(dy);
     let (u, v) = (r * dx / length, r * dy / length);
-    let wedge = [
+    let wedge = vec![
         [x + u, y + v],
         [x - u - v, y - v + u],
         [x - u + v, y - v - u],
     ];
-    figure.area(&[wedge], &format!("fill=\"{colour}\""));
+    figure.area(vec![wedge], Paint::fill(colour));
 }

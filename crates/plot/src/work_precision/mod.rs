@@ -14,7 +14,7 @@ use crate::geometry::Rect;
 use crate::label::Label;
 use crate::layout::{self, Level, Sign};
 use crate::style::{CurveStyle, Filling};
-use panel::{Drawing, SHADE, front_style};
+use panel::{Drawing, front_pen, shade_paint};
 
 /// A work-precision diagram. Accurate runs are on the left of it, and fast ones below.
 #[derive(Clone, Debug)]
@@ -182,7 +182,7 @@ impl WorkPrecision {
             let sign: Sign = Box::new(move |figure, [x, y]| {
                 figure.line(
                     &[[x - 1.7 * size, y], [x + 1.7 * size, y]],
-                    &style.stroke(0.13 * size),
+                    style.pen(0.13 * size),
                 );
                 style.draw_marker(figure, [x, y], 0.4 * size, Filling::Full);
             });
@@ -197,7 +197,7 @@ impl WorkPrecision {
         }
         let front: Sign = Box::new(move |figure, [x, y]| {
             let line = [[x - 1.3 * size, y], [x + 1.3 * size, y]];
-            figure.line(&line, &front_style(0.7 * size));
+            figure.line(&line, front_pen(0.7 * size));
         });
         entries.push(("fastest for its error".to_owned(), front));
         if self
@@ -212,7 +212,7 @@ impl WorkPrecision {
                     x + 1.6 * size,
                     y + 0.5 * size,
                 );
-                figure.rect(sample, SHADE);
+                figure.rect(sample, shade_paint());
             });
             entries.push(("finer than reference".to_owned(), shade));
         }

@@ -4,17 +4,20 @@ use std::cmp::Reverse;
 
 use super::problem::{Measurement, Problem};
 use crate::axis::{self, Axis};
-use crate::figure::{Figure, stroke};
+use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
 use crate::label::{Anchor, GREY, Label};
+use crate::paint::{Paint, Pen};
 use crate::style::Filling;
 
-/// The style of errors that the reference cannot tell from 0, as attributes of SVG.
-pub const SHADE: &str = "fill=\"#e6eaf0\"";
+/// The paint of errors that the reference cannot tell from 0.
+pub fn shade_paint() -> Paint {
+    Paint::fill("#e6eaf0")
+}
 
-/// The style of the front, as attributes of SVG.
-pub fn front_style(width: f64) -> String {
-    stroke("#f8dd86", width) + " stroke-linecap=\"round\""
+/// The pen of the front.
+pub fn front_pen(width: f64) -> Pen {
+    Pen::new("#f8dd86", width).round()
 }
 
 /// A panel while it is drawn.
@@ -67,14 +70,14 @@ impl<'a> Drawing<'a> {
             },
             ..main
         };
-        figure.rect(shade, SHADE);
+        figure.rect(shade, shade_paint());
         let strip = Rect {
             x0: main.x1,
             x1: main.x1 + strip,
             ..main
         };
         if strip.width() > 0.0 {
-            figure.rect(strip, "fill=\"#fbefec\"");
+            figure.rect(strip, Paint::fill("#fbefec"));
             if numbers[0] {
                 let label = Label::new("blew up", size)
                     .colour("#8c2d19")
@@ -87,7 +90,7 @@ impl<'a> Drawing<'a> {
             .map(|[c, r]| (c, &self.problem.curves[c].runs[r]))
             .collect();
         let line: Vec<_> = front.iter().map(|(_, run)| self.at(run)).collect();
-        figure.line(&line, &front_style(0.9 * self.fine));
+        figure.line(&line, front_pen(0.9 * self.fine));
         self.lines
             .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
         self.curves(figure);
@@ -106,7 +109,7 @@ impl<'a> Drawing<'a> {
         for curve in &self.problem.curves {
             let style = curve.style;
             let line: Vec<_> = curve.joined().iter().map(|run| self.at(run)).collect();
-            figure.line(&line, &style.stroke(0.14 * self.fine));
+            figure.line(&line, style.pen(0.14 * self.fine));
             self.lines
                 .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
             let runs = curve.runs.iter();
@@ -157,8 +160,8 @@ impl<'a> Drawing<'a> {
         };
         let x = self.axes[0].at(still);
         let ends = [[x, self.main.y0], [x, self.main.y1]];
-        let style = stroke(GREY, 0.08 * self.fine) + " stroke-dasharray=\"4 3\"";
-        figure.line(&ends, &style);
+        let pen = Pen::new(GREY, 0.08 * self.fine).dashed("4 3".to_owned());
+        figure.line(&ends, pen);
         let size = 0.85 * self.size;
         let label = Label::new("nothing moves", size).colour(GREY).turned();
         let places = (0..120).map(|k| {

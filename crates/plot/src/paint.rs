@@ -1,0 +1,115 @@
+//! How shapes are painted: by what they are filled, and by what pen their outlines are drawn.
+
+use std::fmt;
+
+/// A pen: its colour and width, and the lines that it draws.
+#[derive(Clone, Debug)]
+pub struct Pen {
+    /// The colour, as `#` and six hexadecimal digits.
+    pub colour: &'static str,
+    /// The width, in units of the sheet.
+    pub width: f64,
+    /// The lengths of dashes and gaps in turn, in units of the sheet, as SVG has them.
+    pub dash: String,
+    /// Whether lines end in half a circle, and not at once.
+    pub round: bool,
+}
+
+impl Pen {
+    /// A pen for solid lines.
+    pub fn new(colour: &'static str, width: f64) -> Self {
+        Self {
+            colour,
+            width,
+            dash: String::new(),
+            round: false,
+        }
+    }
+
+    /// The pen, with dashes.
+    pub fn dashed(self, dash: String) -> Self {
+        Self { dash, ..self }
+    }
+
+    /// The pen, with round ends.
+    pub fn round(self) -> Self {
+        Self {
+            round: true,
+            ..self
+        }
+    }
+}
+
+/// The pen as attributes of SVG.
+impl fmt::Display for Pen {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (colour, width) = (self.colour, self.width);
+        write!(f, "stroke=\"{colour}\" stroke-width=\"{width:.2}\"")?;
+        if !self.dash.is_empty() {
+            write!(f, " stroke-dasharray=\"{}\"", self.dash)?;
+        }
+        if self.round {
+            f.write_str(" stroke-linecap=\"round\"")?;
+        }
+        Ok(())
+    }
+}
+
+/// What fills a shape, and the pen of its outline.
+#[derive(Clone, Debug)]
+pub struct Paint {
+    /// The colour inside, as `#` and six hexadecimal digits, if there is any.
+    pub fill: Option<&'static str>,
+    /// The part of the colour that covers what is below it, from 0 to 1.
+    pub opacity: f64,
+    /// The pen of the outline, if it is drawn.
+    pub pen: Option<Pen>,
+}
+
+impl Paint {
+    /// The paint that fills a shape.
+    pub fn fill(colour: &'static str) -> Self {
+        Self {
+            fill: Some(colour),
+            opacity: 1.0,
+            pen: None,
+        }
+    }
+
+    /// The paint that lets what is below shine through.
+    pub fn opacity(self, opacity: f64) -> Self {
+        Self { opacity, ..self }
+    }
+
+    /// The paint, and a pen for the outline.
+    pub fn outlined(self, pen: Pen) -> Self {
+        Self {
+            pen: Some(pen),
+            ..self
+        }
+    }
+}
+
+impl From<Pen> for Paint {
+    fn from(pen: Pen) -> Self {
+        Self {
+            fill: None,
+            opacity: 1.0,
+            pen: Some(pen),
+        }
+    }
+}
+
+/// The paint as attributes of SVG.
+impl fmt::Display for Paint {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "fill=\"{}\"", self.fill.unwrap_or("none"))?;
+        if self.opacity < 1.0 {
+            write!(f, " fill-opacity=\"{}\"", self.opacity)?;
+        }
+        match &self.pen {
+            Some(pen) => write!(f, " {pen}"),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Figures as pictures.
+
+use tiny_skia::{
+    Color, FillRule, LineCap, LineJoin, Mask, Path, PathBuilder, Pixmap, Stroke, StrokeDash,
+    Transform,
+};
+
+use crate::error::Error;
+use crate::figure::Shape;
+use crate::geometry::{Point, Rect};
+use crate::glyphs;
+use crate::label::Label;
+use crate::paint::{Paint, Pen};
+
+/// A sheet of this size with shapes, as a PNG file with `scale` pixels for each unit of the sheet.
+///
+/// # Errors
+/// [`Error::Pixels`] if the picture would be too large.
+pub fn file(size: Point, shapes: &[Shape], scale: f64) -> Result<Vec<u8>, Error> {
+    let [w, h] = size.map(|length| (length * scale).ceil() as u32);
+    let mut pixels = Pixmap::new(w, h)
+        .ok_or_else(|| Error::Pixels(format!("no picture can be {w} x {h} pixels")))?;
+    pixels.fill(Color::WHITE);
+    let mut canvas = Canvas {
+        pixels,
+        zoom: Transform::from_scale(scale as f32, scale as f32),
+        mask: None,
+    };
+    canvas.draw(shapes);
+    encode(&canvas.pixels).map_err(|why| Error::Pixels(why.to_string()))
+}
+
+/// Pixels as a PNG file, without their opacity: the sheet lets nothing through.
+fn encode(pixels: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
+    let colours: Vec<u8> = (pixels.data().chunks_exact(4))
+        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
+        .collect();
+    let mut file = vec![];
+    let mut encoder = png::Encoder::new(&mut file, pixels.width(), pixels.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&colours)?;
+    writer.finish()?;
+    Ok(file)
+}
+
+/// A picture while it is drawn.
+struct Canvas {
+    pixels: Pixmap,
+    /// From units of the sheet to pixels.
+    zoom: Transform,
+    /// Where shapes are seen, if not everywhere.
+    mask: Option<Mask>,
+}
+
+impl Canvas {
+    fn draw(&mut self, shapes: &[Shape]) {
+        for shape in shapes {
+            match shape {
+                Shape::Line(points, pen) => {
+                    if let Some(path) = path(&[points], false) {
+                        self.stroke(&path, pen);
+                    }
+                }
+                Shape::Area(outlines, paint) => {
+                    if let Some(path) = path(outlines, true) {
+                        self.paint(&path, paint, FillRule::EvenOdd);
+                    }
+                }
+                Shape::Text(at, text, look) => {
+                    if let Some(path) = glyphs::outlines(*at, Label { text, look: *look }) {
+                        self.paint(&path, &look.paint(), FillRule::Winding);
+                    }
+                }
+                Shape::Clipped(window, shapes) => {
+                    let inside = self.window(*window);
+                    let outside = std::mem::replace(&mut self.mask, inside);
+                    self.draw(shapes);
+                    self.mask = outside;
+                }
+            }
+        }
+    }
+
+    /// The mask of a window; what it is in may have one too.
+    fn window(&self, window: Rect) -> Option<Mask> {
+        let path = path(&[window.corners()], true)?;
+        let mut mask = if let Some(mask) = &self.mask {
+            let mut mask = mask.clone();
+            mask.intersect_path(&path, FillRule::Winding, true, self.zoom);
+            return Some(mask);
+        } else {
+            Mask::new(self.pixels.width(), self.pixels.height())?
+        };
+        mask.fill_path(&path, FillRule::Winding, true, self.zoom);
+        Some(mask)
+    }
+
+    fn paint(&mut self, path: &Path, paint: &Paint, rule: FillRule) {
+        if let Some(fill) = paint.fill {
+            let colour = colour(fill, paint.opacity);
+            let (zoom, mask) = (self.zoom, self.mask.as_ref());
+            self.pixels.fill_path(path, &colour, rule, zoom, mask);
+        }
+        if let Some(pen) = &paint.pen {
+            self.stroke(path, pen);
+        }
+    }
+
+    fn stroke(&mut self, path: &Path, pen: &Pen) {
+        let stroke = Stroke {
+            width: pen.width as f32,
+            line_join: LineJoin::Round,
+            line_cap: if pen.round {
+                LineCap::Round
+            } else {
+                LineCap::Butt
+            },
+            dash: dash(&pen.dash),
+            ..Stroke::default()
+        };
+        let colour = colour(pen.colour, 1.0);
+        let (zoom, mask) = (self.zoom, self.mask.as_ref());
+        self.pixels.stroke_path(path, &colour, &stroke, zoom, mask);
+    }
+}
+
+/// Lines through points as a path, if there is anything to draw.
+fn path(lines: &[impl AsRef<[Point]>], closed: bool) -> Option<Path> {
+    let mut path = PathBuilder::new();
+    for line in lines {
+        for (k, [x, y]) in line.as_ref().iter().enumerate() {
+            let (x, y) = (*x as f32, *y as f32);
+            if k == 0 {
+                path.move_to(x, y);
+            } else {
+                path.line_to(x, y);
+            }
+        }
+        if closed {
+            path.close();
+        }
+    }
+    path.finish()
+}
+
+/// The colour of `#` and six hexadecimal digits; black if it is something else.
+fn colour(code: &str, opacity: f64) -> tiny_skia::Paint<'static> {
+    let number = code.strip_prefix('#').filter(|digits| digits.len() == 6);
+    let number = number.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+    let [_, r, g, b] = number.unwrap_or(0).to_be_bytes();
+    let mut paint = tiny_skia::Paint::default();
+    paint.set_color_rgba8(r, g, b, (255.0 * opacity).round() as u8);
+    paint
+}
+
+/// Dashes and gaps, of which SVG repeats an odd number of lengths.
+fn dash(lengths: &str) -> Option<StrokeDash> {
+    let mut lengths: Vec<f32> = lengths.split(' ').filter_map(|d| d.parse().ok()).collect();
+    if lengths.len() % 2 == 1 {
+        lengths.extend_from_within(..);
+    }
+    StrokeDash::new(lengths, 0.0)
+}
