@@ -302,9 +302,34 @@ fn steps_by_size(c: &mut Criterion) {
         });
         for method in integrators::METHODS {
             step(&mut group, &scene, method);
+            adaptive_step(&mut group, &scene, method);
         }
         group.finish();
     }
+}
+
+/// A step of a method that chooses it, with the estimate of its error.
+fn adaptive_step(
+    group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>,
+    scene: &Scene,
+    method: &integrators::Method,
+) {
+    let system = scene.model.system();
+    let tolerance = integrators::Tolerance::new(1.0).unwrap();
+    let Some(mut adaptive) = method
+        .check(system)
+        .ok()
+        .and_then(|()| method.adaptive(system, tolerance))
+    else {
+        return;
+    };
+    let mut y = scene.state.clone();
+    group.bench_function(format!("{} adaptive", method.name), |b| {
+        b.iter(|| {
+            adaptive.try_first(1e-9);
+            adaptive.advance(system, 0.0, black_box(&mut y)).unwrap()
+        });
+    });
 }
 
 fn step(
@@ -336,7 +361,8 @@ criterion_group! {
 
 fn main() {
     let begun = SystemTime::now();
-    benches();
+    // Among the threads, as a run takes its steps.
+    rayon::scope(|_| benches());
     Criterion::default().configure_from_args().final_summary();
     ratios(begun);
 }

@@ -74,6 +74,7 @@ mod simulation;
 mod sine;
 mod spring;
 pub mod stability;
+mod sums;
 mod system;
 #[cfg(test)]
 mod testing;

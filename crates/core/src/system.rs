@@ -5,6 +5,7 @@
 use crate::path::Place;
 use crate::rows::{Rows, Terms};
 use crate::spring::SpringLaw;
+use crate::threads::copy;
 
 /// A first-order system y' = f(t, y).
 pub trait ParticleSystem {
@@ -370,7 +371,7 @@ impl<M: Mechanics> ParticleSystem for M {
         let (x, v) = y.split_at(3 * n);
         let (dx, dv) = dydt.split_at_mut(3 * n);
         self.accelerations(t, x, v, dv);
-        dx.copy_from_slice(v);
+        copy(v, dx);
         self.pins(t, &mut |i, place| {
             for axis in 0..3 {
                 dx[axis * n + i] = place.velocity[axis];

@@ -15,6 +15,16 @@ pub(crate) fn threads(particles: usize) -> usize {
     }
 }
 
+/// Runs steps of a system of so many particles on one of the threads that share them, if there are
+/// enough: seen from another thread, each part of a step begins and ends by waking one up.
+pub(crate) fn among_threads<R: Send>(particles: usize, run: impl FnOnce() -> R + Send) -> R {
+    if threads(particles) > 1 {
+        rayon::scope(|_| run())
+    } else {
+        run()
+    }
+}
+
 /// Columns of a matrix whose rows are split among threads.
 pub(crate) type Columns<'a, const N: usize> = [&'a mut [f64]; N];
 
@@ -48,4 +58,16 @@ pub(crate) fn fork<const N: usize>(
         || fork(above, rows.start..middle, cols, firsts, run),
         || fork(bands - above, middle..rows.end, cols, columns, run),
     );
+}
+
+/// Numbers that are copied together.
+const BLOCK: usize = 2048;
+
+/// Copies the numbers of a state, or of its half, from `from` to `to`.
+pub(crate) fn copy(from: &[f64], to: &mut [f64]) {
+    let (bands, blocks) = (threads(from.len() / 3), from.len().div_ceil(BLOCK));
+    fork(bands, 0..blocks, BLOCK, [to], &|blocks, [to]| {
+        let first = blocks.start * BLOCK;
+        to.copy_from_slice(&from[first..first + to.len()]);
+    });
 }

@@ -4,10 +4,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::Work;
-use super::error_norm::{ErrorNorm, Tolerance};
+use super::error_norm::{BLOCK, ErrorNorm, Tolerance};
 use super::trial::{LastStep, Trial};
 use crate::error::Error;
+use crate::sums::add_up;
 use crate::system::ParticleSystem;
+use crate::threads::{copy, threads};
 
 /// Shortest step (s): an equation that asks for less has no solution, or a tolerance below what
 /// double precision holds.
@@ -55,7 +57,13 @@ pub struct Adaptive {
 /// Whether two states are the same but for what rigid bodies carry, which follows from the rest.
 fn is_same(system: &dyn ParticleSystem, a: &[f64], b: &[f64]) -> bool {
     match system.rigid() {
-        None => a == b,
+        None => {
+            let [different] = add_up(threads(a.len() / 6), 0..a.len(), BLOCK, [], &|block, []| {
+                let pairs = a[block.clone()].iter().zip(&b[block]);
+                [pairs.filter(|(a, b)| a != b).count() as f64]
+            });
+            different == 0.0
+        }
         Some(rigid) => (0..a.len()).all(|k| a[k] == b[k] || rigid.is_carried(k)),
     }
 }
@@ -172,7 +180,7 @@ impl Adaptive {
             work += cost;
             let change = self.trial.change(error);
             if error <= 1.0 {
-                y.copy_from_slice(self.trial.end());
+                copy(self.trial.end(), y);
                 // Not longer at once after it had to be shorter.
                 let most = if work.rejections > 0 { 1.0 } else { CHANGE.1 };
                 self.next = h * change.clamp(CHANGE.0, most);

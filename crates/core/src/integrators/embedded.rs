@@ -4,10 +4,11 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::error_norm::ErrorNorm;
+use super::error_norm::{BLOCK, ErrorNorm};
 use super::trial::{LastStep, Trial};
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
+use crate::sums::{add_up, dot};
 use crate::system::ParticleSystem;
 use crate::threads::{fork, threads};
 
@@ -33,14 +34,12 @@ pub(super) struct Tableau {
 
 /// Largest number of terms of a polynomial.
 const TERMS: usize = 7;
-/// Numbers that are summed together: few enough for all of their stages to stay in the cache.
-const BLOCK: usize = 512;
 
 /// A pair with its scratch: a method of fixed steps by itself, and an adaptive one in
 /// [`Adaptive`](super::Adaptive).
 pub(super) struct EmbeddedPair {
     tableau: &'static Tableau,
-    /// State at which a stage is evaluated, and later the error estimate.
+    /// State at which a stage is evaluated.
     stage: Vec<f64>,
     last: LastStep,
 }
@@ -61,17 +60,11 @@ impl EmbeddedPair {
         let tableau = self.tableau;
         self.last.h = h;
         self.last.dense = false;
+        let LastStep { y0, k, .. } = &mut self.last;
         for (i, (c, a)) in tableau.stages.iter().enumerate() {
-            combine(&mut self.stage, &self.last.y0, h, a, &self.last.k);
-            system.eval_f(t + c * h, &self.stage, &mut self.last.k[i + 1]);
+            combine(&mut self.stage, y0, h, a, k);
+            system.eval_f(t + c * h, &self.stage, &mut k[i + 1]);
         }
-        combine(
-            &mut self.last.y1,
-            &self.last.y0,
-            h,
-            tableau.weights,
-            &self.last.k,
-        );
         tableau.stages.len() as u64
     }
 
@@ -116,25 +109,35 @@ impl Trial for EmbeddedPair {
         norm: &ErrorNorm,
     ) -> (Work, f64) {
         let mut work = Work::of(self.stages(system, t, h));
-        let reads_end = self.tableau.errors[0].len() > self.tableau.stages.len() + 1;
+        let tableau = self.tableau;
+        let reads_end = tableau.errors[0].len() > tableau.stages.len() + 1;
         if reads_end {
+            let LastStep { y0, y1, k, .. } = &mut self.last;
+            combine(y1, y0, h, tableau.weights, k);
             work += self.finish(system, t);
         }
-        let mut error = |weights: &[f64]| {
-            self.stage.fill(0.0);
-            add_combination(&mut self.stage, h, weights, &self.last.k);
-            norm.of(&self.last.y0, &self.last.y1, &self.stage)
-        };
-        let error = match self.tableau.errors {
-            [fifth, third] => {
-                let (fifth, third) = (error(fifth), error(third));
-                if fifth == 0.0 {
-                    0.0
-                } else {
-                    fifth * fifth / (fifth * fifth + 0.01 * third * third).sqrt()
+        let LastStep { y0, y1, k, .. } = &mut self.last;
+        let bands = threads(y0.len() / 6);
+        let [error, other] = norm.of_sums(y0.len(), |numbers| {
+            let y1 = &mut y1[numbers.clone()];
+            add_up(bands, numbers, BLOCK, [y1], &|numbers, [y1]| {
+                if !reads_end {
+                    combine_block(numbers.start, y1, y0, h, tableau.weights, k);
                 }
-            }
-            errors => error(errors[0]),
+                let mut errors = [0.0; 2];
+                for (sum, weights) in errors.iter_mut().zip(tableau.errors) {
+                    let mut error = [0.0; BLOCK];
+                    let error = &mut error[..numbers.len()];
+                    add_to_block(numbers.start, error, h, weights, k);
+                    *sum = dot(error, error);
+                }
+                let y0 = &y0[numbers];
+                [dot(y0, y0), dot(y1, y1), errors[0], errors[1]]
+            })
+        });
+        let error = match tableau.errors {
+            [_, _] if error > 0.0 => error * error / (error * error + 0.01 * other * other).sqrt(),
+            _ => error,
         };
         if !reads_end && error <= 1.0 {
             work += self.finish(system, t);
@@ -175,13 +178,15 @@ impl Trial for EmbeddedPair {
         // F0 = y1 - y0, F1 = h k0 - F0, F2 = 2 F0 - h (k0 + k1).
         let (of_f0, of_k0, of_k1) = (p - q + 2.0 * r, h * (q - r), -h * r);
         let LastStep { y0, y1, k, .. } = &self.last;
-        let ends = y0.iter().zip(y1).zip(&k[0]).zip(&k[last]);
-        for (out, (((y0, y1), k0), k1)) in out.iter_mut().zip(ends) {
-            *out = y0 + of_f0 * (y1 - y0) + of_k0 * k0 + of_k1 * k1;
-        }
-        for (factor, weights) in rest.iter().zip(tableau.dense) {
-            add_combination(out, factor * h, weights, &self.last.k);
-        }
+        blocks(out, |start, out| {
+            let [y0, y1, k0, k1] = [y0, y1, &k[0], &k[last]].map(|a| &a[start..start + out.len()]);
+            for ((((out, y0), y1), k0), k1) in out.iter_mut().zip(y0).zip(y1).zip(k0).zip(k1) {
+                *out = y0 + of_f0 * (y1 - y0) + of_k0 * k0 + of_k1 * k1;
+            }
+            for (factor, weights) in rest.iter().zip(tableau.dense) {
+                add_to_block(start, out, factor * h, weights, k);
+            }
+        });
         work
     }
 
@@ -205,7 +210,7 @@ impl Integrator for EmbeddedPair {
         check_dim(self.dim(), y)?;
         let mut work = self.begin(system, t, y);
         work += Work::of(self.stages(system, t, h));
-        y.copy_from_slice(&self.last.y1);
+        combine(y, &self.last.y0, h, self.tableau.weights, &self.last.k);
         Ok(work)
     }
 }
@@ -213,38 +218,61 @@ impl Integrator for EmbeddedPair {
 /// out = y + h sum weights k
 fn combine(out: &mut [f64], y: &[f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
     blocks(out, |start, out| {
-        out.copy_from_slice(&y[start..start + out.len()]);
-        add_to_block(start, out, h, weights, k);
+        combine_block(start, out, y, h, weights, k);
     });
 }
 
-/// out += h sum weights k
-pub(super) fn add_combination(out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
-    blocks(out, |start, out| add_to_block(start, out, h, weights, k));
+fn combine_block(
+    start: usize,
+    out: &mut [f64],
+    y: &[f64],
+    h: f64,
+    weights: &[f64],
+    k: &[Vec<f64>],
+) {
+    out.copy_from_slice(&y[start..start + out.len()]);
+    add_to_block(start, out, h, weights, k);
 }
 
-fn add_to_block(start: usize, out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
-    let block = start..start + out.len();
-    let mut terms = weights
-        .iter()
-        .zip(k)
-        .filter(|(weight, _)| **weight != 0.0)
-        .map(|(weight, k)| (h * weight, &k[block.clone()]));
-    while let Some(first) = terms.next() {
-        let none = (0.0, first.1);
-        let mut or_none = || terms.next().unwrap_or(none);
-        let terms = [first, or_none(), or_none(), or_none()];
-        Arch::new().dispatch(Add { out, terms });
+/// Largest number of terms of a sum.
+const MOST: usize = 20;
+
+/// Adds h sum weights k to a block of numbers, of which `start` is the first.
+pub(super) fn add_to_block(start: usize, out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
+    let mut terms = [(0.0, &[][..]); MOST];
+    let mut count = 0;
+    for (weight, k) in weights.iter().zip(k).filter(|(weight, _)| **weight != 0.0) {
+        terms[count] = (h * weight, &k[start..start + out.len()]);
+        count += 1;
+    }
+    let Some((_, first)) = terms[..count].first().copied() else {
+        return;
+    };
+    // The last four are filled up.
+    terms[count..].fill((0.0, first));
+    let arch = Arch::new();
+    let mut rest = &terms[..count.next_multiple_of(4)];
+    // In as few passes over the numbers as there can be.
+    while let Some((terms, others)) = rest.split_first_chunk::<12>() {
+        arch.dispatch(Add { out, terms });
+        rest = others;
+    }
+    if let Some((terms, others)) = rest.split_first_chunk::<8>() {
+        arch.dispatch(Add { out, terms });
+        rest = others;
+    }
+    if let Some(terms) = rest.first_chunk::<4>() {
+        arch.dispatch(Add { out, terms });
     }
 }
 
-/// Sum of four terms, added to `out`.
-struct Add<'a> {
+/// Sum of terms, four at a time, added to `out`.
+struct Add<'a, const N: usize> {
     out: &'a mut [f64],
-    terms: [(f64, &'a [f64]); 4],
+    terms: &'a [(f64, &'a [f64]); N],
 }
 
-impl WithSimd for Add<'_> {
+impl<const N: usize> WithSimd for Add<'_, N> {
     type Output = ();
 
     #[expect(
@@ -252,16 +280,30 @@ impl WithSimd for Add<'_> {
         reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found"
     )]
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let [(a, p), (b, q), (c, r), (d, s)] = self.terms;
-        for ((((out, p), q), r), s) in self.out.iter_mut().zip(p).zip(q).zip(r).zip(s) {
-            *out += (a * p + b * q) + (c * r + d * s);
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { out, terms } = self;
+        let (vectors, rest) = S::as_mut_simd_f64s(out);
+        let weights = terms.map(|(weight, _)| simd.splat_f64s(weight));
+        let k = terms.map(|(_, k)| &S::as_simd_f64s(k).0[..vectors.len()]);
+        for (i, out) in vectors.iter_mut().enumerate() {
+            for g in (0..N).step_by(4) {
+                let [a, b, c, d] = [0, 1, 2, 3].map(|j| simd.mul_f64s(weights[g + j], k[g + j][i]));
+                let four = simd.add_f64s(simd.add_f64s(a, b), simd.add_f64s(c, d));
+                *out = simd.add_f64s(*out, four);
+            }
+        }
+        let first = terms[0].1.len() - rest.len();
+        for (i, out) in rest.iter_mut().enumerate() {
+            for four in terms.as_chunks::<4>().0 {
+                let [a, b, c, d] = four.map(|(weight, k)| weight * k[first + i]);
+                *out += (a + b) + (c + d);
+            }
         }
     }
 }
 
 /// Visits blocks of numbers, each with its first index, on several threads if there are many.
-fn blocks(out: &mut [f64], run: impl Fn(usize, &mut [f64]) + Sync) {
+pub(super) fn blocks(out: &mut [f64], run: impl Fn(usize, &mut [f64]) + Sync) {
     let bands = threads(out.len() / 6);
     let rows = out.len().div_ceil(BLOCK);
     fork(bands, 0..rows, BLOCK, [out], &|rows, [out]| {

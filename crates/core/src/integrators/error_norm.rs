@@ -1,6 +1,10 @@
 //! Tolerances, and the norm in which the error of a step is measured against them.
 
+use std::ops::Range;
+
 use crate::error::{Error, positive};
+use crate::sums::{add_up, dot};
+use crate::threads::threads;
 
 /// Error that a step may make.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,22 +41,41 @@ pub(super) struct ErrorNorm {
     pub block: usize,
 }
 
+/// Numbers whose squares are added up together, and few enough for all that they are computed from
+/// to stay in the cache.
+pub(super) const BLOCK: usize = 2048;
+
 impl ErrorNorm {
     /// The error over the tolerated one, in the block in which that is largest.
     pub fn of(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> f64 {
-        let blocks = |a: &'_ [f64]| -> [f64; 2] {
-            let mut chunks = a.chunks(self.block).map(root_mean_square);
-            [chunks.next().unwrap_or(0.0), chunks.next().unwrap_or(0.0)]
-        };
-        let (y0, y1, error) = (blocks(y0), blocks(y1), blocks(error));
-        let Tolerance { relative, absolute } = self.tolerance;
-        let ratio = |b: usize| error[b] / (absolute + relative * y0[b].max(y1[b]));
-        let (a, b) = (ratio(0), ratio(1));
-        // NaN has to come out as such.
-        if a >= b || a.is_nan() { a } else { b }
+        let bands = threads(y0.len() / 6);
+        let [error, _] = self.of_sums(y0.len(), |numbers| {
+            add_up(bands, numbers, BLOCK, [], &|numbers, []| {
+                let square = |a: &[f64]| dot(&a[numbers.clone()], &a[numbers.clone()]);
+                [square(y0), square(y1), square(error), 0.0]
+            })
+        });
+        error
     }
-}
 
-fn root_mean_square(a: &[f64]) -> f64 {
-    (a.iter().map(|a| a * a).sum::<f64>() / a.len() as f64).sqrt()
+    /// The same of two errors of a state of this dimension, by the sums of squares over the numbers
+    /// of a block: of y0, of y1 and of both errors.
+    pub fn of_sums(&self, dim: usize, mut sums: impl FnMut(Range<usize>) -> [f64; 4]) -> [f64; 2] {
+        let Tolerance { relative, absolute } = self.tolerance;
+        let mut largest = [0.0; 2];
+        for start in (0..dim).step_by(self.block) {
+            let numbers = start..dim.min(start + self.block);
+            let length = numbers.len() as f64;
+            let [y0, y1, errors @ ..] = sums(numbers).map(|sum| (sum / length).sqrt());
+            let tolerated = absolute + relative * y0.max(y1);
+            for (largest, error) in largest.iter_mut().zip(errors) {
+                let ratio = error / tolerated;
+                // NaN has to come out as such.
+                if ratio > *largest || ratio.is_nan() {
+                    *largest = ratio;
+                }
+            }
+        }
+        largest
+    }
 }

@@ -10,7 +10,7 @@
 
 use std::ops::Range;
 
-use super::embedded::add_combination;
+use super::embedded::{add_to_block, blocks};
 use super::error_norm::ErrorNorm;
 use super::trial::{LastStep, Trial};
 use super::{Integrator, Work, add_scaled, check_dim};
@@ -54,14 +54,16 @@ pub(super) struct NystromPair {
     last: LastStep,
 }
 
-/// The drag coefficient (kg/s) of a system whose other forces do not depend on the velocity; `None`
-/// for other systems.
-fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, f64)> {
+/// The drag of a system whose other forces do not depend on the velocity; `None` for other systems.
+fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, Drag<'_>)> {
     let mechanics = system.mechanics()?;
     let reads_velocity = mechanics
         .splitting()
         .is_none_or(Splitting::kick_reads_velocity);
-    let drag = mechanics.linearized()?.drag_coefficient();
+    let drag = Drag {
+        coefficient: mechanics.linearized()?.drag_coefficient(),
+        inverse_masses: mechanics.inverse_masses(),
+    };
     (!reads_velocity).then_some((mechanics, drag))
 }
 
@@ -76,28 +78,40 @@ pub(super) fn check(method: &'static str, system: &dyn ParticleSystem) -> Result
     }
 }
 
-/// Visits runs of equal masses along each axis, with g = c / (2 m) (1/s) of each; none without
-/// drag.
-fn runs(inverse_masses: &[f64], drag: f64, mut visit: impl FnMut(Range<usize>, f64)) {
-    if drag == 0.0 {
-        return;
-    }
-    let n = inverse_masses.len();
-    let mut start = 0;
-    for run in inverse_masses.chunk_by(|a, b| a == b) {
-        for axis in 0..3 {
-            let first = axis * n + start;
-            visit(first..first + run.len(), 0.5 * drag * run[0]);
+/// Viscous drag of a system.
+#[derive(Clone, Copy)]
+struct Drag<'a> {
+    /// Coefficient (kg/s).
+    coefficient: f64,
+    /// Inverse masses of the particles (1/kg).
+    inverse_masses: &'a [f64],
+}
+
+impl Drag<'_> {
+    /// Visits runs of equal masses among some numbers of an n x 3 matrix, counted from the first of
+    /// them, with g = c / (2 m) (1/s) of each; none without drag.
+    fn runs(&self, numbers: Range<usize>, mut visit: impl FnMut(Range<usize>, f64)) {
+        if self.coefficient == 0.0 {
+            return;
         }
-        start += run.len();
+        let n = self.inverse_masses.len();
+        let mut start = numbers.start;
+        while start < numbers.end {
+            let column = start % n;
+            let rest = &self.inverse_masses[column..n.min(column + numbers.end - start)];
+            for run in rest.chunk_by(|a, b| a == b) {
+                let first = start - numbers.start;
+                visit(first..first + run.len(), 0.5 * self.coefficient * run[0]);
+                start += run.len();
+            }
+        }
     }
 }
 
 /// A system of forces without velocities beside drag, and the step that is taken with it.
 struct Step<'a> {
     mechanics: &'a dyn Mechanics,
-    /// Drag coefficient (kg/s).
-    drag: f64,
+    drag: Drag<'a>,
     /// Time at the beginning (s).
     t: f64,
     /// Length (s).
@@ -105,10 +119,6 @@ struct Step<'a> {
 }
 
 impl Step<'_> {
-    fn runs(&self, visit: impl FnMut(Range<usize>, f64)) {
-        runs(self.mechanics.inverse_masses(), self.drag, visit);
-    }
-
     /// Writes `h^2 sum weights k` to `x`, and x0 and s v0 on top of it from a state `y0`, by which
     /// drag has shrunk w to x - x0.
     fn positions(
@@ -119,19 +129,23 @@ impl Step<'_> {
         k: &[Vec<f64>],
         x: &mut [f64],
     ) {
-        x.fill(0.0);
-        add_combination(x, self.h * self.h, weights, k);
+        let (h, drag) = (self.h, self.drag);
         let start = y0.map(|y0| y0.split_at(x.len()));
-        if let Some((_, v0)) = start {
-            add_scaled(x, s, v0);
-        }
-        self.runs(|run, g| {
-            let shrunk = libm::exp(-g * s);
-            x[run].iter_mut().for_each(|x| *x *= shrunk);
+        blocks(x, |first, x| {
+            let numbers = first..first + x.len();
+            x.fill(0.0);
+            add_to_block(first, x, h * h, weights, k);
+            if let Some((_, v0)) = start {
+                add_scaled(x, s, &v0[numbers.clone()]);
+            }
+            drag.runs(numbers.clone(), |run, g| {
+                let shrunk = libm::exp(-g * s);
+                x[run].iter_mut().for_each(|x| *x *= shrunk);
+            });
+            if let Some((x0, _)) = start {
+                add_scaled(x, 1.0, &x0[numbers]);
+            }
         });
-        if let Some((x0, _)) = start {
-            add_scaled(x, 1.0, x0);
-        }
     }
 
     /// Writes the state at the time s (s) into the step from `y0` to `out`, by the weights of x and
@@ -146,18 +160,22 @@ impl Step<'_> {
     ) {
         let (x, v) = out.split_at_mut(out.len() / 2);
         self.positions(s, weights[0], y0, k, x);
-        v.fill(0.0);
-        add_combination(v, self.h, weights[1], k);
+        let (h, drag) = (self.h, self.drag);
         let start = y0.map(|y0| y0.split_at(x.len()));
-        if let Some((_, v0)) = start {
-            add_scaled(v, 1.0, v0);
-        }
-        self.runs(|run, g| {
-            let shrunk = libm::exp(-g * s);
-            for i in run {
-                let moved = x[i] - start.map_or(0.0, |(x0, _)| x0[i]);
-                v[i] = shrunk * v[i] - g * moved;
+        blocks(v, |first, v| {
+            let numbers = first..first + v.len();
+            v.fill(0.0);
+            add_to_block(first, v, h, weights[1], k);
+            if let Some((_, v0)) = start {
+                add_scaled(v, 1.0, &v0[numbers.clone()]);
             }
+            drag.runs(numbers, |run, g| {
+                let shrunk = libm::exp(-g * s);
+                for i in run {
+                    let from = start.map_or(0.0, |(x0, _)| x0[first + i]);
+                    v[i] = shrunk * v[i] - g * (x[first + i] - from);
+                }
+            });
         });
         if start.is_some() {
             place_pins(self.mechanics, self.t + s, x, v);
@@ -166,11 +184,17 @@ impl Step<'_> {
 
     /// Makes w'' of the accelerations `k` at the positions x, at the time s (s) into the step.
     fn substitute(&self, s: f64, x: &[f64], x0: &[f64], k: &mut [f64]) {
-        self.runs(|run, g| {
-            let grown = libm::exp(g * s);
-            for i in run {
-                k[i] = grown * (k[i] + g * g * (x[i] - x0[i]));
-            }
+        let drag = self.drag;
+        if drag.coefficient == 0.0 {
+            return;
+        }
+        blocks(k, |first, k| {
+            drag.runs(first..first + k.len(), |run, g| {
+                let grown = libm::exp(g * s);
+                for i in run {
+                    k[i] = grown * (k[i] + g * g * (x[first + i] - x0[first + i]));
+                }
+            });
         });
     }
 }
@@ -273,7 +297,9 @@ impl Trial for NystromPair {
         dx.copy_from_slice(&self.last.y0[self.x.len()..]);
         dv.copy_from_slice(&self.last.k[0]);
         if let Some(step) = Self::of(system, 0.0, 0.0) {
-            step.runs(|run, g| add_scaled(&mut dv[run.clone()], -2.0 * g, &dx[run]));
+            step.drag.runs(0..dx.len(), |run, g| {
+                add_scaled(&mut dv[run.clone()], -2.0 * g, &dx[run]);
+            });
         }
     }
 

@@ -12,14 +12,13 @@
 use std::array;
 use std::ops::Range;
 
-use pulp::{Arch, Simd, WithSimd};
-
 use super::block::inverse;
 use super::multigrid::Multigrid;
 use super::tangent::Tangent;
 use crate::columns::{columns, columns_mut};
+use crate::sums::{self, dot};
 use crate::system::Linearized;
-use crate::threads::{Columns, split_off, threads};
+use crate::threads::{Columns, threads};
 
 /// Number of particles in a block, which stays in the nearest cache.
 const BLOCK: usize = 256;
@@ -34,9 +33,6 @@ pub(crate) struct ConjugateGradients {
     inverses: [Vec<f64>; 6],
     /// Version of the tangent that they are of.
     version: u64,
-    /// Two sums for each block of particles: they are added up in the same order by any number of
-    /// threads.
-    sums: Vec<f64>,
 }
 
 /// The end of an iteration.
@@ -60,7 +56,6 @@ impl ConjugateGradients {
             q: zeros(),
             inverses: array::from_fn(|_| vec![0.0; particles]),
             version: 0,
-            sums: vec![0.0; 2 * particles.div_ceil(BLOCK)],
         }
     }
 
@@ -121,10 +116,10 @@ impl ConjugateGradients {
 
     /// p . q
     fn curvature(&mut self) -> f64 {
-        let Self { p, q, sums, .. } = self;
-        let [sum, _] = add_up(p.len() / 3, [], sums, &|particles, [], sums| {
+        let Self { p, q, .. } = self;
+        let [sum] = add_up(p.len() / 3, [], &|particles, []| {
             let [of_p, of_q] = [&*p, &*q].map(|a| columns(a, &particles));
-            sums[0] = of_p.iter().zip(of_q).map(|(p, q)| dot(p, q)).sum();
+            [of_p.iter().zip(of_q).map(|(p, q)| dot(p, q)).sum()]
         });
         sum
     }
@@ -133,19 +128,13 @@ impl ConjugateGradients {
     /// that the preconditioners make of r.
     fn descend(&mut self, step: f64, multigrid: Option<&mut Multigrid>) -> [f64; 2] {
         let Self {
-            r,
-            z,
-            q,
-            inverses,
-            sums,
-            ..
+            r, z, q, inverses, ..
         } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(r), columns_mut(z));
         let [rr, rz] = add_up(
             q.len() / 3,
             [a, b, c, d, e, f],
-            sums,
-            &|particles, [a, b, c, d, e, f], sums| {
+            &|particles, [a, b, c, d, e, f]| {
                 let (mut r, mut z) = ([a, b, c], [d, e, f]);
                 for (r, q) in r.iter_mut().zip(columns(q, &particles)) {
                     for (r, q) in r.iter_mut().zip(q) {
@@ -154,8 +143,8 @@ impl ConjugateGradients {
                 }
                 let r = r.each_ref().map(|r| &**r);
                 precondition(inverses, &particles, r, &mut z);
-                sums[0] = r.iter().map(|r| dot(r, r)).sum();
-                sums[1] = r.iter().zip(&z).map(|(r, z)| dot(r, z)).sum();
+                let rr = r.iter().map(|r| dot(r, r)).sum();
+                [rr, r.iter().zip(&z).map(|(r, z)| dot(r, z)).sum()]
             },
         );
         [
@@ -166,13 +155,12 @@ impl ConjugateGradients {
 
     /// Takes a step, x += step p, and turns to a new direction, p = z + turn p.
     fn turn(&mut self, [step, turn]: [f64; 2], x: &mut [f64], multigrid: Option<&Multigrid>) {
-        let Self { z, p, sums, .. } = self;
+        let Self { z, p, .. } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(x), columns_mut(p));
         add_up(
             z.len() / 3,
             [a, b, c, d, e, f],
-            sums,
-            &|particles, [a, b, c, d, e, f], _| {
+            &|particles, [a, b, c, d, e, f]| {
                 let (x, mut p, z) = ([a, b, c], [d, e, f], columns(z, &particles));
                 for ((x, p), z) in x.into_iter().zip(&mut p).zip(z) {
                     for ((x, p), z) in x.iter_mut().zip(&mut **p).zip(z) {
@@ -187,90 +175,20 @@ impl ConjugateGradients {
                         }
                     }
                 }
+                []
             },
         );
     }
 }
 
-/// Calls `run` on blocks of particles, in parallel where there are many, with their parts of the
-/// columns, and adds up the two sums that it writes for each.
-fn add_up<const N: usize>(
+/// Calls `run` on blocks of particles, with their parts of the columns, and adds up what it returns
+/// for each.
+fn add_up<const N: usize, const M: usize>(
     particles: usize,
     columns: Columns<N>,
-    sums: &mut [f64],
-    run: &(impl Fn(Range<usize>, Columns<N>, &mut [f64]) + Sync),
-) -> [f64; 2] {
-    each_block(threads(particles), 0..particles, columns, sums, run);
-    sums.chunks_exact(2)
-        .fold([0.0; 2], |[a, b], sums| [a + sums[0], b + sums[1]])
-}
-
-/// A call of `run` on a block, compiled for the processor's vectors.
-struct OnBlock<'a, 'b, const N: usize, R> {
-    run: &'a R,
-    block: Range<usize>,
-    columns: Columns<'b, N>,
-    sums: &'a mut [f64],
-}
-
-impl<const N: usize, R> WithSimd for OnBlock<'_, '_, N, R>
-where
-    R: Fn(Range<usize>, Columns<N>, &mut [f64]),
-{
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        (self.run)(self.block, self.columns, self.sums);
-    }
-}
-
-fn each_block<const N: usize>(
-    bands: usize,
-    particles: Range<usize>,
-    mut columns: Columns<N>,
-    sums: &mut [f64],
-    run: &(impl Fn(Range<usize>, Columns<N>, &mut [f64]) + Sync),
-) {
-    if bands < 2 {
-        let starts = particles.clone().step_by(BLOCK);
-        for (start, sums) in starts.zip(sums.chunks_exact_mut(2)) {
-            let block = start..particles.end.min(start + BLOCK);
-            let columns = split_off(&mut columns, block.len());
-            Arch::new().dispatch(OnBlock {
-                run,
-                block,
-                columns,
-                sums,
-            });
-        }
-        return;
-    }
-    let above = bands / 2;
-    let blocks = particles.len().div_ceil(BLOCK) * above / bands;
-    let middle = particles.start + blocks * BLOCK;
-    let (sums_above, sums_below) = sums.split_at_mut(2 * blocks);
-    let columns_above = split_off(&mut columns, blocks * BLOCK);
-    rayon::join(
-        || {
-            each_block(
-                above,
-                particles.start..middle,
-                columns_above,
-                sums_above,
-                run,
-            );
-        },
-        || {
-            each_block(
-                bands - above,
-                middle..particles.end,
-                columns,
-                sums_below,
-                run,
-            );
-        },
-    );
+    run: &(impl Fn(Range<usize>, Columns<N>) -> [f64; M] + Sync),
+) -> [f64; M] {
+    sums::add_up(threads(particles), 0..particles, BLOCK, columns, run)
 }
 
 /// Writes z = B^-1 r on a block of particles.
@@ -288,19 +206,4 @@ fn precondition(
             *z = a * x + b * y + c * w;
         }
     }
-}
-
-/// The scalar product, in sixteen sums that do not wait for one another.
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 16];
-    let (blocks, rest) = a.as_chunks::<16>();
-    let (others, other_rest) = b.as_chunks::<16>();
-    for (a, b) in blocks.iter().zip(others) {
-        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
-            *sum += a * b;
-        }
-    }
-    let rest = rest.iter().zip(other_rest).map(|(a, b)| a * b);
-    sums.into_iter().chain(rest).sum()
 }

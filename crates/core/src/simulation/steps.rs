@@ -9,6 +9,7 @@ use crate::error::{Cause, Error};
 use crate::network::Network;
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
+use crate::threads::among_threads;
 
 /// Largest depth, as a share of the scene's radius, to which a step of an adaptive method may take
 /// a particle into an obstacle: a state between the ends of the step is shown as it is, and must
@@ -44,16 +45,18 @@ impl Simulation {
     /// The run blew up, now or earlier.
     pub fn take_steps(&mut self, count: u64) -> Result<(), Error> {
         self.keep()?;
-        for _ in 0..count {
-            if let Control::Step(step) = self.control {
-                self.step_by(step)?;
-                self.taken += 1;
-            } else {
-                let until = self.look_ahead()?;
-                self.show(until);
+        among_threads(self.particles(), || {
+            for _ in 0..count {
+                if let Control::Step(step) = self.control {
+                    self.step_by(step)?;
+                    self.taken += 1;
+                } else {
+                    let until = self.look_ahead()?;
+                    self.show(until);
+                }
             }
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     /// Goes on to `time` (s) exactly, if it is not past it: the last step is shortened.
@@ -71,6 +74,11 @@ impl Simulation {
             )));
         }
         self.keep()?;
+        among_threads(self.particles(), || self.go_on(time))
+    }
+
+    /// Takes steps up to `time` (s).
+    fn go_on(&mut self, time: f64) -> Result<(), Error> {
         while self.time() < time {
             let Control::Step(step) = self.control else {
                 let until = self.look_ahead()?;
