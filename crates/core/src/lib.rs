@@ -55,6 +55,7 @@ mod columns;
 pub mod constraints;
 pub mod contact;
 mod control;
+mod coupling;
 pub mod elements;
 mod energy;
 mod error;
@@ -83,6 +84,7 @@ mod work;
 
 pub use constraints::Constraint;
 pub use control::Control;
+pub use coupling::{AxialCoupling, BlockCoupling, Coupling, Diagonal, GeneralCoupling, Matrix};
 pub use elements::{Element, Sheet};
 pub use energy::Energy;
 pub use error::{BlowUp, Cause, Error, Vertex};
@@ -95,10 +97,7 @@ pub use rows::{Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
 pub use scene::{FirstOrder, Model, Scene, Swing};
 pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, Simulation};
 pub use spring::{Spring, SpringKind, SpringLaw};
-pub use system::{
-    AxialCoupling, BlockCoupling, Compliant, Coupling, Diagonal, GeneralCoupling, Linearized,
-    Matrix, Mechanics, ParticleSystem, Rigid, Splitting,
-};
+pub use system::{Compliant, Linearized, Mechanics, ParticleSystem, Rigid, Splitting};
 
 /// Example of the README, compiled as a documentation test.
 #[cfg(doctest)]

@@ -2,22 +2,10 @@
 
 use crate::error::Error;
 use crate::geometry::{Point, Rect};
-use crate::label::{GREY, Label, Look};
+use crate::label::{GREY, Label};
 use crate::paint::{Paint, Pen};
+use crate::shape::Shape;
 use crate::{raster, svg};
-
-/// A shape on a sheet.
-#[derive(Debug)]
-pub enum Shape {
-    /// A line through points.
-    Line(Vec<Point>, Pen),
-    /// The area inside outlines. An outline inside another is that of a hole.
-    Area(Vec<Vec<Point>>, Paint),
-    /// A label at a point.
-    Text(Point, String, Look),
-    /// Shapes that are cut off at the edges of a window.
-    Clipped(Rect, Vec<Shape>),
-}
 
 /// A drawing on a sheet, whose units are the pixels of an SVG.
 #[derive(Debug)]

@@ -11,6 +11,7 @@ mod label;
 mod layout;
 mod paint;
 mod raster;
+mod shape;
 mod stability;
 mod style;
 mod svg;

@@ -6,11 +6,11 @@ use tiny_skia::{
 };
 
 use crate::error::Error;
-use crate::figure::Shape;
 use crate::geometry::{Point, Rect};
 use crate::glyphs;
 use crate::label::Label;
 use crate::paint::{Paint, Pen};
+use crate::shape::Shape;
 
 /// A sheet of this size with shapes, as a PNG file with `scale` pixels for each unit of the sheet.
 ///

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use crate::figure::Shape;
 use crate::geometry::Point;
 use crate::label::{Anchor, Label, Look, RAISED, pieces};
 use crate::paint::Pen;
+use crate::shape::Shape;
 
 /// Fonts in order of preference. Labels are measured with the first.
 const FONTS: &str = "Ubuntu, 'Ubuntu Light', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif";

@@ -3,9 +3,9 @@
 //! length zero has no direction, and no force.
 
 use super::force::At;
+use crate::coupling::{AxialCoupling, Coupling};
 use crate::energy::Energy;
 use crate::spring::Spring;
-use crate::system::{AxialCoupling, Coupling};
 
 /// A force between two particles along the line between them, by their distance (m).
 pub(super) trait Elastic {

@@ -13,10 +13,10 @@ use std::f64::consts::PI;
 
 use super::axial::{self, Elastic};
 use super::force::{At, Cost, Force, check_ends, ends};
+use crate::coupling::Coupling;
 use crate::energy::Energy;
 use crate::error::{Error, at_least, positive};
 use crate::spring::{Spring, SpringKind, SpringLaw};
-use crate::system::Coupling;
 
 /// Terms of the series: the next is lost in rounding.
 const TERMS: usize = 13;

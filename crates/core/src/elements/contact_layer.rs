@@ -2,8 +2,8 @@
 
 use super::force::{At, Force};
 use crate::contact::ContactLayer;
+use crate::coupling::{AxialCoupling, BlockCoupling, Coupling};
 use crate::energy::Energy;
-use crate::system::{AxialCoupling, BlockCoupling, Coupling};
 
 impl Force for ContactLayer {
     fn name(&self) -> &'static str {

@@ -13,9 +13,9 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::inverse_root::inverse_root;
+use crate::coupling::{Diagonal, Matrix};
 use crate::fused::{mul_adds, negate_mul_adds};
 use crate::spring::{Spring, SpringLaw};
-use crate::system::{Diagonal, Matrix};
 
 /// Number of springs in a chunk: what is kept of them stays in the nearest cache.
 const CHUNK: usize = 64;

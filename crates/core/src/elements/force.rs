@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
+use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::spring::Spring;
-use crate::system::{Coupling, Diagonal, Matrix};
 
 /// The time, the state and the particles for which an element is evaluated.
 #[derive(Clone, Copy)]

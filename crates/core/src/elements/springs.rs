@@ -6,10 +6,10 @@ use super::axial::{add_all, add_differential, coupling, energy};
 use super::diagonal::add_springs;
 use super::force::{At, Cost, Force, check_ends, ends};
 use super::packed::{Packed, SPEED};
+use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::spring::Spring;
-use crate::system::{Coupling, Diagonal, Matrix};
 
 /// Single springs. Few are evaluated in their order, and many in blocks.
 #[derive(Debug, Default)]

@@ -4,6 +4,7 @@
 mod block;
 mod conjugate_gradients;
 mod direct;
+mod ends;
 mod multigrid;
 mod tangent;
 

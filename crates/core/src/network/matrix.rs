@@ -2,9 +2,10 @@
 //! springs in sheets, and of single ones if there are many.
 
 use super::Network;
+use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::elements::sheet::{Quantity, set};
 use crate::elements::{Element, Finish, Sheet};
-use crate::system::{Coupling, Diagonal, Matrix, divide_by_masses};
+use crate::system::divide_by_masses;
 
 impl Network {
     /// Implements [`multiply`](crate::Linearized::multiply).

@@ -6,14 +6,14 @@ use nalgebra::Vector3;
 
 use super::Network;
 use crate::columns::columns_mut;
+use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::elements::force::{At, ByParticle, Carried};
 use crate::elements::sheet::{Advance, LAWS, Quantity, SPRING_FORCES, begin, set};
 use crate::elements::{Element, Finish, Flow, Sheet, flow_each};
 use crate::path::Place;
 use crate::rows::{Patch, Registers, Rows, Stage, SweepScratch, Terms};
 use crate::system::{
-    Compliant, Coupling, Diagonal, Linearized, Matrix, Mechanics, Rigid, Splitting,
-    divide_by_masses, place_pins,
+    Compliant, Linearized, Mechanics, Rigid, Splitting, divide_by_masses, place_pins,
 };
 
 impl Network {

@@ -16,14 +16,13 @@ mod spectrum;
 use nalgebra::Vector3;
 
 use crate::columns::columns_mut;
+use crate::coupling::{AxialCoupling, Coupling};
 use crate::elements::Flow;
 use crate::error::Error;
 use crate::integrators::{Integrator, Method};
 use crate::path::Place;
 use crate::spring::SpringLaw;
-use crate::system::{
-    AxialCoupling, Compliant, Coupling, Linearized, Mechanics, Splitting, place_pins,
-};
+use crate::system::{Compliant, Linearized, Mechanics, Splitting, place_pins};
 
 pub use limit::{GROWTH, HORIZON, Limit, STEPS, largest_step, tenfold_time};
 pub use motion::Motion;

@@ -9,10 +9,10 @@ use std::collections::HashMap;
 
 use pulp::Scalar;
 
+use crate::coupling::Matrix;
 use crate::elements::inverse_root::inverse_root;
 use crate::fused::mul_add;
 use crate::spring::Spring;
-use crate::system::Matrix;
 
 /// Springs of a block: what is kept of them between the passes over it stays in the nearest cache.
 pub(super) const BLOCK: usize = 64;

@@ -21,8 +21,8 @@ use pulp::Arch;
 
 use super::force::At;
 use crate::columns::columns_mut;
+use crate::coupling::Matrix;
 use crate::spring::Spring;
-use crate::system::Matrix;
 use crate::threads::{Columns, split_off, threads};
 use laws::Quantity;
 use order::{Order, TILE};

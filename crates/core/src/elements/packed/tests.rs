@@ -4,10 +4,10 @@ use pulp::{Scalar, WithSimd};
 
 use super::places::Columns;
 use super::*;
+use crate::coupling::Coupling;
 use crate::elements::axial::{add_all, add_differential, coupling};
 use crate::random::SplitMix;
 use crate::spring::{SpringKind, SpringLaw};
-use crate::system::Coupling;
 
 /// Springs between random particles of which the numbers differ by at most so many.
 fn springs(count: usize, particles: usize, reach: usize, damping: f64) -> Vec<Spring> {

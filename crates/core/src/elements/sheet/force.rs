@@ -7,10 +7,10 @@ use super::super::force::{At, Cost, Force, check_particle};
 use super::model::Sheet;
 use super::offsets::OFFSETS;
 use super::strips::{Quantity, set};
+use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::energy::Energy;
 use crate::error::Error;
 use crate::spring::Spring;
-use crate::system::{Coupling, Diagonal, Matrix};
 
 /// How many times as fast the kernel is as the same springs one by one, on the grids that people
 /// look at.

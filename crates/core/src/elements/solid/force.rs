@@ -12,10 +12,10 @@ use super::material::Material;
 use super::matrix::{Matrix, dot, scaled, three};
 use super::number::{Dual, Number, Vector};
 use super::{Block, Corners, LANES, Solid, deformation};
+use crate::coupling::Coupling;
 use crate::elements::force::{At, Cost, Force, check_particle};
 use crate::energy::Energy;
 use crate::error::Error;
-use crate::system::Coupling;
 
 /// Prices of a tetrahedron's forces, without viscosity and with it, and of gathering its couplings,
 /// in evaluations of single springs.

@@ -10,7 +10,7 @@ use super::material::{Hyperelastic, Material};
 use super::matrix::{Matrix, cofactors, dot};
 use super::principal::{Principal, eigen};
 use super::{Deformed, Solid};
-use crate::system::{Coupling, GeneralCoupling};
+use crate::coupling::{Coupling, GeneralCoupling};
 
 /// Pairs of corners of a tetrahedron.
 const CORNERS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];

@@ -1,0 +1,18 @@
+//! What a sheet is made of.
+
+use crate::geometry::{Point, Rect};
+use crate::label::Look;
+use crate::paint::{Paint, Pen};
+
+/// A shape on a sheet.
+#[derive(Debug)]
+pub enum Shape {
+    /// A line through points.
+    Line(Vec<Point>, Pen),
+    /// The area inside outlines. An outline inside another is that of a hole.
+    Area(Vec<Vec<Point>>, Paint),
+    /// A label at a point.
+    Text(Point, String, Look),
+    /// Shapes that are cut off at the edges of a window.
+    Clipped(Rect, Vec<Shape>),
+}
