@@ -2,6 +2,8 @@
 
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 
+mod steps;
+
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -218,7 +220,7 @@ fn elements(c: &mut Criterion) {
         group.bench_function("plain list", |b| {
             b.iter(|| plain_spring_list::<true>(&springs, black_box(x), black_box(v), &mut f));
         });
-        step(&mut group, &scene, integrators::find("rk4").unwrap());
+        steps::step(&mut group, &scene, integrators::find("rk4").unwrap());
         group.finish();
     }
 }
@@ -274,89 +276,11 @@ fn rods(c: &mut Criterion) {
     group.finish();
 }
 
-/// A step of every method on every scene that it serves.
-fn steps(c: &mut Criterion) {
-    for entry in a3_scenes::SCENES {
-        let mut group = c.benchmark_group(format!("step/{}", entry.name));
-        let scene = entry.build(None).unwrap().scene;
-        for method in integrators::METHODS {
-            step(&mut group, &scene, method);
-        }
-        group.finish();
-    }
-}
-
-/// A step of every method on both cloths, of every size.
-fn steps_by_size(c: &mut Criterion) {
-    for (name, side) in ["cloth", "mit"]
-        .into_iter()
-        .flat_map(|name| SIDES.map(|side| (name, side)))
-    {
-        let mut group = c.benchmark_group(format!("step/{name} {side}x{side}"));
-        let scene = cloth(name, side);
-        group.throughput(Throughput::Elements((side * side) as u64));
-        let mut f = vec![0.0; scene.state.len() / 2];
-        let (x, v) = scene.state.split_at(f.len());
-        group.bench_function("forces", |b| {
-            b.iter(|| network(&scene).forces(0.0, black_box(x), black_box(v), &mut f));
-        });
-        for method in integrators::METHODS {
-            step(&mut group, &scene, method);
-            adaptive_step(&mut group, &scene, method);
-        }
-        group.finish();
-    }
-}
-
-/// A step of a method that chooses it, with the estimate of its error.
-fn adaptive_step(
-    group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>,
-    scene: &Scene,
-    method: &integrators::Method,
-) {
-    let system = scene.model.system();
-    let tolerance = integrators::Tolerance::new(1.0).unwrap();
-    let Some(mut adaptive) = method
-        .check(system)
-        .ok()
-        .and_then(|()| method.adaptive(system, tolerance))
-    else {
-        return;
-    };
-    let mut y = scene.state.clone();
-    group.bench_function(format!("{} adaptive", method.name), |b| {
-        b.iter(|| {
-            adaptive.try_first(1e-9);
-            adaptive.advance(system, 0.0, black_box(&mut y)).unwrap()
-        });
-    });
-}
-
-fn step(
-    group: &mut criterion::BenchmarkGroup<'_, criterion::measurement::WallTime>,
-    scene: &Scene,
-    method: &integrators::Method,
-) {
-    let system = scene.model.system();
-    let Ok(mut integrator) = method.integrator(system) else {
-        return;
-    };
-    let mut y = scene.state.clone();
-    group.bench_function(method.name, |b| {
-        // So small a step that no number of them leads anywhere.
-        b.iter(|| {
-            integrator
-                .step(system, 0.0, 1e-12, black_box(&mut y))
-                .unwrap()
-        });
-    });
-}
-
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20).warm_up_time(std::time::Duration::from_millis(300))
         .measurement_time(std::time::Duration::from_secs(1));
-    targets = forces, forces_of_a_list, elements, evaluation, rods, steps, steps_by_size
+    targets = forces, forces_of_a_list, elements, evaluation, rods, steps::on_scenes, steps::by_size
 }
 
 fn main() {
