@@ -3,6 +3,8 @@
 
 use std::ops::Range;
 
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
+
 /// Least number of particles for each thread: with fewer, waking the thread costs more than it
 /// saves (docs/performance.md).
 const GRAIN: usize = 2048;
@@ -58,6 +60,17 @@ pub(crate) fn fork<const N: usize>(
         || fork(above, rows.start..middle, cols, firsts, run),
         || fork(bands - above, middle..rows.end, cols, columns, run),
     );
+}
+
+/// Calls `run` on each of some things with its number, in parallel where there are many.
+pub(crate) fn each<T: Send>(things: &mut [T], run: &(impl Fn(usize, &mut T) + Sync)) {
+    if threads(things.len()) > 1 {
+        let all = things.par_iter_mut().enumerate().with_min_len(GRAIN / 2);
+        all.for_each(|(k, thing)| run(k, thing));
+    } else {
+        let all = things.iter_mut().enumerate();
+        all.for_each(|(k, thing)| run(k, thing));
+    }
 }
 
 /// Numbers that are copied together.

@@ -21,10 +21,12 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::{Error, positive};
+use crate::threads::each;
 pub use constraint::Constraint;
 use direct::Pattern;
 use pool::Pool;
 use row::Row;
+use solve::Scratch;
 
 /// How a rigid body turns.
 pub(crate) struct Turning {
@@ -68,8 +70,8 @@ pub(crate) struct Constraints {
     rotations: BTreeMap<usize, usize>,
     /// The particles that each constraint holds.
     ends: Vec<[Held; 2]>,
-    /// The constraint of each equation.
-    owners: Vec<usize>,
+    /// The constraint of each equation, and its number among those of the constraint.
+    owners: Vec<(usize, usize)>,
     /// Natural frequency (1/s) with which errors are taken back.
     baumgarte_frequency: f64,
     /// Which equations share what they move, once it is asked for.
@@ -127,7 +129,10 @@ impl Constraints {
         };
         self.ends.push([hold(first), second.map_or(nothing, hold)]);
         let (own, owners) = (self.all.len(), &mut self.owners);
-        constraint.equations(Vector3::zeros(), Vector3::zeros(), |_| owners.push(own));
+        let mut numbers = 0..;
+        constraint.equations(Vector3::zeros(), Vector3::zeros(), |_| {
+            owners.extend(numbers.next().map(|number| (own, number)));
+        });
         self.all.push(constraint);
         self.pattern = OnceLock::new();
         self.scratch.reserve(self.owners.len(), self.moved.len());
@@ -195,35 +200,48 @@ impl Constraints {
             }
             let w = self.baumgarte_frequency;
             let (ks, kd) = (w * w, 2.0 * w);
-            for (constraint, ends) in self.all.iter().zip(&self.ends) {
-                let levers = ends.map(|end| {
-                    let turning = scratch.turnings[end.turn].as_ref()?;
-                    Some(Lever::new(turning, vector(x, end.particle)))
-                });
+            let Scratch {
+                weights,
+                vectors,
+                turnings,
+                rows,
+                ..
+            } = scratch;
+            rows.resize_with(self.owners.len(), Row::default);
+            each(rows, &|k, row| {
+                let (owner, number) = self.owners[k];
+                let (constraint, ends) = (self.all[owner], self.ends[owner]);
                 let relative = |a: &[f64]| match constraint.ends() {
                     (i, Some(j)) => vector(a, i) - vector(a, j),
                     (i, None) => vector(a, i),
                 };
-                let (x, v) = (relative(x), relative(v));
-                constraint.equations(x, v, |equation| {
-                    let (gradient, mut bend) = (equation.gradient, equation.bend);
-                    let mut row = Row::default();
-                    for ((end, lever), sign) in ends.iter().zip(&levers).zip([1.0, -1.0]) {
-                        row.add(end.place, gradient * sign);
-                        if let Some(lever) = lever {
-                            row.add(end.turn, lever.of(gradient) * sign);
-                            bend += gradient.dot(&lever.inwards) * sign;
-                        }
+                let v_relative = relative(v);
+                let (mut numbers, mut own) = (0.., None);
+                constraint.equations(relative(x), v_relative, |equation| {
+                    if numbers.next() == Some(number) {
+                        own = Some(equation);
                     }
-                    let a = row.product(&scratch.vectors);
-                    let back = ks * equation.value + kd * gradient.dot(&v);
-                    row.want(-bend - a - back, &scratch.weights);
-                    scratch.rows.push(row);
                 });
-            }
+                let Some(equation) = own else {
+                    return;
+                };
+                let (gradient, mut bend) = (equation.gradient, equation.bend);
+                *row = Row::default();
+                for (end, sign) in ends.iter().zip([1.0, -1.0]) {
+                    row.add(end.place, gradient * sign);
+                    if let Some(turning) = &turnings[end.turn] {
+                        let lever = Lever::new(turning, vector(x, end.particle));
+                        row.add(end.turn, lever.of(gradient) * sign);
+                        bend += gradient.dot(&lever.inwards) * sign;
+                    }
+                }
+                let a = row.product(vectors);
+                let back = ks * equation.value + kd * gradient.dot(&v_relative);
+                row.want(-bend - a - back, weights);
+            });
             scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
             let n = f.len() / 3;
-            for (row, owner) in scratch.rows.iter().zip(&self.owners) {
+            for (row, (owner, _)) in scratch.rows.iter().zip(&self.owners) {
                 let ([first, second], force) = (self.ends[*owner], row.force());
                 for axis in 0..3 {
                     f[axis * n + first.particle] += force[axis];
@@ -237,7 +255,7 @@ impl Constraints {
 
     /// What each equation moves.
     fn find_pattern(&self) -> Pattern {
-        let rows = self.owners.iter().map(|owner| {
+        let rows = self.owners.iter().map(|(owner, _)| {
             let [a, b] = self.ends[*owner];
             [a.place, a.turn, b.place, b.turn]
         });

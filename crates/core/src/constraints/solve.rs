@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use super::Turning;
 use super::direct::{Factor, Pattern};
 use super::row::Row;
+use crate::threads::each;
 
 /// Number of rows from which on a factorisation takes less time than conjugate residuals.
 const MANY: usize = 12;
@@ -32,17 +33,17 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// Forgets what the last evaluation left, but keeps its room.
+    /// Forgets what moved in the last evaluation, but keeps its room.
     pub fn clear(&mut self) {
         self.weights.clear();
         self.vectors.clear();
         self.turnings.clear();
-        self.rows.clear();
     }
 
     /// Makes room for so many rows, and so many things that they move.
     pub fn reserve(&mut self, rows: usize, moved: usize) {
         self.clear();
+        self.rows.clear();
         self.weights.reserve(moved);
         self.vectors.reserve(moved);
         self.turnings.reserve(moved);
@@ -75,9 +76,10 @@ impl Scratch {
             factor.solve(&mut self.rows);
             transpose(&self.rows, |row| row.multiplier, &mut self.vectors);
             weigh(&self.weights, &mut self.vectors);
-            for row in &mut self.rows {
-                row.residual = row.wanted - row.product(&self.vectors);
-            }
+            let vectors = &self.vectors;
+            each(&mut self.rows, &|_, row| {
+                row.residual = row.wanted - row.product(vectors);
+            });
         }
         true
     }

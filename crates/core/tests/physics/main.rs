@@ -15,5 +15,6 @@ mod rigid;
 mod solids;
 mod sweeps;
 mod tearing;
+mod threads;
 mod turning;
 mod wind;
