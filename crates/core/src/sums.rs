@@ -13,26 +13,32 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::threads::{Columns, split_off};
 
-/// Calls `run` on blocks of at most `block` rows, compiled for the processor's vectors and on
-/// `bands` threads, each with its part of the columns, and adds up the numbers that it returns for
-/// each.
-pub(crate) fn add_up<const N: usize, const M: usize>(
+/// Calls `run` on blocks of at most `block` rows, on `bands` threads, with what it reads and with the
+/// part of the columns that belongs to the block, and adds up the numbers that it returns for each.
+/// A function that is always inlined is compiled for the processor's vectors; a closure may not be.
+pub(crate) fn add_up<const N: usize, const M: usize, C: Sync>(
     bands: usize,
     rows: Range<usize>,
     block: usize,
     mut columns: Columns<N>,
-    run: &(impl Fn(Range<usize>, Columns<N>) -> [f64; M] + Sync),
+    read: &C,
+    run: impl Fn(&C, Range<usize>, Columns<N>) -> [f64; M] + Copy + Send + Sync,
 ) -> [f64; M] {
     let blocks = rows.len().div_ceil(block);
     if blocks < 2 {
-        return Arch::new().dispatch(OnBlock { run, rows, columns });
+        return Arch::new().dispatch(OnBlock {
+            run,
+            read,
+            rows,
+            columns,
+        });
     }
     // The order of the sum follows from the number of blocks alone.
     let above = blocks.next_power_of_two() / 2 * block;
     let middle = rows.start + above;
     let firsts = split_off(&mut columns, above);
-    let first = move |bands| add_up(bands, rows.start..middle, block, firsts, run);
-    let second = move |bands| add_up(bands, middle..rows.end, block, columns, run);
+    let first = move |bands| add_up(bands, rows.start..middle, block, firsts, read, run);
+    let second = move |bands| add_up(bands, middle..rows.end, block, columns, read, run);
     let (a, b) = if bands < 2 {
         (first(1), second(1))
     } else {
@@ -43,21 +49,22 @@ pub(crate) fn add_up<const N: usize, const M: usize>(
 }
 
 /// A call of `run` on a block.
-struct OnBlock<'a, 'b, const N: usize, R> {
-    run: &'a R,
+struct OnBlock<'a, 'b, const N: usize, C, R> {
+    run: R,
+    read: &'a C,
     rows: Range<usize>,
     columns: Columns<'b, N>,
 }
 
-impl<const N: usize, const M: usize, R> WithSimd for OnBlock<'_, '_, N, R>
+impl<const N: usize, const M: usize, C, R> WithSimd for OnBlock<'_, '_, N, C, R>
 where
-    R: Fn(Range<usize>, Columns<N>) -> [f64; M],
+    R: Fn(&C, Range<usize>, Columns<N>) -> [f64; M],
 {
     type Output = [f64; M];
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> [f64; M] {
-        (self.run)(self.rows, self.columns)
+        (self.run)(self.read, self.rows, self.columns)
     }
 }
 
@@ -90,7 +97,8 @@ mod tests {
                 0..numbers.len(),
                 64,
                 [&mut twice],
-                &|block, [twice]| {
+                &numbers,
+                |numbers, block, [twice]| {
                     let own = &numbers[block];
                     twice
                         .iter_mut()

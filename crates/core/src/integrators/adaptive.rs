@@ -58,10 +58,18 @@ pub struct Adaptive {
 fn is_same(system: &dyn ParticleSystem, a: &[f64], b: &[f64]) -> bool {
     match system.rigid() {
         None => {
-            let [different] = add_up(threads(a.len() / 6), 0..a.len(), BLOCK, [], &|block, []| {
-                let pairs = a[block.clone()].iter().zip(&b[block]);
-                [pairs.filter(|(a, b)| a != b).count() as f64]
-            });
+            let bands = threads(a.len() / 6);
+            let [different] = add_up(
+                bands,
+                0..a.len(),
+                BLOCK,
+                [],
+                &(a, b),
+                |(a, b), block, []| {
+                    let pairs = a[block.clone()].iter().zip(&b[block]);
+                    [pairs.filter(|(a, b)| a != b).count() as f64]
+                },
+            );
             different == 0.0
         }
         Some(rigid) => (0..a.len()).all(|k| a[k] == b[k] || rigid.is_carried(k)),

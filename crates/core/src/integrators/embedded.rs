@@ -2,6 +2,8 @@
 //! sum a_ij k_j)`, an estimate of its error from other weights, and a polynomial through the step
 //! (Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.4 to II.6).
 
+use std::ops::Range;
+
 use pulp::{Arch, Simd, WithSimd};
 
 use super::error_norm::{BLOCK, ErrorNorm};
@@ -10,7 +12,7 @@ use super::{Integrator, Work, check_dim};
 use crate::error::Error;
 use crate::sums::{add_up, dot};
 use crate::system::ParticleSystem;
-use crate::threads::{fork, threads};
+use crate::threads::{Columns, fork, threads};
 
 /// Coefficients of a pair. After its stages comes k = f(t + h, y1), the first stage of the next
 /// step, and after that the stages that only the polynomial needs.
@@ -76,6 +78,40 @@ impl EmbeddedPair {
     }
 }
 
+/// The end of a step.
+struct End<'a> {
+    tableau: &'static Tableau,
+    h: f64,
+    y0: &'a [f64],
+    k: &'a [Vec<f64>],
+    /// Whether y1 is still to be formed.
+    forms: bool,
+}
+
+impl End<'_> {
+    /// Sums of squares over a block: of y0, of y1 and of the estimated errors.
+    #[expect(
+        clippy::inline_always,
+        reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found"
+    )]
+    #[inline(always)]
+    fn on_block(&self, numbers: Range<usize>, [y1]: Columns<1>) -> [f64; 4] {
+        let Self { tableau, h, k, .. } = *self;
+        if self.forms {
+            combine_block(numbers.start, y1, self.y0, h, tableau.weights, k);
+        }
+        let mut errors = [0.0; 2];
+        for (sum, weights) in errors.iter_mut().zip(tableau.errors) {
+            let mut error = [0.0; BLOCK];
+            let error = &mut error[..numbers.len()];
+            add_to_block(numbers.start, error, h, weights, k);
+            *sum = dot(error, error);
+        }
+        let y0 = &self.y0[numbers];
+        [dot(y0, y0), dot(y1, y1), errors[0], errors[1]]
+    }
+}
+
 impl Trial for EmbeddedPair {
     fn dim(&self) -> usize {
         self.last.y0.len()
@@ -117,23 +153,17 @@ impl Trial for EmbeddedPair {
             work += self.finish(system, t);
         }
         let LastStep { y0, y1, k, .. } = &mut self.last;
+        let end = End {
+            tableau,
+            h,
+            y0,
+            k,
+            forms: !reads_end,
+        };
         let bands = threads(y0.len() / 6);
         let [error, other] = norm.of_sums(y0.len(), |numbers| {
             let y1 = &mut y1[numbers.clone()];
-            add_up(bands, numbers, BLOCK, [y1], &|numbers, [y1]| {
-                if !reads_end {
-                    combine_block(numbers.start, y1, y0, h, tableau.weights, k);
-                }
-                let mut errors = [0.0; 2];
-                for (sum, weights) in errors.iter_mut().zip(tableau.errors) {
-                    let mut error = [0.0; BLOCK];
-                    let error = &mut error[..numbers.len()];
-                    add_to_block(numbers.start, error, h, weights, k);
-                    *sum = dot(error, error);
-                }
-                let y0 = &y0[numbers];
-                [dot(y0, y0), dot(y1, y1), errors[0], errors[1]]
-            })
+            add_up(bands, numbers, BLOCK, [y1], &end, End::on_block)
         });
         let error = match tableau.errors {
             [_, _] if error > 0.0 => error * error / (error * error + 0.01 * other * other).sqrt(),

@@ -1,10 +1,15 @@
 //! Tolerances, and the norm in which the error of a step is measured against them.
 
+#![expect(
+    clippy::inline_always,
+    reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found, and nothing else"
+)]
+
 use std::ops::Range;
 
 use crate::error::{Error, positive};
 use crate::sums::{add_up, dot};
-use crate::threads::threads;
+use crate::threads::{Columns, threads};
 
 /// Error that a step may make.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,12 +53,17 @@ pub(super) const BLOCK: usize = 2048;
 impl ErrorNorm {
     /// The error over the tolerated one, in the block in which that is largest.
     pub fn of(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> f64 {
-        let bands = threads(y0.len() / 6);
+        #[inline(always)]
+        fn on_block(read: &[&[f64]; 3], numbers: Range<usize>, []: Columns<0>) -> [f64; 4] {
+            let [y0, y1, error] = read.map(|a| {
+                let own = &a[numbers.clone()];
+                dot(own, own)
+            });
+            [y0, y1, error, 0.0]
+        }
+        let (bands, read) = (threads(y0.len() / 6), [y0, y1, error]);
         let [error, _] = self.of_sums(y0.len(), |numbers| {
-            add_up(bands, numbers, BLOCK, [], &|numbers, []| {
-                let square = |a: &[f64]| dot(&a[numbers.clone()], &a[numbers.clone()]);
-                [square(y0), square(y1), square(error), 0.0]
-            })
+            add_up(bands, numbers, BLOCK, [], &read, on_block)
         });
         error
     }

@@ -116,37 +116,42 @@ impl ConjugateGradients {
 
     /// p . q
     fn curvature(&mut self) -> f64 {
+        #[inline(always)]
+        fn on_block(read: &[&[f64]; 2], particles: Range<usize>, []: Columns<0>) -> [f64; 1] {
+            let [p, q] = read.map(|a| columns(a, &particles));
+            [p.into_iter().zip(q).map(|(p, q)| dot(p, q)).sum()]
+        }
         let Self { p, q, .. } = self;
-        let [sum] = add_up(p.len() / 3, [], &|particles, []| {
-            let [of_p, of_q] = [&*p, &*q].map(|a| columns(a, &particles));
-            [of_p.iter().zip(of_q).map(|(p, q)| dot(p, q)).sum()]
-        });
+        let [sum] = add_up(p.len() / 3, [], &[&p[..], q], on_block);
         sum
     }
 
     /// Takes a step along p from the residual, r -= step q. Returns r . r and r . z, with the z
     /// that the preconditioners make of r.
     fn descend(&mut self, step: f64, multigrid: Option<&mut Multigrid>) -> [f64; 2] {
+        #[inline(always)]
+        fn on_block(
+            (step, q, inverses): &(f64, &[f64], &[Vec<f64>; 6]),
+            particles: Range<usize>,
+            [a, b, c, d, e, f]: Columns<6>,
+        ) -> [f64; 2] {
+            let (mut r, mut z) = ([a, b, c], [d, e, f]);
+            for (r, q) in r.iter_mut().zip(columns(q, &particles)) {
+                for (r, q) in r.iter_mut().zip(q) {
+                    *r -= step * q;
+                }
+            }
+            let r = r.each_ref().map(|r| &**r);
+            precondition(inverses, &particles, r, &mut z);
+            let rr = r.iter().map(|r| dot(r, r)).sum();
+            [rr, r.iter().zip(&z).map(|(r, z)| dot(r, z)).sum()]
+        }
         let Self {
             r, z, q, inverses, ..
         } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(r), columns_mut(z));
-        let [rr, rz] = add_up(
-            q.len() / 3,
-            [a, b, c, d, e, f],
-            &|particles, [a, b, c, d, e, f]| {
-                let (mut r, mut z) = ([a, b, c], [d, e, f]);
-                for (r, q) in r.iter_mut().zip(columns(q, &particles)) {
-                    for (r, q) in r.iter_mut().zip(q) {
-                        *r -= step * q;
-                    }
-                }
-                let r = r.each_ref().map(|r| &**r);
-                precondition(inverses, &particles, r, &mut z);
-                let rr = r.iter().map(|r| dot(r, r)).sum();
-                [rr, r.iter().zip(&z).map(|(r, z)| dot(r, z)).sum()]
-            },
-        );
+        let read = (step, &q[..], &*inverses);
+        let [rr, rz] = add_up(q.len() / 3, [a, b, c, d, e, f], &read, on_block);
         [
             rr,
             rz + multigrid.map_or(0.0, |multigrid| multigrid.solve(r)),
@@ -154,41 +159,45 @@ impl ConjugateGradients {
     }
 
     /// Takes a step, x += step p, and turns to a new direction, p = z + turn p.
-    fn turn(&mut self, [step, turn]: [f64; 2], x: &mut [f64], multigrid: Option<&Multigrid>) {
+    fn turn(&mut self, steps: [f64; 2], x: &mut [f64], multigrid: Option<&Multigrid>) {
+        #[inline(always)]
+        fn on_block(
+            ([step, turn], z, multigrid): &([f64; 2], &[f64], Option<&Multigrid>),
+            particles: Range<usize>,
+            [a, b, c, d, e, f]: Columns<6>,
+        ) -> [f64; 0] {
+            let (x, mut p, z) = ([a, b, c], [d, e, f], columns(z, &particles));
+            for ((x, p), z) in x.into_iter().zip(&mut p).zip(z) {
+                for ((x, p), z) in x.iter_mut().zip(&mut **p).zip(z) {
+                    *x += step * *p;
+                    *p = z + turn * *p;
+                }
+            }
+            if let Some(multigrid) = multigrid {
+                for (k, i) in particles.enumerate() {
+                    for (p, z) in p.iter_mut().zip(multigrid.solution(i)) {
+                        p[k] += z;
+                    }
+                }
+            }
+            []
+        }
         let Self { z, p, .. } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(x), columns_mut(p));
-        add_up(
-            z.len() / 3,
-            [a, b, c, d, e, f],
-            &|particles, [a, b, c, d, e, f]| {
-                let (x, mut p, z) = ([a, b, c], [d, e, f], columns(z, &particles));
-                for ((x, p), z) in x.into_iter().zip(&mut p).zip(z) {
-                    for ((x, p), z) in x.iter_mut().zip(&mut **p).zip(z) {
-                        *x += step * *p;
-                        *p = z + turn * *p;
-                    }
-                }
-                if let Some(multigrid) = multigrid {
-                    for (k, i) in particles.enumerate() {
-                        for (p, z) in p.iter_mut().zip(multigrid.solution(i)) {
-                            p[k] += z;
-                        }
-                    }
-                }
-                []
-            },
-        );
+        let read = (steps, &z[..], multigrid);
+        add_up(z.len() / 3, [a, b, c, d, e, f], &read, on_block);
     }
 }
 
-/// Calls `run` on blocks of particles, with their parts of the columns, and adds up what it returns
-/// for each.
-fn add_up<const N: usize, const M: usize>(
+/// Calls `run` on blocks of particles, with what it reads and with their parts of the columns, and
+/// adds up what it returns for each.
+fn add_up<const N: usize, const M: usize, C: Sync>(
     particles: usize,
     columns: Columns<N>,
-    run: &(impl Fn(Range<usize>, Columns<N>) -> [f64; M] + Sync),
+    read: &C,
+    run: impl Fn(&C, Range<usize>, Columns<N>) -> [f64; M] + Copy + Send + Sync,
 ) -> [f64; M] {
-    sums::add_up(threads(particles), 0..particles, BLOCK, columns, run)
+    sums::add_up(threads(particles), 0..particles, BLOCK, columns, read, run)
 }
 
 /// Writes z = B^-1 r on a block of particles.
