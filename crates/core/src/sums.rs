@@ -13,22 +13,25 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::threads::{Columns, split_off};
 
-/// Calls `run` on blocks of at most `block` rows, on `bands` threads, with what it reads and with the
-/// part of the columns that belongs to the block, and adds up the numbers that it returns for each.
-/// A function that is always inlined is compiled for the processor's vectors; a closure may not be.
-pub(crate) fn add_up<const N: usize, const M: usize, C: Sync>(
+/// What is done to blocks of rows, with N columns of theirs, and gives M numbers for each.
+pub(crate) trait OnBlock<const N: usize, const M: usize>: Sync {
+    /// Is compiled for the processor's vectors if it is always inlined, as no closure can be.
+    fn run(&self, rows: Range<usize>, columns: Columns<N>) -> [f64; M];
+}
+
+/// Runs a task on blocks of at most `block` rows, on `bands` threads, each with its part of the
+/// columns, and adds up the numbers that it gives.
+pub(crate) fn add_up<const N: usize, const M: usize>(
     bands: usize,
     rows: Range<usize>,
     block: usize,
     mut columns: Columns<N>,
-    read: &C,
-    run: impl Fn(&C, Range<usize>, Columns<N>) -> [f64; M] + Copy + Send + Sync,
+    task: &impl OnBlock<N, M>,
 ) -> [f64; M] {
     let blocks = rows.len().div_ceil(block);
     if blocks < 2 {
-        return Arch::new().dispatch(OnBlock {
-            run,
-            read,
+        return Arch::new().dispatch(Dispatched::<N, M, _> {
+            task,
             rows,
             columns,
         });
@@ -37,8 +40,8 @@ pub(crate) fn add_up<const N: usize, const M: usize, C: Sync>(
     let above = blocks.next_power_of_two() / 2 * block;
     let middle = rows.start + above;
     let firsts = split_off(&mut columns, above);
-    let first = move |bands| add_up(bands, rows.start..middle, block, firsts, read, run);
-    let second = move |bands| add_up(bands, middle..rows.end, block, columns, read, run);
+    let first = move |bands| add_up(bands, rows.start..middle, block, firsts, task);
+    let second = move |bands| add_up(bands, middle..rows.end, block, columns, task);
     let (a, b) = if bands < 2 {
         (first(1), second(1))
     } else {
@@ -48,23 +51,18 @@ pub(crate) fn add_up<const N: usize, const M: usize, C: Sync>(
     array::from_fn(|k| a[k] + b[k])
 }
 
-/// A call of `run` on a block.
-struct OnBlock<'a, 'b, const N: usize, C, R> {
-    run: R,
-    read: &'a C,
+struct Dispatched<'a, 'b, const N: usize, const M: usize, T> {
+    task: &'a T,
     rows: Range<usize>,
     columns: Columns<'b, N>,
 }
 
-impl<const N: usize, const M: usize, C, R> WithSimd for OnBlock<'_, '_, N, C, R>
-where
-    R: Fn(&C, Range<usize>, Columns<N>) -> [f64; M],
-{
+impl<const N: usize, const M: usize, T: OnBlock<N, M>> WithSimd for Dispatched<'_, '_, N, M, T> {
     type Output = [f64; M];
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> [f64; M] {
-        (self.run)(self.read, self.rows, self.columns)
+        self.task.run(self.rows, self.columns)
     }
 }
 
@@ -87,26 +85,25 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
+    struct Twice<'a>(&'a [f64]);
+
+    impl OnBlock<1, 1> for Twice<'_> {
+        fn run(&self, block: Range<usize>, [twice]: Columns<1>) -> [f64; 1] {
+            let own = &self.0[block];
+            for (twice, own) in twice.iter_mut().zip(own) {
+                *twice = 2.0 * own;
+            }
+            [dot(own, own)]
+        }
+    }
+
     #[test]
     fn sums_do_not_depend_on_threads() {
         let numbers: Vec<_> = (0..10_007).map(|k| f64::from(k).sin()).collect();
         let sum = |bands| {
             let mut twice = vec![0.0; numbers.len()];
-            let [sum] = add_up(
-                bands,
-                0..numbers.len(),
-                64,
-                [&mut twice],
-                &numbers,
-                |numbers, block, [twice]| {
-                    let own = &numbers[block];
-                    twice
-                        .iter_mut()
-                        .zip(own)
-                        .for_each(|(twice, own)| *twice = 2.0 * own);
-                    [dot(own, own)]
-                },
-            );
+            let all = 0..numbers.len();
+            let [sum] = add_up(bands, all, 64, [&mut twice], &Twice(&numbers));
             assert!(twice.iter().zip(&numbers).all(|(a, b)| *a == 2.0 * b));
             sum
         };

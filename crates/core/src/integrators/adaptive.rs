@@ -1,15 +1,17 @@
 //! Adaptive steps: as long as a method's estimate of its error stays within the tolerance (Hairer,
 //! Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.4).
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::Work;
 use super::error_norm::{BLOCK, ErrorNorm, Tolerance};
 use super::trial::{LastStep, Trial};
 use crate::error::Error;
-use crate::sums::add_up;
+use crate::sums::{OnBlock, add_up};
 use crate::system::ParticleSystem;
-use crate::threads::{copy, threads};
+use crate::threads::{Columns, copy, threads};
 
 /// Shortest step (s): an equation that asks for less has no solution, or a tolerance below what
 /// double precision holds.
@@ -59,20 +61,24 @@ fn is_same(system: &dyn ParticleSystem, a: &[f64], b: &[f64]) -> bool {
     match system.rigid() {
         None => {
             let bands = threads(a.len() / 6);
-            let [different] = add_up(
-                bands,
-                0..a.len(),
-                BLOCK,
-                [],
-                &(a, b),
-                |(a, b), block, []| {
-                    let pairs = a[block.clone()].iter().zip(&b[block]);
-                    [pairs.filter(|(a, b)| a != b).count() as f64]
-                },
-            );
-            different == 0.0
+            add_up(bands, 0..a.len(), BLOCK, [], &Different(a, b)) == [0.0]
         }
         Some(rigid) => (0..a.len()).all(|k| a[k] == b[k] || rigid.is_carried(k)),
+    }
+}
+
+/// The number of numbers that differ.
+struct Different<'a>(&'a [f64], &'a [f64]);
+
+impl OnBlock<0, 1> for Different<'_> {
+    #[expect(
+        clippy::inline_always,
+        reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found"
+    )]
+    #[inline(always)]
+    fn run(&self, numbers: Range<usize>, []: Columns<0>) -> [f64; 1] {
+        let pairs = self.0[numbers.clone()].iter().zip(&self.1[numbers]);
+        [pairs.filter(|(a, b)| a != b).count() as f64]
     }
 }
 

@@ -10,7 +10,7 @@ use super::error_norm::{BLOCK, ErrorNorm};
 use super::trial::{LastStep, Trial};
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
-use crate::sums::{add_up, dot};
+use crate::sums::{OnBlock, add_up, dot};
 use crate::system::ParticleSystem;
 use crate::threads::{Columns, fork, threads};
 
@@ -88,14 +88,14 @@ struct End<'a> {
     forms: bool,
 }
 
-impl End<'_> {
-    /// Sums of squares over a block: of y0, of y1 and of the estimated errors.
+/// Sums of squares: of y0, of y1 and of the estimated errors.
+impl OnBlock<1, 4> for End<'_> {
     #[expect(
         clippy::inline_always,
         reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found"
     )]
     #[inline(always)]
-    fn on_block(&self, numbers: Range<usize>, [y1]: Columns<1>) -> [f64; 4] {
+    fn run(&self, numbers: Range<usize>, [y1]: Columns<1>) -> [f64; 4] {
         let Self { tableau, h, k, .. } = *self;
         if self.forms {
             combine_block(numbers.start, y1, self.y0, h, tableau.weights, k);
@@ -163,7 +163,7 @@ impl Trial for EmbeddedPair {
         let bands = threads(y0.len() / 6);
         let [error, other] = norm.of_sums(y0.len(), |numbers| {
             let y1 = &mut y1[numbers.clone()];
-            add_up(bands, numbers, BLOCK, [y1], &end, End::on_block)
+            add_up(bands, numbers, BLOCK, [y1], &end)
         });
         let error = match tableau.errors {
             [_, _] if error > 0.0 => error * error / (error * error + 0.01 * other * other).sqrt(),

@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use crate::error::{Error, positive};
-use crate::sums::{add_up, dot};
+use crate::sums::{OnBlock, add_up, dot};
 use crate::threads::{Columns, threads};
 
 /// Error that a step may make.
@@ -53,18 +53,8 @@ pub(super) const BLOCK: usize = 2048;
 impl ErrorNorm {
     /// The error over the tolerated one, in the block in which that is largest.
     pub fn of(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> f64 {
-        #[inline(always)]
-        fn on_block(read: &[&[f64]; 3], numbers: Range<usize>, []: Columns<0>) -> [f64; 4] {
-            let [y0, y1, error] = read.map(|a| {
-                let own = &a[numbers.clone()];
-                dot(own, own)
-            });
-            [y0, y1, error, 0.0]
-        }
-        let (bands, read) = (threads(y0.len() / 6), [y0, y1, error]);
-        let [error, _] = self.of_sums(y0.len(), |numbers| {
-            add_up(bands, numbers, BLOCK, [], &read, on_block)
-        });
+        let (bands, task) = (threads(y0.len() / 6), Squares([y0, y1, error]));
+        let [error, _] = self.of_sums(y0.len(), |numbers| add_up(bands, numbers, BLOCK, [], &task));
         error
     }
 
@@ -87,5 +77,19 @@ impl ErrorNorm {
             }
         }
         largest
+    }
+}
+
+/// Sums of squares.
+struct Squares<'a>([&'a [f64]; 3]);
+
+impl OnBlock<0, 4> for Squares<'_> {
+    #[inline(always)]
+    fn run(&self, numbers: Range<usize>, []: Columns<0>) -> [f64; 4] {
+        let [y0, y1, error] = self.0.map(|a| {
+            let own = &a[numbers.clone()];
+            dot(own, own)
+        });
+        [y0, y1, error, 0.0]
     }
 }

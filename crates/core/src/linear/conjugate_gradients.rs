@@ -16,7 +16,7 @@ use super::block::inverse;
 use super::multigrid::Multigrid;
 use super::tangent::Tangent;
 use crate::columns::{columns, columns_mut};
-use crate::sums::{self, dot};
+use crate::sums::{self, OnBlock, dot};
 use crate::system::Linearized;
 use crate::threads::{Columns, threads};
 
@@ -116,42 +116,20 @@ impl ConjugateGradients {
 
     /// p . q
     fn curvature(&mut self) -> f64 {
-        #[inline(always)]
-        fn on_block(read: &[&[f64]; 2], particles: Range<usize>, []: Columns<0>) -> [f64; 1] {
-            let [p, q] = read.map(|a| columns(a, &particles));
-            [p.into_iter().zip(q).map(|(p, q)| dot(p, q)).sum()]
-        }
         let Self { p, q, .. } = self;
-        let [sum] = add_up(p.len() / 3, [], &[&p[..], q], on_block);
+        let [sum] = add_up(p.len() / 3, [], &Product { p, q });
         sum
     }
 
     /// Takes a step along p from the residual, r -= step q. Returns r . r and r . z, with the z
     /// that the preconditioners make of r.
     fn descend(&mut self, step: f64, multigrid: Option<&mut Multigrid>) -> [f64; 2] {
-        #[inline(always)]
-        fn on_block(
-            (step, q, inverses): &(f64, &[f64], &[Vec<f64>; 6]),
-            particles: Range<usize>,
-            [a, b, c, d, e, f]: Columns<6>,
-        ) -> [f64; 2] {
-            let (mut r, mut z) = ([a, b, c], [d, e, f]);
-            for (r, q) in r.iter_mut().zip(columns(q, &particles)) {
-                for (r, q) in r.iter_mut().zip(q) {
-                    *r -= step * q;
-                }
-            }
-            let r = r.each_ref().map(|r| &**r);
-            precondition(inverses, &particles, r, &mut z);
-            let rr = r.iter().map(|r| dot(r, r)).sum();
-            [rr, r.iter().zip(&z).map(|(r, z)| dot(r, z)).sum()]
-        }
         let Self {
             r, z, q, inverses, ..
         } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(r), columns_mut(z));
-        let read = (step, &q[..], &*inverses);
-        let [rr, rz] = add_up(q.len() / 3, [a, b, c, d, e, f], &read, on_block);
+        let task = Descent { step, q, inverses };
+        let [rr, rz] = add_up(q.len() / 3, [a, b, c, d, e, f], &task);
         [
             rr,
             rz + multigrid.map_or(0.0, |multigrid| multigrid.solve(r)),
@@ -159,45 +137,91 @@ impl ConjugateGradients {
     }
 
     /// Takes a step, x += step p, and turns to a new direction, p = z + turn p.
-    fn turn(&mut self, steps: [f64; 2], x: &mut [f64], multigrid: Option<&Multigrid>) {
-        #[inline(always)]
-        fn on_block(
-            ([step, turn], z, multigrid): &([f64; 2], &[f64], Option<&Multigrid>),
-            particles: Range<usize>,
-            [a, b, c, d, e, f]: Columns<6>,
-        ) -> [f64; 0] {
-            let (x, mut p, z) = ([a, b, c], [d, e, f], columns(z, &particles));
-            for ((x, p), z) in x.into_iter().zip(&mut p).zip(z) {
-                for ((x, p), z) in x.iter_mut().zip(&mut **p).zip(z) {
-                    *x += step * *p;
-                    *p = z + turn * *p;
-                }
-            }
-            if let Some(multigrid) = multigrid {
-                for (k, i) in particles.enumerate() {
-                    for (p, z) in p.iter_mut().zip(multigrid.solution(i)) {
-                        p[k] += z;
-                    }
-                }
-            }
-            []
-        }
+    fn turn(&mut self, [step, turn]: [f64; 2], x: &mut [f64], multigrid: Option<&Multigrid>) {
         let Self { z, p, .. } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(x), columns_mut(p));
-        let read = (steps, &z[..], multigrid);
-        add_up(z.len() / 3, [a, b, c, d, e, f], &read, on_block);
+        let task = Turn {
+            step,
+            share: turn,
+            z,
+            multigrid,
+        };
+        add_up(z.len() / 3, [a, b, c, d, e, f], &task);
     }
 }
 
-/// Calls `run` on blocks of particles, with what it reads and with their parts of the columns, and
-/// adds up what it returns for each.
-fn add_up<const N: usize, const M: usize, C: Sync>(
+/// Runs a task on blocks of particles, each with its part of the columns, and adds up what it
+/// gives.
+fn add_up<const N: usize, const M: usize>(
     particles: usize,
     columns: Columns<N>,
-    read: &C,
-    run: impl Fn(&C, Range<usize>, Columns<N>) -> [f64; M] + Copy + Send + Sync,
+    task: &impl OnBlock<N, M>,
 ) -> [f64; M] {
-    sums::add_up(threads(particles), 0..particles, BLOCK, columns, read, run)
+    sums::add_up(threads(particles), 0..particles, BLOCK, columns, task)
+}
+
+struct Product<'a> {
+    p: &'a [f64],
+    q: &'a [f64],
+}
+
+impl OnBlock<0, 1> for Product<'_> {
+    #[inline(always)]
+    fn run(&self, particles: Range<usize>, []: Columns<0>) -> [f64; 1] {
+        let [p, q] = [self.p, self.q].map(|a| columns(a, &particles));
+        [p.into_iter().zip(q).map(|(p, q)| dot(p, q)).sum()]
+    }
+}
+
+struct Descent<'a> {
+    step: f64,
+    q: &'a [f64],
+    inverses: &'a [Vec<f64>; 6],
+}
+
+impl OnBlock<6, 2> for Descent<'_> {
+    #[inline(always)]
+    fn run(&self, particles: Range<usize>, [a, b, c, d, e, f]: Columns<6>) -> [f64; 2] {
+        let (mut r, mut z) = ([a, b, c], [d, e, f]);
+        for (r, q) in r.iter_mut().zip(columns(self.q, &particles)) {
+            for (r, q) in r.iter_mut().zip(q) {
+                *r -= self.step * q;
+            }
+        }
+        let r = r.each_ref().map(|r| &**r);
+        precondition(self.inverses, &particles, r, &mut z);
+        let rr = r.iter().map(|r| dot(r, r)).sum();
+        [rr, r.iter().zip(&z).map(|(r, z)| dot(r, z)).sum()]
+    }
+}
+
+struct Turn<'a> {
+    step: f64,
+    /// Share of the old direction in the new one.
+    share: f64,
+    z: &'a [f64],
+    multigrid: Option<&'a Multigrid>,
+}
+
+impl OnBlock<6, 0> for Turn<'_> {
+    #[inline(always)]
+    fn run(&self, particles: Range<usize>, [a, b, c, d, e, f]: Columns<6>) -> [f64; 0] {
+        let (x, mut p, z) = ([a, b, c], [d, e, f], columns(self.z, &particles));
+        for ((x, p), z) in x.into_iter().zip(&mut p).zip(z) {
+            for ((x, p), z) in x.iter_mut().zip(&mut **p).zip(z) {
+                *x += self.step * *p;
+                *p = z + self.share * *p;
+            }
+        }
+        if let Some(multigrid) = self.multigrid {
+            for (k, i) in particles.enumerate() {
+                for (p, z) in p.iter_mut().zip(multigrid.solution(i)) {
+                    p[k] += z;
+                }
+            }
+        }
+        []
+    }
 }
 
 /// Writes z = B^-1 r on a block of particles.
