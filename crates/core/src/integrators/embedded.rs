@@ -208,7 +208,7 @@ impl Trial for EmbeddedPair {
         // F0 = y1 - y0, F1 = h k0 - F0, F2 = 2 F0 - h (k0 + k1).
         let (of_f0, of_k0, of_k1) = (p - q + 2.0 * r, h * (q - r), -h * r);
         let LastStep { y0, y1, k, .. } = &self.last;
-        blocks(out, |start, out| {
+        blocks(6, out, |start, out| {
             let [y0, y1, k0, k1] = [y0, y1, &k[0], &k[last]].map(|a| &a[start..start + out.len()]);
             for ((((out, y0), y1), k0), k1) in out.iter_mut().zip(y0).zip(y1).zip(k0).zip(k1) {
                 *out = y0 + of_f0 * (y1 - y0) + of_k0 * k0 + of_k1 * k1;
@@ -247,7 +247,7 @@ impl Integrator for EmbeddedPair {
 
 /// out = y + h sum weights k
 fn combine(out: &mut [f64], y: &[f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
-    blocks(out, |start, out| {
+    blocks(6, out, |start, out| {
         combine_block(start, out, y, h, weights, k);
     });
 }
@@ -264,45 +264,29 @@ fn combine_block(
     add_to_block(start, out, h, weights, k);
 }
 
-/// Largest number of terms of a sum.
-const MOST: usize = 20;
-
 /// Adds h sum weights k to a block of numbers, of which `start` is the first.
 pub(super) fn add_to_block(start: usize, out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
-    let mut terms = [(0.0, &[][..]); MOST];
-    let mut count = 0;
-    for (weight, k) in weights.iter().zip(k).filter(|(weight, _)| **weight != 0.0) {
-        terms[count] = (h * weight, &k[start..start + out.len()]);
-        count += 1;
-    }
-    let Some((_, first)) = terms[..count].first().copied() else {
-        return;
-    };
-    // The last four are filled up.
-    terms[count..].fill((0.0, first));
-    let arch = Arch::new();
-    let mut rest = &terms[..count.next_multiple_of(4)];
-    // In as few passes over the numbers as there can be.
-    while let Some((terms, others)) = rest.split_first_chunk::<12>() {
-        arch.dispatch(Add { out, terms });
-        rest = others;
-    }
-    if let Some((terms, others)) = rest.split_first_chunk::<8>() {
-        arch.dispatch(Add { out, terms });
-        rest = others;
-    }
-    if let Some(terms) = rest.first_chunk::<4>() {
-        arch.dispatch(Add { out, terms });
+    let block = start..start + out.len();
+    let mut terms = weights
+        .iter()
+        .zip(k)
+        .filter(|(weight, _)| **weight != 0.0)
+        .map(|(weight, k)| (h * weight, &k[block.clone()]));
+    while let Some(first) = terms.next() {
+        let none = (0.0, first.1);
+        let mut or_none = || terms.next().unwrap_or(none);
+        let terms = [first, or_none(), or_none(), or_none()];
+        Arch::new().dispatch(Add { out, terms });
     }
 }
 
-/// Sum of terms, four at a time, added to `out`.
-struct Add<'a, const N: usize> {
+/// Sum of four terms, added to `out`.
+struct Add<'a> {
     out: &'a mut [f64],
-    terms: &'a [(f64, &'a [f64]); N],
+    terms: [(f64, &'a [f64]); 4],
 }
 
-impl<const N: usize> WithSimd for Add<'_, N> {
+impl WithSimd for Add<'_> {
     type Output = ();
 
     #[expect(
@@ -310,31 +294,18 @@ impl<const N: usize> WithSimd for Add<'_, N> {
         reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found"
     )]
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { out, terms } = self;
-        let (vectors, rest) = S::as_mut_simd_f64s(out);
-        let weights = terms.map(|(weight, _)| simd.splat_f64s(weight));
-        let k = terms.map(|(_, k)| &S::as_simd_f64s(k).0[..vectors.len()]);
-        for (i, out) in vectors.iter_mut().enumerate() {
-            for g in (0..N).step_by(4) {
-                let [a, b, c, d] = [0, 1, 2, 3].map(|j| simd.mul_f64s(weights[g + j], k[g + j][i]));
-                let four = simd.add_f64s(simd.add_f64s(a, b), simd.add_f64s(c, d));
-                *out = simd.add_f64s(*out, four);
-            }
-        }
-        let first = terms[0].1.len() - rest.len();
-        for (i, out) in rest.iter_mut().enumerate() {
-            for four in terms.as_chunks::<4>().0 {
-                let [a, b, c, d] = four.map(|(weight, k)| weight * k[first + i]);
-                *out += (a + b) + (c + d);
-            }
+    fn with_simd<S: Simd>(self, _: S) {
+        let [(a, p), (b, q), (c, r), (d, s)] = self.terms;
+        for ((((out, p), q), r), s) in self.out.iter_mut().zip(p).zip(q).zip(r).zip(s) {
+            *out += (a * p + b * q) + (c * r + d * s);
         }
     }
 }
 
-/// Visits blocks of numbers, each with its first index, on several threads if there are many.
-pub(super) fn blocks(out: &mut [f64], run: impl Fn(usize, &mut [f64]) + Sync) {
-    let bands = threads(out.len() / 6);
+/// Visits blocks of numbers, each with its first index, on several threads if there are many: so
+/// many numbers for each particle.
+pub(super) fn blocks(each: usize, out: &mut [f64], run: impl Fn(usize, &mut [f64]) + Sync) {
+    let bands = threads(out.len() / each);
     let rows = out.len().div_ceil(BLOCK);
     fork(bands, 0..rows, BLOCK, [out], &|rows, [out]| {
         for (block, out) in out.chunks_mut(BLOCK).enumerate() {

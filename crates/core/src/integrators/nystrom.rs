@@ -131,7 +131,7 @@ impl Step<'_> {
     ) {
         let (h, drag) = (self.h, self.drag);
         let start = y0.map(|y0| y0.split_at(x.len()));
-        blocks(x, |first, x| {
+        blocks(3, x, |first, x| {
             let numbers = first..first + x.len();
             x.fill(0.0);
             add_to_block(first, x, h * h, weights, k);
@@ -162,7 +162,7 @@ impl Step<'_> {
         self.positions(s, weights[0], y0, k, x);
         let (h, drag) = (self.h, self.drag);
         let start = y0.map(|y0| y0.split_at(x.len()));
-        blocks(v, |first, v| {
+        blocks(3, v, |first, v| {
             let numbers = first..first + v.len();
             v.fill(0.0);
             add_to_block(first, v, h, weights[1], k);
@@ -188,7 +188,7 @@ impl Step<'_> {
         if drag.coefficient == 0.0 {
             return;
         }
-        blocks(k, |first, k| {
+        blocks(3, k, |first, k| {
             drag.runs(first..first + k.len(), |run, g| {
                 let grown = libm::exp(g * s);
                 for i in run {
