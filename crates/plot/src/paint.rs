@@ -9,8 +9,8 @@ pub struct Pen {
     pub colour: &'static str,
     /// The width, in units of the sheet.
     pub width: f64,
-    /// The lengths of dashes and gaps in turn, in units of the sheet, as SVG has them.
-    pub dash: String,
+    /// The lengths of dashes and gaps in turn, in units of the sheet; none for a solid line.
+    pub dash: Vec<f64>,
     /// Whether lines end in half a circle, and not at once.
     pub round: bool,
 }
@@ -21,13 +21,13 @@ impl Pen {
         Self {
             colour,
             width,
-            dash: String::new(),
+            dash: vec![],
             round: false,
         }
     }
 
     /// The pen, with dashes.
-    pub fn dashed(self, dash: String) -> Self {
+    pub fn dashed(self, dash: Vec<f64>) -> Self {
         Self { dash, ..self }
     }
 
@@ -46,7 +46,8 @@ impl fmt::Display for Pen {
         let (colour, width) = (self.colour, self.width);
         write!(f, "stroke=\"{colour}\" stroke-width=\"{width:.2}\"")?;
         if !self.dash.is_empty() {
-            write!(f, " stroke-dasharray=\"{}\"", self.dash)?;
+            let lengths: Vec<_> = self.dash.iter().map(|d| format!("{d:.2}")).collect();
+            write!(f, " stroke-dasharray=\"{}\"", lengths.join(" "))?;
         }
         if self.round {
             f.write_str(" stroke-linecap=\"round\"")?;

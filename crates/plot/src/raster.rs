@@ -156,8 +156,8 @@ fn colour(code: &str, opacity: f64) -> tiny_skia::Paint<'static> {
 }
 
 /// Dashes and gaps, of which SVG repeats an odd number of lengths.
-fn dash(lengths: &str) -> Option<StrokeDash> {
-    let mut lengths: Vec<f32> = lengths.split(' ').filter_map(|d| d.parse().ok()).collect();
+fn dash(lengths: &[f64]) -> Option<StrokeDash> {
+    let mut lengths: Vec<_> = lengths.iter().map(|d| *d as f32).collect();
     if lengths.len() % 2 == 1 {
         lengths.extend_from_within(..);
     }

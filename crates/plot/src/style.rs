@@ -54,12 +54,8 @@ pub(crate) enum Filling {
 impl CurveStyle {
     /// The pen of a line in this style.
     pub(crate) fn pen(self, width: f64) -> Pen {
-        let dash: Vec<_> = self
-            .dash
-            .iter()
-            .map(|d| format!("{:.2}", d * width))
-            .collect();
-        Pen::new(self.colour, width).dashed(dash.join(" "))
+        let dash = self.dash.iter().map(|d| d * width).collect();
+        Pen::new(self.colour, width).dashed(dash)
     }
 
     /// Draws a marker.

@@ -129,9 +129,9 @@ impl Constraints {
         };
         self.ends.push([hold(first), second.map_or(nothing, hold)]);
         let (own, owners) = (self.all.len(), &mut self.owners);
-        let mut numbers = 0..;
+        let before = owners.len();
         constraint.equations(Vector3::zeros(), Vector3::zeros(), |_| {
-            owners.extend(numbers.next().map(|number| (own, number)));
+            owners.push((own, owners.len() - before));
         });
         self.all.push(constraint);
         self.pattern = OnceLock::new();
@@ -216,11 +216,12 @@ impl Constraints {
                     (i, None) => vector(a, i),
                 };
                 let v_relative = relative(v);
-                let (mut numbers, mut own) = (0.., None);
+                let (mut count, mut own) = (0, None);
                 constraint.equations(relative(x), v_relative, |equation| {
-                    if numbers.next() == Some(number) {
+                    if count == number {
                         own = Some(equation);
                     }
+                    count += 1;
                 });
                 let Some(equation) = own else {
                     return;

@@ -160,7 +160,7 @@ impl<'a> Drawing<'a> {
         };
         let x = self.axes[0].at(still);
         let ends = [[x, self.main.y0], [x, self.main.y1]];
-        let pen = Pen::new(GREY, 0.08 * self.fine).dashed("4 3".to_owned());
+        let pen = Pen::new(GREY, 0.08 * self.fine).dashed(vec![4.0, 3.0]);
         figure.line(&ends, pen);
         let size = 0.85 * self.size;
         let label = Label::new("nothing moves", size).colour(GREY).turned();
