@@ -130,15 +130,19 @@ impl ErrorNorm<'_> {
     ) -> impl Iterator<Item = ([f64; 2], Tolerated)> {
         let mut all = [Sums::default(); QUANTITIES];
         self.system.measures(&mut |numbers, measure| {
-            let count = numbers.len() as f64;
-            let [y0, y1, errors @ ..] = sums(numbers);
-            let (quantity, factor) = match measure {
-                Measure::Plain => (0, 1.0),
-                Measure::Position => (1, 3.0),
-                Measure::Velocity => (2, 1.0),
-                // A turn by an angle changes a unit quaternion by half of that.
-                Measure::Rotation { radius } => (3, 4.0 * radius * radius / y0),
-                Measure::Momentum { speed } => (4, speed * speed),
+            let length = numbers.len() as f64;
+            let [mut y0, mut y1, errors @ ..] = sums(numbers);
+            let (quantity, count, factor) = match measure {
+                Measure::Plain => (0, length, 1.0),
+                Measure::Position => (1, length / 3.0, 1.0),
+                Measure::Velocity => (2, length / 3.0, 1.0),
+                Measure::Rotation { radius } => {
+                    // A turn changes a unit quaternion by half its angle.
+                    let factor = 4.0 * radius * radius / y0;
+                    (y0, y1) = (0.25 * y0, 0.25 * y0);
+                    (3, 1.0, factor)
+                }
+                Measure::Momentum { speed } => (4, 1.0, speed * speed),
             };
             let all = &mut all[quantity];
             all.count += count;
