@@ -89,18 +89,18 @@ impl Description {
     /// broken. A particle in a hand is let go of.
     pub fn begin_with(&mut self, model: &Model, now: &Checkpoint) {
         let (n, t) = (model.particles(), now.time());
-        self.solver = Some(now.method.name.into());
-        self.step = Some(now.control.value());
+        self.solver = Some(now.run.method.name.into());
+        self.step = Some(now.run.control.value());
         let rows = |part: &[f64]| {
             (0..n)
                 .map(|i| [part[i], part[n + i], part[2 * n + i]])
                 .collect()
         };
-        let mut parts = now.y.chunks_exact(3 * n);
+        let mut parts = now.run.y.chunks_exact(3 * n);
         let rotations = || {
             let network = model.network().into_iter();
             network.flat_map(|network| {
-                (0..network.bodies().len()).map(|k| network.rotation(k, &now.y))
+                (0..network.bodies().len()).map(|k| network.rotation(k, &now.run.y))
             })
         };
         self.state = Some(State {
@@ -243,13 +243,13 @@ impl Description {
 /// pinned where it is if it was pinned before.
 fn pins(now: &Checkpoint) -> Vec<Pin> {
     let mut pins: Vec<Pin> = vec![];
-    let held = now.grabbed.filter(|grabbed| grabbed.was_pinned);
+    let held = now.run.grabbed.filter(|grabbed| grabbed.was_pinned);
     let held = held.map(|grabbed| (grabbed.particle, grabbed.path));
     let is_led = |i: usize| now.pins.iter().any(|(pin, _)| *pin == i);
     let held = held.filter(|(i, _)| !is_led(*i));
     for (i, path) in now.pins.iter().copied().chain(held) {
         let Motion { sine, shift, about } =
-            match now.grabbed.filter(|grabbed| grabbed.particle == i) {
+            match now.run.grabbed.filter(|grabbed| grabbed.particle == i) {
                 None => motion(&path, now.time()),
                 Some(grabbed) if grabbed.was_pinned => Motion::default(),
                 Some(_) => continue,

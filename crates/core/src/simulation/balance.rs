@@ -76,6 +76,11 @@ impl Balance {
         self.own + self.fall + self.work
     }
 
+    /// Whether the run had gained little when it was last looked at.
+    pub(super) fn is_sound(&self) -> bool {
+        self.share < NOTED
+    }
+
     /// Whether the particles alone move with more energy than a run may gain. What flies through a
     /// whole scene in a step meets all of it, and costs thousands of steps.
     fn is_exceeded(&self, network: &Network, y: &[f64]) -> bool {
@@ -89,10 +94,9 @@ impl Balance {
     }
 }
 
-/// Balance with its scratch.
+/// Scratch of a balance, and what it is found by.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
-    pub balance: Balance,
     /// Whether a hand has changed the run since the last look.
     pub disturbed: bool,
     /// Radius of the scene (m).
@@ -102,8 +106,8 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Begins with a run at y at time t (s), whose scene has that radius (m).
-    pub fn begin(&mut self, network: &Network, (t, y): (f64, &[f64]), radius: f64) {
+    /// Balance of a run at y at time t (s), whose scene has that radius (m).
+    pub fn begin(&mut self, network: &Network, (t, y): (f64, &[f64]), radius: f64) -> Balance {
         let energy = energy_of(network, t, y);
         let mass = network.masses().iter().sum::<f64>();
         let weight = network.gravity().map_or(0.0, |g| g.norm()) * mass;
@@ -111,36 +115,30 @@ impl Watch {
         (self.disturbed, self.radius) = (false, radius);
         // A step allocates nothing.
         self.scratch = [(); 2].map(|()| vec![0.0; y.len()]);
-        self.balance = Balance {
+        Balance {
             time: t,
             energy: energy.total(),
             begin: energy.total(),
             own: energy.kinetic + energy.elastic + energy.contact + weight * radius + unseen,
             gravitational: energy.gravitational,
             ..Balance::default()
-        };
+        }
     }
 
-    /// Goes on with the balance of another time.
-    pub fn resume(&mut self, balance: Balance) {
-        (self.balance, self.disturbed) = (balance, false);
-    }
-
-    /// Whether the run had gained little when it was last looked at.
-    pub fn is_sound(&self) -> bool {
-        self.balance.share < NOTED
+    /// Goes on from another state.
+    pub fn resume(&mut self) {
+        self.disturbed = false;
     }
 
     /// Forgets what the run gained: it goes on by other steps.
-    pub fn start_over(&mut self) {
-        (self.balance.most, self.disturbed) = (None, true);
+    pub fn start_over(&mut self, balance: &mut Balance) {
+        (balance.most, self.disturbed) = (None, true);
     }
 
     /// Takes what hands changed since the last look as theirs.
-    pub fn forgive(&mut self, network: &Network, t: f64, y: &[f64]) {
+    pub fn forgive(&mut self, network: &Network, balance: &mut Balance, t: f64, y: &[f64]) {
         if std::mem::take(&mut self.disturbed) {
             let energy = energy_of(network, t, y).total();
-            let balance = &mut self.balance;
             balance.begin += energy - balance.energy;
             (balance.time, balance.energy, balance.power) = (t, energy, 0.0);
             balance.share = 0.0;
@@ -153,6 +151,7 @@ impl Watch {
     pub fn met(
         &mut self,
         model: &Model,
+        balance: &mut Balance,
         now: (f64, &[f64]),
         met: &Statistics,
         lost: Option<Cause>,
@@ -165,23 +164,28 @@ impl Watch {
             // Most of the work that obstacles did.
             let speed = |obstacle: &Obstacle| fastest(obstacle, now.0, self.radius);
             let speeds = network.obstacles().iter().map(speed);
-            self.balance.work += impulse * speeds.fold(0.0, f64::max);
+            balance.work += impulse * speeds.fold(0.0, f64::max);
         }
         match lost {
             Some(Cause::Away { .. }) => {
-                self.look(network, now, true);
-                lost.filter(|_| !self.is_sound())
+                self.look(network, balance, now, true);
+                lost.filter(|_| !balance.is_sound())
             }
             Some(_) => lost,
-            None => self.look(network, now, false),
+            None => self.look(network, balance, now, false),
         }
     }
 
     /// Looks at the energy of y at time t (s), if it is time to, or at once. Returns the gain by
     /// which the run is lost.
-    fn look(&mut self, network: &Network, (t, y): (f64, &[f64]), at_once: bool) -> Option<Cause> {
+    fn look(
+        &mut self,
+        network: &Network,
+        balance: &mut Balance,
+        (t, y): (f64, &[f64]),
+        at_once: bool,
+    ) -> Option<Cause> {
         let driven = is_driven(network);
-        let balance = &mut self.balance;
         let since = t - balance.time;
         let early = !at_once && since < if driven { DRIVEN } else { REST };
         if early && !(network.contact_layer().is_some() && balance.is_exceeded(network, y)) {
@@ -222,8 +226,8 @@ impl Simulation {
     /// Begins the balance with the state as it is now.
     pub(super) fn begin_watch(&mut self) {
         if let Model::Network(network) = &self.model {
-            let (t, radius) = (self.since, self.radius);
-            self.watch.begin(network, (t, &self.y), radius);
+            let (now, radius) = ((self.state.since, &self.state.y[..]), self.radius);
+            self.state.balance = self.watch.begin(network, now, radius);
         }
     }
 
@@ -231,7 +235,7 @@ impl Simulation {
     /// step is too long.
     #[must_use]
     pub fn gained(&self) -> Option<Gain> {
-        self.watch.balance.most.filter(|gain| gain.share > NOTED)
+        self.state.balance.most.filter(|gain| gain.share > NOTED)
     }
 }
 

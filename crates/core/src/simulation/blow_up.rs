@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Checkpoint, Simulation};
+use super::Simulation;
 use crate::error::{BlowUp, Cause, Error};
 use crate::rigid::{Body, ROTATION};
 use crate::scene::Model;
@@ -33,9 +33,11 @@ impl Simulation {
             return Err(blow_up.into());
         }
         if let Model::Network(network) = &self.model {
-            self.watch.forgive(network, self.time(), &self.y);
+            let (time, state) = (self.state.time(), &mut self.state);
+            self.watch
+                .forgive(network, &mut state.balance, time, &state.y);
         }
-        if self.watch.is_sound() && self.beyond(GOOD, &self.y).is_none() {
+        if self.state.balance.is_sound() && self.beyond(GOOD, &self.state.y).is_none() {
             self.keep_good();
         }
         Ok(())
@@ -44,20 +46,22 @@ impl Simulation {
     /// Counts a step that ends at `time` (s). After a blow-up, goes back to the last state in
     /// shape.
     pub(super) fn judge(&mut self, cause: Option<Cause>, time: f64) -> Result<(), Error> {
-        self.steps += 1;
+        self.state.steps += 1;
         let Some(cause) = cause else { return Ok(()) };
         let blow_up = BlowUp {
-            method: self.method.title,
-            control: self.control,
-            step: self.steps,
+            method: self.state.method.title,
+            control: self.state.control,
+            step: self.state.steps,
             time,
             cause,
         };
         self.blow_up = Some(blow_up);
-        let good = std::mem::replace(&mut self.good, Checkpoint::empty(self.method, self.control));
-        let result = self.go_back(&good);
-        self.good = good;
-        result.and(Err(blow_up.into()))
+        if let Some(good) = self.good.take() {
+            let result = self.go_back(&good);
+            self.good = Some(good);
+            result?;
+        }
+        Err(blow_up.into())
     }
 
     /// The particle to which number k of the state belongs: for the rotation of a rigid body, its

@@ -3,28 +3,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
-use super::balance::Balance;
+use super::state::RunState;
 use super::stepper::{Progress, Stepper};
 use super::tuning::{let_touch, touches_itself};
-use crate::contact::{Guarded, Shape};
-use crate::control::Control;
+use crate::contact::Shape;
 use crate::elements::Wind;
 use crate::error::Error;
-use crate::integrators::{Method, Work};
 use crate::network::Network;
 use crate::path::Path;
 use crate::scene::Model;
-
-/// A particle in the hand.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Grabbed {
-    /// Number of the particle.
-    pub particle: usize,
-    /// Whether the particle was pinned before, and is again when the hand lets go.
-    pub was_pinned: bool,
-    /// Path along which the hand leads it.
-    pub path: Path,
-}
 
 /// A run at one time: all that it needs, beside its scene, to go on to the same bits.
 ///
@@ -34,90 +21,47 @@ pub struct Grabbed {
 /// [`Simulation::record`] did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
-    /// The method.
-    #[serde(with = "by_name")]
-    pub method: &'static Method,
-    /// The step or the tolerance.
-    pub control: Control,
-    /// Time at which the steps that are counted in `taken` began (s).
-    pub since: f64,
-    /// Steps of the same size since then: the time is `since` + `taken` x step.
-    pub taken: u64,
-    /// Steps since the beginning.
-    pub steps: u64,
-    /// Cost of these steps.
-    pub work: Work,
-    /// What the guard of surfaces did in these steps.
-    #[serde(default)]
-    pub guarded: Guarded,
-    /// Balance of its energy.
-    #[serde(default)]
-    pub balance: Balance,
-    /// The state y: of a network [x | v], in m and m/s.
-    pub y: Vec<f64>,
+    /// State of the run.
+    pub run: RunState,
     /// Pinned particles and their paths.
     pub pins: Vec<(usize, Path)>,
-    /// Whether the scene's pins hold nothing.
-    pub unpinned: bool,
-    /// The particle in the hand.
-    pub grabbed: Option<Grabbed>,
-    /// The number of the obstacle in the hand.
-    pub grabbed_obstacle: Option<usize>,
-    /// Numbers and paths of the obstacles, but for floors.
+    /// Numbers and paths of the obstacles, except floors.
     pub obstacles: Vec<(usize, Path)>,
-    /// Whether the pins swing.
-    pub swinging: bool,
-    /// Phase of the swing (rad): while it swings, sin(rate t + phase); while it stands, sin(phase).
-    pub swing_phase: f64,
     /// The wind that blows.
     pub wind: Option<Wind>,
     /// Whether surfaces touch one another and themselves.
-    #[serde(default)]
     pub touching: bool,
     /// Springs that have broken, by the particles at their ends, the lower number first, in order.
     pub torn: Vec<[usize; 2]>,
-    /// Progress of an adaptive method.
-    pub adaptive: Option<Progress>,
+    /// Progress within a step, and of an adaptive method.
+    pub progress: Progress,
 }
 
 impl Checkpoint {
-    /// A checkpoint without state.
-    pub(super) fn empty(method: &'static Method, control: Control) -> Self {
+    /// Checkpoint of a run in a state, without changes of its scene.
+    pub(super) fn new(run: RunState) -> Self {
         Self {
-            method,
-            control,
-            since: 0.0,
-            taken: 0,
-            steps: 0,
-            work: Work::default(),
-            guarded: Guarded::default(),
-            balance: Balance::default(),
-            y: vec![],
+            run,
             pins: vec![],
-            unpinned: false,
-            grabbed: None,
-            grabbed_obstacle: None,
             obstacles: vec![],
-            swinging: false,
-            swing_phase: 0.0,
             wind: None,
             touching: false,
             torn: vec![],
-            adaptive: None,
+            progress: Progress::default(),
         }
     }
 
     /// Simulated time (s).
     #[must_use]
     pub fn time(&self) -> f64 {
-        self.since + self.taken as f64 * self.control.step().unwrap_or(0.0)
+        self.run.time()
     }
 
     /// Memory of a checkpoint without the last step of an adaptive method (bytes).
     #[must_use]
     pub fn size(&self) -> usize {
         size_of::<Self>()
-            + size_of_val(&self.y[..])
+            + size_of_val(&self.run.y[..])
             + size_of_val(&self.pins[..])
             + size_of_val(&self.obstacles[..])
             + size_of_val(&self.torn[..])
@@ -125,13 +69,14 @@ impl Checkpoint {
 
     /// `Ok` if the state is one of a system of this dimension.
     fn check(&self, dim: usize) -> Result<(), Error> {
-        if self.y.len() != dim {
+        let y = &self.run.y;
+        if y.len() != dim {
             return Err(Error::Dimension {
                 expected: dim,
-                found: self.y.len(),
+                found: y.len(),
             });
         }
-        if !self.time().is_finite() || self.y.iter().any(|y| !y.is_finite()) {
+        if !self.time().is_finite() || y.iter().any(|y| !y.is_finite()) {
             return Err(Error::Invalid(
                 "the state and the time of a checkpoint must be finite".into(),
             ));
@@ -154,11 +99,11 @@ impl Checkpoint {
             network.lead_obstacle(*k, *path)?;
         }
         network.set_wind(self.wind);
-        if let Some(grabbed) = &self.grabbed {
+        if let Some(grabbed) = &self.run.grabbed {
             network.check_particle(grabbed.particle)?;
             grabbed.attract(network);
         }
-        if let Some(k) = self.grabbed_obstacle {
+        if let Some(k) = self.run.grabbed_obstacle {
             network.check_obstacle(k)?;
         }
         Ok(())
@@ -170,61 +115,49 @@ impl Simulation {
     /// of the state.
     #[must_use]
     pub fn checkpoint(&self) -> Checkpoint {
-        Checkpoint {
-            adaptive: self.stepper.progress(true),
-            ..self.moment()
-        }
+        let mut whole = self.moment();
+        whole.run.copy_from(&self.state);
+        whole.progress = self.stepper.progress(true);
+        whole
     }
 
     /// The run as it is now, without the last step of an adaptive method: what goes on from there
     /// begins a new one.
     #[must_use]
     pub fn moment(&self) -> Checkpoint {
-        let mut moment = Checkpoint::empty(self.method, self.control);
-        self.record(&mut moment);
+        let mut moment = Checkpoint::new(self.state.clone());
+        self.record_model(&mut moment);
         moment
     }
 
     /// Writes a [moment](Self::moment) over another one, whose memory is used again.
     pub fn record(&self, moment: &mut Checkpoint) {
-        let mut old = std::mem::replace(moment, Checkpoint::empty(self.method, self.control));
-        old.y.clone_from(&self.y);
-        old.pins.clear();
-        old.obstacles.clear();
-        old.torn.clear();
+        moment.run.copy_from(&self.state);
+        self.record_model(moment);
+    }
+
+    /// Writes what hands, time and tears changed of the model to a moment.
+    fn record_model(&self, moment: &mut Checkpoint) {
+        moment.pins.clear();
+        moment.obstacles.clear();
+        moment.torn.clear();
         let network = self.model.network();
         if let Some(network) = network {
-            old.pins.extend(network.pins());
+            moment.pins.extend(network.pins());
             let obstacles = network.obstacles().iter().enumerate();
-            old.obstacles.extend(
+            moment.obstacles.extend(
                 obstacles
                     .filter(|(_, obstacle)| obstacle.shape != Shape::Floor)
                     .map(|(k, obstacle)| (k, obstacle.path)),
             );
-            old.torn.extend_from_slice(network.torn());
+            moment.torn.extend_from_slice(network.torn());
         }
-        *moment = Checkpoint {
-            method: self.method,
-            control: self.control,
-            since: self.since,
-            taken: self.taken,
-            steps: self.steps,
-            work: self.work,
-            guarded: self.guarded,
-            balance: self.watch.balance,
-            y: old.y,
-            pins: old.pins,
-            unpinned: self.unpinned,
-            grabbed: self.grabbed,
-            grabbed_obstacle: self.grabbed_obstacle,
-            obstacles: old.obstacles,
-            swinging: self.swinging,
-            swing_phase: self.swing_phase,
-            wind: network.and_then(Network::wind).copied(),
-            touching: self.touching(),
-            torn: old.torn,
-            adaptive: self.stepper.progress(false),
-        };
+        moment.wind = network.and_then(Network::wind).copied();
+        moment.touching = self.touching();
+        moment.progress = self.stepper.progress(false);
+        if self.stepper.within.times().is_some() {
+            moment.run.set_time(self.time());
+        }
     }
 
     /// Takes over everything of a checkpoint: the run goes on as the one that it was made of, to
@@ -234,7 +167,8 @@ impl Simulation {
     /// The checkpoint is of another scene, its method does not serve this one, or a number is not
     /// finite. The run goes on as before then.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
-        checkpoint.check(self.y.len())?;
+        checkpoint.check(self.state.y.len())?;
+        let run = &checkpoint.run;
         let mut model = self.scene.model.clone();
         if let (Model::Network(network), Some(whole)) = (&mut model, self.scene.model.network()) {
             if checkpoint.touching != touches_itself(&self.scene.model) {
@@ -242,21 +176,12 @@ impl Simulation {
             }
             checkpoint.bind(network, whole)?;
         }
-        let mut stepper = Stepper::new(checkpoint.method, model.system(), checkpoint.control)?;
-        if let Some(progress) = &checkpoint.adaptive {
-            stepper.resume(progress)?;
-        }
+        let mut stepper = Stepper::new(run.method, model.system(), run.control)?;
+        stepper.resume(&checkpoint.progress, run.y.len())?;
         (self.model, self.stepper) = (model, stepper);
-        (self.method, self.control) = (checkpoint.method, checkpoint.control);
-        (self.since, self.taken) = (checkpoint.since, checkpoint.taken);
-        (self.steps, self.work) = (checkpoint.steps, checkpoint.work);
-        self.guarded = checkpoint.guarded;
-        self.watch.resume(checkpoint.balance);
-        self.y.copy_from_slice(&checkpoint.y);
-        self.contact.forget_impulses();
-        self.unpinned = checkpoint.unpinned;
-        (self.grabbed, self.grabbed_obstacle) = (checkpoint.grabbed, checkpoint.grabbed_obstacle);
-        (self.swinging, self.swing_phase) = (checkpoint.swinging, checkpoint.swing_phase);
+        self.state.copy_from(run);
+        self.watch.resume();
+        self.phases.contact.forget_impulses();
         self.blow_up = None;
         self.keep_good();
         Ok(())
@@ -271,7 +196,7 @@ impl Simulation {
     /// # Errors
     /// The moment is of another scene, or a number is not finite.
     pub fn rewind(&mut self, moment: &Checkpoint) -> Result<(), Error> {
-        moment.check(self.y.len())?;
+        moment.check(self.state.y.len())?;
         self.release();
         self.release_obstacle();
         self.go_back(moment)?;
@@ -312,47 +237,31 @@ impl Simulation {
                 self.refit();
             }
         }
-        self.y.copy_from_slice(&moment.y);
-        self.contact.forget_impulses();
-        self.watch.resume(moment.balance);
-        self.steps = moment.steps;
+        let then = &moment.run;
+        self.state.y.copy_from_slice(&then.y);
+        self.state.balance = then.balance;
+        self.state.steps = then.steps;
         // Another step is no multiple of the time that was counted then.
-        (self.since, self.taken) = if moment.control == self.control {
-            (moment.since, moment.taken)
+        if then.control == self.state.control {
+            (self.state.since, self.state.taken) = (then.since, then.taken);
         } else {
-            (moment.time(), 0)
-        };
+            self.state.set_time(then.time());
+        }
+        self.phases.contact.forget_impulses();
+        self.watch.resume();
         self.look_again();
         Ok(())
     }
 
     /// Remembers the state as one to go back to after a blow-up.
     pub(super) fn keep_good(&mut self) {
-        let mut good =
-            std::mem::replace(&mut self.good, Checkpoint::empty(self.method, self.control));
-        self.record(&mut good);
-        self.good = good;
-    }
-}
-
-mod by_name {
-    //! Methods in serialised values: by their names.
-
-    use serde::de::Error;
-    use serde::{Deserialize, Deserializer, Serializer};
-
-    use crate::integrators::{Method, find};
-
-    #[expect(
-        clippy::trivially_copy_pass_by_ref,
-        reason = "serde passes a reference"
-    )]
-    pub fn serialize<S: Serializer>(method: &&'static Method, to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(method.name)
-    }
-
-    pub fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<&'static Method, D::Error> {
-        let name = String::deserialize(from)?;
-        find(&name).ok_or_else(|| D::Error::custom(format!("there is no method {name}")))
+        let good = match self.good.take() {
+            Some(mut good) => {
+                self.record(&mut good);
+                good
+            }
+            None => self.moment(),
+        };
+        self.good = Some(good);
     }
 }

@@ -91,21 +91,21 @@ impl Simulation {
     /// Whether the pins swing.
     #[must_use]
     pub fn swinging(&self) -> bool {
-        self.swinging
+        self.state.swinging
     }
 
     /// Swings the pins from where they are, or stops them there. A scene without swing stays as it
     /// is.
     pub fn set_swinging(&mut self, on: bool) {
-        let Some(swing) = self.scene.swing.filter(|_| on != self.swinging) else {
+        let Some(swing) = self.scene.swing.filter(|_| on != self.state.swinging) else {
             return;
         };
         let turn = swing.rate * self.time();
-        self.swing_phase += if on { -turn } else { turn };
-        self.swinging = on;
+        self.state.swing_phase += if on { -turn } else { turn };
+        self.state.swinging = on;
         self.look_again();
         let (held, time) = (self.grabbed(), self.time());
-        let (from_now_on, phase) = (on.then_some(swing), self.swing_phase);
+        let (from_now_on, phase) = (on.then_some(swing), self.state.swing_phase);
         if let Model::Network(network) = &mut self.model {
             network.lead_pins(|i, path| {
                 if Some(i) == held {
@@ -114,16 +114,16 @@ impl Simulation {
                     leave(path.at(time).position, from_now_on, phase, time)
                 }
             });
-            network.hold(time, &mut self.y);
+            network.hold(time, &mut self.state.y);
         }
     }
 
     /// Pins particle i where it is, or swings it from there.
     pub(super) fn leave_pin(&mut self, i: usize) {
-        let swing = self.scene.swing.filter(|_| self.swinging);
+        let swing = self.scene.swing.filter(|_| self.state.swinging);
         self.pin(
             i,
-            leave(self.position(i), swing, self.swing_phase, self.time()),
+            leave(self.position(i), swing, self.state.swing_phase, self.time()),
         );
     }
 
@@ -134,7 +134,7 @@ impl Simulation {
             && network.pin(i, path).is_ok()
         {
             for axis in 0..3 {
-                self.y[(3 + axis) * n + i] = velocity[axis];
+                self.state.y[(3 + axis) * n + i] = velocity[axis];
             }
         }
     }
@@ -142,7 +142,7 @@ impl Simulation {
     /// Number of the grabbed particle.
     #[must_use]
     pub fn grabbed(&self) -> Option<usize> {
-        self.grabbed.map(|grabbed| grabbed.particle)
+        self.state.grabbed.map(|grabbed| grabbed.particle)
     }
 
     /// Takes hold of particle i, and lets go of any other. The particle is a pin then, or a spring
@@ -168,7 +168,7 @@ impl Simulation {
 
     /// Leads the grabbed particle along its path, as a pin or by a spring.
     fn lead(&mut self, grabbed: Grabbed) {
-        self.grabbed = Some(grabbed);
+        self.state.grabbed = Some(grabbed);
         if !self.attracts(&grabbed) {
             self.pin(grabbed.particle, grabbed.path);
         } else if let Some(network) = self.network_mut() {
@@ -186,7 +186,9 @@ impl Simulation {
     /// springs or rods hold it back: the hand stretches a spring as far as the scene allows, a rod
     /// hardly at all, and gets farther as the other end follows.
     pub fn pull(&mut self, target: Vector3<f64>) {
-        let Some(grabbed) = self.grabbed else { return };
+        let Some(grabbed) = self.state.grabbed else {
+            return;
+        };
         let i = grabbed.particle;
         let from = self.position(i);
         let is_held = |network: &Network| network.is_held(i);
@@ -246,7 +248,7 @@ impl Simulation {
     /// Lets go of the grabbed particle. One that was free keeps the speed of the hand; one that was
     /// pinned is pinned where it is.
     pub fn release(&mut self) {
-        let Some(grabbed) = self.grabbed.take() else {
+        let Some(grabbed) = self.state.grabbed.take() else {
             return;
         };
         let i = grabbed.particle;
@@ -272,7 +274,12 @@ impl Simulation {
         network.check_particle(i)?;
         network.check_led(i)?;
         let pinned = network.is_pinned(i);
-        if let Some(grabbed) = self.grabbed.as_mut().filter(|held| held.particle == i) {
+        if let Some(grabbed) = self
+            .state
+            .grabbed
+            .as_mut()
+            .filter(|held| held.particle == i)
+        {
             grabbed.was_pinned = !grabbed.was_pinned;
             return Ok(grabbed.was_pinned);
         }
@@ -287,7 +294,7 @@ impl Simulation {
     /// Number of the grabbed obstacle.
     #[must_use]
     pub fn grabbed_obstacle(&self) -> Option<usize> {
-        self.grabbed_obstacle
+        self.state.grabbed_obstacle
     }
 
     /// Takes hold of obstacle k where it is, and lets go of any other. Does nothing in a scene
@@ -304,7 +311,7 @@ impl Simulation {
         if network.obstacles()[k].shape == Shape::Floor {
             return Err(Error::Invalid("a floor cannot be pushed".into()));
         }
-        self.grabbed_obstacle = Some(k);
+        self.state.grabbed_obstacle = Some(k);
         self.lead_obstacle(|_, position| Path::Still(position));
         Ok(())
     }
@@ -317,7 +324,7 @@ impl Simulation {
     /// Lets go of the obstacle: it stays where it is.
     pub fn release_obstacle(&mut self) {
         self.lead_obstacle(|_, position| Path::Still(position));
-        self.grabbed_obstacle = None;
+        self.state.grabbed_obstacle = None;
     }
 
     /// Gives obstacle k another path, such as the one that it had before it was pushed, and lets go
@@ -335,12 +342,12 @@ impl Simulation {
 
     /// Gives the grabbed obstacle a path, which `path` makes of its position (m).
     fn lead_obstacle(&mut self, path: impl FnOnce(&Self, Vector3<f64>) -> Path) {
-        let network = self.model.network().zip(self.grabbed_obstacle);
+        let network = self.model.network().zip(self.state.grabbed_obstacle);
         let Some(obstacle) = network.and_then(|(network, k)| network.obstacles().get(k)) else {
             return;
         };
         let path = path(self, obstacle.path.at(self.time()).position);
-        if let Some((k, network)) = self.grabbed_obstacle.zip(self.network_mut()) {
+        if let Some((k, network)) = self.state.grabbed_obstacle.zip(self.network_mut()) {
             // It is there: it was found above.
             let _ = network.lead_obstacle(k, path);
         }

@@ -4,55 +4,40 @@ mod balance;
 mod blow_up;
 mod checkpoint;
 mod hands;
+mod phases;
 mod readings;
+mod state;
 mod stepper;
 mod steps;
 mod tuning;
+mod within;
 
 pub use balance::{Balance, Gain};
-pub use checkpoint::{Checkpoint, Grabbed};
-pub use stepper::Progress;
+pub use checkpoint::Checkpoint;
+pub use state::{Grabbed, RunState};
+pub use stepper::{Progress, Span};
 
 use nalgebra::Vector3;
 
-use crate::contact::{Contact, Guarded, StrainLimiter};
 use crate::control::Control;
 use crate::error::{BlowUp, Error};
-use crate::integrators::{Method, Work};
+use crate::integrators::Method;
 use crate::scene::{Model, Scene, bounds};
 use balance::Watch;
+use phases::Phases;
 use stepper::Stepper;
 
 /// A run of a scene.
 pub struct Simulation {
     scene: Scene,
     model: Model,
-    method: &'static Method,
+    state: RunState,
     stepper: Stepper,
-    control: Control,
-    y: Vec<f64>,
-    /// Time is `since + taken * step`, which gathers no rounding errors; under a tolerance it is
-    /// `since` (s).
-    since: f64,
-    taken: u64,
-    steps: u64,
-    work: Work,
-    contact: Contact,
-    limiter: StrainLimiter,
-    /// What the guard of surfaces did since the beginning.
-    guarded: Guarded,
-    swinging: bool,
-    /// Phase of the swing (rad): while it swings, sin(rate t + phase); while it stands, sin(phase).
-    swing_phase: f64,
-    grabbed: Option<Grabbed>,
-    grabbed_obstacle: Option<usize>,
-    /// Whether the pins of the scene are free.
-    unpinned: bool,
+    phases: Phases,
     blow_up: Option<BlowUp>,
-    /// Energy that went in, and that the method added.
     watch: Watch,
     /// The last state in shape, to go back to when a step fails.
-    good: Checkpoint,
+    good: Option<Checkpoint>,
     middle: Vector3<f64>,
     radius: f64,
 }
@@ -83,31 +68,16 @@ impl Simulation {
             let apart = network.check_apart(0.0, network.halves(&scene.state).0);
             apart.map_err(|e| Error::Invalid(format!("surfaces cannot begin crossed: {e}")))?;
         }
-        let y = scene.state.clone();
-        let (middle, radius) = bounds(&y[..3 * model.particles()]);
-        let contact = Contact::new(dim);
+        let (middle, radius) = bounds(&scene.state[..3 * model.particles()]);
         let mut run = Self {
+            state: RunState::new(method, control, scene.state.clone()),
             scene,
             model,
-            method,
             stepper,
-            control,
-            y,
-            since: 0.0,
-            taken: 0,
-            steps: 0,
-            work: Work::default(),
-            contact,
-            limiter: StrainLimiter::new(dim),
-            guarded: Guarded::default(),
-            swinging: false,
-            swing_phase: 0.0,
-            grabbed: None,
-            grabbed_obstacle: None,
-            unpinned: false,
+            phases: Phases::new(dim),
             blow_up: None,
             watch: Watch::default(),
-            good: Checkpoint::empty(method, control),
+            good: None,
             middle,
             radius,
         };
@@ -120,20 +90,23 @@ impl Simulation {
     /// and pins free; surfaces go on touching, unless they cross at the beginning. The hand lets
     /// go.
     pub fn reset(&mut self) {
-        let (windy, swinging, touching) = (self.windy(), self.swinging, self.touching());
+        let (windy, touching) = (self.windy(), self.touching());
+        let RunState {
+            method,
+            control,
+            unpinned,
+            swinging,
+            ..
+        } = self.state;
         self.model = self.scene.model.clone();
-        self.y.copy_from_slice(&self.scene.state);
-        self.contact.forget_impulses();
-        (self.since, self.taken, self.steps) = (0.0, 0, 0);
-        (self.work, self.blow_up) = (Work::default(), None);
-        self.guarded = Guarded::default();
-        (self.grabbed, self.grabbed_obstacle) = (None, None);
-        // The first step is chosen anew too: a run that was reset is the same run.
-        if let Ok(stepper) = Stepper::new(self.method, self.model.system(), self.control) {
+        self.state = RunState::new(method, control, self.scene.state.clone());
+        self.phases.contact.forget_impulses();
+        self.blow_up = None;
+        // The first step is chosen as in a new run: one that was reset is the same run.
+        if let Ok(stepper) = Stepper::new(method, self.model.system(), control) {
             self.stepper = stepper;
         }
-        (self.swinging, self.swing_phase) = (false, 0.0);
-        if std::mem::take(&mut self.unpinned) {
+        if unpinned {
             self.set_pinned(false);
         }
         self.set_wind(windy);
@@ -150,10 +123,9 @@ impl Simulation {
     /// before.
     pub fn set_method(&mut self, method: &'static Method, control: Control) -> Result<(), Error> {
         self.stepper = Stepper::new(method, self.model.system(), control)?;
-        self.since = self.time();
-        self.taken = 0;
-        (self.method, self.control) = (method, control);
-        self.watch.start_over();
+        self.state.set_time(self.time());
+        (self.state.method, self.state.control) = (method, control);
+        self.watch.start_over(&mut self.state.balance);
         Ok(())
     }
 
@@ -162,14 +134,14 @@ impl Simulation {
     /// # Errors
     /// The method does not take that control; the run goes on as before.
     pub fn set_control(&mut self, control: Control) -> Result<(), Error> {
-        let (Control::Step(_), Control::Step(_)) = (self.control, control) else {
-            return self.set_method(self.method, control);
+        let (Control::Step(_), Control::Step(_)) = (self.state.control, control) else {
+            return self.set_method(self.state.method, control);
         };
-        self.method.check_control(control)?;
-        self.since = self.time();
-        self.taken = 0;
-        self.control = control;
-        self.watch.start_over();
+        self.state.method.check_control(control)?;
+        self.look_again();
+        self.state.set_time(self.time());
+        self.state.control = control;
+        self.watch.start_over(&mut self.state.balance);
         Ok(())
     }
 }

@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrixView, Vector3};
 
-use super::{Simulation, Stepper};
+use super::Simulation;
+use super::stepper::Kind;
 use crate::contact::{Guarded, Statistics};
 use crate::control::Control;
 use crate::energy::Energy;
@@ -27,46 +28,46 @@ impl Simulation {
     /// The method.
     #[must_use]
     pub fn method(&self) -> &'static Method {
-        self.method
+        self.state.method
     }
 
     /// The step or the tolerance.
     #[must_use]
     pub fn control(&self) -> Control {
-        self.control
+        self.state.control
     }
 
     /// The step (s): the fixed one, or the last one under a tolerance, if there was one yet.
     #[must_use]
     pub fn step_size(&self) -> Option<f64> {
-        match &self.stepper {
-            Stepper::Fixed(_) => self.control.step(),
-            Stepper::Adaptive { adaptive, .. } => Some(adaptive.last().h).filter(|h| *h > 0.0),
+        match &self.stepper.kind {
+            Kind::Fixed(_) => self.state.control.step(),
+            Kind::Adaptive(adaptive) => Some(adaptive.last().h).filter(|h| *h > 0.0),
         }
     }
 
     /// Simulated time (s).
     #[must_use]
     pub fn time(&self) -> f64 {
-        self.since + self.taken as f64 * self.control.step().unwrap_or(0.0)
+        self.state.time()
     }
 
     /// Steps taken since the beginning.
     #[must_use]
     pub fn steps(&self) -> u64 {
-        self.steps
+        self.state.steps
     }
 
     /// Cost of these steps.
     #[must_use]
     pub fn work(&self) -> Work {
-        self.work
+        self.state.work
     }
 
     /// Contact during the last step.
     #[must_use]
     pub fn contact(&self) -> Statistics {
-        self.contact.last()
+        self.phases.contact.last()
     }
 
     /// Forces of contact on the particles (N), n x 3: those of surfaces as they are now, and the
@@ -78,24 +79,24 @@ impl Simulation {
         let network = self.model.network().filter(|n| n.can_touch())?;
         let mut f = vec![0.0; 3 * self.particles()];
         if let Some(layer) = network.contact_layer() {
-            let (x, v) = network.halves(&self.y);
+            let (x, v) = network.halves(&self.state.y);
             layer.add_repulsion(self.time(), x, v, &mut f);
         }
-        self.contact.add_forces(&mut f);
+        self.phases.contact.add_forces(&mut f);
         Some(f)
     }
 
     /// What the guard of surfaces did since the beginning.
     #[must_use]
     pub fn guarded(&self) -> Guarded {
-        self.guarded
+        self.state.guarded
     }
 
     /// The state y: of a network [x | v], in m and m/s, and after these
     /// the rotation of each rigid body.
     #[must_use]
     pub fn state(&self) -> &[f64] {
-        &self.y
+        &self.state.y
     }
 
     /// Number of particles.
@@ -108,14 +109,18 @@ impl Simulation {
     #[must_use]
     pub fn positions(&self) -> DMatrixView<'_, f64> {
         let n = self.particles();
-        DMatrixView::from_slice(&self.y[..3 * n], n, 3)
+        DMatrixView::from_slice(&self.state.y[..3 * n], n, 3)
     }
 
     /// Position of particle i (m).
     #[must_use]
     pub fn position(&self, i: usize) -> Vector3<f64> {
         let n = self.particles();
-        Vector3::new(self.y[i], self.y[n + i], self.y[2 * n + i])
+        Vector3::new(
+            self.state.y[i],
+            self.state.y[n + i],
+            self.state.y[2 * n + i],
+        )
     }
 
     /// Velocities (m/s), column-major: of a mechanical scene from its state, of a first-order one
@@ -123,10 +128,12 @@ impl Simulation {
     #[must_use]
     pub fn velocities(&self) -> Vec<f64> {
         if let Some(network) = self.model.network() {
-            return network.halves(&self.y).1.to_vec();
+            return network.halves(&self.state.y).1.to_vec();
         }
-        let mut v = vec![0.0; self.y.len()];
-        self.model.system().eval_f(self.time(), &self.y, &mut v);
+        let mut v = vec![0.0; self.state.y.len()];
+        self.model
+            .system()
+            .eval_f(self.time(), &self.state.y, &mut v);
         v
     }
 
@@ -134,7 +141,7 @@ impl Simulation {
     #[must_use]
     pub fn energy(&self) -> Option<Energy> {
         let network = self.model.network();
-        network.map(|network| network.energy_of(self.time(), &self.y))
+        network.map(|network| network.energy_of(self.time(), &self.state.y))
     }
 
     /// Height of the lowest particle (m).
@@ -146,7 +153,7 @@ impl Simulation {
     /// Length over rest length of the most stretched structural spring, if there are springs.
     #[must_use]
     pub fn largest_stretch(&self) -> Option<f64> {
-        let x = &self.y[..3 * self.particles()];
+        let x = &self.state.y[..3 * self.particles()];
         self.model
             .network()
             .map(|network| network.largest_stretch(x))

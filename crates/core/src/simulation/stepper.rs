@@ -1,39 +1,48 @@
-//! The stepper of a run: an integrator that takes fixed steps, or an adaptive method that looks
-//! ahead.
+//! Steps a run: at a fixed step, or adaptively. A time shown may be within a step, whose state is
+//! then read off the step's polynomial: how often a run is looked at changes nothing.
 
 use serde::{Deserialize, Serialize};
 
+use super::within::Within;
 use crate::control::Control;
 use crate::error::Error;
-use crate::integrators::{Adaptive, AdaptiveState, Integrator, Method, Tolerance};
+use crate::integrators::{Adaptive, AdaptiveState, Integrator, Method, Taken, Tolerance};
 use crate::system::ParticleSystem;
 
-/// Taker of the steps.
-pub(super) enum Stepper {
-    /// Steps of a fixed size.
-    Fixed(Box<dyn Integrator>),
-    /// Steps of its own choice, whose ends are no times that anyone asked for: the run looks ahead,
-    /// and the state shown is on the way to `end`.
-    Adaptive {
-        adaptive: Box<Adaptive>,
-        /// State at the end of the last step.
-        end: Vec<f64>,
-        /// Time of that end (s), if state and system are still those that the step began with.
-        until: Option<f64>,
-    },
+/// Integrator of a run, and the step that the time shown is within.
+pub(super) struct Stepper {
+    pub kind: Kind,
+    pub within: Within,
 }
 
-/// Progress of an adaptive method within a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// Kind of steps.
+pub(super) enum Kind {
+    /// Steps of a fixed length.
+    Fixed(Box<dyn Integrator>),
+    /// Steps whose length the method chooses.
+    Adaptive(Box<Adaptive>),
+}
+
+/// Progress of a run within a step, and what an adaptive method remembers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
-    /// Memory of the method.
-    pub method: AdaptiveState,
-    /// End of the step that the run is within: its time (s), and the state there.
-    pub ahead: Option<(f64, Vec<f64>)>,
+    /// Memory of an adaptive method.
+    pub method: Option<AdaptiveState>,
+    /// Step that the time shown is within.
+    pub within: Option<Span>,
+}
+
+/// Step that a time shown is within.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Span {
+    /// Times of its beginning and its end (s).
+    pub times: [f64; 2],
+    /// States at its beginning, which an adaptive method remembers by itself, and at its end.
+    pub ends: [Vec<f64>; 2],
 }
 
 impl Stepper {
-    /// The stepper of a method.
+    /// Stepper of a method.
     ///
     /// # Errors
     /// The method does not serve the system, or does not take that control.
@@ -42,65 +51,76 @@ impl Stepper {
         system: &dyn ParticleSystem,
         control: Control,
     ) -> Result<Self, Error> {
-        method.check(system)?;
         method.check_control(control)?;
-        method.check(system)?;
         let adaptive = match control {
             Control::Step(_) => None,
             Control::Tolerance(relative) => method.adaptive(system, Tolerance::new(relative)?),
         };
-        Ok(match adaptive {
-            None => Self::Fixed(method.integrator(system)?),
-            Some(adaptive) => Self::Adaptive {
-                adaptive: Box::new(adaptive),
-                end: vec![0.0; system.dim()],
-                until: None,
+        // The integrator is made in any case: it checks that the method serves the system.
+        let integrator = method.integrator(system)?;
+        Ok(Self {
+            kind: match adaptive {
+                None => Kind::Fixed(integrator),
+                Some(adaptive) => Kind::Adaptive(Box::new(adaptive)),
             },
+            within: Within::default(),
         })
     }
 
-    /// What an adaptive method remembers, and with `ahead` also the step that the run is within.
-    pub fn progress(&self, ahead: bool) -> Option<Progress> {
-        match self {
-            Self::Fixed(_) => None,
-            Self::Adaptive {
-                adaptive,
-                end,
-                until,
-            } => {
-                let until = until.filter(|_| ahead);
-                Some(Progress {
-                    method: adaptive.state(until.is_some()),
-                    ahead: until.map(|until| (until, end.clone())),
-                })
+    /// Whether the method chooses its steps.
+    pub fn is_adaptive(&self) -> bool {
+        matches!(self.kind, Kind::Adaptive(_))
+    }
+
+    /// Takes y from t (s) to the end of a step, of the fixed length or of the method's choice.
+    ///
+    /// # Errors
+    /// The step failed.
+    pub fn integrate(
+        &mut self,
+        system: &dyn ParticleSystem,
+        control: Control,
+        t: f64,
+        y: &mut [f64],
+    ) -> Result<Taken, Error> {
+        match &mut self.kind {
+            Kind::Adaptive(adaptive) => adaptive.advance(system, t, y),
+            Kind::Fixed(integrator) => {
+                let h = control.value();
+                let work = integrator.step(system, t, h, y)?;
+                Ok(Taken { t, h, work })
             }
         }
     }
 
-    /// Goes on from what was remembered.
+    /// Forgets the last step: the state or the system is no longer the one that it ended with.
+    pub fn forget(&mut self) {
+        self.within.leave();
+        if let Kind::Adaptive(adaptive) = &mut self.kind {
+            adaptive.restart();
+        }
+    }
+
+    /// Progress of the run or, without `whole`, only what a new step needs.
+    pub fn progress(&self, whole: bool) -> Progress {
+        let within = self.within.span().filter(|_| whole);
+        Progress {
+            method: match &self.kind {
+                Kind::Fixed(_) => None,
+                Kind::Adaptive(adaptive) => Some(adaptive.state(whole)),
+            },
+            within,
+        }
+    }
+
+    /// Goes on from that progress.
     ///
     /// # Errors
     /// It is of another method or of another system.
-    pub fn resume(&mut self, progress: &Progress) -> Result<(), Error> {
-        let Self::Adaptive {
-            adaptive,
-            end,
-            until,
-        } = self
-        else {
-            return Ok(());
-        };
-        adaptive.resume(&progress.method)?;
-        if let Some((time, state)) = &progress.ahead {
-            if state.len() != end.len() {
-                return Err(Error::Dimension {
-                    expected: end.len(),
-                    found: state.len(),
-                });
-            }
-            end.copy_from_slice(state);
-            *until = Some(*time);
+    pub fn resume(&mut self, progress: &Progress, dim: usize) -> Result<(), Error> {
+        if let (Kind::Adaptive(adaptive), Some(state)) = (&mut self.kind, &progress.method) {
+            adaptive.resume(state)?;
         }
-        Ok(())
+        self.within.resume(progress.within.as_ref(), dim)
     }
 }

@@ -1,12 +1,21 @@
-//! Steps of a run: fixed ones, and those of an adaptive method, which looks ahead of the time
-//! shown.
+//! Steps of a run.
+//!
+//! A step has five phases: *integrate* (the method takes the state from t to t + h), *shorten*
+//! (springs that are too long), *contact* (particles leave obstacles, surfaces do not pass through
+//! one another), *watch* (blow-ups, and the balance of energy) and *tear* (springs that are
+//! stretched too far). Fixed and adaptive steps share them. They differ in one question, whether
+//! the step is taken again, shorter: see [`share_of_retry`].
+//!
+//! A run takes whole steps only. A time that is asked for may be within one: the run goes to the
+//! end of that step, and the state shown is read off the step's polynomial.
 
+use super::Simulation;
 use super::blow_up::blow_up_by;
-use super::{Simulation, Stepper};
-use crate::contact::{Contact, Impulses, Obstacle, Squeezed, Statistics, StrainLimiter, Strained};
-use crate::control::Control;
+use super::phases::Settled;
+use super::stepper::Kind;
+use crate::contact::Impulses;
 use crate::error::{Cause, Error};
-use crate::network::Network;
+use crate::integrators::Adaptive;
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
 use crate::threads::among_threads;
@@ -14,56 +23,46 @@ use crate::threads::among_threads;
 /// Largest depth, as a share of the scene's radius, to which a step of an adaptive method may take
 /// a particle into an obstacle: a state between the ends of the step is shown as it is, and must
 /// not sink visibly.
-const SUNK: f64 = 1e-3;
+const MAX_PENETRATION: f64 = 1e-3;
 
 /// Largest growth of the excess length of a spring in a step of an adaptive method, over the
 /// longest length that a limit of strain allows it: for the same reason.
-const STRETCHED: f64 = 1e-2;
+const MAX_STRAIN_GROWTH: f64 = 1e-2;
 
 /// Least share of a step that is taken again because a spring became too long.
-const SHORTENED: f64 = 0.1;
+const MIN_RETRY_SHARE: f64 = 0.1;
 
 /// Price of a sweep over the springs that a limit of strain applies to, in evaluations.
 const SWEEP: f64 = 2.0;
 
-/// Length (s) below which a step is not shortened for that.
-const SHORT: f64 = 1e-6;
+/// Length (s) below which a step is not shortened for contact or strain.
+const MIN_RETRY_STEP: f64 = 1e-6;
 
 /// Length (s) below which a step of an adaptive method is not shortened for impulses of surfaces.
-const IMPACT: f64 = 1e-4;
+const MIN_IMPACT_STEP: f64 = 1e-4;
 
 impl Simulation {
     /// Share of a step by which its end may miss a time that is asked for: 1/60 s written as
     /// 0.01666667 meets sixty frames a second.
     pub const SLIVER: f64 = 1e-6;
 
-    /// Takes `count` steps. When one of them blows up, the state is again the last at the beginning
-    /// of such a call that was still in shape, and no more steps are taken until
-    /// [`reset`](Self::reset).
+    /// Takes `count` steps; one that the time shown is within is finished, and counts. When one of
+    /// them blows up, the state is again the last at the beginning of such a call that was still in
+    /// shape, and no more steps are taken until [`reset`](Self::reset).
     ///
     /// # Errors
     /// The run blew up, now or earlier.
     pub fn take_steps(&mut self, count: u64) -> Result<(), Error> {
         self.keep()?;
         among_threads(self.particles(), || {
-            for _ in 0..count {
-                if let Control::Step(step) = self.control {
-                    self.step_by(step)?;
-                    self.taken += 1;
-                } else {
-                    let until = self.look_ahead()?;
-                    self.show(until);
-                }
-            }
-            Ok(())
+            (0..count).try_for_each(|_| if self.arrive() { Ok(()) } else { self.step() })
         })
     }
 
-    /// Goes on to `time` (s) exactly, if it is not past it: the last step is shortened.
-    ///
-    /// An adaptive method steps past it instead, and the state is read off its step's polynomial: a
-    /// frame costs no clipped step, and how often one looks changes nothing. A step that blows up
-    /// is treated as by [`take_steps`](Self::take_steps).
+    /// Goes on to `time` (s), if it is not past it. No step is shortened for that: where none ends
+    /// at that time, the state shown is read off the polynomial of the step that it is within, so
+    /// how often one looks changes nothing. A step that blows up is treated as by
+    /// [`take_steps`](Self::take_steps).
     ///
     /// # Errors
     /// The run blew up, now or earlier; or `time` is not finite.
@@ -80,252 +79,210 @@ impl Simulation {
     /// Takes steps up to `time` (s).
     fn go_on(&mut self, time: f64) -> Result<(), Error> {
         while self.time() < time {
-            let Control::Step(step) = self.control else {
-                let until = self.look_ahead()?;
-                self.show(until.min(time));
+            if self.stepper.within.until().is_some_and(|end| time < end) {
+                self.show(time);
+                break;
+            }
+            if self.arrive() {
                 continue;
-            };
-            let left = time - self.time();
-            // A sliver that is left is no step of its own: the step before it is longer by that.
-            if left > step * (1.0 + Self::SLIVER) {
-                self.step_by(step)?;
-                self.taken += 1;
-            } else {
-                self.step_by(left)?;
-                self.since = time;
-                self.taken = 0;
+            }
+            let begin = self.state.end();
+            if let Some(step) = self.state.control.step()
+                && time - begin <= step * (1.0 + Self::SLIVER)
+            {
+                let old = self.state.control;
+                self.state.control = crate::control::Control::Step(time - begin);
+                let since = begin;
+                (self.state.since, self.state.taken) = (since, 0);
+                let r = self.step();
+                self.state.control = old;
+                r?;
+                self.state.set_time(time);
+                continue;
+            }
+            let ends_later = |h: f64| begin + h * (1.0 - Self::SLIVER) > time;
+            if self.state.control.step().is_some_and(ends_later) {
+                self.stepper.within.begin(&self.state.y);
+            }
+            self.step()?;
+            let end = self.state.end();
+            if ends_later(end - begin) {
+                self.stepper.within.enter([begin, end], &self.state.y);
+                self.show(time);
+            } else if end >= time - Self::SLIVER * (end - begin) {
+                // The step ends there, except for rounding.
+                self.state.shown = Some(time);
             }
         }
         Ok(())
     }
 
-    /// Takes one step of h (s) with what follows it: contact, the search for a blow-up, and
-    /// tearing.
-    fn step_by(&mut self, h: f64) -> Result<(), Error> {
+    /// Goes on to the end of the step that the time shown is within. Returns whether it was within
+    /// one.
+    fn arrive(&mut self) -> bool {
+        self.state.shown = None;
+        let end = self.stepper.within.leave();
+        let is_within = end.is_some();
+        if let Some(end) = end {
+            std::mem::swap(end, &mut self.state.y);
+        }
+        is_within
+    }
+
+    /// Takes a step from the end of the last one.
+    fn step(&mut self) -> Result<(), Error> {
         self.list_strained();
-        let t = self.time();
-        let system = self.model.system();
-        let Stepper::Fixed(integrator) = &mut self.stepper else {
-            return Ok(());
+        let begin = self.state.end();
+        let (cause, end) = match self.integrate_and_settle(begin)? {
+            Err(cause) => (
+                Some(cause),
+                begin + self.state.control.step().unwrap_or(0.0),
+            ),
+            Ok((h, settled)) => (self.watch_step(begin + h, &settled), begin + h),
         };
-        look_back(&self.model, &mut self.contact, &self.y, false);
-        let cause = match integrator.step(system, t, h, &mut self.y) {
-            Ok(work) => {
-                self.work += work;
-                let phases = (&mut self.limiter, &mut self.contact);
-                match settle(&self.model, phases, (t, h), &mut self.y) {
-                    Ok(Settled { strained, met }) => {
-                        self.work.algebra += SWEEP * strained.sweeps as f64;
-                        self.guarded += met.guarded;
-                        let lost = self.lost(&self.y);
-                        let now = (t + h, self.y.as_slice());
-                        self.watch.met(&self.model, now, &met, lost)
-                    }
-                    Err(cause) => Some(cause),
-                }
-            }
-            Err(error) => Some(blow_up_by(error, self.model.particles())?),
-        };
-        self.judge(cause, t + h)?;
+        self.judge(cause, end)?;
+        if self.state.control.step().is_some() {
+            self.state.taken += 1;
+        } else {
+            self.state.set_time(end);
+        }
         self.tear();
         Ok(())
     }
 
-    /// Makes an adaptive method's step reach past the time shown. Returns its end (s).
-    fn look_ahead(&mut self) -> Result<f64, Error> {
-        self.list_strained();
-        let now = self.time();
-        let system = self.model.system();
-        let Stepper::Adaptive {
-            adaptive,
-            end,
-            until,
-        } = &mut self.stepper
-        else {
-            return Ok(now);
-        };
-        let begin = match *until {
-            Some(until) if until > now => return Ok(until),
-            Some(until) => until,
-            None => {
-                end.copy_from_slice(&self.y);
-                adaptive.restart();
-                now
-            }
-        };
-        *until = None;
-        let limit = SUNK * self.radius;
-        let (cause, reached) = loop {
-            look_back(&self.model, &mut self.contact, end, true);
-            let limit_of_strain = self.model.network().and_then(Network::strained);
-            let excess = limit_of_strain.map_or(0.0, |limit| {
-                self.contact.remember(end);
-                limit.excess(&end[..3 * self.model.particles()])
-            });
-            let taken = match adaptive.advance(system, begin, end) {
+    /// Takes a step from time t (s), and settles its end; again and shorter, if an adaptive method
+    /// has to. Returns its length (s), or the cause of a blow-up.
+    fn integrate_and_settle(&mut self, t: f64) -> Result<Result<(f64, Settled), Cause>, Error> {
+        let n = self.particles();
+        let max_depth = MAX_PENETRATION * self.radius;
+        loop {
+            let (system, y) = (self.model.system(), &mut self.state.y);
+            self.phases
+                .begin(&self.model, y, self.stepper.is_adaptive());
+            let taken = self.stepper.integrate(system, self.state.control, t, y);
+            let taken = match taken {
                 Ok(taken) => taken,
-                Err(error) => {
-                    let cause = blow_up_by(error, self.model.particles())?;
-                    break (Some(cause), begin);
-                }
+                Err(error) => return blow_up_by(error, n).map(Err),
             };
-            self.work += taken.work;
-            let phases = (&mut self.limiter, &mut self.contact);
-            let Settled { met, strained } = match settle(&self.model, phases, (begin, taken.h), end)
-            {
+            self.state.work += taken.work;
+            let settled = match self.phases.settle(&self.model, (t, taken.h), y) {
                 Ok(settled) => settled,
-                Err(cause) => break (Some(cause), begin),
+                Err(cause) => return Ok(Err(cause)),
             };
-            self.work.algebra += SWEEP * strained.sweeps as f64;
-            let grown = strained.excess - excess;
-            let touched = met.touched + (1.0 - met.touched) * 0.5 * limit / met.depth;
-            let strained = (0.5 * STRETCHED / grown).max(SHORTENED);
-            let again = (met.depth > limit).then_some(touched);
-            let again = again.or((grown > STRETCHED).then_some(strained));
-            // Contact of surfaces is the force's: its error decides, once a step is so short that
-            // the guard does nothing.
-            let held = met.guarded.impulses > 0 && taken.h > IMPACT;
-            let again = again.or(held.then_some((0.5 * met.guarded.first).max(SHORTENED)));
-            if let Some(share) = again.filter(|_| taken.h > SHORT) {
-                // The step is taken again, to just after the particle touched the obstacle, or
-                // the spring became too long, or surfaces would have met.
-                end.copy_from_slice(self.contact.y0());
-                adaptive.restart();
-                adaptive.try_first(taken.h * share);
-                self.work.rejections += 1;
-                continue;
-            }
-            self.guarded += met.guarded;
-            if met.depth > 0.0 {
-                // Under a constant force the depth grows with the square of the step.
-                adaptive.try_at_most(taken.h * 0.9 * (limit / met.depth).sqrt());
-            }
-            if grown > 0.0 {
-                adaptive.try_at_most(taken.h * 0.9 * (STRETCHED / grown).sqrt());
-            }
-            let reached = begin + taken.h;
-            *until = Some(reached);
-            let Stepper::Adaptive { end, .. } = &self.stepper else {
-                return Ok(now);
-            };
-            let (lost, now) = (self.lost(end), (reached, end.as_slice()));
-            break (self.watch.met(&self.model, now, &met, lost), reached);
-        };
-        self.judge(cause, reached)?;
-        Ok(reached)
-    }
-
-    /// Shows the state at a time (s) up to the end of an adaptive method's step: between its ends
-    /// as its polynomial has it, with pins in their places.
-    fn show(&mut self, time: f64) {
-        let system = self.model.system();
-        if let Stepper::Adaptive {
-            adaptive,
-            end,
-            until,
-        } = &mut self.stepper
-        {
-            if *until == Some(time) {
-                self.y.copy_from_slice(end);
-            } else {
-                self.work += adaptive.interpolate(system, time, &mut self.y);
-                system.hold(time, &mut self.y);
-                let (begin, y0) = (adaptive.last().t, self.contact.y0());
-                if let Some(network) = self.model.network()
-                    && let Some(layer) = network.contact_layer()
-                    && y0.len() == self.y.len()
-                {
-                    // A polynomial knows of no surfaces. Where what is led leaves no room, the step
-                    // itself has ended the run.
-                    let way = (begin, time - begin);
-                    let none = &mut Impulses::default();
-                    let _ = layer.guard(network.inverse_masses(), way, y0, &mut self.y, none);
-                    network.hold(time, &mut self.y);
+            self.state.work.algebra += SWEEP * settled.strained.sweeps as f64;
+            if let Kind::Adaptive(adaptive) = &mut self.stepper.kind {
+                if let Some(share) = share_of_retry(&settled, taken.h, max_depth) {
+                    y.copy_from_slice(self.phases.contact.y0());
+                    adaptive.restart();
+                    adaptive.try_first(taken.h * share);
+                    self.state.work.rejections += 1;
+                    continue;
                 }
+                limit_next(adaptive, &settled, taken.h, max_depth);
             }
-            self.since = time;
-            self.tear();
+            self.state.guarded += settled.met.guarded;
+            return Ok(Ok((taken.h, settled)));
         }
     }
 
-    /// Lists the springs that are limited anew, if springs or pins have changed.
+    /// Notes the end of a step at time t (s). Returns why the run is lost, if it is.
+    fn watch_step(&mut self, t: f64, settled: &Settled) -> Option<Cause> {
+        let lost = self.lost(&self.state.y);
+        let (state, now) = (&mut self.state, t);
+        let (balance, y) = (&mut state.balance, &state.y[..]);
+        self.watch
+            .met(&self.model, balance, (now, y), &settled.met, lost)
+    }
+
+    /// Shows the state at a time (s) within the step: as its polynomial has it, with pins in their
+    /// places.
+    fn show(&mut self, time: f64) {
+        let (system, n) = (self.model.system(), self.particles());
+        let y = &mut self.state.y;
+        let within = &mut self.stepper.within;
+        let Some([begin, _]) = within.times() else {
+            return;
+        };
+        match &mut self.stepper.kind {
+            Kind::Fixed(_) => {
+                let n = self.model.network().map_or(0, |_| n);
+                within.interpolate((system, n), time, y);
+            }
+            Kind::Adaptive(adaptive) => {
+                self.state.work += adaptive.interpolate(system, time, y);
+                system.hold(time, y);
+            }
+        }
+        let y0 = self.phases.contact.y0();
+        if let Some(network) = self.model.network()
+            && let Some(layer) = network.contact_layer()
+            && y0.len() == y.len()
+        {
+            // A polynomial knows of no surfaces. Where prescribed motion leaves no room, the step
+            // itself has ended the run.
+            let (span, none) = ((begin, time - begin), &mut Impulses::default());
+            let _ = layer.guard(network.inverse_masses(), span, y0, y, none);
+            network.hold(time, y);
+        }
+        self.state.shown = Some(time);
+    }
+
+    /// Lists the springs that are limited again, if springs or pins have changed.
     fn list_strained(&mut self) {
         if let Model::Network(network) = &mut self.model {
             network.list_strained();
         }
     }
 
-    /// Breaks what is stretched too far in the state shown.
+    /// Breaks what is stretched too far at the end of a step.
     fn tear(&mut self) {
         if let Model::Network(network) = &mut self.model
-            && network.tear(network.halves(&self.y).0) > 0
+            && network.tear(network.halves(&self.state.y).0) > 0
         {
             self.look_again();
             self.refit();
         }
     }
 
-    /// Forgets the last step of an adaptive method: the state or the system is no longer the one
-    /// that it began with.
+    /// Forgets the last step: the state or the system is no longer the one that it ended with. The
+    /// next step begins at the time shown.
     pub(super) fn look_again(&mut self) {
-        if let Stepper::Adaptive { until, .. } = &mut self.stepper {
-            *until = None;
+        if self.stepper.within.times().is_some() {
+            self.state.set_time(self.time());
         }
+        self.state.shown = None;
+        self.stepper.forget();
         self.watch.disturbed = true;
     }
 }
 
-/// Obstacles of the model.
-fn obstacles(model: &Model) -> &[Obstacle] {
-    model.network().map_or(&[], Network::obstacles)
+/// Share of a step of h (s) at which an adaptive method takes it again: to just after a particle
+/// touched an obstacle, or a spring became too long, or surfaces would have met.
+fn share_of_retry(settled: &Settled, h: f64, max_depth: f64) -> Option<f64> {
+    let Settled { met, grown, .. } = settled;
+    if h <= MIN_RETRY_STEP {
+        return None;
+    }
+    if met.depth > max_depth {
+        return Some(met.touched + (1.0 - met.touched) * 0.5 * max_depth / met.depth);
+    }
+    if *grown > MAX_STRAIN_GROWTH {
+        return Some((0.5 * MAX_STRAIN_GROWTH / grown).max(MIN_RETRY_SHARE));
+    }
+    // Contact of surfaces is the force's: its error decides, once a step is so short that the
+    // safeguard does nothing.
+    let held = met.guarded.impulses > 0 && h > MIN_IMPACT_STEP;
+    held.then_some((0.5 * met.guarded.first).max(MIN_RETRY_SHARE))
 }
 
-/// Remembers the state that a step begins with, as far as contact needs it.
-fn look_back(model: &Model, contact: &mut Contact, y0: &[f64], always: bool) {
-    match model.network().and_then(Network::contact_layer) {
-        Some(_) => contact.remember(y0),
-        None => contact.begin(obstacles(model), y0, always),
+/// Limits the next step of an adaptive method by the depth and the growth of the last one, of
+/// h (s): under a constant force both grow with the square of the step.
+fn limit_next(adaptive: &mut Adaptive, settled: &Settled, h: f64, max_depth: f64) {
+    let Settled { met, grown, .. } = settled;
+    if met.depth > 0.0 {
+        adaptive.try_at_most(h * 0.9 * (max_depth / met.depth).sqrt());
     }
-}
-
-/// What the phases after a step did.
-#[derive(Default)]
-struct Settled {
-    strained: Strained,
-    met: Statistics,
-}
-
-/// What follows a step of h (s) from t (s) to y1: springs that are too long are shortened,
-/// particles leave obstacles, or surfaces do not pass through one another, and pins are in their
-/// places.
-fn settle(
-    model: &Model,
-    (limiter, contact): (&mut StrainLimiter, &mut Contact),
-    (t, h): (f64, f64),
-    y1: &mut [f64],
-) -> Result<Settled, Cause> {
-    let mut settled = Settled::default();
-    let Some(network) = model.network() else {
-        model.system().hold(t + h, y1);
-        return Ok(settled);
-    };
-    let inverse_masses = network.inverse_masses();
-    if let Some(limit) = network.strained() {
-        settled.strained = limiter.resolve(limit, inverse_masses, h, y1);
+    if *grown > 0.0 {
+        adaptive.try_at_most(h * 0.9 * (MAX_STRAIN_GROWTH / grown).sqrt());
     }
-    let Some(layer) = network.contact_layer() else {
-        settled.met = contact.resolve(network.obstacles(), inverse_masses, (t, h), y1);
-        network.hold(t + h, y1);
-        return Ok(settled);
-    };
-    network.hold(t + h, y1);
-    // A state that is lost is found to be so afterwards.
-    if y1.iter().all(|y| y.is_finite()) {
-        let guarded = contact.guard(layer, inverse_masses, (t, h), y1);
-        settled.met = guarded.map_err(|Squeezed { vertices }| Cause::Squeezed { vertices })?;
-        if !network.bodies().is_empty() {
-            network.hold(t + h, y1);
-        }
-    }
-    Ok(settled)
 }

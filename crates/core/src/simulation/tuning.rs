@@ -1,6 +1,7 @@
 //! Tuning: changes of the model while it runs, which a reset keeps.
 
-use super::{Simulation, Stepper};
+use super::Simulation;
+use super::stepper::Kind;
 use crate::elements::Wind;
 use crate::error::Error;
 use crate::network::{Network, Touch};
@@ -23,8 +24,8 @@ impl Simulation {
     /// meets, and knows what they cost.
     pub(super) fn refit(&mut self) {
         // The method served this system before.
-        if let Stepper::Fixed(integrator) = &mut self.stepper
-            && let Ok(other) = self.method.integrator(self.model.system())
+        if let Kind::Fixed(integrator) = &mut self.stepper.kind
+            && let Ok(other) = self.state.method.integrator(self.model.system())
         {
             *integrator = other;
         }
@@ -60,11 +61,11 @@ impl Simulation {
         if on {
             let mut touching = network.clone();
             let_touch(&mut touching, &self.scene, true)?;
-            let apart = touching.check_apart(self.time(), touching.halves(&self.y).0);
+            let apart = touching.check_apart(self.time(), touching.halves(&self.state.y).0);
             apart.map_err(|e| {
                 Error::Invalid(format!("surfaces that cross cannot begin to touch: {e}"))
             })?;
-            self.method.check(&touching)?;
+            self.state.method.check(&touching)?;
         }
         // Where surfaces touch, a hand attracts a particle that it would lead as a pin elsewhere.
         let held = self.grabbed();
@@ -80,7 +81,7 @@ impl Simulation {
     /// Whether the scene's pins hold.
     #[must_use]
     pub fn pinned(&self) -> bool {
-        !self.unpinned
+        !self.state.unpinned
     }
 
     /// Frees every pinned particle but the one in the hand, or pins those of the scene again, where
@@ -89,12 +90,12 @@ impl Simulation {
         if on == self.pinned() {
             return;
         }
-        self.unpinned = !on;
+        self.state.unpinned = !on;
         let own = self.scene.model.network();
         let own: Vec<_> = own.into_iter().flat_map(Network::pins).collect();
         if on {
             for (i, _) in own {
-                match &mut self.grabbed {
+                match &mut self.state.grabbed {
                     Some(grabbed) if grabbed.particle == i => grabbed.was_pinned = true,
                     _ => self.leave_pin(i),
                 }
@@ -102,7 +103,7 @@ impl Simulation {
             return;
         }
         let held = self.grabbed();
-        if let Some(grabbed) = &mut self.grabbed {
+        if let Some(grabbed) = &mut self.state.grabbed {
             grabbed.was_pinned = false;
         }
         if let Some(network) = self.network_mut() {

@@ -1,0 +1,109 @@
+//! Phases after an integrator's step: springs that are too long are shortened, particles leave
+//! obstacles, or surfaces do not pass through one another, and pins are in their places.
+
+use crate::contact::{Contact, Squeezed, Statistics, StrainLimiter, Strained};
+use crate::error::Cause;
+use crate::network::Network;
+use crate::scene::Model;
+use crate::system::{Mechanics, ParticleSystem};
+
+/// Phases after a step, with their scratch.
+pub(super) struct Phases {
+    limiter: StrainLimiter,
+    pub contact: Contact,
+    /// Excess of the longest limited spring at the beginning of the step, if that is wanted.
+    excess: f64,
+}
+
+/// What the phases after a step did.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Settled {
+    pub strained: Strained,
+    pub met: Statistics,
+    /// Growth in the step of the excess of the longest limited spring.
+    pub grown: f64,
+}
+
+impl Phases {
+    /// Phases with room for states of that length.
+    pub fn new(dim: usize) -> Self {
+        Self {
+            limiter: StrainLimiter::new(dim),
+            contact: Contact::new(dim),
+            excess: 0.0,
+        }
+    }
+
+    /// Remembers the state y0 that a step begins with, as far as the phases need it or, with
+    /// `retry`, as far as it is needed to take the step again.
+    pub fn begin(&mut self, model: &Model, y0: &[f64], retry: bool) {
+        let Some(network) = model.network() else {
+            return;
+        };
+        self.excess = 0.0;
+        let limit = network.strained().filter(|_| retry);
+        if let Some(limit) = limit {
+            self.excess = limit.excess(network.halves(y0).0);
+        }
+        if limit.is_some() || network.contact_layer().is_some() {
+            self.contact.remember(y0);
+        } else {
+            self.contact.begin(network.obstacles(), y0, retry);
+        }
+    }
+
+    /// Settles y1, the end of a step of h (s) from t (s).
+    ///
+    /// # Errors
+    /// Surfaces whose motion is prescribed leave no room.
+    pub fn settle(
+        &mut self,
+        model: &Model,
+        (t, h): (f64, f64),
+        y1: &mut [f64],
+    ) -> Result<Settled, Cause> {
+        let mut settled = Settled::default();
+        let Some(network) = model.network() else {
+            model.system().hold(t + h, y1);
+            return Ok(settled);
+        };
+        self.shorten(network, h, y1, &mut settled);
+        settled.met = self.part(network, (t, h), y1)?;
+        Ok(settled)
+    }
+
+    /// Shortens springs that are too long.
+    fn shorten(&mut self, network: &Network, h: f64, y1: &mut [f64], settled: &mut Settled) {
+        if let Some(limit) = network.strained() {
+            settled.strained = self.limiter.resolve(limit, network.inverse_masses(), h, y1);
+            settled.grown = settled.strained.excess - self.excess;
+        }
+    }
+
+    /// Puts particles out of obstacles, or keeps surfaces from passing through one another.
+    fn part(
+        &mut self,
+        network: &Network,
+        (t, h): (f64, f64),
+        y1: &mut [f64],
+    ) -> Result<Statistics, Cause> {
+        let inverse_masses = network.inverse_masses();
+        let Some(layer) = network.contact_layer() else {
+            let obstacles = network.obstacles();
+            let met = self.contact.resolve(obstacles, inverse_masses, (t, h), y1);
+            network.hold(t + h, y1);
+            return Ok(met);
+        };
+        network.hold(t + h, y1);
+        // A state that is not finite is reported afterwards.
+        if y1.iter().any(|y| !y.is_finite()) {
+            return Ok(Statistics::default());
+        }
+        let guarded = self.contact.guard(layer, inverse_masses, (t, h), y1);
+        let met = guarded.map_err(|Squeezed { vertices }| Cause::Squeezed { vertices })?;
+        if !network.bodies().is_empty() {
+            network.hold(t + h, y1);
+        }
+        Ok(met)
+    }
+}

@@ -1,0 +1,126 @@
+//! State of a run: all that changes while it goes on, beside the model and what an adaptive method
+//! remembers.
+
+use serde::{Deserialize, Serialize};
+
+use super::balance::Balance;
+use crate::contact::Guarded;
+use crate::control::Control;
+use crate::integrators::{Method, Work};
+use crate::path::Path;
+
+/// A particle in the hand.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Grabbed {
+    /// Number of the particle.
+    pub particle: usize,
+    /// Whether the particle was pinned before, and is again when the hand lets go.
+    pub was_pinned: bool,
+    /// Path along which the hand leads it.
+    pub path: Path,
+}
+
+/// State of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunState {
+    /// The method.
+    #[serde(with = "by_name")]
+    pub method: &'static Method,
+    /// The step or the tolerance.
+    pub control: Control,
+    /// Time at which the steps that are counted in `taken` began (s).
+    pub since: f64,
+    /// Steps of the same size since then. The last step ends at `since` + `taken` x step, which
+    /// gathers no rounding errors; under a tolerance, it ends at `since`.
+    pub taken: u64,
+    /// Time shown (s), if it is within the last step.
+    pub shown: Option<f64>,
+    /// Steps since the beginning.
+    pub steps: u64,
+    /// Cost of these steps.
+    pub work: Work,
+    /// What the collision safeguard of surfaces did in these steps.
+    pub guarded: Guarded,
+    /// Balance of energy.
+    pub balance: Balance,
+    /// The state y: of a network [x | v], in m and m/s.
+    pub y: Vec<f64>,
+    /// Whether the scene's pins hold nothing.
+    pub unpinned: bool,
+    /// The particle in the hand.
+    pub grabbed: Option<Grabbed>,
+    /// The number of the obstacle in the hand.
+    pub grabbed_obstacle: Option<usize>,
+    /// Whether the pins swing.
+    pub swinging: bool,
+    /// Phase of the swing (rad): while it swings, sin(rate t + phase); while it stands, sin(phase).
+    pub swing_phase: f64,
+}
+
+impl RunState {
+    /// State of a run that begins at y.
+    pub(super) fn new(method: &'static Method, control: Control, y: Vec<f64>) -> Self {
+        Self {
+            method,
+            control,
+            since: 0.0,
+            taken: 0,
+            shown: None,
+            steps: 0,
+            work: Work::default(),
+            guarded: Guarded::default(),
+            balance: Balance::default(),
+            y,
+            unpinned: false,
+            grabbed: None,
+            grabbed_obstacle: None,
+            swinging: false,
+            swing_phase: 0.0,
+        }
+    }
+
+    /// Becomes a copy of another state, whose y goes to the memory of this one's.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        let mut y = std::mem::take(&mut self.y);
+        y.clone_from(&other.y);
+        *self = Self { y, ..*other };
+    }
+
+    /// Simulated time, which is shown (s).
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.shown.unwrap_or_else(|| self.end())
+    }
+
+    /// Time at the end of the last step (s).
+    pub(super) fn end(&self) -> f64 {
+        self.since + self.taken as f64 * self.control.step().unwrap_or(0.0)
+    }
+
+    /// Sets the time (s), from which steps are counted.
+    pub(super) fn set_time(&mut self, time: f64) {
+        (self.since, self.taken, self.shown) = (time, 0, None);
+    }
+}
+
+mod by_name {
+    //! Methods in serialised values: by their names.
+
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    use crate::integrators::{Method, find};
+
+    #[expect(
+        clippy::trivially_copy_pass_by_ref,
+        reason = "serde passes a reference"
+    )]
+    pub fn serialize<S: Serializer>(method: &&'static Method, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(method.name)
+    }
+
+    pub fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<&'static Method, D::Error> {
+        let name = String::deserialize(from)?;
+        find(&name).ok_or_else(|| D::Error::custom(format!("there is no method {name}")))
+    }
+}

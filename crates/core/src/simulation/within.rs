@@ -1,0 +1,165 @@
+//! The step that a time shown is within: states at its ends, and a polynomial between them.
+//!
+//! Of a fixed step, positions are the polynomial of degree 5 through the positions, velocities and
+//! accelerations at both ends, and velocities are its derivative (Hermite interpolation: Hairer,
+//! Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.6); its error falls as
+//! h^6. Where the accelerations at the ends do not explain the change of the velocity, because
+//! something was hit or the step is long against the fastest motion, the polynomial would swing far
+//! out, and a straight line takes its place.
+
+use nalgebra::Vector3;
+
+use super::stepper::Span;
+use crate::error::Error;
+use crate::system::ParticleSystem;
+
+/// Largest part of the acceleration's own effect by which the change of a velocity may miss the
+/// mean of the accelerations at both ends.
+const EXPLAINED: f64 = 0.25;
+
+/// Step that the time shown is within, if it is within one.
+#[derive(Default)]
+pub(super) struct Within {
+    /// Times of its beginning and its end (s).
+    times: Option<[f64; 2]>,
+    /// States at its beginning and its end.
+    ends: [Vec<f64>; 2],
+    /// Rates of change there, once a state between was shown.
+    rates: [Vec<f64>; 2],
+    has_rates: bool,
+}
+
+impl Within {
+    /// Time at the end of the step (s).
+    pub fn until(&self) -> Option<f64> {
+        self.times.map(|times| times[1])
+    }
+
+    /// Times of the step (s).
+    pub fn times(&self) -> Option<[f64; 2]> {
+        self.times
+    }
+
+    /// Remembers the state at the beginning of a step that a time shown will be within.
+    pub fn begin(&mut self, y0: &[f64]) {
+        self.ends[0].clear();
+        self.ends[0].extend_from_slice(y0);
+    }
+
+    /// Enters the step between these times (s), which ends at y1.
+    pub fn enter(&mut self, times: [f64; 2], y1: &[f64]) {
+        self.ends[1].clear();
+        self.ends[1].extend_from_slice(y1);
+        self.times = Some(times);
+        self.has_rates = false;
+    }
+
+    /// State at the end of the step, which is left.
+    pub fn leave(&mut self) -> Option<&mut Vec<f64>> {
+        self.times.take().map(|_| &mut self.ends[1])
+    }
+
+    /// Writes the state at a time (s) within a fixed step to `out`: that of n particles first, which
+    /// have positions and velocities, then other numbers.
+    pub fn interpolate(
+        &mut self,
+        (system, n): (&dyn ParticleSystem, usize),
+        time: f64,
+        out: &mut [f64],
+    ) {
+        let Some([t0, t1]) = self.times else { return };
+        if !self.has_rates {
+            let ends = self.ends.iter().zip([t0, t1]);
+            for ((y, t), rates) in ends.zip(&mut self.rates) {
+                rates.resize(y.len(), 0.0);
+                system.eval_f(t, y, rates);
+            }
+            self.has_rates = true;
+        }
+        let (h, theta) = (t1 - t0, (time - t0) / (t1 - t0));
+        for i in 0..n {
+            self.move_particle(n, i, h, theta, out);
+        }
+        let ([y0, y1], [f0, f1]) = (&self.ends, &self.rates);
+        for k in 6 * n..out.len() {
+            let (value, slope) = ([y0[k], y1[k]], [h * f0[k], h * f1[k]]);
+            let is_smooth = is_explained(value[1] - value[0], slope[0], slope[1]);
+            out[k] = between(value, slope, theta, is_smooth);
+        }
+        system.hold(time, out);
+    }
+
+    /// Writes position and velocity of particle i of n at the fraction theta of a step of h (s).
+    fn move_particle(&self, n: usize, i: usize, h: f64, theta: f64, out: &mut [f64]) {
+        let row = |a: &[f64], first: usize| {
+            Vector3::new(a[first + i], a[first + n + i], a[first + 2 * n + i])
+        };
+        let [x0, x1] = self.ends.each_ref().map(|y| row(y, 0));
+        let [v0, v1] = self.ends.each_ref().map(|y| row(y, 3 * n) * h);
+        let [a0, a1] = self.rates.each_ref().map(|f| row(f, 3 * n) * (h * h));
+        let mean = 0.5 * (a0 + a1);
+        let d = x1 - x0;
+        let (x, v) = if (v1 - v0 - mean).norm() <= EXPLAINED * a0.norm().max(a1.norm()) {
+            let c3 = 10.0 * d - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1;
+            let c4 = -15.0 * d + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1;
+            let c5 = 6.0 * d - 3.0 * (v0 + v1) - 0.5 * a0 + 0.5 * a1;
+            let x =
+                x0 + (v0 + (0.5 * a0 + (c3 + (c4 + c5 * theta) * theta) * theta) * theta) * theta;
+            let v = v0 + (a0 + (3.0 * c3 + (4.0 * c4 + 5.0 * c5 * theta) * theta) * theta) * theta;
+            (x, v)
+        } else {
+            (x0 + d * theta, v0 + (v1 - v0) * theta)
+        };
+        for axis in 0..3 {
+            out[axis * n + i] = x[axis];
+            out[(3 + axis) * n + i] = v[axis] / h;
+        }
+    }
+
+    /// The step, if the time shown is within one.
+    pub fn span(&self) -> Option<Span> {
+        self.times.map(|times| Span {
+            times,
+            ends: self.ends.clone(),
+        })
+    }
+
+    /// Goes on within a step.
+    ///
+    /// # Errors
+    /// It is of another system.
+    pub fn resume(&mut self, span: Option<&Span>, dim: usize) -> Result<(), Error> {
+        self.times = None;
+        let Some(Span { times, ends }) = span else {
+            return Ok(());
+        };
+        for end in ends.iter().filter(|end| !end.is_empty()) {
+            if end.len() != dim {
+                return Err(Error::Dimension {
+                    expected: dim,
+                    found: end.len(),
+                });
+            }
+        }
+        self.begin(&ends[0]);
+        self.enter(*times, &ends[1]);
+        Ok(())
+    }
+}
+
+/// Whether slopes at both ends, in units of the step, explain a change.
+fn is_explained(change: f64, slope0: f64, slope1: f64) -> bool {
+    let missed = (change - 0.5 * (slope0 + slope1)).abs();
+    missed <= EXPLAINED * slope0.abs().max(slope1.abs())
+}
+
+/// Value at the fraction theta of a step by the polynomial of degree 3, if it is smooth, or on a
+/// straight line.
+fn between([y0, y1]: [f64; 2], [s0, s1]: [f64; 2], theta: f64, is_smooth: bool) -> f64 {
+    let d = y1 - y0;
+    if is_smooth {
+        y0 + (s0 + (3.0 * d - 2.0 * s0 - s1 + (s0 + s1 - 2.0 * d) * theta) * theta) * theta
+    } else {
+        y0 + d * theta
+    }
+}
