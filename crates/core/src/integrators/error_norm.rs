@@ -119,7 +119,11 @@ impl ErrorNorm<'_> {
         });
         times.fold(f64::INFINITY, |least, time| {
             // NaN has to come out as such.
-            if time < least || time.is_nan() { time } else { least }
+            if time < least || time.is_nan() {
+                time
+            } else {
+                least
+            }
         })
     }
 

@@ -365,7 +365,11 @@ impl Rigid for Network {
 
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
         for axis in 0..6 {
-            let measure = if axis < 3 { Measure::Position } else { Measure::Velocity };
+            let measure = if axis < 3 {
+                Measure::Position
+            } else {
+                Measure::Velocity
+            };
             let mut start = axis * self.particles();
             for run in self.masses.chunk_by(|a, b| (*a > 0.0) == (*b > 0.0)) {
                 if run[0] > 0.0 {
