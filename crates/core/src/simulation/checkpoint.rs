@@ -176,7 +176,7 @@ impl Simulation {
             }
             checkpoint.bind(network, whole)?;
         }
-        let mut stepper = Stepper::new(run.method, model.system(), run.control)?;
+        let mut stepper = Stepper::new(run.method, &self.scene, model.system(), run.control)?;
         stepper.resume(&checkpoint.progress, run.y.len())?;
         (self.model, self.stepper) = (model, stepper);
         self.state.copy_from(run);
