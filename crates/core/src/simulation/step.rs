@@ -63,10 +63,10 @@ impl Simulation {
             } else if is_last {
                 self.state.taken += 1;
             }
-            self.tear();
             if is_last {
                 return Ok(());
             }
+            self.tear();
             begin = part.end;
         }
     }
@@ -248,8 +248,9 @@ impl Simulation {
         }
     }
 
-    /// Breaks what is stretched too far at the end of a step, or was located to be there.
-    fn tear(&mut self) {
+    /// Breaks what is stretched too far at the end of a step, or was located to be there. The run is
+    /// there: a state that is shown within the step still has what breaks at its end.
+    pub(super) fn tear(&mut self) {
         let locates = self.stepper.is_adaptive() || self.locates;
         let share = if locates { NONE } else { 0.0 };
         if let Model::Network(network) = &mut self.model

@@ -21,7 +21,13 @@ impl Simulation {
     pub fn take_steps(&mut self, count: u64) -> Result<(), Error> {
         self.keep()?;
         among_threads(self.particles(), || {
-            (0..count).try_for_each(|_| if self.arrive() { Ok(()) } else { self.step() })
+            for _ in 0..count {
+                if !self.arrive() {
+                    self.step()?;
+                    self.tear();
+                }
+            }
+            Ok(())
         })
     }
 
@@ -67,6 +73,8 @@ impl Simulation {
             if ends_later(end - begin) {
                 self.stepper.within.enter([begin, end], &self.state.y);
                 self.show(time);
+            } else {
+                self.tear();
             }
         }
         Ok(())
@@ -80,6 +88,7 @@ impl Simulation {
         let is_within = end.is_some();
         if let Some(end) = end {
             std::mem::swap(end, &mut self.state.y);
+            self.tear();
         }
         is_within
     }
