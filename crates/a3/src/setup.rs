@@ -12,7 +12,8 @@ use crate::failure::Failure;
 /// The simulation of a run without a window, and what of it is shown.
 pub fn simulation(options: &RunOptions) -> Result<(Simulation, Arc<Presentation>), Failure> {
     let what = &options.what;
-    let (setup, solver) = (build(what)?, what.scene.solver_or(options.solver));
+    let (mut setup, solver) = (build(what)?, what.scene.solver_or(options.solver));
+    setup.scene.absolute = options.absolute;
     let simulation = simulate(what, &setup, solver, options.step)?;
     Ok((simulation, setup.presentation))
 }
