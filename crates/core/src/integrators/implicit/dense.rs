@@ -84,7 +84,12 @@ impl Dense {
                 }
             }
             work += self.correct(system, t, a, base, y);
-            changes.add(self.norm(&self.change), self.norm(y), 0.0);
+            // Where bodies are does not matter.
+            let size = match system.rigid() {
+                Some(_) => (self.unknowns.len() as f64).sqrt(),
+                None => self.norm(y),
+            };
+            changes.add(self.norm(&self.change), size, 0.0);
             if newton == Newton::Once || changes.are_over(1e-9) {
                 return Ok(work);
             }
