@@ -352,4 +352,25 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn what_is_a_thousand_times_as_small_looks_the_same() {
+        for parallel in [false, true] {
+            let seen = |unit: f32| {
+                let scaled = |p: [f32; 3]| p.map(|x| unit * x);
+                let mut camera = Camera::look_at(scaled([2.0, 3.0, 4.0]), scaled([0.0, 1.0, 0.0]));
+                camera.set_parallel(parallel);
+                camera.zoom(0.1);
+                let matrix = camera.view_projection(1.5);
+                let clip = matrix * Point3::from(scaled([0.1, 1.2, 0.1])).to_homogeneous();
+                (camera.unit() / unit, clip.xyz() / clip.w)
+            };
+            let metres = seen(1.0);
+            for unit in [1e-6, 1e-3, 1e3] {
+                let found = seen(unit);
+                assert!((found.0 / metres.0 - 1.0).abs() < 1e-5, "{found:?}");
+                assert!((found.1 - metres.1).norm() < 1e-4, "{found:?} {metres:?}");
+            }
+        }
+    }
 }
