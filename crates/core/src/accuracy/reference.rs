@@ -204,6 +204,7 @@ impl Making<'_> {
         let mut scene = self.scene.clone();
         scene.absolute = None;
         let mut simulation = Simulation::new(scene, method, control)?;
+        simulation.locate_events();
         let frames = self.reference.frames;
         let start = &self.reference.start;
         let mut snapshots: Vec<Snapshot> = Vec::with_capacity(frames.count as usize);

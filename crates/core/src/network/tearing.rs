@@ -124,12 +124,12 @@ impl Network {
         self.triangles = self.triangles.iter().filter(whole).copied().collect();
     }
 
-    /// Breaks the springs that are too long at x (m), and those that go with them. Returns between
-    /// how many pairs.
-    pub fn tear(&mut self, x: &[f64]) -> usize {
+    /// Breaks the springs that are too long at x (m), or lack no more than that share of their
+    /// length, and those that go with them. Returns between how many pairs.
+    pub fn tear(&mut self, x: &[f64], share: f64) -> usize {
         let Some(limit) = self.tear else { return 0 };
         let is_too_long = |s: &Spring| {
-            let most = limit * s.law.rest_length;
+            let most = limit * s.law.rest_length * (1.0 - share);
             most > 0.0 && distance_squared(x, s.i, s.j) > most * most
         };
         if !self.all_springs().any(|s| is_too_long(&s)) {

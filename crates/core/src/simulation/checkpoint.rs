@@ -76,7 +76,7 @@ impl Checkpoint {
                 found: y.len(),
             });
         }
-        if !self.time().is_finite() || y.iter().any(|y| !y.is_finite()) {
+        if !(self.time() + self.run.end()).is_finite() || y.iter().any(|y| !y.is_finite()) {
             return Err(Error::Invalid(
                 "the state and the time of a checkpoint must be finite".into(),
             ));
@@ -241,9 +241,11 @@ impl Simulation {
         self.state.y.copy_from_slice(&then.y);
         self.state.balance = then.balance;
         self.state.steps = then.steps;
+        self.stepper.forget();
         // Another step is no multiple of the time that was counted then.
         if then.control == self.state.control {
             (self.state.since, self.state.taken) = (then.since, then.taken);
+            self.state.shown = then.shown;
         } else {
             self.state.set_time(then.time());
         }
