@@ -61,6 +61,9 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
         let methods = runs.map(|run| format!("{}:{}", run.method().name, control(run)));
         ["compare".into()].into_iter().chain(methods).collect()
     };
+    if let Some(absolute) = session.origin().absolute {
+        words.extend(["--absolute".into(), absolute.to_string()]);
+    }
     let show = &session.panes[at].show;
     let mut option = |name: &str, value: &str| words.extend([name.into(), value.into()]);
     option("--scene", scene);

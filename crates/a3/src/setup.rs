@@ -12,7 +12,16 @@ use crate::failure::Failure;
 /// The simulation of a run without a window, and what of it is shown.
 pub fn simulation(options: &RunOptions) -> Result<(Simulation, Arc<Presentation>), Failure> {
     let what = &options.what;
-    let (setup, solver) = (build(what)?, what.scene.solver_or(options.solver));
+    if let (Some(solver), Some(_)) = (options.solver, options.absolute)
+        && !solver.is_adaptive()
+    {
+        return Err(Failure::usage(format!(
+            "{} takes a step, not a tolerance: leave out --absolute",
+            solver.name
+        )));
+    }
+    let (mut setup, solver) = (build(what)?, what.scene.solver_or(options.solver));
+    setup.scene.absolute = options.absolute;
     let simulation = simulate(what, &setup, solver, options.step)?;
     Ok((simulation, setup.presentation))
 }

@@ -7,6 +7,7 @@
 #[cfg(not(target_arch = "wasm32"))]
 mod keeper;
 
+use std::fmt::Write;
 use std::path::Path;
 
 use a3_core::{Checkpoint, Grid, Simulation};
@@ -123,7 +124,7 @@ impl Kept {
         }
         if self.scene != identity(source, grid, run) {
             return Err(refuse(format!(
-                "this checkpoint is of another scene {name}: its file, its meshes or its grid were others"
+                "this checkpoint is of another scene {name}: its file, its meshes, its grid or its absolute tolerance were others"
             )));
         }
         Ok(())
@@ -132,11 +133,14 @@ impl Kept {
 
 /// What tells the scene of a run from others of its name.
 fn identity(source: &Source, grid: Option<Grid>, run: &Simulation) -> String {
-    let own = source.fingerprint(run.scene());
-    match grid {
-        Some(grid) => format!("{own} {}x{}", grid.rows(), grid.cols()),
-        None => own,
+    let mut identity = source.fingerprint(run.scene());
+    if let Some(grid) = grid {
+        let _ = write!(identity, " {}x{}", grid.rows(), grid.cols());
     }
+    if let Some(absolute) = run.scene().absolute {
+        let _ = write!(identity, " {absolute}");
+    }
+    identity
 }
 
 /// The bytes of a file of the page.

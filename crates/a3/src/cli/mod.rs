@@ -22,7 +22,8 @@ use crate::lessons;
 use crate::scene_file::Source;
 use names::{SCENE, SOLVER};
 use values::{
-    budget, error, factor, grid, horizon, particle, pause, picture_size, rate, step, threads, until,
+    absolute, budget, error, factor, grid, horizon, particle, pause, picture_size, rate, step,
+    threads, until,
 };
 
 #[cfg(feature = "window")]
@@ -315,6 +316,10 @@ pub struct RunOptions {
     /// there
     #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true)]
     pub until: Option<f64>,
+    /// Error of positions that a step of an adaptive solver may make, in m; by default the
+    /// tolerance times the radius of the scene
+    #[arg(long, value_name = "M", value_parser = absolute, allow_negative_numbers = true)]
+    pub absolute: Option<f64>,
     #[command(flatten)]
     pub what: What,
 }

@@ -43,6 +43,15 @@ pub fn step(text: &str) -> Result<f64, String> {
     within(text, *TOLERANCES.start()..=LARGEST_STEP, &right)
 }
 
+/// An absolute tolerance (m).
+pub fn absolute(text: &str) -> Result<f64, String> {
+    within(
+        text,
+        1e-18..=1e6,
+        "an absolute tolerance is a number of metres from 1e-18 to 1e6, such as 1e-6",
+    )
+}
+
 /// The number of a particle.
 pub fn particle(text: &str) -> Result<usize, String> {
     text.parse()

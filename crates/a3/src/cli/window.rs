@@ -6,7 +6,7 @@ use a3_core::Method;
 use clap::Args;
 
 use super::names::{SOLVER_AND_STEP, SOLVER_OR_COMMAND};
-use super::values::{beginning, particle, rate, size, step, until};
+use super::values::{absolute, beginning, particle, rate, size, step, until};
 use super::{Drawing, RunOptions, What};
 
 #[derive(Args)]
@@ -18,6 +18,10 @@ pub struct WindowOptions {
     /// else the solver's
     #[arg(value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
+    /// Error of positions that a step of an adaptive solver may make, in m; by default the
+    /// tolerance times the radius of the scene
+    #[arg(long, value_name = "M", value_parser = absolute, allow_negative_numbers = true)]
+    pub absolute: Option<f64>,
     #[command(flatten)]
     pub what: What,
     /// Show and list the springs attached to particle I
@@ -89,6 +93,10 @@ pub struct Compare {
     /// a colon, as in e:0.05 r:0.05; by default the solver's own
     #[arg(value_name = "SOLVER[:STEP]", value_parser = SOLVER_AND_STEP, hide_possible_values = true)]
     pub methods: Vec<(&'static Method, Option<f64>)>,
+    /// Error of positions that a step of an adaptive solver may make, in m; by default the
+    /// tolerance times the radius of the scene
+    #[arg(long, value_name = "M", value_parser = absolute, allow_negative_numbers = true)]
+    pub absolute: Option<f64>,
     #[command(flatten)]
     pub what: What,
     #[command(flatten)]
