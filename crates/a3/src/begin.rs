@@ -1,6 +1,6 @@
 //! From arguments to sessions, of windows and of pictures.
 
-use a3_core::Simulation;
+use a3_core::{Simulation, StepLimits};
 
 use crate::cli::{Compare, Drawing, What, WindowOptions};
 use crate::failure::Failure;
@@ -18,7 +18,7 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     }
     let solver = what.scene.solver_or(options.solver);
     let mut setup = build(what)?;
-    setup.scene.absolute = options.absolute;
+    setup.scene.limits = options.limits.given().or(setup.scene.limits);
     let simulation = simulate(what, &setup, solver, options.step)?;
     check_particle(&simulation, options.springs_of)?;
     check_drawing(&simulation, options.look.manner, false)?;
@@ -27,7 +27,7 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
         paused: options.look.paused,
     };
     Session::new(
-        origin(what, options.absolute),
+        origin(what, options.limits.given()),
         setup,
         vec![simulation],
         &beginning,
@@ -44,7 +44,7 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
     }
     let what = &options.what;
     let mut setup = build(what)?;
-    setup.scene.absolute = options.absolute;
+    setup.scene.limits = options.limits.given().or(setup.scene.limits);
     let simulations = options
         .methods
         .iter()
@@ -56,7 +56,7 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         paused: options.look.paused,
     };
     Session::new(
-        origin(what, options.absolute),
+        origin(what, options.limits.given()),
         setup,
         simulations,
         &beginning,
@@ -64,11 +64,11 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
 }
 
 /// The origin of the scene.
-fn origin(what: &What, absolute: Option<f64>) -> Origin {
+fn origin(what: &What, limits: StepLimits) -> Origin {
     Origin {
         source: what.scene.clone(),
         grid: what.grid,
-        absolute,
+        limits,
     }
 }
 

@@ -93,11 +93,29 @@ pub struct Scene {
     pub touch: Option<Arc<Touch>>,
     /// Largest length, in rest lengths, to which a hand pulls the springs of the particle it holds.
     pub reach: f64,
-    /// Error of positions that a step to a tolerance may make (m); by default the tolerance times
-    /// the scene's radius.
+    /// Limits of adaptive steps.
+    pub limits: StepLimits,
+}
+
+/// Limits of adaptive steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepLimits {
+    /// Error of positions that a step may make (m); by default the tolerance times the scene's
+    /// radius.
     pub absolute: Option<f64>,
-    /// Longest step of an adaptive method (s), if it is limited.
+    /// Longest step (s); by default the error and the prescribed motions alone limit it.
     pub max_step: Option<f64>,
+}
+
+impl StepLimits {
+    /// These limits, and those of a scene where there are none.
+    #[must_use]
+    pub fn or(self, own: Self) -> Self {
+        Self {
+            absolute: self.absolute.or(own.absolute),
+            max_step: self.max_step.or(own.max_step),
+        }
+    }
 }
 
 impl Scene {
@@ -118,8 +136,7 @@ impl Scene {
             wind: None,
             touch: None,
             reach: 10.0,
-            absolute: None,
-            max_step: None,
+            limits: StepLimits::default(),
         }
     }
 
@@ -191,7 +208,7 @@ impl Scene {
     /// # Errors
     /// The tolerance, or the scene's absolute one, is not a finite number above 0.
     pub fn tolerance(&self, relative: f64) -> Result<Tolerance, Error> {
-        let absolute = self.absolute.unwrap_or(relative * self.extent().1);
+        let absolute = self.limits.absolute.unwrap_or(relative * self.extent().1);
         Tolerance::with_absolute(relative, absolute)
     }
 }

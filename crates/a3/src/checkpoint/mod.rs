@@ -10,7 +10,7 @@ mod keeper;
 use std::fmt::Write;
 use std::path::Path;
 
-use a3_core::{Checkpoint, Grid, Simulation};
+use a3_core::{Checkpoint, Grid, Simulation, StepLimits};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
@@ -124,7 +124,7 @@ impl Kept {
         }
         if self.scene != identity(source, grid, run) {
             return Err(refuse(format!(
-                "this checkpoint is of another scene {name}: its file, its meshes, its grid or its absolute tolerance were others"
+                "this checkpoint is of another scene {name}: its file, its meshes, its grid or the limits of its steps were others"
             )));
         }
         Ok(())
@@ -137,8 +137,9 @@ fn identity(source: &Source, grid: Option<Grid>, run: &Simulation) -> String {
     if let Some(grid) = grid {
         let _ = write!(identity, " {}x{}", grid.rows(), grid.cols());
     }
-    if let Some(absolute) = run.scene().absolute {
-        let _ = write!(identity, " {absolute}");
+    let StepLimits { absolute, max_step } = run.scene().limits;
+    for limit in [absolute, max_step].into_iter().flatten() {
+        let _ = write!(identity, " {limit}");
     }
     identity
 }

@@ -1,6 +1,6 @@
 //! The origin of a scene.
 
-use a3_core::Grid;
+use a3_core::{Grid, StepLimits};
 use a3_scenes::Setup;
 
 use crate::scene_file::Source;
@@ -12,8 +12,8 @@ pub struct Origin {
     pub source: Source,
     /// Grid of the cloth, if not the scene's own.
     pub grid: Option<Grid>,
-    /// Absolute tolerance (m), if not that of the scene's size.
-    pub absolute: Option<f64>,
+    /// Limits of adaptive steps, if not the scene's own.
+    pub limits: StepLimits,
 }
 
 impl Origin {
@@ -22,14 +22,14 @@ impl Origin {
         Self {
             source,
             grid: None,
-            absolute: None,
+            limits: StepLimits::default(),
         }
     }
 
     /// Builds the scene.
     pub fn build(&self) -> Result<Setup, String> {
         let mut setup = self.source.build(self.grid)?;
-        setup.scene.absolute = self.absolute;
+        setup.scene.limits = self.limits.or(setup.scene.limits);
         Ok(setup)
     }
 }

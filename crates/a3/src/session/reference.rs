@@ -39,7 +39,7 @@ impl ReferenceRun {
         let (method, control) = choose(panes);
         let run = &first.simulation;
         let mut scene = run.scene().clone();
-        scene.absolute = None;
+        scene.limits.absolute = None;
         let mut simulation = Simulation::new(scene, method, control).map_err(Failure::run)?;
         simulation.set_wind(run.windy());
         simulation.set_swinging(run.swinging());

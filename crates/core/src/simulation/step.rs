@@ -181,7 +181,7 @@ impl Simulation {
             }
         }
         if self.stepper.is_adaptive() {
-            let longest = self.scene.max_step.unwrap_or(f64::INFINITY);
+            let longest = self.scene.limits.max_step.unwrap_or(f64::INFINITY);
             reach.longest = reach.longest.min(longest);
         }
         if let Some(target) = target.filter(|target| *target <= reach.until.unwrap_or(f64::MAX)) {

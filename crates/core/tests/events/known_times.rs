@@ -81,7 +81,7 @@ fn tight_tolerances_are_met_where_a_pin_starts() {
 #[test]
 fn no_step_is_longer_than_the_longest() {
     let mut scene = described("[particles]\npositions = [[0, 0, 0]]\nmass = 1");
-    scene.max_step = Some(0.125);
+    scene.limits.max_step = Some(0.125);
     let method = method("dop853");
     let mut run = Simulation::new(scene, method, method.control(1e-3)).unwrap();
     run.advance_to(4.0).unwrap();
