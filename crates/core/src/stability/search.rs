@@ -163,10 +163,7 @@ pub(super) fn steps(h: f64, expected: f64) -> u64 {
 
 /// Calls `look` with numbers of steps to take and to check, `steps` in all, and then 8 more, one by
 /// one. Returns what `look` does as soon as that is not `Some(true)`.
-pub(super) fn step_and_look(
-    steps: u64,
-    mut look: impl FnMut(u64) -> Option<bool>,
-) -> Option<bool> {
+pub(super) fn step_and_look(steps: u64, mut look: impl FnMut(u64) -> Option<bool>) -> Option<bool> {
     let mut left = steps;
     while left > 0 {
         let count = (steps / LOOKS).clamp(1, left);
