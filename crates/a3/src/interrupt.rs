@@ -10,7 +10,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// Time after a request in which a command has to stop computing, before it is ended at once.
-const PATIENCE: Duration = Duration::from_millis(700);
+const PATIENCE: Duration = Duration::from_millis(500);
 /// Time for the last message, which nobody may read.
 const LAST_WORDS: Duration = Duration::from_millis(200);
 /// SIGINT, for systems without signals.

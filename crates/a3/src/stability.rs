@@ -18,9 +18,9 @@ use crate::progress::Bar;
 use crate::{interrupt, list, output, setup};
 
 /// Work of all searches in motion, and of those at rest, in that of a [`Budget`].
-const MOST_WORK: [f64; 2] = [6e8, 2e8];
+const MOST_WORK: [f64; 2] = [1.2e9, 5e8];
 /// Share of it that all searches together may do before those that need more get the rest.
-const FIRST: f64 = 0.5;
+const FIRST: f64 = 0.3;
 
 /// The limits of a method.
 #[derive(Clone, Copy)]
@@ -291,7 +291,7 @@ fn text(
         let names: Vec<_> = short.iter().map(|row| row.method.name).collect();
         let _ = writeln!(
             text,
-            "short     runs by {} take long: they were shorter than 10 s, or fewer than the others'",
+            "short     the runs were shorter than 10 s, or too few to tell more, because they take long: {}",
             names.join(", ")
         );
     }

@@ -188,8 +188,7 @@ pub fn observe_at_rest(
     let holds = |h: f64| {
         let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
         let mut beside = Simulation::new(still.clone(), method, Control::Step(h))?;
-        let count = budget.room(method, &still.model, steps(h, guess));
-        Ok(step_and_look(count, |count| {
+        Ok(step_and_look(steps(h, guess), |count| {
             let held = budget.take(&mut run, count).filter(|_| go_on())?;
             let held = held && budget.take(&mut beside, count)?;
             let both = run.state().iter().zip(beside.state());

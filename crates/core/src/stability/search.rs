@@ -18,22 +18,24 @@ pub(super) const MOST: f64 = 2e8;
 /// Number of checks during a run that holds.
 const LOOKS: u64 = 200;
 /// Longest run of a search, as a share of the search's budget.
-const RUN: f64 = 0.125;
+const RUN: f64 = 0.25;
+/// Least number of particles that count: a small system costs more than its particles.
+const PARTICLES: usize = 20;
 /// Number of steps to which no run is shortened.
 const FEWEST: f64 = 100.0;
 
 /// Price of an evaluation for a particle, over that for one of a sheet of springs: with other
 /// forces, ...
-const OTHER: f64 = 3.0;
+const OTHER: f64 = 5.0;
 /// ... in a fluid, ...
 const FLUID: f64 = 10.0;
 /// ... and where surfaces touch.
-const TOUCHING: f64 = 40.0;
+const TOUCHING: f64 = 80.0;
 /// Price of an impulse of the guard of surfaces, with the search for what it meets next.
 const IMPULSE: f64 = 50.0;
 
-/// Work that a search may do, in evaluations of one particle on a sheet of springs, which take 40
-/// ns or so: counted, so that a search ends at the same run on every machine.
+/// Work that a search may do, in evaluations of one particle on a sheet of springs, which take 20
+/// to 40 ns: counted, so that a search ends at the same run on every machine.
 #[derive(Debug)]
 pub struct Budget {
     most: f64,
@@ -123,7 +125,7 @@ fn price(model: &Model) -> f64 {
             1.0
         }
     });
-    each * model.particles() as f64
+    each * model.particles().max(PARTICLES) as f64
 }
 
 /// Work of a run so far.
