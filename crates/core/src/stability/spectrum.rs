@@ -208,10 +208,8 @@ fn of_mechanics(
         _ => 0.0,
     });
     let most = ITERATIONS * m;
-    let mut eigen = PRECISIONS
-        .into_iter()
-        .map(|precision| SymmetricEigen::try_new(tridiagonal.clone(), precision, most));
-    let Some(eigen) = eigen.find_map(|eigen| eigen) else {
+    let find = |precision| SymmetricEigen::try_new(tridiagonal.clone(), precision, most);
+    let Some(eigen) = PRECISIONS.into_iter().find_map(find) else {
         return;
     };
     let mut shape = vec![0.0; x.len()];
