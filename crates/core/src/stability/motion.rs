@@ -158,8 +158,9 @@ impl Motion {
     /// Runs take [`HORIZON`] and [`STEPS`](super::STEPS) steps at least. The search begins at the
     /// limit by the modes. The limit that is seen is sharp if that one is, if a run ten times as
     /// long holds with a step a tenth shorter, and if one fails with a step a tenth longer. If the
-    /// former fails, the limit is that of runs of this length. It is blurred where the budget limits
-    /// the runs. `None` if the runs would take too long, and soon after `go_on` returns false.
+    /// former fails, the limit is that of runs of this length. It is blurred where the budget
+    /// limits the runs. `None` if the runs would take too long, and soon after `go_on` returns
+    /// false.
     ///
     /// # Errors
     /// The method does not support the scene.

@@ -54,8 +54,8 @@ pub struct RestState {
 /// implicit Euler with growing steps.
 ///
 /// `None` for a first-order scene, for one that implicit Euler does not support, for one with rigid
-/// bodies, for one whose pins or obstacles move, and for one that does not settle, or takes too much
-/// work to; soon after `go_on` returns false, too.
+/// bodies, for one whose pins or obstacles move, and for one that does not settle, or takes too
+/// much work to; soon after `go_on` returns false, too.
 ///
 /// # Errors
 /// The scene cannot be run.

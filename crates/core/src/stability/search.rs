@@ -267,8 +267,8 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
 /// the limit is as expected, if steps shorter than one that holds hold too.
 ///
 /// The limit is open or sharp: whoever calls this finds out whether it is blurred. Where `holds`
-/// returns `None`, the search ends with what it knows: the longest step that held, if one did, which
-/// is blurred if a longer one failed.
+/// returns `None`, the search ends with what it knows: the longest step that held, if one did,
+/// which is blurred if a longer one failed.
 pub(super) fn bisect(
     expected: f64,
     work: f64,
