@@ -18,7 +18,7 @@ use crate::progress::Bar;
 use crate::{interrupt, list, output, setup};
 
 /// Work of all searches in motion, and of those at rest, in that of a [`Budget`].
-const MOST_WORK: [f64; 2] = [1.2e9, 5e8];
+const MOST_WORK: [f64; 2] = [1.5e9, 8e8];
 /// Share of it that all searches together may do before those that need more get the rest.
 const FIRST: f64 = 0.3;
 

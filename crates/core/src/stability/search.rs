@@ -26,11 +26,11 @@ const FEWEST: f64 = 100.0;
 
 /// Price of an evaluation for a particle, over that for one of a sheet of springs: with other
 /// forces, ...
-const OTHER: f64 = 5.0;
+const OTHER: f64 = 3.5;
 /// ... in a fluid, ...
 const FLUID: f64 = 10.0;
 /// ... and where surfaces touch.
-const TOUCHING: f64 = 80.0;
+const TOUCHING: f64 = 100.0;
 /// Price of an impulse of the guard of surfaces, with the search for what it meets next.
 const IMPULSE: f64 = 50.0;
 
