@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::elements::{Sheet, Wind};
+use crate::elements::{Element, Sheet, Wind};
 use crate::error::Error;
 use crate::geometry::Shape;
 use crate::grid::Grid;
@@ -14,6 +14,9 @@ use crate::system::ParticleSystem;
 
 /// What an evaluation with its guard costs where surfaces touch, over one of springs alone.
 const TOUCHING: f64 = 100.0;
+
+/// What an evaluation of a fluid, each of whose particles has dozens of neighbours, costs over that.
+const FLUID: f64 = 10.0;
 
 /// First-order system, shared among runs.
 pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
@@ -57,13 +60,17 @@ impl Model {
     /// springs: what searches count to end at the same run on every machine.
     #[must_use]
     pub fn work(&self) -> f64 {
-        let touches = |network: &Network| network.contact_layer().is_some();
-        let each = if self.network().is_some_and(touches) {
-            TOUCHING
-        } else {
-            1.0
+        let each = |network: &Network| {
+            let mut elements = network.elements().iter();
+            if network.contact_layer().is_some() {
+                TOUCHING
+            } else if elements.any(|element| matches!(element, Element::Fluid(_))) {
+                FLUID
+            } else {
+                1.0
+            }
         };
-        self.particles() as f64 * each
+        self.particles() as f64 * self.network().map_or(1.0, each)
     }
 }
 
