@@ -41,6 +41,12 @@ impl Obstacle {
         }
     }
 
+    /// Whether it neither moves nor turns.
+    #[must_use]
+    pub fn is_still(&self) -> bool {
+        matches!(self.path, Path::Still(_)) && self.turn.is_none()
+    }
+
     /// # Errors
     /// The shape has no size, or the friction is negative; or a number is not finite.
     pub(crate) fn check(&self) -> Result<(), Error> {

@@ -10,7 +10,9 @@
 //! end of that step, and the state shown is read off the step's polynomial.
 
 use super::Simulation;
+use super::balance::energy_of;
 use super::blow_up::blow_up_by;
+use super::drive::End;
 use super::phases::Settled;
 use super::stepper::Kind;
 use crate::contact::Impulses;
@@ -133,6 +135,7 @@ impl Simulation {
     fn step(&mut self) -> Result<(), Error> {
         self.list_strained();
         let begin = self.state.end();
+        self.watch.begin_step(&self.model, begin, &self.state.y);
         let (cause, end) = match self.integrate_and_settle(begin)? {
             Err(cause) => (
                 Some(cause),
@@ -188,10 +191,17 @@ impl Simulation {
     /// Notes the end of a step at time t (s). Returns why the run is lost, if it is.
     fn watch_step(&mut self, t: f64, settled: &Settled) -> Option<Cause> {
         let lost = self.lost(&self.state.y);
-        let (state, now) = (&mut self.state, t);
-        let (balance, y) = (&mut state.balance, &state.y[..]);
+        let state = &mut self.state;
+        let (balance, y, order) = (&mut state.balance, &state.y[..], state.method.order);
+        let end = End { order, t, y };
         self.watch
-            .met(&self.model, balance, (now, y), &settled.met, lost)
+            .end_step(&self.model, balance, end, &settled.met, lost)
+    }
+
+    /// Time (s) and state at the end of the last step.
+    pub(super) fn last_end(&self) -> (f64, &[f64]) {
+        let within = self.stepper.within.end();
+        within.unwrap_or_else(|| (self.state.time(), &self.state.y))
     }
 
     /// Shows the state at a time (s) within the step: as its polynomial has it, with pins in their
@@ -236,10 +246,16 @@ impl Simulation {
 
     /// Breaks what is stretched too far at the end of a step.
     fn tear(&mut self) {
+        let (t, y) = (self.state.time(), &self.state.y);
         if let Model::Network(network) = &mut self.model
-            && network.tear(network.halves(&self.state.y).0) > 0
+            && network.is_overstretched(network.halves(y).0)
         {
-            self.look_again();
+            let before = energy_of(network, t, y).total();
+            network.tear(network.halves(y).0);
+            let after = energy_of(network, t, y).total();
+            self.state.balance.allow(after - before);
+            self.watch.forget_drive();
+            self.stepper.forget();
             self.refit();
         }
     }
@@ -247,12 +263,15 @@ impl Simulation {
     /// Forgets the last step: the state or the system is no longer the one that it ended with. The
     /// next step begins at the time shown.
     pub(super) fn look_again(&mut self) {
+        let (t, state) = (self.time(), &mut self.state);
+        let end = self.stepper.within.until().unwrap_or(t);
+        self.watch
+            .disturb(&self.model, &mut state.balance, t, end, &state.y);
         if self.stepper.within.times().is_some() {
             self.state.set_time(self.time());
         }
         self.state.shown = None;
         self.stepper.forget();
-        self.watch.disturbed = true;
     }
 }
 

@@ -11,12 +11,12 @@ impl Simulation {
     /// Changes the model as it is now, and the one that a reset goes back to. The state and the
     /// time stay. Does nothing in a scene without masses.
     pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
+        self.look_again();
         for model in [&mut self.model, &mut self.scene.model] {
             if let Model::Network(network) = model {
                 change(network);
             }
         }
-        self.look_again();
         self.refit();
     }
 
@@ -70,10 +70,10 @@ impl Simulation {
         // Where surfaces touch, a hand attracts a particle that it would lead as a pin elsewhere.
         let held = self.grabbed();
         self.release();
+        self.look_again();
         if let Model::Network(network) = &mut self.model {
             let_touch(network, &self.scene, on)?;
         }
-        self.look_again();
         self.refit();
         held.map_or(Ok(()), |i| self.grab(i))
     }
