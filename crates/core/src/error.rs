@@ -249,6 +249,17 @@ pub(crate) fn at_least(low: f64, what: &str, value: f64) -> Result<(), Error> {
     }
 }
 
+/// `Ok` if `value` is from 0 to 1, else an error that names it.
+pub(crate) fn share(what: &str, value: f64) -> Result<(), Error> {
+    if (0.0..=1.0).contains(&value) {
+        Ok(())
+    } else {
+        Err(Error::Invalid(format!(
+            "{what} must be a number from 0 to 1, not {value}"
+        )))
+    }
+}
+
 /// `Ok` if `value` is finite and above zero, else an error that names it.
 pub(crate) fn positive(what: &str, value: f64) -> Result<(), Error> {
     if value.is_finite() && value > 0.0 {

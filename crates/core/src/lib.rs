@@ -97,7 +97,7 @@ pub use rows::{Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
 pub use scene::{FirstOrder, Model, Scene, Swing};
 pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, RunState, Simulation, Span};
 pub use spring::{Spring, SpringKind, SpringLaw};
-pub use system::{Compliant, Linearized, Mechanics, ParticleSystem, Rigid, Splitting};
+pub use system::{Compliant, Linearized, Measure, Mechanics, ParticleSystem, Rigid, Splitting};
 
 /// Example of the README, compiled as a documentation test.
 #[cfg(doctest)]

@@ -10,6 +10,7 @@ mod matrix;
 mod mechanics;
 mod obstacles;
 mod price;
+mod scratch;
 mod springs;
 mod strain;
 mod tearing;
@@ -66,7 +67,7 @@ pub struct Network {
     touch: Option<Touch>,
     /// Rigid bodies, and scratch for their evaluations.
     bodies: Vec<Body>,
-    scratch: bodies::Scratch,
+    scratch: scratch::Scratch,
 }
 
 impl Network {
@@ -102,7 +103,7 @@ impl Network {
             obstacles: vec![],
             touch: None,
             bodies: vec![],
-            scratch: bodies::Scratch::default(),
+            scratch: scratch::Scratch::default(),
         })
     }
 

@@ -233,6 +233,16 @@ impl Path {
             }
         }
     }
+
+    /// Length (m) of the motion that it leads: an amplitude, or a way between two ends.
+    pub(crate) fn length(&self) -> f64 {
+        match *self {
+            Self::Still(_) => 0.0,
+            Self::Sine { amplitude, .. } => amplitude.norm(),
+            Self::Line { from, to, .. } => (to - from).norm(),
+            Self::Turn { arm, from, to, .. } => (to - from).norm().max(arm.norm()),
+        }
+    }
 }
 
 /// Place at time t (s) on a straight line between two positions (m), which are left and reached at

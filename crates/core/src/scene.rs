@@ -5,7 +5,10 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::elements::{Sheet, Wind};
+use crate::error::Error;
+use crate::geometry::Shape;
 use crate::grid::Grid;
+use crate::integrators::Tolerance;
 use crate::network::{Network, Touch};
 use crate::system::ParticleSystem;
 
@@ -90,6 +93,9 @@ pub struct Scene {
     pub touch: Option<Arc<Touch>>,
     /// Largest length, in rest lengths, to which a hand pulls the springs of the particle it holds.
     pub reach: f64,
+    /// Error of positions that a step to a tolerance may make (m); by default the tolerance times
+    /// the scene's radius.
+    pub absolute: Option<f64>,
 }
 
 impl Scene {
@@ -110,6 +116,7 @@ impl Scene {
             wind: None,
             touch: None,
             reach: 10.0,
+            absolute: None,
         }
     }
 
@@ -119,32 +126,87 @@ impl Scene {
         self.model.network()?.sheets().next().map(Sheet::grid)
     }
 
-    /// Centre of the bounding box of the particles at t = 0 (m), and the distance of the farthest
-    /// particle from it (m), at least 1.
+    /// Centre of the bounding box of the particles at t = 0 (m), and the radius of the scene (m):
+    /// that of a ball about this centre with all particles and bodies, or half the rest length of
+    /// the longest spring if that is more. Where all is in one place, it is the way that the pins
+    /// lead, the distance of the nearest obstacle, or the way of a second at the first speed or by
+    /// gravity; 1 if there is no length at all.
     #[must_use]
     pub fn extent(&self) -> (Vector3<f64>, f64) {
-        bounds(&self.state[..(3 * self.model.particles()).min(self.state.len())])
+        let n = self.model.particles();
+        if self.state.len() != self.model.system().dim() {
+            return (Vector3::zeros(), 1.0);
+        }
+        let positions = &self.state[..3 * n];
+        let middle = middle(positions);
+        let apart = |i: usize| (row(positions, i) - middle).norm();
+        let mut radius = (0..n).map(apart).fold(0.0, f64::max);
+        let fallback = match self.model.network() {
+            None => middle.norm(),
+            Some(network) => {
+                for body in network.bodies() {
+                    radius = radius.max(apart(body.center()) + body.radius());
+                }
+                let rests = network
+                    .all_springs()
+                    .map(|spring| 0.5 * spring.law.rest_length);
+                radius = rests.fold(radius, f64::max);
+                self.reach_of_a_point(network, middle)
+            }
+        };
+        let lengths = [radius, fallback, 1.0];
+        let length = lengths.into_iter().find(|length| *length > 0.0);
+        (middle, length.unwrap_or(1.0))
+    }
+
+    /// Length (m) of a scene whose particles are all in one place, or 0.
+    fn reach_of_a_point(&self, network: &Network, place: Vector3<f64>) -> f64 {
+        let led = network.pins().map(|(_, path)| path.length());
+        let obstacles = network.obstacles().iter().map(|obstacle| {
+            let away = place - obstacle.path.at(0.0).position;
+            match obstacle.shape {
+                Shape::Floor => away.y.abs(),
+                _ => away.norm(),
+            }
+        });
+        let nearest = obstacles.filter(|away| *away > 0.0).reduce(f64::min);
+        let (_, v) = network.halves(&self.state);
+        let speed = (0..network.particles())
+            .map(|i| row(v, i).norm())
+            .fold(0.0, f64::max);
+        let fall = network.gravity().map_or(0.0, |g| 0.5 * g.norm());
+        let led = led.fold(0.0, f64::max);
+        let lengths = [led, nearest.unwrap_or(0.0), speed.max(fall)];
+        lengths
+            .into_iter()
+            .find(|length| *length > 0.0)
+            .unwrap_or(0.0)
+    }
+
+    /// The errors that a step to a relative tolerance may make.
+    ///
+    /// # Errors
+    /// The tolerance, or the scene's absolute one, is not a finite number above 0.
+    pub fn tolerance(&self, relative: f64) -> Result<Tolerance, Error> {
+        let absolute = self.absolute.unwrap_or(relative * self.extent().1);
+        Tolerance::with_absolute(relative, absolute)
     }
 }
 
-/// Centre of the bounding box of positions x (m), and the distance of the farthest of them from it
-/// (m), at least 1.
-pub(crate) fn bounds(x: &[f64]) -> (Vector3<f64>, f64) {
+/// Centre of the bounding box of positions x (m).
+fn middle(x: &[f64]) -> Vector3<f64> {
     let n = x.len() / 3;
-    let range = |axis: usize| {
-        let column = &x[axis * n..(axis + 1) * n];
-        column
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
-                (low.min(x), high.max(x))
-            })
-    };
-    let middle = Vector3::from_fn(|axis, _| {
-        let (low, high) = range(axis);
+    Vector3::from_fn(|axis, _| {
+        let column = x[axis * n..(axis + 1) * n].iter();
+        let (low, high) = column.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
+            (low.min(x), high.max(x))
+        });
         0.5 * (low + high)
-    });
-    let radius = (0..n)
-        .map(|i| (Vector3::new(x[i], x[n + i], x[2 * n + i]) - middle).norm())
-        .fold(1.0, f64::max);
-    (middle, radius)
+    })
+}
+
+/// Row i of an n x 3 matrix.
+fn row(a: &[f64], i: usize) -> Vector3<f64> {
+    let n = a.len() / 3;
+    Vector3::new(a[i], a[n + i], a[2 * n + i])
 }

@@ -2,11 +2,34 @@
 //! trait that a system must implement there are views that it may offer, each for some methods:
 //! [`Splitting`], [`Linearized`], [`Compliant`], [`Rigid`] and [`Rows`].
 
+use std::ops::Range;
+
 use crate::coupling::{Coupling, Diagonal, Matrix};
 use crate::path::Place;
 use crate::rows::{Rows, Terms};
 use crate::spring::SpringLaw;
 use crate::threads::copy;
+
+/// Quantity that numbers of a state measure. Errors of different quantities are not compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measure {
+    /// Numbers of any unit.
+    Plain,
+    /// Positions (m).
+    Position,
+    /// Velocities (m/s).
+    Velocity,
+    /// Quaternion of a rigid body, of any length but 0.
+    Rotation {
+        /// Radius of the body (m).
+        radius: f64,
+    },
+    /// Angular momentum of a rigid body (kg m2/s).
+    Momentum {
+        /// Speed of the body's surface for each unit of it (1/(kg m)).
+        speed: f64,
+    },
+}
 
 /// A first-order system y' = f(t, y).
 pub trait ParticleSystem {
@@ -37,6 +60,12 @@ pub trait ParticleSystem {
 
     /// Puts what is led at time t (s) to its place in the state y.
     fn hold(&self, _t: f64, _y: &mut [f64]) {}
+
+    /// Visits the numbers of the state with what they measure, but for those of what rigid bodies
+    /// carry.
+    fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
+        visit(0..self.dim(), Measure::Plain);
+    }
 }
 
 /// M x'' = F(t, x, v). Its state is y = [x | v], and it is a [`ParticleSystem`] through that.
@@ -129,6 +158,9 @@ pub trait Rigid {
 
     /// Puts pins and what bodies carry to their places at time t (s).
     fn place(&self, t: f64, y: &mut [f64]);
+
+    /// Visits the numbers of the state with what they measure, but for those of what bodies carry.
+    fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure));
 }
 
 /// The forces of a system to first order, for methods that solve with them.
@@ -293,5 +325,14 @@ impl<M: Mechanics> ParticleSystem for M {
         }
         let (x, v) = y.split_at_mut(y.len() / 2);
         place_pins(self, t, x, v);
+    }
+
+    fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
+        if let Some(rigid) = Mechanics::rigid(self) {
+            return rigid.measures(visit);
+        }
+        let n = 3 * self.inverse_masses().len();
+        visit(0..n, Measure::Position);
+        visit(n..2 * n, Measure::Velocity);
     }
 }

@@ -32,6 +32,15 @@ pub(crate) fn at_least(low: f64, what: &str, value: f64) -> Result<(), String> {
     }
 }
 
+/// `Ok` if `value` is from 0 to 1, else what is wrong with `what`.
+pub(crate) fn share(what: &str, value: f64) -> Result<(), String> {
+    if (0.0..=1.0).contains(&value) {
+        Ok(())
+    } else {
+        Err(format!("{what} must be a number from 0 to 1, not {value}"))
+    }
+}
+
 /// `Ok` if `value` is finite and above 0, else what is wrong with `what`.
 pub(crate) fn positive(what: &str, value: f64) -> Result<(), String> {
     if value.is_finite() && value > 0.0 {

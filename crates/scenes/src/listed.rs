@@ -55,6 +55,7 @@ impl Description {
                 springs: listed.springs,
                 thickness: None,
                 friction: 0.0,
+                restitution: 0.0,
                 pin: if pin.particles.is_empty() {
                     vec![]
                 } else {

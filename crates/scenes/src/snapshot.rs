@@ -141,7 +141,7 @@ impl Description {
             let here = pose.place.position;
             let Motion { sine, shift, about } = motion(&obstacle.path, t);
             let turn = obstacle.turn.and_then(|turn| going_on(turn, about, t));
-            let friction = obstacle.friction;
+            let (friction, restitution) = (obstacle.friction, obstacle.restitution);
             match &obstacle.shape {
                 &Shape::Sphere { radius } => {
                     if let Some(described) = spheres.next() {
@@ -149,6 +149,7 @@ impl Description {
                             center: here.into(),
                             radius,
                             friction,
+                            restitution,
                             thickness: described.thickness,
                             sine,
                             shift,
@@ -160,7 +161,7 @@ impl Description {
                     if let Some(described) = boxes.next() {
                         described.center = here.into();
                         described.rotation = turned(described.rotation, &pose);
-                        described.friction = friction;
+                        (described.friction, described.restitution) = (friction, restitution);
                         (described.sine, described.shift) = (sine, shift);
                         described.turn = turn;
                     }
@@ -172,6 +173,7 @@ impl Description {
                             to: pose.of(ends[1]).position.into(),
                             radius,
                             friction,
+                            restitution,
                             thickness: described.thickness,
                             sine,
                             shift,
@@ -183,12 +185,12 @@ impl Description {
                     if let Some(described) = solids.next() {
                         described.at = Some(here.into());
                         described.rotation = turned(described.rotation, &pose);
-                        described.friction = friction;
+                        (described.friction, described.restitution) = (friction, restitution);
                         (described.sine, described.shift) = (sine, shift);
                         described.turn = turn;
                     }
                 }
-                Shape::Floor if friction == 0.0 && obstacle.thickness == 0.0 => {
+                Shape::Floor if [friction, restitution, obstacle.thickness] == [0.0; 3] => {
                     self.floor = Some(Floor::Height(here.y));
                 }
                 Shape::Floor => {
@@ -197,6 +199,7 @@ impl Description {
                     self.floor = Some(Floor::Table(FloorSpec {
                         height,
                         friction,
+                        restitution,
                         thickness,
                     }));
                 }

@@ -16,7 +16,7 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     let hold = limit.zip(pane.limit.would_hold());
     ui.label(text(match (lost.control, hold) {
         _ if lost.cause == Cause::ReadsVelocity => format!("{method} does not serve such forces."),
-        _ if is_squeezed(lost) => "A shorter step does not help.".into(),
+        _ if is_hopeless(lost) => "A shorter step does not help.".into(),
         (Control::Tolerance(tolerance), _) if matches!(lost.cause, Cause::StepTooSmall { .. }) => {
             format!("{method} found no step to a tolerance of {tolerance:e}: a larger one may do.")
         }
@@ -31,13 +31,20 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
             };
             format!("A step of {step} s was too long for {method}{past}. {would_hold} s would have held.")
         }
-        (Control::Step(step), _) => format!("A step of {step} s was too long for {method}."),
+        (Control::Step(step), _) => {
+            format!("A step of {step} s was too long for {method}, and no shorter one was found.")
+        }
     }));
 }
 
 /// Whether surfaces that are led left no room, whatever the step.
 fn is_squeezed(lost: &BlowUp) -> bool {
     matches!(lost.cause, Cause::Squeezed { .. })
+}
+
+/// Whether no step would have held.
+fn is_hopeless(lost: &BlowUp) -> bool {
+    is_squeezed(lost) || matches!(lost.cause, Cause::Contradiction(_))
 }
 
 /// The keys that lead out of a blow-up.

@@ -23,6 +23,9 @@ const MAX_DISPLACEMENT: f64 = 0.3;
 /// on a straight line knows of no way out of it.
 const JITTER: f64 = 1e-2;
 
+/// Share from which on an error is seen, and worth a warning.
+const VISIBLE: f64 = 0.01;
+
 /// Constraint that is not met.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unmet {
@@ -33,6 +36,14 @@ pub struct Unmet {
     /// Error over the length of a rod, over the radius of a circle or of a sphere, or over the
     /// radius of the scene.
     pub share: f64,
+}
+
+impl Unmet {
+    /// Whether the error is large enough to be seen: 1 % or more.
+    #[must_use]
+    pub fn is_visible(&self) -> bool {
+        self.share >= VISIBLE
+    }
 }
 
 impl fmt::Display for Constraint {

@@ -26,8 +26,8 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::{Error, positive};
 use crate::threads::each;
 pub use constraint::Constraint;
-pub use errors::Unmet;
 use direct::Pattern;
+pub use errors::Unmet;
 use pool::Pool;
 use row::Row;
 use solve::Scratch;
@@ -243,8 +243,7 @@ impl Constraints {
                 let back = ks * equation.value + kd * gradient.dot(&v_relative);
                 row.want(-bend - a - back, weights);
             });
-            let soft =
-                scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
+            let soft = scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
             let n = f.len() / 3;
             for (row, (owner, _)) in scratch.rows.iter().zip(&self.owners) {
                 let ([first, second], force) = (self.ends[*owner], row.force());

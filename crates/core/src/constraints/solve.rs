@@ -20,11 +20,11 @@ const MANY: usize = 12;
 const TOLERANCE: f64 = 1e-15;
 /// Largest number of iterations per row: one would be enough without rounding.
 const MOST: usize = 4;
-/// Largest b . lambda over b . b that is taken as it is: an eigenvalue of A is then less than the
-/// inverse of that, and what it stands for is far from being held, whatever the force.
-const NEARLY_SINGULAR: f64 = 1e6;
-/// What is then added to the diagonal of A. A chain of two rods of 1 m, straight and level between
-/// two pins, sags by 0.7 mm.
+/// Largest b . lambda over b . b that is taken as it is: the least eigenvalue of A is then about the
+/// inverse of that, and what it stands for is hardly held, whatever the force.
+const NEARLY_SINGULAR: f64 = 1e5;
+/// Most of what is then added to the diagonal of A, when that number is ten times as large. A chain
+/// of two rods of 1 m, straight and level between two pins, sags by about a millimetre.
 const SOFTNESS: f64 = 1e-8;
 
 /// Scratch of an evaluation: for each place of what moves its inverse mass (1/kg) or those of a
@@ -66,9 +66,11 @@ impl Scratch {
             all += row.wanted * row.wanted;
             amplified += row.wanted * row.multiplier;
         }
-        let soft = amplified > NEARLY_SINGULAR * all;
+        // It grows from nothing, so that forces are continuous.
+        let excess = (amplified / (NEARLY_SINGULAR * all) - 1.0) / 9.0;
+        let soft = excess > 0.0;
         if soft {
-            self.iterate(SOFTNESS);
+            self.iterate(SOFTNESS * excess.min(1.0));
         }
         soft
     }

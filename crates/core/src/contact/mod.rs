@@ -25,6 +25,7 @@ mod layer;
 mod listing;
 mod motion;
 mod obstacle;
+mod rebound;
 mod repulsion;
 mod resolve;
 mod solids;

@@ -1,6 +1,6 @@
-//! Obstacles: a shape on a path, with friction.
+//! Obstacles: a shape on a path, with friction and restitution.
 
-use crate::error::{Error, at_least};
+use crate::error::{Error, at_least, share};
 use crate::geometry::Shape;
 use crate::path::{Path, Pose, Turn};
 
@@ -15,6 +15,9 @@ pub struct Obstacle {
     pub turn: Option<Turn>,
     /// Coefficient mu of Coulomb friction; 0 is a smooth surface.
     pub friction: f64,
+    /// Coefficient e of restitution, from 0 to 1: the speed along the normal with which a particle
+    /// leaves, over that with which it comes.
+    pub restitution: f64,
     /// Thickness of its surface where surfaces touch (m).
     pub thickness: f64,
 }
@@ -28,6 +31,7 @@ impl Obstacle {
             path,
             turn: None,
             friction: 0.0,
+            restitution: 0.0,
             thickness: 0.0,
         }
     }
@@ -48,10 +52,12 @@ impl Obstacle {
     }
 
     /// # Errors
-    /// The shape has no size, or the friction is negative; or a number is not finite.
+    /// The shape has no size, the friction is negative, or the restitution is not from 0 to 1; or a
+    /// number is not finite.
     pub(crate) fn check(&self) -> Result<(), Error> {
         self.shape.check()?;
         at_least(0.0, "the friction of an obstacle", self.friction)?;
+        share("the restitution of an obstacle", self.restitution)?;
         at_least(0.0, "the thickness of an obstacle", self.thickness)
     }
 }

@@ -9,6 +9,7 @@ use super::impulses::Impulses;
 use super::layer::ContactLayer;
 use super::motion::Guarded;
 use super::obstacle::Obstacle;
+use super::rebound::{Course, first_inside, rebound_speed};
 use crate::geometry::Shape;
 use crate::geometry::nearest::{Nearest, of_box, of_capsule, of_floor, of_sphere};
 use crate::path::Pose;
@@ -25,7 +26,7 @@ pub struct Step<'a> {
     /// Length (s).
     pub h: f64,
     /// State at its beginning, [x | v], or nothing: then displacements are not known, friction
-    /// takes of velocities only, and the statistics have no depth.
+    /// takes of velocities only, nothing rebounds, and the statistics have no depth.
     pub y0: &'a [f64],
 }
 
@@ -64,11 +65,12 @@ impl Contact {
         }
     }
 
-    /// Remembers the state that a step begins with, if an obstacle has friction or, with
-    /// `look_back`, if there is one at all.
+    /// Remembers the state that a step begins with, if an obstacle has friction or restitution or,
+    /// with `look_back`, if there is one at all.
     pub fn begin(&mut self, obstacles: &[Obstacle], y0: &[f64], look_back: bool) {
         self.y0.clear();
-        if obstacles.iter().any(|o| look_back || o.friction > 0.0) {
+        let needs = |o: &Obstacle| look_back || o.friction > 0.0 || o.restitution > 0.0;
+        if obstacles.iter().any(needs) {
             self.y0.extend_from_slice(y0);
         }
     }
@@ -173,8 +175,13 @@ fn resolve_noting(
     for obstacle in obstacles {
         let met = Met {
             x0: step.y0.get(..3 * inverse_masses.len()),
+            v0: step
+                .y0
+                .get(3 * inverse_masses.len()..6 * inverse_masses.len()),
             inverse_masses,
+            obstacle,
             friction: obstacle.friction,
+            span: (step.t, step.h),
             before: obstacle.at(step.t),
             after: obstacle.at(step.t + step.h),
             // A smooth floor moves nothing sideways.
@@ -206,8 +213,13 @@ fn resolve_noting(
 struct Met<'a> {
     /// Positions of the particles at the beginning of the step, if they are known (m).
     x0: Option<&'a [f64]>,
+    /// Their velocities there (m/s).
+    v0: Option<&'a [f64]>,
     inverse_masses: &'a [f64],
+    obstacle: &'a Obstacle,
     friction: f64,
+    /// Time at the beginning of the step, and its length (s).
+    span: (f64, f64),
     /// Place and orientation of the obstacle at the beginning of the step.
     before: Pose,
     /// Place and orientation of the obstacle at the end of the step.
@@ -227,12 +239,13 @@ impl Met<'_> {
     ) {
         let n = self.inverse_masses.len();
         let (x, v) = y1.split_at_mut(3 * n);
-        let surface = |d: Vector3<f64>| {
-            surface(self.after.inwards(d)).map(|nearest| Nearest {
-                point: self.after.outwards(nearest.point),
-                normal: self.after.outwards(nearest.normal),
+        let surface_at = |pose: &Pose, d: Vector3<f64>| {
+            surface(pose.inwards(d)).map(|nearest| Nearest {
+                point: pose.outwards(nearest.point),
+                normal: pose.outwards(nearest.normal),
             })
         };
+        let surface = |d: Vector3<f64>| surface_at(&self.after, d);
         let c = self.after.place.position;
         for i in 0..n {
             let d = Vector3::new(x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
@@ -243,6 +256,24 @@ impl Met<'_> {
                 continue;
             }
             let at = vector(x, n, i);
+            if let Some(rebound) = self.rebound(i, (at, vector(v, n, i)), surface_at) {
+                let end = at + rebound.change * rebound.left;
+                // What comes back within the step is put out at its end.
+                if surface(end - c).is_none() {
+                    set(x, n, i, end);
+                    set(v, n, i, vector(v, n, i) + rebound.change);
+                    let depth = nearest.normal.dot(&(nearest.point - d));
+                    if depth > statistics.depth {
+                        statistics.depth = depth;
+                        statistics.touched = 1.0 - rebound.left / self.span.1;
+                    }
+                    let impulse = rebound.change / self.inverse_masses[i];
+                    statistics.contacts += 1;
+                    statistics.impulse += impulse.norm();
+                    impulses.add(i, impulse);
+                    continue;
+                }
+            }
             let own = self.velocity(nearest.point);
             let velocity = vector(v, n, i) - own;
             let outwards = velocity.dot(&nearest.normal);
@@ -297,11 +328,49 @@ impl Met<'_> {
         }
     }
 
+    /// What restitution does to particle i, whose state at the end of the step is (x, v), if it
+    /// does anything. `surface` finds nearest points of the obstacle in a pose, as seen from its
+    /// place.
+    fn rebound(
+        &self,
+        i: usize,
+        (x, v): (Vector3<f64>, Vector3<f64>),
+        surface: impl Fn(&Pose, Vector3<f64>) -> Option<Nearest>,
+    ) -> Option<Rebound> {
+        let ((t, h), n) = (self.span, self.inverse_masses.len());
+        let restitution = self.obstacle.restitution;
+        let (x0, v0) = (self.x0.filter(|_| restitution > 0.0)?, self.v0?);
+        let course = Course {
+            x: [vector(x0, n, i), x],
+            v: [vector(v0, n, i), v],
+            h,
+        };
+        let touch = |share: f64| {
+            let pose = self.obstacle.at(t + share * h);
+            let d = course.position(share) - pose.place.position;
+            Some((surface(&pose, d)?, pose))
+        };
+        let share = first_inside(|share| touch(share).is_some())?;
+        let (Nearest { point, normal }, pose) = touch(share)?;
+        let relative = course.velocity(share) - velocity(&pose, point);
+        let [begun, ended] = [(course.v[0], &self.before), (v, &self.after)]
+            .map(|(v, pose)| v - velocity(pose, point));
+        let press = (begun - ended).dot(&normal) / h;
+        let approach = -relative.dot(&normal);
+        let speed = rebound_speed(restitution, approach, press, h);
+        (speed > 0.0).then(|| {
+            let along = approach + speed;
+            let slip = across(relative, normal);
+            Rebound {
+                change: normal * along - slip * (1.0 - self.kept(slip, along)),
+                left: (1.0 - share) * h,
+            }
+        })
+    }
+
     /// Velocity of the obstacle at the end of the step, at a point seen from its place.
     fn velocity(&self, point: Vector3<f64>) -> Vector3<f64> {
-        let along = self.after.place.velocity;
-        let orientation = self.after.orientation;
-        orientation.map_or(along, |turned| along + turned.spin.cross(&point))
+        velocity(&self.after, point)
     }
 
     /// Position at the end of the step of what is at x at its beginning and moves with the
@@ -321,6 +390,19 @@ impl Met<'_> {
         let (slip, most) = (slip.norm(), self.friction * normal);
         if slip > most { 1.0 - most / slip } else { 0.0 }
     }
+}
+
+/// Change of a particle's velocity by a rebound (m/s), and what is left of the step then (s).
+struct Rebound {
+    change: Vector3<f64>,
+    left: f64,
+}
+
+/// Velocity of a point of an obstacle, seen from its place, in a pose.
+fn velocity(pose: &Pose, point: Vector3<f64>) -> Vector3<f64> {
+    let along = pose.place.velocity;
+    let turned = pose.orientation;
+    turned.map_or(along, |turned| along + turned.spin.cross(&point))
 }
 
 /// Part of a vector at right angles to a unit normal.

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::items::Items;
 use super::obstacle::Obstacle;
-use crate::error::{Error, Vertex, at_least};
+use crate::error::{Error, Vertex, at_least, share};
 use crate::geometry::PairKind;
 use crate::geometry::Shape;
 use crate::path::Place;
@@ -14,7 +14,8 @@ use crate::rigid::Body;
 const KEPT: f64 = 1e-3;
 
 /// What a surface is like to touch. Where two surfaces meet, the thickness and the damping are the
-/// means of theirs, the stiffness is the smaller one, and the friction the larger one.
+/// means of theirs, the stiffness is the smaller one, and the friction and the restitution are the
+/// larger ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Skin {
     /// Distance up to which two such surfaces repel each other (m).
@@ -25,16 +26,22 @@ pub struct Skin {
     pub damping: f64,
     /// Coefficient mu of Coulomb friction.
     pub friction: f64,
+    /// Coefficient e of restitution, from 0 to 1. With one above 0, it takes the place of damping.
+    pub restitution: f64,
+    /// Mass with which a point of it meets others (kg), if there is a restitution.
+    pub mass: f64,
 }
 
 impl Skin {
     /// # Errors
-    /// A number is negative or not finite.
+    /// A number is negative or not finite, or a restitution above 1.
     pub(crate) fn check(&self) -> Result<(), Error> {
         at_least(0.0, "a thickness", self.thickness)?;
         at_least(0.0, "the stiffness of contact", self.stiffness)?;
         at_least(0.0, "the damping of contact", self.damping)?;
-        at_least(0.0, "a friction", self.friction)
+        at_least(0.0, "a friction", self.friction)?;
+        share("a restitution", self.restitution)?;
+        at_least(0.0, "the mass of a point of a surface", self.mass)
     }
 }
 
@@ -140,6 +147,8 @@ impl Surface {
                     stiffness: f64::INFINITY,
                     damping: 0.0,
                     friction: obstacle.friction,
+                    restitution: obstacle.restitution,
+                    mass: f64::INFINITY,
                 });
                 surface.radii.push(simplices.radius);
             }
@@ -256,6 +265,8 @@ impl Surface {
                 stiffness: a.stiffness.min(b.stiffness),
                 damping: a.damping.max(b.damping),
                 friction: a.friction.max(b.friction),
+                restitution: a.restitution.max(b.restitution),
+                mass: 1.0 / (a.mass.recip() + b.mass.recip()),
             },
             radius: self.radii(kind, points),
         }

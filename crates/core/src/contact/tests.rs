@@ -21,6 +21,7 @@ fn skin(thickness: f64) -> Skin {
         stiffness: 40.0,
         damping: 0.5,
         friction: 0.3,
+        ..Skin::default()
     }
 }
 

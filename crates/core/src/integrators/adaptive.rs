@@ -13,9 +13,11 @@ use crate::sums::{OnBlock, add_up};
 use crate::system::ParticleSystem;
 use crate::threads::{Columns, copy, threads};
 
-/// Shortest step (s): an equation that asks for less has no solution, or a tolerance below what
-/// double precision holds.
-const SHORTEST: f64 = 1e-10;
+/// Shortest step, as a share of the time at which it begins or of the step that was tried first: an
+/// equation that asks for less has no solution, or a tolerance below what double precision holds.
+const SHORTEST: f64 = 1e-12;
+/// Longest first step (s), and that of a motion that has not begun.
+const FIRST: (f64, f64) = (1e-2, 1e-6);
 /// Least and greatest ratio of a step to the one before it.
 const CHANGE: (f64, f64) = (0.2, 8.0);
 
@@ -163,33 +165,20 @@ impl Adaptive {
             work += self.trial.begin(system, t, y);
         }
         self.goes_on = false;
-        let norm = ErrorNorm {
+        let mut norm = ErrorNorm {
+            system,
             tolerance: self.tolerance,
-            block: if system.mechanics().is_some() {
-                y.len() / 2
-            } else {
-                y.len()
-            }
-            .max(1),
+            h: self.next,
         };
-        if self.next == 0.0 {
-            self.next = self.first_step(system, t, y, &norm);
+        if norm.h == 0.0 {
+            norm.h = self.first_step(t, y, &norm);
             work += Work::of(1);
         }
-        let mut h = self.next;
+        let shortest = SHORTEST * norm.h.max(t.abs());
         loop {
-            // A length that is not a number gets nowhere either.
-            let shortest = SHORTEST.max(16.0 * f64::EPSILON * t.abs());
-            if h.is_nan() || h < shortest {
-                // A guess for whoever tries again.
-                self.next = 0.0;
-                let f = &mut self.first[0];
-                self.trial.derivative(system, f);
-                return Err(match f.iter().position(|f| !f.is_finite()) {
-                    Some(component) => Error::NotFinite { time: t, component },
-                    None => Error::StepTooSmall { time: t, step: h },
-                });
-            }
+            // The shortest step is tried too.
+            norm.h = norm.h.max(shortest);
+            let h = norm.h;
             let (cost, error) = self.trial.attempt(system, t, h, &norm);
             work += cost;
             let change = self.trial.change(error);
@@ -203,8 +192,22 @@ impl Adaptive {
                 return Ok(self.last);
             }
             work.rejections += 1;
+            if h <= shortest || !error.is_finite() {
+                let f = &mut self.first[0];
+                self.trial.derivative(system, f);
+                let undefined = f.iter().position(|f| !f.is_finite());
+                let failure = match undefined {
+                    Some(component) => Some(Error::NotFinite { time: t, component }),
+                    None => (h <= shortest).then_some(Error::StepTooSmall { time: t, step: h }),
+                };
+                if let Some(failure) = failure {
+                    // A guess for whoever tries again.
+                    self.next = 0.0;
+                    return Err(failure);
+                }
+            }
             // NaN is as bad as can be.
-            h *= if change >= CHANGE.0 { change } else { CHANGE.0 };
+            norm.h *= if change >= CHANGE.0 { change } else { CHANGE.0 };
         }
     }
 
@@ -215,34 +218,27 @@ impl Adaptive {
         self.trial.interpolate(system, t, (time - t) / h, out)
     }
 
-    /// A guess of the first step (s), from one step of Euler's method.
-    fn first_step(
-        &mut self,
-        system: &dyn ParticleSystem,
-        t: f64,
-        y: &[f64],
-        norm: &ErrorNorm,
-    ) -> f64 {
-        let [f0, y1, f1] = &mut self.first;
+    /// A guess of the first step (s), from the times in which f and, by a step of Euler's method,
+    /// its derivative change the state.
+    fn first_step(&mut self, t: f64, y: &[f64], norm: &ErrorNorm) -> f64 {
+        let (system, [f0, y1, f1]) = (norm.system, &mut self.first);
         self.trial.derivative(system, f0);
-        let (size, slope) = (norm.of(y, y, y), norm.of(y, y, f0));
-        let h0 = if size < 1e-5 || slope < 1e-5 {
-            1e-6
-        } else {
-            0.01 * size / slope
-        };
-        super::scaled_sum(y1, y, h0, f0);
-        system.eval_f(t + h0, y1, f1);
-        for (f1, f0) in f1.iter_mut().zip(f0) {
-            *f1 = (*f1 - *f0) / h0;
+        let slope = norm.time_scale(y, f0, 1);
+        if slope.is_nan() {
+            return FIRST.0;
         }
-        let bend = norm.of(y, y, f1);
-        let steepest = slope.max(bend);
-        let h1 = if steepest <= 1e-15 {
-            (1e-3 * h0).max(1e-6)
-        } else {
-            libm::pow(0.01 / steepest, 1.0 / self.trial.exponent())
-        };
-        (100.0 * h0).min(h1)
+        let h = (0.01 * slope).min(FIRST.0);
+        super::scaled_sum(y1, y, h, f0);
+        system.eval_f(t + h, y1, f1);
+        for (f1, f0) in f1.iter_mut().zip(f0) {
+            *f1 = (*f1 - *f0) / h;
+        }
+        let bend = norm.time_scale(y, f1, 2);
+        let time = slope.min(bend);
+        if time == f64::INFINITY {
+            return FIRST.1;
+        }
+        let least = 0.01 * self.tolerance.relative;
+        (time * libm::pow(least, 1.0 / self.trial.exponent())).min(FIRST.0)
     }
 }

@@ -147,9 +147,13 @@ impl Trial for EmbeddedPair {
         let mut work = Work::of(self.stages(system, t, h));
         let tableau = self.tableau;
         let reads_end = tableau.errors[0].len() > tableau.stages.len() + 1;
-        if reads_end {
+        // What bodies carry is in no sum.
+        let forms = reads_end || system.rigid().is_some();
+        if forms {
             let LastStep { y0, y1, k, .. } = &mut self.last;
             combine(y1, y0, h, tableau.weights, k);
+        }
+        if reads_end {
             work += self.finish(system, t);
         }
         let LastStep { y0, y1, k, .. } = &mut self.last;
@@ -158,10 +162,10 @@ impl Trial for EmbeddedPair {
             h,
             y0,
             k,
-            forms: !reads_end,
+            forms: !forms,
         };
         let bands = threads(y0.len() / 6);
-        let [error, other] = norm.of_sums(y0.len(), |numbers| {
+        let [error, other] = norm.of_sums(|numbers| {
             let y1 = &mut y1[numbers.clone()];
             add_up(bands, numbers, BLOCK, [y1], &end)
         });

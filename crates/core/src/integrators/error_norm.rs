@@ -9,67 +9,92 @@ use std::ops::Range;
 
 use crate::error::{Error, positive};
 use crate::sums::{OnBlock, add_up, dot};
+use crate::system::{Measure, ParticleSystem};
 use crate::threads::{Columns, threads};
 
 /// Error that a step may make.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Relative to the state, without unit.
+    /// Relative to the motion, without unit.
     pub relative: f64,
-    /// Absolute (m and m/s).
+    /// Of positions (m).
     pub absolute: f64,
 }
 
 impl Tolerance {
-    /// A relative tolerance (without unit), and a thousandth of it as the absolute one (m and m/s).
+    /// Tolerance of a system about 1 m large: a relative one (without unit), and as many metres.
     ///
     /// # Errors
     /// It is not a finite number above 0.
     pub fn new(relative: f64) -> Result<Self, Error> {
+        Self::with_absolute(relative, relative)
+    }
+
+    /// A relative tolerance (without unit) and an absolute one (m).
+    ///
+    /// # Errors
+    /// One of them is not a finite number above 0.
+    pub fn with_absolute(relative: f64, absolute: f64) -> Result<Self, Error> {
         positive("the tolerance", relative)?;
-        Ok(Self {
-            relative,
-            absolute: 1e-3 * relative,
-        })
+        positive("the absolute tolerance", absolute)?;
+        Ok(Self { relative, absolute })
     }
 }
 
-/// Norm of an error: the root mean square of a block of numbers, over absolute tolerance + relative
-/// tolerance x the root mean square of the block of the state.
-///
-/// Positions are one block and velocities another, so that neither units nor the directions of the
-/// axes matter, and a number that happens to be near zero asks for no more digits than others.
-pub(super) struct ErrorNorm {
-    /// Tolerated error.
-    pub tolerance: Tolerance,
-    /// Length of a block.
-    pub block: usize,
-}
+/// Share of the absolute tolerance that is tolerated of a quantity that vanishes.
+const FLOOR: f64 = 1e-3;
 
 /// Numbers whose squares are added up together, and few enough for all that they are computed from
 /// to stay in the cache.
 pub(super) const BLOCK: usize = 2048;
 
-impl ErrorNorm {
-    /// The error over the tolerated one, in the block in which that is largest.
+/// Norm of the error of a step: for each quantity that the state consists of, the root mean square
+/// of the error over the tolerated one; of these, the largest.
+///
+/// Positions may be wrong by the absolute tolerance, wherever the origin is. Any other quantity may
+/// be wrong by the relative tolerance times its own root mean square: velocities, the rotations of
+/// bodies as lengths at their radius, and their angular momenta as speeds there. No unit matters,
+/// nor any mass. Where such a quantity vanishes, an error is tolerated that moves nothing by more
+/// than a thousandth of the absolute tolerance within the step.
+pub(super) struct ErrorNorm<'a> {
+    pub system: &'a dyn ParticleSystem,
+    pub tolerance: Tolerance,
+    /// Length of the step (s).
+    pub h: f64,
+}
+
+/// Sums of squares over the numbers that measure one quantity.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    count: f64,
+    y0: f64,
+    y1: f64,
+    errors: [f64; 2],
+}
+
+/// Number of quantities.
+const QUANTITIES: usize = 5;
+
+/// Error of a quantity that is tolerated in a step of h: `fixed + rate / h`.
+struct Tolerated {
+    fixed: f64,
+    rate: f64,
+}
+
+impl ErrorNorm<'_> {
+    /// The error over the tolerated one, of the quantity of which that is largest.
     pub fn of(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> f64 {
-        let (bands, task) = (threads(y0.len() / 6), Squares([y0, y1, error]));
-        let [error, _] = self.of_sums(y0.len(), |numbers| add_up(bands, numbers, BLOCK, [], &task));
+        let [error, _] = self.of_sums(squares([y0, y1, error]));
         error
     }
 
-    /// The same of two errors of a state of this dimension, by the sums of squares over the numbers
-    /// of a block: of y0, of y1 and of both errors.
-    pub fn of_sums(&self, dim: usize, mut sums: impl FnMut(Range<usize>) -> [f64; 4]) -> [f64; 2] {
-        let Tolerance { relative, absolute } = self.tolerance;
+    /// The same of two errors, by the sums of squares over a range of numbers: of y0, of y1 and of
+    /// both errors.
+    pub fn of_sums(&self, sums: impl FnMut(Range<usize>) -> [f64; 4]) -> [f64; 2] {
         let mut largest = [0.0; 2];
-        for start in (0..dim).step_by(self.block) {
-            let numbers = start..dim.min(start + self.block);
-            let length = numbers.len() as f64;
-            let [y0, y1, errors @ ..] = sums(numbers).map(|sum| (sum / length).sqrt());
-            let tolerated = absolute + relative * y0.max(y1);
+        for (errors, Tolerated { fixed, rate }) in self.quantities(sums) {
             for (largest, error) in largest.iter_mut().zip(errors) {
-                let ratio = error / tolerated;
+                let ratio = error / (fixed + rate / self.h);
                 // NaN has to come out as such.
                 if ratio > *largest || ratio.is_nan() {
                     *largest = ratio;
@@ -78,6 +103,79 @@ impl ErrorNorm {
         }
         largest
     }
+
+    /// Time (s) in which a quantity changes by as much as it is itself, at the state y with this
+    /// derivative of y of order 1 or 2; infinite if nothing changes. h does not matter.
+    pub fn time_scale(&self, y: &[f64], derivative: &[f64], order: i32) -> f64 {
+        let root = |a: f64, order: i32| libm::pow(a, 1.0 / f64::from(order));
+        let sums = squares([y, y, derivative]);
+        let times = self.quantities(sums).map(|([change, _], tolerated)| {
+            if change == 0.0 {
+                return f64::INFINITY;
+            }
+            let [fixed, rate] = [tolerated.fixed, tolerated.rate]
+                .map(|tolerated| tolerated / (self.tolerance.relative * change));
+            root(fixed, order).max(root(rate, order + 1))
+        });
+        times.fold(f64::INFINITY, |least, time| {
+            // NaN has to come out as such.
+            if time < least || time.is_nan() {
+                time
+            } else {
+                least
+            }
+        })
+    }
+
+    /// The quantities that the state consists of: their errors, and those that are tolerated.
+    fn quantities(
+        &self,
+        mut sums: impl FnMut(Range<usize>) -> [f64; 4],
+    ) -> impl Iterator<Item = ([f64; 2], Tolerated)> {
+        let mut all = [Sums::default(); QUANTITIES];
+        self.system.measures(&mut |numbers, measure| {
+            let length = numbers.len() as f64;
+            let [mut y0, mut y1, errors @ ..] = sums(numbers);
+            let (quantity, count, factor) = match measure {
+                Measure::Plain => (0, length, 1.0),
+                Measure::Position => (1, length / 3.0, 1.0),
+                Measure::Velocity => (2, length / 3.0, 1.0),
+                Measure::Rotation { radius } => {
+                    // A turn changes a unit quaternion by half its angle.
+                    let factor = 4.0 * radius * radius / y0;
+                    (y0, y1) = (0.25 * y0, 0.25 * y0);
+                    (3, 1.0, factor)
+                }
+                Measure::Momentum { speed } => (4, 1.0, speed * speed),
+            };
+            let all = &mut all[quantity];
+            all.count += count;
+            all.y0 += factor * y0;
+            all.y1 += factor * y1;
+            for (sum, error) in all.errors.iter_mut().zip(errors) {
+                *sum += factor * error;
+            }
+        });
+        let Tolerance { relative, absolute } = self.tolerance;
+        let all = all.into_iter().enumerate();
+        all.filter(|(_, sums)| sums.count > 0.0)
+            .map(move |(quantity, sums)| {
+                let mean = |sum: f64| (sum / sums.count).sqrt();
+                let own = relative * mean(sums.y0).max(mean(sums.y1));
+                let (fixed, rate) = match quantity {
+                    1 => (absolute, 0.0),
+                    2 | 4 => (own, FLOOR * absolute),
+                    _ => (own + FLOOR * absolute, 0.0),
+                };
+                (sums.errors.map(mean), Tolerated { fixed, rate })
+            })
+    }
+}
+
+/// Sums of squares over ranges of numbers of three states.
+fn squares(states: [&[f64]; 3]) -> impl FnMut(Range<usize>) -> [f64; 4] {
+    let bands = threads(states[0].len() / 6);
+    move |numbers| add_up(bands, numbers, BLOCK, [], &Squares(states))
 }
 
 /// Sums of squares.

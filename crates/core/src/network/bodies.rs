@@ -1,7 +1,6 @@
 //! Rigid bodies of a network: its state is then [x | v | q, L of each body].
 
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
 
 use nalgebra::Vector3;
 
@@ -13,34 +12,7 @@ use crate::error::Error;
 use crate::path::Pose;
 use crate::rigid::{Body, Moving, ROTATION, Rotation};
 use crate::rows::Terms;
-use crate::system::{Mechanics, Rigid, Splitting, place_pins};
-
-/// Positions, velocities and forces of one evaluation, n x 3 each. It is no part of the value of
-/// what owns it.
-#[derive(Debug, Default)]
-pub(super) struct Scratch(Mutex<[Vec<f64>; 3]>);
-
-impl Clone for Scratch {
-    fn clone(&self) -> Self {
-        let own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        Self(Mutex::new(own.clone()))
-    }
-}
-
-impl Scratch {
-    fn reserve(&mut self, n: usize) {
-        let own = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
-        *own = [(); 3].map(|()| vec![0.0; 3 * n]);
-    }
-
-    /// Lends the scratch; evaluations that run meanwhile bring their own.
-    fn lend<T>(&self, n: usize, run: impl FnOnce(&mut [Vec<f64>; 3]) -> T) -> T {
-        match self.0.try_lock() {
-            Ok(mut scratch) => run(&mut scratch),
-            Err(_) => run(&mut [(); 3].map(|()| vec![0.0; 3 * n])),
-        }
-    }
-}
+use crate::system::{Measure, Mechanics, Rigid, Splitting, place_pins};
 
 /// Force (N) and torque about the centre (N m) on a body.
 #[derive(Clone, Copy, Default)]
@@ -389,5 +361,28 @@ impl Rigid for Network {
             y[..3 * n].copy_from_slice(px);
             y[3 * n..6 * n].copy_from_slice(pv);
         });
+    }
+
+    fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
+        for axis in 0..6 {
+            let measure = if axis < 3 {
+                Measure::Position
+            } else {
+                Measure::Velocity
+            };
+            let mut start = axis * self.particles();
+            for run in self.masses.chunk_by(|a, b| (*a > 0.0) == (*b > 0.0)) {
+                if run[0] > 0.0 {
+                    visit(start..start + run.len(), measure);
+                }
+                start += run.len();
+            }
+        }
+        for (k, body) in self.bodies.iter().enumerate() {
+            let Range { start, end } = self.numbers(k);
+            let (radius, speed) = (body.radius(), body.speed());
+            visit(start..end - 3, Measure::Rotation { radius });
+            visit(end - 3..end, Measure::Momentum { speed });
+        }
     }
 }

@@ -48,6 +48,7 @@ pub struct Body {
     /// Places of the points, seen from the centre along the principal axes (m).
     anchors: Vec<Vector3<f64>>,
     inertia: Vector3<f64>,
+    radius: f64,
     parts: Vec<Part>,
 }
 
@@ -164,11 +165,15 @@ impl Body {
                 inertia.x, inertia.y, inertia.z
             )));
         }
-        let mut anchors = vec![];
+        let (mut anchors, mut radius) = (vec![], 0.0f64);
         for part in &parts {
             part.shape.check()?;
-            let points = part.shape.simplices().points;
-            anchors.extend(points.into_iter().map(|point| part.at + point));
+            let simplices = part.shape.simplices();
+            for point in simplices.points {
+                let anchor = part.at + point;
+                radius = radius.max(anchor.norm() + simplices.radius);
+                anchors.push(anchor);
+            }
         }
         if anchors.is_empty() {
             return Err(Error::Invalid(
@@ -180,6 +185,7 @@ impl Body {
             points: first..first + anchors.len(),
             anchors,
             inertia,
+            radius,
             parts,
         })
     }
@@ -205,6 +211,17 @@ impl Body {
     #[must_use]
     pub fn inertia(&self) -> Vector3<f64> {
         self.inertia
+    }
+
+    /// Distance of its farthest point from the centre (m).
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Speed of its surface for each unit of angular momentum, at most (1/(kg m)).
+    pub(crate) fn speed(&self) -> f64 {
+        self.radius / self.inertia.min()
     }
 
     /// Parts.

@@ -76,7 +76,7 @@ impl Checkpoint {
                 found: y.len(),
             });
         }
-        if !self.time().is_finite() || y.iter().any(|y| !y.is_finite()) {
+        if !(self.time() + self.run.end()).is_finite() || y.iter().any(|y| !y.is_finite()) {
             return Err(Error::Invalid(
                 "the state and the time of a checkpoint must be finite".into(),
             ));
@@ -176,7 +176,7 @@ impl Simulation {
             }
             checkpoint.bind(network, whole)?;
         }
-        let mut stepper = Stepper::new(run.method, model.system(), run.control)?;
+        let mut stepper = Stepper::new(run.method, &self.scene, model.system(), run.control)?;
         stepper.resume(&checkpoint.progress, run.y.len())?;
         (self.model, self.stepper) = (model, stepper);
         self.state.copy_from(run);
@@ -241,9 +241,11 @@ impl Simulation {
         self.state.y.copy_from_slice(&then.y);
         self.state.balance = then.balance;
         self.state.steps = then.steps;
+        self.stepper.forget();
         // Another step is no multiple of the time that was counted then.
         if then.control == self.state.control {
             (self.state.since, self.state.taken) = (then.since, then.taken);
+            self.state.shown = then.shown;
         } else {
             self.state.set_time(then.time());
         }

@@ -23,7 +23,7 @@ use nalgebra::Vector3;
 use crate::control::Control;
 use crate::error::{BlowUp, Error};
 use crate::integrators::Method;
-use crate::scene::{Model, Scene, bounds};
+use crate::scene::{Model, Scene};
 use balance::Watch;
 use phases::Phases;
 use stepper::Stepper;
@@ -51,7 +51,7 @@ impl Simulation {
     /// The method does not serve the scene or does not take that control; or the scene's state has
     /// another length than its model's.
     pub fn new(scene: Scene, method: &'static Method, control: Control) -> Result<Self, Error> {
-        let stepper = Stepper::new(method, scene.model.system(), control)?;
+        let stepper = Stepper::new(method, &scene, scene.model.system(), control)?;
         let model = scene.model.clone();
         let (dim, length) = (model.system().dim(), scene.state.len());
         if length != dim {
@@ -69,7 +69,7 @@ impl Simulation {
             let apart = network.check_apart(0.0, network.halves(&scene.state).0);
             apart.map_err(|e| Error::Invalid(format!("surfaces cannot begin crossed: {e}")))?;
         }
-        let (middle, radius) = bounds(&scene.state[..3 * model.particles()]);
+        let (middle, radius) = scene.extent();
         let mut run = Self {
             state: RunState::new(method, control, scene.state.clone()),
             scene,
@@ -104,7 +104,7 @@ impl Simulation {
         self.phases.contact.forget_impulses();
         self.blow_up = None;
         // The first step is chosen as in a new run: one that was reset is the same run.
-        if let Ok(stepper) = Stepper::new(method, self.model.system(), control) {
+        if let Ok(stepper) = Stepper::new(method, &self.scene, self.model.system(), control) {
             self.stepper = stepper;
         }
         if unpinned {
@@ -123,7 +123,7 @@ impl Simulation {
     /// The method does not serve the scene or does not take that control; the run goes on as
     /// before.
     pub fn set_method(&mut self, method: &'static Method, control: Control) -> Result<(), Error> {
-        self.stepper = Stepper::new(method, self.model.system(), control)?;
+        self.stepper = Stepper::new(method, &self.scene, self.model.system(), control)?;
         self.state.set_time(self.time());
         (self.state.method, self.state.control) = (method, control);
         self.watch.start_over(&mut self.state.balance);

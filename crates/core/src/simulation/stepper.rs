@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::within::Within;
 use crate::control::Control;
 use crate::error::Error;
-use crate::integrators::{Adaptive, AdaptiveState, Integrator, Method, Taken, Tolerance};
+use crate::integrators::{Adaptive, AdaptiveState, Integrator, Method, Taken};
+use crate::scene::Scene;
 use crate::system::ParticleSystem;
 
 /// Integrator of a run, and the step that the time shown is within.
@@ -42,19 +43,20 @@ pub struct Span {
 }
 
 impl Stepper {
-    /// Stepper of a method.
+    /// Stepper of a method for a scene, whose system is as it is now.
     ///
     /// # Errors
     /// The method does not serve the system, or does not take that control.
     pub fn new(
         method: &Method,
+        scene: &Scene,
         system: &dyn ParticleSystem,
         control: Control,
     ) -> Result<Self, Error> {
         method.check_control(control)?;
         let adaptive = match control {
             Control::Step(_) => None,
-            Control::Tolerance(relative) => method.adaptive(system, Tolerance::new(relative)?),
+            Control::Tolerance(relative) => method.adaptive(system, scene.tolerance(relative)?),
         };
         // The integrator is made in any case: it checks that the method serves the system.
         let integrator = method.integrator(system)?;

@@ -16,6 +16,7 @@ use super::drive::End;
 use super::phases::Settled;
 use super::stepper::Kind;
 use crate::contact::Impulses;
+use crate::control::Control;
 use crate::error::{Cause, Error};
 use crate::integrators::Adaptive;
 use crate::scene::Model;
@@ -89,19 +90,6 @@ impl Simulation {
                 continue;
             }
             let begin = self.state.end();
-            if let Some(step) = self.state.control.step()
-                && time - begin <= step * (1.0 + Self::SLIVER)
-            {
-                let old = self.state.control;
-                self.state.control = crate::control::Control::Step(time - begin);
-                let since = begin;
-                (self.state.since, self.state.taken) = (since, 0);
-                let r = self.step();
-                self.state.control = old;
-                r?;
-                self.state.set_time(time);
-                continue;
-            }
             let ends_later = |h: f64| begin + h * (1.0 - Self::SLIVER) > time;
             if self.state.control.step().is_some_and(ends_later) {
                 self.stepper.within.begin(&self.state.y);
@@ -260,18 +248,35 @@ impl Simulation {
         }
     }
 
-    /// Forgets the last step: the state or the system is no longer the one that it ended with. The
-    /// next step begins at the time shown.
+    /// Ends the step at the time shown, before the state or the system changes there: an adaptive
+    /// step by its polynomial, and a fixed one by a shorter step, whose end is as stable.
     pub(super) fn look_again(&mut self) {
-        let (t, state) = (self.time(), &mut self.state);
-        let end = self.stepper.within.until().unwrap_or(t);
-        self.watch
-            .disturb(&self.model, &mut state.balance, t, end, &state.y);
-        if self.stepper.within.times().is_some() {
-            self.state.set_time(self.time());
+        let time = self.time();
+        let end = self.stepper.within.until().unwrap_or(time);
+        if let Some([begin, _]) = self.stepper.within.times() {
+            if !self.stepper.is_adaptive() {
+                self.shorten_step(begin, time);
+            }
+            self.state.set_time(time);
         }
         self.state.shown = None;
         self.stepper.forget();
+        let (balance, y) = (&mut self.state.balance, &self.state.y[..]);
+        self.watch.disturb(&self.model, balance, time, end, y);
+    }
+
+    /// Takes the step that began at time t (s) again, to the time shown. A state that is read off
+    /// stays where that fails.
+    fn shorten_step(&mut self, t: f64, time: f64) {
+        let mut y = self.stepper.within.y0().to_vec();
+        let system = self.model.system();
+        self.phases.begin(&self.model, &y, false);
+        let step = Control::Step(time - t);
+        let taken = self.stepper.integrate(system, step, t, &mut y);
+        let settled = self.phases.settle(&self.model, (t, time - t), &mut y);
+        if taken.is_ok() && settled.is_ok() && y.iter().all(|y| y.is_finite()) {
+            self.state.y = y;
+        }
     }
 }
 

@@ -45,6 +45,11 @@ impl Within {
         self.times
     }
 
+    /// State at the beginning of a fixed step.
+    pub fn y0(&self) -> &[f64] {
+        &self.ends[0]
+    }
+
     /// Remembers the state at the beginning of a step that a time shown will be within.
     pub fn begin(&mut self, y0: &[f64]) {
         self.ends[0].clear();

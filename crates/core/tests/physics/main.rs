@@ -11,6 +11,7 @@ mod fluid;
 mod forces;
 mod friction;
 mod networks;
+mod restitution;
 mod rigid;
 mod solids;
 mod sweeps;

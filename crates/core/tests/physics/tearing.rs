@@ -383,15 +383,15 @@ fn what_tore_after_a_moment_is_mended_there() {
         run.grab_obstacle(0).unwrap();
         run.pull_obstacle(Vector3::new(3.0, 3.0, 3.0));
         run.rewind(moment).unwrap();
-        assert_eq!((run.time(), run.steps()), (moment.time(), moment.steps));
+        assert_eq!((run.time(), run.steps()), (moment.time(), moment.run.steps));
         assert_eq!(run.moment().obstacles, moment.obstacles);
         assert_eq!(
             (run.state(), network_of(&run).torn()),
-            (&moment.y[..], &moment.torn[..])
+            (&moment.run.y[..], &moment.torn[..])
         );
         assert!(network_of(&run).springs().eq(network.springs()));
         run.advance_to(1.25).unwrap();
-        assert_eq!(run.state(), moments[20].0.y, "{k}");
+        assert_eq!(run.state(), moments[20].0.run.y, "{k}");
         assert_eq!(network_of(&run).torn(), moments[20].0.torn, "{k}");
     }
 }

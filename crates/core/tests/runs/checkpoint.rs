@@ -210,21 +210,21 @@ fn checkpoints_that_do_not_fit_are_refused_and_change_nothing() {
         assert!(run.restore(&broken).is_err());
         assert_eq!(run.checkpoint(), before);
     };
-    refuse(&|c| c.y.push(0.0));
-    refuse(&|c| c.y[0] = f64::NAN);
-    refuse(&|c| c.since = f64::INFINITY);
-    refuse(&|c| c.control = Control::Tolerance(-1.0));
-    refuse(&|c| c.method = method("rk4"));
+    refuse(&|c| c.run.y.push(0.0));
+    refuse(&|c| c.run.y[0] = f64::NAN);
+    refuse(&|c| c.run.since = f64::INFINITY);
+    refuse(&|c| c.run.control = Control::Tolerance(-1.0));
+    refuse(&|c| c.run.method = method("rk4"));
     refuse(&|c| c.pins.push((1_000_000, Path::Still(Vector3::zeros()))));
     refuse(&|c| c.torn.push([0, 224]));
     refuse(&|c| c.obstacles.push((7, Path::Still(Vector3::zeros()))));
-    refuse(&|c| c.grabbed_obstacle = Some(7));
-    refuse(&|c| c.adaptive.as_mut().unwrap().ahead = Some((1.0, vec![])));
+    refuse(&|c| c.run.grabbed_obstacle = Some(7));
+    refuse(&|c| c.progress.within.as_mut().unwrap().ends[1].truncate(3));
     let other = simulation("mit", "dop853", 1e-6);
     refuse(&|c| {
         let mut run = simulation("mit", "dop853", 1e-6);
         run.advance_to(0.01).unwrap();
-        c.adaptive = run.checkpoint().adaptive;
+        c.progress = run.checkpoint().progress;
     });
     assert!(
         run.restore(&simulation("chain", "rk4", 0.01).checkpoint())

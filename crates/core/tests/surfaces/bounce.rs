@@ -17,6 +17,7 @@ fn system(on_floor: bool) -> (Network, Vec<f64>) {
         stiffness: 600.0,
         damping: 0.0,
         friction: 0.0,
+        ..Skin::default()
     };
     let count = if on_floor { 1 } else { 4 };
     let mut network = Network::new(vec![1.0; count]).unwrap();

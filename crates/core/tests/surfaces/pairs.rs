@@ -44,6 +44,7 @@ impl Kind {
             stiffness: STIFFNESS,
             damping,
             friction: 0.0,
+            ..Skin::default()
         };
         let (count, triangles, edges): (_, &[[usize; 3]], &[[u32; 2]]) = match self {
             Self::VertexTriangle => (4, &[[1, 2, 3]], &[[0, 0]]),

@@ -59,6 +59,7 @@ impl Body for Chain {
         let skin = SkinSpec {
             thickness: self.thickness,
             friction: self.friction,
+            restitution: self.restitution,
             stiffness: self.stiffness,
             time: if self.stiffness > 0.0 {
                 self.damping / self.stiffness
@@ -162,6 +163,7 @@ impl Body for Particles {
         let skin = SkinSpec {
             thickness: self.thickness,
             friction: self.friction,
+            restitution: self.restitution,
             stiffness: stiffest,
             time: springs.iter().map(|s| s.law.damping).fold(0.0, f64::max) / stiffest.max(1.0),
         };

@@ -113,6 +113,7 @@ impl Body for Cloth {
         let skin = SkinSpec {
             thickness: self.thickness,
             friction: self.friction,
+            restitution: self.restitution,
             stiffness: structural,
             time,
         };

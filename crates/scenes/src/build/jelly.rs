@@ -77,6 +77,7 @@ impl Body for Jelly {
         let skin = SkinSpec {
             thickness: self.thickness,
             friction: self.friction,
+            restitution: self.restitution,
             stiffness: structural,
             time,
         };

@@ -72,6 +72,7 @@ impl Body for LoadedMesh<'_> {
         let skin = SkinSpec {
             thickness: cloth.thickness,
             friction: cloth.friction,
+            restitution: cloth.restitution,
             stiffness: structural,
             time,
         };

@@ -122,10 +122,22 @@ pub(super) fn build(
     })
 }
 
-/// Whether surfaces touch: rigid bodies always do.
+/// Whether surfaces touch: rigid bodies always do, and so does all that is elastic itself.
 fn touches(description: &Description) -> bool {
     let asked = description.self_collision || obstacles::is_one_thick(description);
-    asked || !description.body.is_empty()
+    asked || !description.body.is_empty() || is_one_elastic(description)
+}
+
+/// Whether a body has a restitution of its own.
+fn is_one_elastic(description: &Description) -> bool {
+    let cloths = description.cloth.iter().map(|body| body.restitution);
+    let jellies = description.jelly.iter().map(|body| body.restitution);
+    let meshes = description.mesh.iter().map(|body| body.restitution);
+    let solids = description.solid.iter().map(|body| body.restitution);
+    let chains = description.chain.iter().map(|body| body.restitution);
+    let particles = description.particles.iter().map(|body| body.restitution);
+    let all = cloths.chain(jellies).chain(meshes).chain(solids);
+    all.chain(chains).chain(particles).any(|e| e != 0.0)
 }
 
 /// All bodies, in the order in which their particles are numbered.

@@ -7,7 +7,7 @@ use a3_core::{Network, Path, Vector3, rotation};
 
 use super::motion::motion;
 use crate::budget::{Budget, FACES, TRIANGLES};
-use crate::check::{at, at_least, key_of, positive};
+use crate::check::{at, at_least, key_of, positive, share};
 use crate::description::{
     BoxSpec, CapsuleSpec, Description, Floor, FloorSpec, ObstacleSpec, SphereSpec,
 };
@@ -90,6 +90,7 @@ fn sphere(spec: &SphereSpec) -> Result<Obstacle, Fault> {
         path,
         turn,
         friction: friction(spec.friction)?,
+        restitution: restitution(spec.restitution)?,
         thickness: thickness(spec.thickness)?,
     })
 }
@@ -112,6 +113,7 @@ fn cuboid(spec: &BoxSpec) -> Result<Obstacle, Fault> {
         path,
         turn,
         friction: friction(spec.friction)?,
+        restitution: restitution(spec.restitution)?,
         thickness: thickness(spec.thickness)?,
     })
 }
@@ -132,6 +134,7 @@ fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
         path,
         turn,
         friction: friction(spec.friction)?,
+        restitution: restitution(spec.restitution)?,
         thickness: thickness(spec.thickness)?,
     })
 }
@@ -163,31 +166,40 @@ fn solid(
         path,
         turn,
         friction: friction(spec.friction)?,
+        restitution: restitution(spec.restitution)?,
         thickness: thickness(spec.thickness)?,
     })
 }
 
 fn floor(spec: &Floor) -> Result<Obstacle, Fault> {
-    let (height, mu, thick) = match *spec {
-        Floor::Height(height) => (height, 0.0, None),
-        Floor::Table(FloorSpec {
+    let spec = match *spec {
+        Floor::Height(height) => FloorSpec {
             height,
-            friction,
-            thickness,
-        }) => (height, friction, thickness),
+            friction: 0.0,
+            restitution: 0.0,
+            thickness: None,
+        },
+        Floor::Table(spec) => spec,
     };
+    let within = |fault: Fault| fault.within("floor");
     Ok(Obstacle {
         shape: Shape::Floor,
-        path: Path::Still(Vector3::new(0.0, height, 0.0)),
+        path: Path::Still(Vector3::new(0.0, spec.height, 0.0)),
         turn: None,
-        friction: friction(mu).map_err(|fault| fault.within("floor"))?,
-        thickness: thickness(thick).map_err(|fault| fault.within("floor"))?,
+        friction: friction(spec.friction).map_err(within)?,
+        restitution: restitution(spec.restitution).map_err(within)?,
+        thickness: thickness(spec.thickness).map_err(within)?,
     })
 }
 
 fn friction(mu: f64) -> Result<f64, Fault> {
     at("friction", at_least(0.0, "it", mu))?;
     Ok(mu)
+}
+
+fn restitution(e: f64) -> Result<f64, Fault> {
+    at("restitution", share("it", e))?;
+    Ok(e)
 }
 
 fn thickness(given: Option<f64>) -> Result<f64, Fault> {

@@ -121,7 +121,11 @@ impl Body for LoadedBody<'_> {
         assembly.velocities.extend(vec![velocity; count]);
         assembly.masses.extend(vec![properties.mass; count]);
         let thickness = body.thickness.unwrap_or(THICKNESS * self.smallest);
-        let skin = rigid_skin(properties.mass, thickness, body.friction)?;
+        let skin = rigid_skin(
+            properties.mass,
+            thickness,
+            [body.friction, body.restitution],
+        )?;
         assembly.skins.extend(vec![skin; count]);
         assembly.rigid.push((made, rotation));
         Ok(())

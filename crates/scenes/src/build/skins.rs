@@ -2,7 +2,7 @@
 
 use a3_core::contact::Skin;
 
-use crate::check::{at, at_least, positive};
+use crate::check::{at, at_least, positive, share};
 use crate::fault::Fault;
 
 /// Thickness of a surface if none is given, and the most that is allowed, as a share of the
@@ -23,6 +23,7 @@ const RIGID_DAMPING: f64 = 1.5;
 pub(super) struct SkinSpec {
     pub thickness: Option<f64>,
     pub friction: f64,
+    pub restitution: f64,
     /// Stiffness of its springs (N/m).
     pub stiffness: f64,
     /// Damping over stiffness of its springs (s).
@@ -39,6 +40,8 @@ impl SkinSpec {
             // time: bounces die away as fast as the springs' oscillations.
             damping: DAMPING * self.time / thickness,
             friction: self.friction,
+            restitution: self.restitution,
+            mass,
         }
     }
 
@@ -75,15 +78,21 @@ impl SkinSpec {
         if let Some(thickness) = self.thickness {
             at("thickness", positive("it", thickness))?;
         }
-        at("friction", at_least(0.0, "it", self.friction))
+        at("friction", at_least(0.0, "it", self.friction))?;
+        at("restitution", share("it", self.restitution))
     }
 }
 
 /// Skin of the points of a rigid body of that mass (kg).
-pub(super) fn rigid_skin(mass: f64, thickness: f64, friction: f64) -> Result<Skin, Fault> {
+pub(super) fn rigid_skin(
+    mass: f64,
+    thickness: f64,
+    [friction, restitution]: [f64; 2],
+) -> Result<Skin, Fault> {
     let spec = SkinSpec {
         thickness: Some(thickness),
         friction,
+        restitution,
         stiffness: 0.0,
         time: 0.0,
     };

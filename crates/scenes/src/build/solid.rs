@@ -155,6 +155,7 @@ impl Body for LoadedSolid<'_> {
         let skin = SkinSpec {
             thickness: self.solid.thickness,
             friction: self.solid.friction,
+            restitution: self.solid.restitution,
             stiffness: material.young * mean,
             time: material.damping,
         };

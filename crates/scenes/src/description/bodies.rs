@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::forces::{BucklingSpec, SpringSpec};
 use super::motion::{Pin, Triple};
-use super::obstacles::is_smooth;
+use super::obstacles::is_zero;
 
 /// First-order system of one particle whose velocity is its position turned by a right angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -63,8 +63,11 @@ pub struct Cloth {
     #[serde(default)]
     pub thickness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Pins of this body.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
@@ -102,8 +105,11 @@ pub struct Jelly {
     #[serde(default)]
     pub thickness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Pins of this body.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
@@ -140,8 +146,11 @@ pub struct MeshCloth {
     #[serde(default)]
     pub thickness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Pins of this body. Its `top` and `bottom` are the particles as high as the highest and the
     /// lowest one, to a hundredth of the body's height.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -194,8 +203,11 @@ pub struct Solid {
     #[serde(default)]
     pub thickness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Pins of this body. `top`, `bottom`, `left` and `right` of a solid from a file are the
     /// particles that are farthest there, to a hundredth of its extent.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -233,8 +245,11 @@ pub struct Chain {
     #[serde(default)]
     pub thickness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Pins of this body.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,
@@ -262,8 +277,11 @@ pub struct Particles {
     #[serde(default)]
     pub thickness: Option<f64>,
     /// Coefficient of Coulomb friction where surfaces touch; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution where surfaces touch; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Pins of this body.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,

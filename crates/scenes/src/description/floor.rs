@@ -7,17 +7,19 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// Level floor: `floor = -1.0`, or `floor = { height = -1.0, friction = 0.4 }`.
+use super::obstacles::is_zero;
+
+/// Level floor: `floor = -1.0`, or `floor = { height = -1.0, friction = 0.4, restitution = 0.8 }`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Floor {
     /// Height of a smooth floor (m).
     Height(f64),
-    /// Floor with friction.
+    /// Floor of more than a height.
     Table(FloorSpec),
 }
 
-/// Level floor with friction.
+/// Level floor with what it does to bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FloorSpec {
@@ -26,6 +28,9 @@ pub struct FloorSpec {
     /// Coefficient of Coulomb friction on it; 0 if not given.
     #[serde(default)]
     pub friction: f64,
+    /// Coefficient of restitution, from 0 to 1; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Thickness (m), with which it repels bodies before they touch it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,

@@ -14,8 +14,11 @@ pub struct SphereSpec {
     /// Radius (m).
     pub radius: f64,
     /// Coefficient of Coulomb friction; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution, from 0 to 1; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
     #[serde(default)]
     pub thickness: Option<f64>,
@@ -42,8 +45,11 @@ pub struct BoxSpec {
     #[serde(default)]
     pub rotation: Option<Triple>,
     /// Coefficient of Coulomb friction; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution, from 0 to 1; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
     #[serde(default)]
     pub thickness: Option<f64>,
@@ -69,8 +75,11 @@ pub struct CapsuleSpec {
     /// Radius (m).
     pub radius: f64,
     /// Coefficient of Coulomb friction; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution, from 0 to 1; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
     #[serde(default)]
     pub thickness: Option<f64>,
@@ -102,8 +111,11 @@ pub struct ObstacleSpec {
     #[serde(default)]
     pub rotation: Option<Triple>,
     /// Coefficient of Coulomb friction; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution, from 0 to 1; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Thickness (m), with which edges and triangles of bodies touch it and not only particles.
     #[serde(default)]
     pub thickness: Option<f64>,
@@ -122,6 +134,6 @@ pub struct ObstacleSpec {
     clippy::trivially_copy_pass_by_ref,
     reason = "serde calls it so; on 32 bits clippy lets it"
 )]
-pub(super) fn is_smooth(friction: &f64) -> bool {
-    *friction == 0.0
+pub(super) fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }

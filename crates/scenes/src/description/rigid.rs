@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::motion::{Pin, Triple};
-use super::obstacles::is_smooth;
+use super::obstacles::is_zero;
 
 /// Rigid body of one or several parts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -33,8 +33,11 @@ pub struct RigidBody {
     #[serde(default)]
     pub thickness: Option<f64>,
     /// Coefficient of Coulomb friction; 0 if not given.
-    #[serde(default, skip_serializing_if = "is_smooth")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub friction: f64,
+    /// Coefficient of restitution, from 0 to 1; 0 if not given.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub restitution: f64,
     /// Pins of this body: only of its particle 0, the centre of mass, about which it still turns.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pin: Vec<Pin>,

@@ -10,7 +10,7 @@ use super::super::error_norm::ErrorNorm;
 use super::super::trial::{LastStep, Trial};
 use super::super::{Method, Work};
 use super::kept::{KeptSolver, Tangent};
-use super::{place, tr_bdf2};
+use super::tr_bdf2;
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -252,7 +252,7 @@ impl Trial for Bdf {
     fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
         // A pin that a hand has just set in motion jumps to the velocity of its path.
         self.step.y0.copy_from_slice(y);
-        place(system, t, &mut self.step.y0);
+        system.hold(t, &mut self.step.y0);
         system.eval_f(t, &self.step.y0, &mut self.step.k[0]);
         // The difference is f times the distance of the states.
         self.step.h = 1.0;

@@ -5,7 +5,7 @@
 
 use super::super::error_norm::ErrorNorm;
 use super::super::{Work, add_scaled};
-use super::{Mechanical, StageSolver, place};
+use super::{Mechanical, StageSolver};
 use crate::system::{Linearized, Mechanics, ParticleSystem};
 
 /// Part of the tolerated error that may remain in the equations.
@@ -91,7 +91,7 @@ impl KeptSolver {
         let mut clamped = false;
         loop {
             y.copy_from_slice(predicted);
-            place(system, t, y);
+            system.hold(t, y);
             let mut solved = Ok(());
             if fresh {
                 self.at.copy_from_slice(y);

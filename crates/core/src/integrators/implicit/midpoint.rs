@@ -3,7 +3,7 @@
 //! stable for which the equations have a solution. Order 2.
 
 use super::super::{Integrator, Method, Work, check_dim};
-use super::{Newton, StageSolver, place};
+use super::{Newton, StageSolver};
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -51,7 +51,7 @@ impl Integrator for ImplicitMidpoint {
         for (y, base) in y.iter_mut().zip(&*base) {
             *y = 2.0 * *y - base;
         }
-        place(system, t + h, y);
+        system.hold(t + h, y);
         Ok(work)
     }
 }

@@ -111,14 +111,6 @@ impl StageSolver {
     }
 }
 
-/// Puts pins in their places at time t (s), if the system has any.
-fn place(system: &dyn ParticleSystem, t: f64, y: &mut [f64]) {
-    if let Some(mechanics) = system.mechanics() {
-        let (x, v) = y.split_at_mut(y.len() / 2);
-        place_pins(mechanics, t, x, v);
-    }
-}
-
 /// Solver of the implicit stages of a mechanical system, with its scratch.
 struct Mechanical {
     solver: Solver,

@@ -1,0 +1,178 @@
+//! Particles that rebound from plain obstacles, against closed forms.
+
+use a3_core::{Control, Method, Simulation, integrators};
+
+use crate::common::{described, method};
+
+const G: f64 = 9.81;
+
+/// A particle above a floor with restitution 0.8.
+fn dropped(height: f64) -> String {
+    format!(
+        "gravity = [0, -{G}, 0]
+        floor = {{ height = 0, restitution = 0.8 }}
+        [particles]
+        positions = [[0, {height}, 0]]
+        mass = 0.3"
+    )
+}
+
+fn run(text: &str, method: &'static Method, control: Control) -> Simulation {
+    Simulation::new(described(text), method, control).unwrap()
+}
+
+/// Height and speed of what was dropped from a height, after t seconds: the exact bounces.
+fn exact(mut height: f64, t: f64) -> [f64; 2] {
+    let fall = (2.0 * height / G).sqrt();
+    if t < fall {
+        return [height - 0.5 * G * t * t, -G * t];
+    }
+    let mut left = t - fall;
+    loop {
+        height *= 0.64;
+        let up = (2.0 * G * height).sqrt();
+        if left < 2.0 * up / G {
+            return [up * left - 0.5 * G * left * left, up - G * left];
+        }
+        left -= 2.0 * up / G;
+    }
+}
+
+#[test]
+fn a_particle_rebounds_to_the_square_of_its_restitution() {
+    let apex = (2.0 / G).sqrt() * 1.8;
+    for m in integrators::METHODS {
+        let mut controls = vec![];
+        if m.check_control(Control::Step(1e-3)).is_ok() {
+            controls.push(Control::Step(1e-3));
+        }
+        if m.check_control(Control::Tolerance(1e-6)).is_ok() {
+            controls.push(Control::Tolerance(1e-6));
+        }
+        for control in controls {
+            for scale in [1e-3, 1.0, 100.0] {
+                // The step in proportion to the time of the fall.
+                let control = match control {
+                    Control::Step(h) => Control::Step(h * f64::sqrt(scale)),
+                    other => other,
+                };
+                let scene = described(&dropped(scale));
+                if m.check(scene.model.system()).is_err() {
+                    continue;
+                }
+                let mut run = Simulation::new(scene, m, control).unwrap();
+                run.advance_to(apex * f64::sqrt(scale)).unwrap();
+                let height = run.state()[1] / scale;
+                assert!(
+                    (height / 0.64 - 1.0).abs() < 0.01,
+                    "{}, {control:?}, {scale} m: {height}",
+                    m.name
+                );
+            }
+        }
+    }
+}
+
+/// Methods that are exact under constant forces stay so over five bounces, at any step.
+#[test]
+fn bounces_are_located() {
+    for name in ["verlet", "rk4", "pefrl", "heun", "midpoint-implicit"] {
+        let Some(m) = integrators::find(name) else {
+            continue;
+        };
+        for step in [0.05, 0.0123, 1e-3] {
+            let mut run = run(&dropped(1.0), m, Control::Step(step));
+            for k in 1..=25 {
+                let t = 0.1 * f64::from(k);
+                run.advance_to(t).unwrap();
+                let y = run.state();
+                let [height, speed] = exact(1.0, t);
+                let off = (y[1] - height).abs() + (y[4] - speed).abs();
+                assert!(off < 1e-9, "{name} {step} at {t}: {off}");
+            }
+        }
+    }
+}
+
+/// What has come to rest lies still, and rests no later than the sum of all bounces says.
+#[test]
+fn bounces_come_to_rest() {
+    let fall = (2.0 / G).sqrt();
+    let end = fall * (1.0 + 2.0 * 0.8 / 0.2);
+    for step in [0.02, 1e-3] {
+        for name in ["verlet", "rk4", "euler", "implicit", "xpbd"] {
+            let mut run = run(&dropped(1.0), method(name), Control::Step(step));
+            run.advance_to(end * 1.1).unwrap();
+            for _ in 0..50 {
+                run.take_steps(1).unwrap();
+                let y = run.state();
+                assert!(y[1].abs() < 1e-12 && y[4].abs() < 1e-12, "{name}: {y:?}");
+            }
+        }
+    }
+}
+
+/// On springs, bounces leave order 2.
+#[test]
+fn order_two_is_kept_over_bounces() {
+    let text = "floor = { height = 0, restitution = 0.9 }
+        [particles]
+        positions = [[0, 0.7, 0], [0, 1.5, 0]]
+        masses = [0.3, 1]
+        springs = [[0, 1, 40, 0.8, 0]]
+        velocities = [[0, -1, 0], [0.2, -1, 0]]";
+    let end = |name: &str, step: f64| {
+        let mut run = run(text, method(name), Control::Step(step));
+        run.advance_to(1.7).unwrap();
+        run.state().to_vec()
+    };
+    let best = end("rk4", 1e-5);
+    for name in ["verlet", "rk4", "heun"] {
+        let error = |step: f64| {
+            // The mean over several steps: where a bounce is within a step makes errors vary.
+            let errors = (0..8).map(|k| {
+                let y = end(name, step / (1.0 + 0.05 * f64::from(k)));
+                y.iter()
+                    .zip(&best)
+                    .map(|(a, b)| (a - b).powi(2))
+                    .sum::<f64>()
+            });
+            errors.sum::<f64>().sqrt()
+        };
+        let order = (error(4e-3) / error(5e-4)).log2() / 3.0;
+        assert!(order > 1.8, "{name}: {order}");
+    }
+}
+
+/// A box that comes at a particle throws it: v' = V + e (V - v), and friction takes mu times that.
+#[test]
+fn a_moving_box_throws_a_particle() {
+    let text = "[[box]]
+        center = [-1, 0, 0]
+        size = [1, 4, 4]
+        restitution = 0.5
+        friction = 0.1
+        shift = { by = [3, 0, 0], end = 1 }
+        [particles]
+        positions = [[0, 0, 0]]
+        velocities = [[-0.5, 2, 0]]
+        mass = 0.2";
+    let mut run = run(text, method("rk4"), Control::Step(1e-2));
+    let found = |run: &Simulation| {
+        let y = run.state();
+        [y[3], y[4]]
+    };
+    let before = found(&run);
+    while found(&run) == before {
+        run.take_steps(1).unwrap();
+    }
+    let [x, y] = found(&run);
+    // The speed of the box at the touch follows from that of the particle.
+    let of_box = (x + 0.5 * -0.5) / 1.5;
+    let change = x + 0.5;
+    assert!(of_box > 0.5, "{of_box}");
+    assert!((y - (2.0 - 0.1 * change)).abs() < 1e-12, "{y} {change}");
+    // It touched the box on the way, and is apart from it now.
+    run.take_steps(1).unwrap();
+    assert_eq!(found(&run), [x, y]);
+}
