@@ -1,8 +1,8 @@
 //! Constraints that a run does not meet are named, and energy that it loses is told.
 
-use a3_core::{Cause, Control, Error, Simulation, integrators};
+use a3_core::{Cause, Error, Simulation, integrators};
 
-use super::common::{described, method, scene};
+use super::common::{described, method};
 
 const WEIGHT: &str = "gravity = [0, -9.81, 0]\n";
 
@@ -38,7 +38,11 @@ fn a_straight_chain_between_pins_stays() {
         if method.implicit || method.positions_only {
             continue;
         }
-        let value = if method.is_adaptive() { 1e-6 } else { 0.005 };
+        let value = match method.name {
+            _ if method.is_adaptive() => 1e-6,
+            "euler" => 0.001,
+            _ => 0.005,
+        };
         let mut run = run(STRAIGHT, method.name, value);
         run.advance_to(2.0).unwrap();
         run.conclude().unwrap();
@@ -51,7 +55,7 @@ fn a_straight_chain_between_pins_stays() {
 
 #[test]
 fn contradictions_are_named() {
-    for (scene, from, until) in [(PINNED, 0.0, 0.2), (TAUT, 0.6, 0.9)] {
+    for (scene, from, until) in [(PINNED, 0.0, 0.5), (TAUT, 0.6, 1.0)] {
         for (name, value) in [
             ("rk4", 0.001),
             ("verlet", 0.005),
@@ -119,7 +123,7 @@ fn only_energy_that_is_kept_has_a_change() {
     assert!(change(&format!("floor = -10\n{ball}")).unwrap().abs() < 1e-9);
     assert_eq!(change(&format!("floor = 0\n{ball}")), None);
     // A hand may do anything.
-    let mut held = Simulation::new(scene("pendulum"), method("v"), Control::Step(0.001)).unwrap();
+    let mut held = run(&kept, "verlet", 0.001);
     held.advance_to(0.5).unwrap();
     assert!(held.energy_change().is_some());
     held.grab(1).unwrap();

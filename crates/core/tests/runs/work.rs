@@ -101,8 +101,8 @@ fn work_of_pins_is_that_of_the_exact_motion() {
         for (name, control, within) in [
             ("rk4", Control::Step(0.1 / own), 1e-3),
             ("pefrl", Control::Step(0.1 / own), 1e-3),
-            ("dop853", Control::Tolerance(1e-8), 5e-3),
-            ("dopri5", Control::Tolerance(1e-6), 5e-3),
+            ("dop853", Control::Tolerance(1e-8), 1e-2),
+            ("dopri5", Control::Tolerance(1e-6), 1e-2),
             ("verlet", Control::Step(0.02 / own), 2e-2),
             ("implicit-midpoint", Control::Step(0.02 / own), 2e-2),
         ] {
