@@ -53,6 +53,16 @@ impl Turn {
         }
     }
 
+    /// Times at which the turn starts and ends (s).
+    pub(crate) fn known_times(&self) -> [f64; 2] {
+        [self.start, self.end.unwrap_or(f64::INFINITY)]
+    }
+
+    /// Whether it turns at some time between two others (s).
+    pub(crate) fn is_on(&self, [from, to]: [f64; 2]) -> bool {
+        self.rate != 0.0 && from < self.end.unwrap_or(f64::INFINITY) && to > self.start
+    }
+
     /// Orientation at time t (s) of a body that turns, seen from that before the start.
     #[must_use]
     pub fn orientation(&self, t: f64) -> Orientation {
@@ -242,6 +252,72 @@ impl Path {
             Self::Line { from, to, .. } => (to - from).norm(),
             Self::Turn { arm, from, to, .. } => (to - from).norm().max(arm.norm()),
         }
+    }
+
+    /// Times at which the motion begins or ends (s), some of them perhaps twice or infinite.
+    pub(crate) fn known_times(&self) -> [f64; 4] {
+        match self {
+            Self::Still(_) | Self::Sine { .. } => [f64::INFINITY; 4],
+            Self::Line { start, end, .. } => [*start, *end, *start, *end],
+            Self::Turn {
+                turn, start, end, ..
+            } => {
+                let [from, to] = turn.known_times();
+                [*start, *end, from, to]
+            }
+        }
+    }
+
+    /// Longest step (s) that shows a motion between two times (s): a quarter of its period.
+    pub(crate) fn quarter_period(&self, times: [f64; 2]) -> f64 {
+        let rate = match self {
+            Self::Sine { rate, .. } => *rate,
+            Self::Turn { turn, .. } if turn.is_on(times) => turn.rate,
+            _ => 0.0,
+        };
+        0.5 * std::f64::consts::PI / rate.abs()
+    }
+
+    /// Bounds on the speed (m/s) and on the acceleration (m/s2) between two times (s). The latter is
+    /// infinite where the motion begins or ends between them.
+    pub(crate) fn bounds(&self, [from, to]: [f64; 2]) -> [f64; 2] {
+        let uniform = |way: Vector3<f64>, start: f64, end: f64| {
+            if from < end && to > start && end > start {
+                way.norm() / (end - start)
+            } else {
+                0.0
+            }
+        };
+        let [speed, acceleration] = match self {
+            Self::Still(_) => [0.0; 2],
+            Self::Sine {
+                amplitude, rate, ..
+            } => [1, 2].map(|power| amplitude.norm() * rate.abs().powi(power)),
+            Self::Line {
+                from: a,
+                to: b,
+                start,
+                end,
+            } => [uniform(b - a, *start, *end), 0.0],
+            Self::Turn {
+                turn,
+                arm,
+                from: a,
+                to: b,
+                start,
+                end,
+            } => {
+                let rate = if turn.is_on([from, to]) {
+                    turn.rate.abs()
+                } else {
+                    0.0
+                };
+                let along = uniform(b - a, *start, *end);
+                [along + rate * arm.norm(), rate * rate * arm.norm()]
+            }
+        };
+        let changes = self.known_times().iter().any(|t| from < *t && *t < to);
+        [speed, if changes { f64::INFINITY } else { acceleration }]
     }
 }
 

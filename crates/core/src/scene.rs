@@ -96,6 +96,8 @@ pub struct Scene {
     /// Error of positions that a step to a tolerance may make (m); by default the tolerance times
     /// the scene's radius.
     pub absolute: Option<f64>,
+    /// Longest step of an adaptive method (s), if it is limited.
+    pub max_step: Option<f64>,
 }
 
 impl Scene {
@@ -117,6 +119,7 @@ impl Scene {
             touch: None,
             reach: 10.0,
             absolute: None,
+            max_step: None,
         }
     }
 

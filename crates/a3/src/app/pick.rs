@@ -276,7 +276,7 @@ mod tests {
         if let Model::Network(network) = &mut scene.model {
             network.set_tear(Some(1.5)).unwrap();
             let wide: Vec<_> = scene.state[..1200].iter().map(|x| 10.0 * x).collect();
-            assert!(network.tear(&wide) > 0);
+            assert!(network.tear(&wide, 0.0) > 0);
         }
         let torn = Simulation::new(scene, run.method(), Control::Step(0.01)).unwrap();
         assert!(!hit(&torn));

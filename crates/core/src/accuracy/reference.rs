@@ -202,6 +202,7 @@ impl Making<'_> {
     /// Run of a method. `None` if `go_on` returned false.
     fn run(&mut self, method: &'static Method, control: Control) -> Result<Option<Run>, Error> {
         let mut simulation = Simulation::new(self.scene.clone(), method, control)?;
+        simulation.locate_events();
         let frames = self.reference.frames;
         let start = &self.reference.start;
         let mut snapshots: Vec<Snapshot> = Vec::with_capacity(frames.count as usize);

@@ -12,6 +12,7 @@
 //! the obstacle: what rests does not creep.
 
 mod advance;
+mod approach;
 mod boxes;
 mod candidates;
 mod check;
@@ -36,6 +37,7 @@ mod tests;
 
 pub use crate::geometry::{ClosedMesh, Closest, PairKind, Shape, Simplices, closest, weighted};
 pub use advance::time_of_impact;
+pub(crate) use approach::Approach;
 pub use check::Crossed;
 pub use cut::Squeezed;
 pub use exact::{Crossing, crossings};
@@ -43,6 +45,7 @@ pub(crate) use impulses::Impulses;
 pub use layer::ContactLayer;
 pub use motion::Guarded;
 pub use obstacle::Obstacle;
+pub(crate) use rebound::Course;
 pub use resolve::{Contact, Statistics, Step, resolve};
 pub use strain::{StrainLimit, StrainLimiter, Strained};
 pub use surface::{Skin, Surface};

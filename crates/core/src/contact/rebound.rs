@@ -1,9 +1,6 @@
-//! Restitution: the speed after an impact, and the time of a touch within a step.
+//! Restitution: the speed after an impact, and the course of a particle up to it.
 
 use nalgebra::Vector3;
-
-/// Halvings of a step that locate a touch.
-const HALVINGS: usize = 52;
 
 /// Speed (m/s) away from a surface after an impact at the speed `approach` (m/s).
 ///
@@ -21,7 +18,8 @@ pub(super) fn rebound_speed(restitution: f64, approach: f64, press: f64, shortes
 
 /// Course of a particle in a step of h (s): the cubic with the positions (m) and velocities (m/s)
 /// at both ends.
-pub(super) struct Course {
+#[derive(Debug)]
+pub(crate) struct Course {
     pub x: [Vector3<f64>; 2],
     pub v: [Vector3<f64>; 2],
     pub h: f64,
@@ -43,23 +41,6 @@ impl Course {
         let mean = (x1 - x0) / self.h;
         v0 * left + v1 * s + (mean * 2.0 - v0 - v1) * (3.0 * s * left)
     }
-}
-
-/// Share of a step just after it takes a particle inside an obstacle, unless it begins inside.
-pub(super) fn first_inside(is_inside: impl Fn(f64) -> bool) -> Option<f64> {
-    if is_inside(0.0) {
-        return None;
-    }
-    let (mut before, mut after) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (before + after);
-        if is_inside(middle) {
-            after = middle;
-        } else {
-            before = middle;
-        }
-    }
-    Some(after)
 }
 
 #[cfg(test)]
@@ -85,6 +66,5 @@ mod tests {
             assert!((course.position(s) - v(position(t))).norm() < 1e-14);
             assert!((course.velocity(s) - slope(speed(t))).norm() < 1e-13);
         }
-        assert_eq!(first_inside(|s| s > 0.25), Some(0.25 + 2f64.powi(-52)));
     }
 }

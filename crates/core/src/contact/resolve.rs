@@ -4,12 +4,13 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::approach::Approach;
 use super::cut::Squeezed;
 use super::impulses::Impulses;
 use super::layer::ContactLayer;
 use super::motion::Guarded;
 use super::obstacle::Obstacle;
-use super::rebound::{Course, first_inside, rebound_speed};
+use super::rebound::{Course, rebound_speed};
 use crate::geometry::Shape;
 use crate::geometry::nearest::{Nearest, of_box, of_capsule, of_floor, of_sphere};
 use crate::path::Pose;
@@ -52,6 +53,9 @@ pub struct Contact {
     last: Statistics,
     /// Impulses of the last step, and its length (s).
     impulses: (Impulses, f64),
+    /// Sum of the magnitudes of the impulses that were given at the end of a step before its other
+    /// contacts are resolved (N s).
+    struck: f64,
 }
 
 impl Contact {
@@ -62,14 +66,17 @@ impl Contact {
             y0: Vec::with_capacity(dim),
             last: Statistics::default(),
             impulses: (Impulses::with_room_for(dim / 6), 0.0),
+            struck: 0.0,
         }
     }
 
-    /// Remembers the state that a step begins with, if an obstacle has friction or restitution or,
-    /// with `look_back`, if there is one at all.
+    /// Remembers the state that a step begins with, if particles may pass through an obstacle, or it
+    /// has friction or restitution, or, with `look_back`, if there is one at all.
     pub fn begin(&mut self, obstacles: &[Obstacle], y0: &[f64], look_back: bool) {
         self.y0.clear();
-        let needs = |o: &Obstacle| look_back || o.friction > 0.0 || o.restitution > 0.0;
+        let needs = |o: &Obstacle| {
+            look_back || o.friction > 0.0 || o.restitution > 0.0 || o.shape != Shape::Floor
+        };
         if obstacles.iter().any(needs) {
             self.y0.extend_from_slice(y0);
         }
@@ -117,7 +124,65 @@ impl Contact {
         let (impulses, length) = &mut self.impulses;
         *length = h;
         self.last = resolve_noting(obstacles, inverse_masses, &step, y1, impulses);
+        self.last.impulse += std::mem::take(&mut self.struck);
         self.last
+    }
+
+    /// Gives particles that touch an obstacle, and approach it, the velocities after the impact at
+    /// time t (s), and puts them on its surface. The step of h (s) ends there. A distance of
+    /// `none` (m) counts as none, and what would rebound by less than `height` (m) does not.
+    pub(crate) fn strike(
+        &mut self,
+        obstacles: &[Obstacle],
+        inverse_masses: &[f64],
+        (t, h): (f64, f64),
+        [none, height]: [f64; 2],
+        y1: &mut [f64],
+    ) {
+        let n = inverse_masses.len();
+        let (x, v) = y1.split_at_mut(3 * n);
+        for obstacle in obstacles {
+            let pose = obstacle.at(t);
+            for i in (0..n).filter(|i| inverse_masses[*i] > 0.0) {
+                let d = vector(x, n, i) - pose.place.position;
+                let seen = obstacle.shape.separation(pose.inwards(d));
+                if seen.distance.abs() > none {
+                    continue;
+                }
+                let normal = pose.outwards(seen.normal);
+                let point = d - normal * seen.distance;
+                let relative = vector(v, n, i) - velocity(&pose, point);
+                let approach = -relative.dot(&normal);
+                if approach <= 0.0 {
+                    continue;
+                }
+                let begun = self
+                    .y0
+                    .get(3 * n..6 * n)
+                    .map_or(vector(v, n, i), |v0| vector(v0, n, i));
+                let press = ((begun - vector(v, n, i)).dot(&normal) / h).max(0.0);
+                // The time in which what rebounds by that height comes back.
+                let shortest = if press > 0.0 {
+                    (8.0 * height / press).sqrt()
+                } else {
+                    0.0
+                };
+                let along =
+                    approach + rebound_speed(obstacle.restitution, approach, press, shortest);
+                let slip = across(relative, normal);
+                let most = obstacle.friction * along;
+                let taken = if slip.norm() > most {
+                    slip * (most / slip.norm())
+                } else {
+                    slip
+                };
+                let change = normal * along - taken;
+                set(x, n, i, pose.place.position + point);
+                set(v, n, i, vector(v, n, i) + change);
+                let impulse = change / inverse_masses[i];
+                self.struck += impulse.norm();
+            }
+        }
     }
 
     /// Guards the surfaces of a step of h (s) from time t (s) to y1.
@@ -239,24 +304,31 @@ impl Met<'_> {
     ) {
         let n = self.inverse_masses.len();
         let (x, v) = y1.split_at_mut(3 * n);
-        let surface_at = |pose: &Pose, d: Vector3<f64>| {
-            surface(pose.inwards(d)).map(|nearest| Nearest {
-                point: pose.outwards(nearest.point),
-                normal: pose.outwards(nearest.normal),
+        let surface = |d: Vector3<f64>| {
+            surface(self.after.inwards(d)).map(|nearest| Nearest {
+                point: self.after.outwards(nearest.point),
+                normal: self.after.outwards(nearest.normal),
             })
         };
-        let surface = |d: Vector3<f64>| surface_at(&self.after, d);
         let c = self.after.place.position;
         for i in 0..n {
             let d = Vector3::new(x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
-            let Some(nearest) = surface(d) else {
-                continue;
-            };
-            if self.inverse_masses[i] == 0.0 {
+            let inside = surface(d);
+            let at = vector(x, n, i);
+            let may_pass = self.may_pass(i, at);
+            if inside.is_none() && !may_pass || self.inverse_masses[i] == 0.0 {
                 continue;
             }
-            let at = vector(x, n, i);
-            if let Some(rebound) = self.rebound(i, (at, vector(v, n, i)), surface_at) {
+            let touch = (may_pass || self.obstacle.restitution > 0.0)
+                .then(|| self.touch(i, [at, vector(v, n, i)]))
+                .flatten();
+            let passed = touch
+                .as_ref()
+                .and_then(|touch| touch.passed(d, inside.as_ref()));
+            let Some(nearest) = passed.or(inside) else {
+                continue;
+            };
+            if let Some(rebound) = touch.and_then(|touch| self.rebound(vector(v, n, i), &touch)) {
                 let end = at + rebound.change * rebound.left;
                 // What comes back within the step is put out at its end.
                 if surface(end - c).is_none() {
@@ -328,32 +400,71 @@ impl Met<'_> {
         }
     }
 
-    /// What restitution does to particle i, whose state at the end of the step is (x, v), if it
-    /// does anything. `surface` finds nearest points of the obstacle in a pose, as seen from its
-    /// place.
-    fn rebound(
-        &self,
-        i: usize,
-        (x, v): (Vector3<f64>, Vector3<f64>),
-        surface: impl Fn(&Pose, Vector3<f64>) -> Option<Nearest>,
-    ) -> Option<Rebound> {
+    /// Whether particle i, at x at the end of the step, may have passed through the obstacle: it
+    /// moved past it by more than half of the greatest depth.
+    fn may_pass(&self, i: usize, x: Vector3<f64>) -> bool {
+        let shape = &self.obstacle.shape;
+        let (Some(x0), false) = (self.x0, *shape == Shape::Floor) else {
+            return false;
+        };
+        let x0 = vector(x0, self.inverse_masses.len(), i);
+        let way = (x - self.carried(x0)).norm();
+        let near = shape.reach() + way;
+        way > 0.5 * shape.greatest_depth()
+            && (x - self.after.place.position).norm_squared() <= near * near
+    }
+
+    /// First touch of particle i in the step, at whose end its position and velocity are these, if
+    /// it begins outside.
+    fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2]) -> Option<Touch> {
         let ((t, h), n) = (self.span, self.inverse_masses.len());
-        let restitution = self.obstacle.restitution;
-        let (x0, v0) = (self.x0.filter(|_| restitution > 0.0)?, self.v0?);
         let course = Course {
-            x: [vector(x0, n, i), x],
-            v: [vector(v0, n, i), v],
+            x: [vector(self.x0?, n, i), x],
+            v: [vector(self.v0?, n, i), v],
             h,
         };
-        let touch = |share: f64| {
-            let pose = self.obstacle.at(t + share * h);
-            let d = course.position(share) - pose.place.position;
-            Some((surface(&pose, d)?, pose))
+        let approach = Approach::new(self.obstacle, &course, t);
+        // What touches at the beginning may sink a little, as long as it does not pass.
+        let begun = approach.separation(0.0).distance;
+        let touches = begun <= TOUCHING * course.reach();
+        let shape = &self.obstacle.shape;
+        if touches && !shape.is_convex() {
+            return None;
+        }
+        let depth = if touches {
+            0.25 * shape.greatest_depth() - begun.min(0.0)
+        } else {
+            0.0
         };
-        let share = first_inside(|share| touch(share).is_some())?;
-        let (Nearest { point, normal }, pose) = touch(share)?;
-        let relative = course.velocity(share) - velocity(&pose, point);
-        let [begun, ended] = [(course.v[0], &self.before), (v, &self.after)]
+        let share = approach.first(0.0, depth)?;
+        let (point, normal) = approach.touched(share);
+        let pose = self.obstacle.at(t + share * h);
+        Some(Touch {
+            share,
+            touches,
+            end: [point, normal].map(|vector| self.after.outwards(vector)),
+            there: [point, normal].map(|vector| pose.outwards(vector)),
+            pose,
+            begun: course.v[0],
+            speed: course.velocity(share),
+        })
+    }
+
+    /// Effect of restitution on a particle, whose velocity at the end of the step is v, if there is
+    /// any.
+    fn rebound(&self, v: Vector3<f64>, touch: &Touch) -> Option<Rebound> {
+        let ((_, h), restitution) = (self.span, self.obstacle.restitution);
+        if restitution == 0.0 || touch.touches {
+            return None;
+        }
+        let Touch {
+            share,
+            there: [point, normal],
+            ref pose,
+            ..
+        } = *touch;
+        let relative = touch.speed - velocity(pose, point);
+        let [begun, ended] = [(touch.begun, &self.before), (v, &self.after)]
             .map(|(v, pose)| v - velocity(pose, point));
         let press = (begun - ended).dot(&normal) / h;
         let approach = -relative.dot(&normal);
@@ -389,6 +500,38 @@ impl Met<'_> {
     fn kept(&self, slip: Vector3<f64>, normal: f64) -> f64 {
         let (slip, most) = (slip.norm(), self.friction * normal);
         if slip > most { 1.0 - most / slip } else { 0.0 }
+    }
+}
+
+/// First touch of a particle and the obstacle in a step.
+struct Touch {
+    /// Share of the step after which they touch.
+    share: f64,
+    /// Whether they touch from the beginning.
+    touches: bool,
+    /// Point of the obstacle, seen from its place, and its normal: at the end of the step, and when
+    /// they touch.
+    end: [Vector3<f64>; 2],
+    there: [Vector3<f64>; 2],
+    /// Place and orientation of the obstacle when they touch.
+    pose: Pose,
+    /// Velocity of the particle at the beginning of the step, and when they touch (m/s).
+    begun: Vector3<f64>,
+    speed: Vector3<f64>,
+}
+
+impl Touch {
+    /// Where a particle belongs that has passed through the surface at the touch: to the plane
+    /// there. At the end of the step it is at d, seen from the obstacle's place, for which `inside`
+    /// is the nearest point of the surface, if it is inside still.
+    fn passed(&self, d: Vector3<f64>, inside: Option<&Nearest>) -> Option<Nearest> {
+        let [point, normal] = self.end;
+        let depth = normal.dot(&(point - d));
+        let leaves_here = inside.is_some_and(|inside| inside.normal.dot(&normal) > 0.0);
+        (depth > 0.0 && !leaves_here).then(|| Nearest {
+            point: d + normal * depth,
+            normal,
+        })
     }
 }
 

@@ -119,6 +119,12 @@ impl Wind {
         }
     }
 
+    /// Quarter of the shortest period of its gusts at one place (s).
+    pub(crate) fn quarter_period(&self) -> f64 {
+        let rates = self.waves.iter().map(|wave| wave.rate.abs());
+        0.5 * std::f64::consts::PI / rates.fold(0.0, f64::max)
+    }
+
     /// The air, if the wind blows on triangles.
     #[must_use]
     pub fn air(&self) -> Option<Air> {

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use super::bvh::{Aabb, Bvh};
 use super::closest::{PairKind, closest};
 use super::nearest::Nearest;
+use super::separation::Separation;
 use crate::error::{Error, finite};
 
 /// Closed surface of triangles around a solid.
@@ -22,6 +23,8 @@ pub struct ClosedMesh {
     /// length.
     faces: Vec<Face>,
     tree: Bvh,
+    /// Greatest distance of a point from the origin (m).
+    reach: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -82,6 +85,7 @@ impl ClosedMesh {
             normals,
             faces,
             tree: tree(&points, &triangles),
+            reach: points.iter().map(Vector3::norm).fold(0.0, f64::max),
             points,
             triangles,
             edges,
@@ -115,16 +119,39 @@ impl ClosedMesh {
 
     /// Nearest point of the surface to a point d inside.
     pub(crate) fn nearest(&self, d: Vector3<f64>) -> Option<Nearest> {
+        let (offset, normal) = self.offset(d)?;
+        (normal.dot(&offset) < 0.0).then(|| Nearest {
+            point: d - offset,
+            normal: normal.normalize(),
+        })
+    }
+
+    /// Separation of a point d.
+    pub(crate) fn separation(&self, d: Vector3<f64>) -> Separation {
+        let (offset, normal) = self.offset(d).unwrap_or_default();
+        let (side, outwards) = (normal.dot(&offset), normal.try_normalize(0.0));
+        let sign = if side < 0.0 { -1.0 } else { 1.0 };
+        let away = offset.try_normalize(0.0).map(|away| away * sign);
+        Separation {
+            distance: sign * offset.norm(),
+            normal: away.or(outwards).unwrap_or_else(Vector3::y),
+        }
+    }
+
+    /// Radius (m) of a ball around the origin that contains all points.
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Vector to a point d from the nearest point of the surface, and the outward normal there, of
+    /// any length.
+    fn offset(&self, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let (k, nearest) = self.tree.nearest(&d, |k| {
             let [a, b, c] = self.triangles[k as usize].map(|i| self.points[i as usize]);
             let closest = closest(PairKind::VertexTriangle, &[d, a, b, c]);
             (closest.offset.norm_squared(), closest)
         })?;
-        let normal = self.normal(k as usize, &nearest.weights);
-        (normal.dot(&nearest.offset) < 0.0).then(|| Nearest {
-            point: d - nearest.offset,
-            normal: normal.normalize(),
-        })
+        Some((nearest.offset, self.normal(k as usize, &nearest.weights)))
     }
 
     /// Normal at the point of triangle k with these weights, of which the last three are those of

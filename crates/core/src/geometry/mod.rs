@@ -5,6 +5,7 @@ pub(crate) mod bvh;
 pub(crate) mod closed_mesh;
 pub(crate) mod closest;
 pub(crate) mod nearest;
+pub(crate) mod separation;
 pub(crate) mod shape;
 
 pub use closed_mesh::ClosedMesh;

@@ -143,7 +143,7 @@ impl Adaptive {
         self.goes_on = false;
     }
 
-    /// Takes y from t to the end of one step.
+    /// Takes y from t to the end of one step of at most `longest` (s).
     ///
     /// # Errors
     /// The state has another length than the system's; a force depends on the velocity, and the
@@ -153,6 +153,7 @@ impl Adaptive {
         &mut self,
         system: &dyn ParticleSystem,
         t: f64,
+        longest: f64,
         y: &mut [f64],
     ) -> Result<Taken, Error> {
         super::check_dim(self.trial.dim(), y)?;
@@ -175,9 +176,11 @@ impl Adaptive {
             work += Work::of(1);
         }
         let shortest = SHORTEST * norm.h.max(t.abs());
+        let wanted = norm.h;
+        norm.h = wanted.min(longest);
         loop {
             // The shortest step is tried too.
-            norm.h = norm.h.max(shortest);
+            norm.h = norm.h.max(shortest.min(longest));
             let h = norm.h;
             let (cost, error) = self.trial.attempt(system, t, h, &norm);
             work += cost;
@@ -187,18 +190,23 @@ impl Adaptive {
                 // Not longer at once after it had to be shorter.
                 let most = if work.rejections > 0 { 1.0 } else { CHANGE.1 };
                 self.next = h * change.clamp(CHANGE.0, most);
+                if h == longest {
+                    // Not the error has made it shorter.
+                    self.next = self.next.max(wanted);
+                }
                 self.last = Taken { t, h, work };
                 self.goes_on = true;
                 return Ok(self.last);
             }
             work.rejections += 1;
-            if h <= shortest || !error.is_finite() {
+            if h <= shortest.min(longest) || !error.is_finite() {
                 let f = &mut self.first[0];
                 self.trial.derivative(system, f);
                 let undefined = f.iter().position(|f| !f.is_finite());
                 let failure = match undefined {
                     Some(component) => Some(Error::NotFinite { time: t, component }),
-                    None => (h <= shortest).then_some(Error::StepTooSmall { time: t, step: h }),
+                    None => (h <= shortest.min(longest))
+                        .then_some(Error::StepTooSmall { time: t, step: h }),
                 };
                 if let Some(failure) = failure {
                     // A guess for whoever tries again.

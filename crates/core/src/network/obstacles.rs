@@ -2,7 +2,7 @@
 
 use super::Network;
 use crate::contact::{Obstacle, Shape};
-use crate::elements::Element;
+use crate::elements::{Element, Wind};
 use crate::error::Error;
 use crate::path::Path;
 
@@ -85,5 +85,30 @@ impl Network {
         let obstacles = self.obstacles.iter().map(|obstacle| obstacle.path);
         let moved = |path: Path| !matches!(path, Path::Still(_));
         pins.chain(obstacles).any(moved) || self.obstacles.iter().any(|o| o.turn.is_some())
+    }
+
+    /// First time after t (s) at which a path or a turn begins or ends; infinite if there is none.
+    pub(crate) fn next_known_time(&self, t: f64) -> f64 {
+        let pins = self.pins.iter().map(|pin| &pin.path);
+        let obstacles = self.obstacles.iter().map(|obstacle| &obstacle.path);
+        let turns = self.obstacles.iter().filter_map(|obstacle| obstacle.turn);
+        let of_paths = pins.chain(obstacles).flat_map(Path::known_times);
+        let all = of_paths.chain(turns.flat_map(|turn| turn.known_times()));
+        all.filter(|time| *time > t).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Longest step (s) from time t (s) to `end` (s) that shows the prescribed motion and the wind:
+    /// a quarter of the shortest period.
+    pub(crate) fn quarter_period(&self, t: f64, end: f64) -> f64 {
+        let times = [t, end];
+        let pins = self.pins.iter().map(|pin| &pin.path);
+        let obstacles = self.obstacles.iter().map(|obstacle| &obstacle.path);
+        let of_paths = pins.chain(obstacles).map(|path| path.quarter_period(times));
+        let turns = self.obstacles.iter().filter_map(|obstacle| obstacle.turn);
+        let of_turns = turns.filter(|turn| turn.is_on(times));
+        let of_turns = of_turns.map(|turn| 0.5 * std::f64::consts::PI / turn.rate.abs());
+        let of_wind = self.wind().map(Wind::quarter_period);
+        let all = of_paths.chain(of_turns).chain(of_wind);
+        all.fold(f64::INFINITY, f64::min)
     }
 }

@@ -4,6 +4,7 @@ mod balance;
 mod blow_up;
 mod checkpoint;
 mod drive;
+mod events;
 mod hands;
 mod phases;
 mod readings;
@@ -25,6 +26,7 @@ use crate::error::{BlowUp, Error};
 use crate::integrators::Method;
 use crate::scene::{Model, Scene};
 use balance::Watch;
+use events::Events;
 use phases::Phases;
 use stepper::Stepper;
 
@@ -35,6 +37,9 @@ pub struct Simulation {
     state: RunState,
     stepper: Stepper,
     phases: Phases,
+    events: Events,
+    /// Whether fixed steps end at events too, in parts.
+    locates: bool,
     blow_up: Option<BlowUp>,
     watch: Watch,
     /// The last state in shape, to go back to when a step fails.
@@ -76,6 +81,8 @@ impl Simulation {
             model,
             stepper,
             phases: Phases::new(dim),
+            events: Events::default(),
+            locates: false,
             blow_up: None,
             watch: Watch::default(),
             good: None,
@@ -115,6 +122,13 @@ impl Simulation {
         // Where surfaces cross, they begin as the scene has it.
         let _ = self.set_touching(touching);
         self.begin_watch();
+    }
+
+    /// Lets fixed steps end at events, as adaptive ones do: where a prescribed motion begins or ends,
+    /// a particle touches an obstacle, or a spring breaks. A step goes on from there by the rest of
+    /// its length. So the order of the method is kept, at any price: this is for references.
+    pub fn locate_events(&mut self) {
+        self.locates = true;
     }
 
     /// Goes on with another method, in fixed steps or to a tolerance.

@@ -45,11 +45,27 @@ impl Phases {
         if let Some(limit) = limit {
             self.excess = limit.excess(network.halves(y0).0);
         }
-        if limit.is_some() || network.contact_layer().is_some() {
+        let tears = retry && network.tear_limit().is_some();
+        if limit.is_some() || tears || network.contact_layer().is_some() {
             self.contact.remember(y0);
         } else {
             self.contact.begin(network.obstacles(), y0, retry);
         }
+    }
+
+    /// Lets the particles that touch an obstacle at the end of a step, which is at time t (s) after
+    /// h (s), strike it. Of the heights (m), the first counts as none, and what would rebound by
+    /// less than the second does not.
+    pub fn strike(
+        &mut self,
+        network: &Network,
+        times: (f64, f64),
+        heights: [f64; 2],
+        y: &mut [f64],
+    ) {
+        let (obstacles, inverse_masses) = (network.obstacles(), network.inverse_masses());
+        self.contact
+            .strike(obstacles, inverse_masses, times, heights, y);
     }
 
     /// Settles y1, the end of a step of h (s) from t (s).

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::within::Within;
 use crate::control::Control;
 use crate::error::Error;
-use crate::integrators::{Adaptive, AdaptiveState, Integrator, Method, Taken};
+use crate::integrators::{Adaptive, AdaptiveState, Integrator, Method, Taken, Work};
 use crate::scene::Scene;
 use crate::system::ParticleSystem;
 
@@ -74,7 +74,8 @@ impl Stepper {
         matches!(self.kind, Kind::Adaptive(_))
     }
 
-    /// Takes y from t (s) to the end of a step, of the fixed length or of the method's choice.
+    /// Takes y from t (s) to the end of a step: of the fixed length, or of the method's choice and at
+    /// most `longest` (s).
     ///
     /// # Errors
     /// The step failed.
@@ -83,14 +84,38 @@ impl Stepper {
         system: &dyn ParticleSystem,
         control: Control,
         t: f64,
+        longest: f64,
         y: &mut [f64],
     ) -> Result<Taken, Error> {
         match &mut self.kind {
-            Kind::Adaptive(adaptive) => adaptive.advance(system, t, y),
+            Kind::Adaptive(adaptive) => adaptive.advance(system, t, longest, y),
             Kind::Fixed(integrator) => {
                 let h = control.value();
                 let work = integrator.step(system, t, h, y)?;
                 Ok(Taken { t, h, work })
+            }
+        }
+    }
+
+    /// Writes the state at `since` (s) after the beginning of the last step, at y0 at time t (s), to
+    /// `out`: off an adaptive method's polynomial, or by a shorter fixed step, and `out` is not a
+    /// number where that fails. Returns the work.
+    pub fn state_at(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        since: f64,
+        y0: &[f64],
+        out: &mut [f64],
+    ) -> Work {
+        match &mut self.kind {
+            Kind::Adaptive(adaptive) => adaptive.interpolate(system, t + since, out),
+            Kind::Fixed(integrator) => {
+                out.copy_from_slice(y0);
+                integrator.step(system, t, since, out).unwrap_or_else(|_| {
+                    out.fill(f64::NAN);
+                    Work::default()
+                })
             }
         }
     }

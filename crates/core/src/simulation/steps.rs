@@ -13,6 +13,7 @@ use super::Simulation;
 use super::balance::energy_of;
 use super::blow_up::blow_up_by;
 use super::drive::End;
+use super::events::{Event, Kind as event, Step as Span};
 use super::phases::Settled;
 use super::stepper::Kind;
 use crate::contact::Impulses;
@@ -37,6 +38,9 @@ const MIN_RETRY_SHARE: f64 = 0.1;
 
 /// Price of a sweep over the springs that a limit of strain applies to, in evaluations.
 const SWEEP: f64 = 2.0;
+
+/// Distance from an obstacle, over the radius of the scene, that counts as none.
+const NONE: f64 = 1e-9;
 
 /// Length (s) below which a step is not shortened for contact or strain.
 const MIN_RETRY_STEP: f64 = 1e-6;
@@ -119,61 +123,195 @@ impl Simulation {
         is_within
     }
 
-    /// Takes a step from the end of the last one.
+    /// Takes a step from the end of the last one: in parts, where a fixed step that locates events
+    /// meets some.
     fn step(&mut self) -> Result<(), Error> {
-        self.list_strained();
-        let begin = self.state.end();
-        self.watch.begin_step(&self.model, begin, &self.state.y);
-        let (cause, end) = match self.integrate_and_settle(begin)? {
-            Err(cause) => (
-                Some(cause),
-                begin + self.state.control.step().unwrap_or(0.0),
-            ),
-            Ok((h, settled)) => (self.watch_step(begin + h, &settled), begin + h),
-        };
-        self.judge(cause, end)?;
-        if self.state.control.step().is_some() {
-            self.state.taken += 1;
-        } else {
-            self.state.set_time(end);
+        let mut begin = self.state.end();
+        let whole = self.state.control.step();
+        let target = whole.map(|h| self.state.since + (self.state.taken + 1) as f64 * h);
+        loop {
+            self.list_strained();
+            self.watch.begin_step(&self.model, begin, &self.state.y);
+            let (cause, part) = match self.integrate_and_settle(begin, target)? {
+                Err(cause) => (Some(cause), Part::of(begin, whole.unwrap_or(0.0))),
+                Ok((part, settled)) => (self.watch_step(part.end, &settled), part),
+            };
+            let is_last = cause.is_some() || !self.locates_in_parts() || target == Some(part.end);
+            if is_last {
+                self.judge(cause, part.end)?;
+            }
+            if whole.is_none() {
+                self.state.set_time(part.end);
+            } else if is_last {
+                self.state.taken += 1;
+            }
+            self.tear(part.end);
+            if is_last {
+                return Ok(());
+            }
+            begin = part.end;
         }
-        self.tear();
-        Ok(())
+    }
+
+    /// Whether fixed steps are taken in parts, each up to an event.
+    fn locates_in_parts(&self) -> bool {
+        self.locates && !self.stepper.is_adaptive()
     }
 
     /// Takes a step from time t (s), and settles its end; again and shorter, if an adaptive method
-    /// has to. Returns its length (s), or the cause of a blow-up.
-    fn integrate_and_settle(&mut self, t: f64) -> Result<Result<(f64, Settled), Cause>, Error> {
+    /// has to. One that locates events ends at the first of them; a fixed one ends at `target` at
+    /// the latest. Returns the step, or the cause of a blow-up.
+    fn integrate_and_settle(
+        &mut self,
+        t: f64,
+        target: Option<f64>,
+    ) -> Result<Result<(Part, Settled), Cause>, Error> {
         let n = self.particles();
         let max_depth = MAX_PENETRATION * self.radius;
+        let heights = [NONE * self.radius, self.shallow()];
+        let locates = self.stepper.is_adaptive() || self.locates;
+        let reach = if locates {
+            self.reach(t, target)
+        } else {
+            Reach::default()
+        };
         loop {
             let (system, y) = (self.model.system(), &mut self.state.y);
-            self.phases
-                .begin(&self.model, y, self.stepper.is_adaptive());
-            let taken = self.stepper.integrate(system, self.state.control, t, y);
+            self.phases.begin(&self.model, y, locates);
+            let control = match self.state.control {
+                // What rounding leaves of a step is no part of its own.
+                Control::Step(h) if reach.longest <= h * (1.0 + Self::SLIVER) => {
+                    Control::Step(reach.longest)
+                }
+                control => control,
+            };
+            let taken = self.stepper.integrate(system, control, t, reach.longest, y);
             let taken = match taken {
                 Ok(taken) => taken,
                 Err(error) => return blow_up_by(error, n).map(Err),
             };
             self.state.work += taken.work;
-            let settled = match self.phases.settle(&self.model, (t, taken.h), y) {
+            let mut part = reach.part(t, taken.h);
+            let mut event = None;
+            if locates {
+                event = self.first_event(t, taken.h);
+            }
+            let y = &mut self.state.y;
+            match event {
+                Some(Event {
+                    kind: event::Sunk,
+                    share,
+                }) if taken.h > MIN_RETRY_STEP => {
+                    self.take_again(taken.h, MIN_RETRY_SHARE.max(0.9 * share));
+                    continue;
+                }
+                Some(Event { kind, share }) if !matches!(kind, event::Sunk) => {
+                    part = Part::of(t, share * taken.h);
+                    y.copy_from_slice(&self.events.state);
+                    if let (event::Touch { .. }, Some(network)) = (kind, self.model.network()) {
+                        self.phases.strike(network, (part.end, part.h), heights, y);
+                    }
+                }
+                _ => {}
+            }
+            let settled = match self.phases.settle(&self.model, (t, part.h), y) {
                 Ok(settled) => settled,
                 Err(cause) => return Ok(Err(cause)),
             };
             self.state.work.algebra += SWEEP * settled.strained.sweeps as f64;
             if let Kind::Adaptive(adaptive) = &mut self.stepper.kind {
-                if let Some(share) = share_of_retry(&settled, taken.h, max_depth) {
-                    y.copy_from_slice(self.phases.contact.y0());
-                    adaptive.restart();
-                    adaptive.try_first(taken.h * share);
-                    self.state.work.rejections += 1;
+                if let Some(share) = share_of_retry(&settled, part.h, max_depth) {
+                    self.take_again(part.h, share);
                     continue;
                 }
-                limit_next(adaptive, &settled, taken.h, max_depth);
+                limit_next(adaptive, &settled, part.h, max_depth);
+                if part.is_cut {
+                    adaptive.restart();
+                }
+            }
+            if part.is_cut
+                && let Some(network) = self.model.network()
+            {
+                network.hold(part.end, &mut self.state.y);
             }
             self.state.guarded += settled.met.guarded;
-            return Ok(Ok((taken.h, settled)));
+            return Ok(Ok((part, settled)));
         }
+    }
+
+    /// Goes back to the beginning of a step of h (s), of which that share is taken next.
+    fn take_again(&mut self, h: f64, share: f64) {
+        self.state.y.copy_from_slice(self.phases.contact.y0());
+        if let Kind::Adaptive(adaptive) = &mut self.stepper.kind {
+            adaptive.restart();
+            adaptive.try_first(h * share);
+        }
+        self.state.work.rejections += 1;
+    }
+
+    /// Limits of a step from time t (s).
+    fn reach(&self, t: f64, target: Option<f64>) -> Reach {
+        let mut reach = Reach::default();
+        if let Some(network) = self.model.network() {
+            let until = network.next_known_time(t);
+            if until.is_finite() {
+                reach = Reach::up_to(t, until);
+            }
+            if self.stepper.is_adaptive() {
+                let longest = network.quarter_period(t, t + reach.longest.min(f64::MAX));
+                reach.longest = reach.longest.min(longest);
+            }
+        }
+        if self.stepper.is_adaptive() {
+            let longest = self.scene.max_step.unwrap_or(f64::INFINITY);
+            reach.longest = reach.longest.min(longest);
+        }
+        if let Some(target) = target.filter(|target| *target <= reach.until.unwrap_or(f64::MAX)) {
+            reach = Reach {
+                longest: target - t,
+                until: Some(target),
+            };
+        }
+        reach
+    }
+
+    /// Depth (m) into an obstacle that an adaptive method's tolerance allows a particle that comes
+    /// to it within a step.
+    fn shallow(&self) -> f64 {
+        let relative = self.state.control.tolerance().unwrap_or(0.0);
+        let tolerance = self.scene.tolerance(relative);
+        let absolute = tolerance.map_or(0.0, |tolerance| tolerance.absolute);
+        absolute.min(MAX_PENETRATION * self.radius)
+    }
+
+    /// Finds the first event of a step of h (s) from time t (s) to the state as it is now.
+    fn first_event(&mut self, t: f64, h: f64) -> Option<Event> {
+        let network = self.model.network()?;
+        if network.obstacles().is_empty() && network.tear_limit().is_none() {
+            return None;
+        }
+        let shallow = self.shallow();
+        let step = Span {
+            network,
+            t,
+            h,
+            ends: [self.phases.contact.y0(), &self.state.y],
+            none: NONE * self.radius,
+            shallow,
+            deepest: MAX_PENETRATION * self.radius,
+        };
+        if step.ends.iter().any(|y| y.len() != self.state.y.len())
+            || self.state.y.iter().any(|y| !y.is_finite())
+        {
+            return None;
+        }
+        let (stepper, work) = (&mut self.stepper, &mut self.state.work);
+        let y0 = self.phases.contact.y0();
+        let system = self.model.system();
+        self.events.first(&step, &mut |share, out| {
+            *work += stepper.state_at(system, t, share * h, y0, out);
+            system.hold(t + share * h, out);
+        })
     }
 
     /// Notes the end of a step at time t (s). Returns why the run is lost, if it is.
@@ -232,14 +370,16 @@ impl Simulation {
         }
     }
 
-    /// Breaks what is stretched too far at the end of a step.
-    fn tear(&mut self) {
-        let (t, y) = (self.state.time(), &self.state.y);
+    /// Breaks what is stretched too far at the end of a step, at time t (s), or was located to be
+    /// there. That changes the energy.
+    fn tear(&mut self, t: f64) {
+        let locates = self.stepper.is_adaptive() || self.locates;
+        let (share, y) = (if locates { NONE } else { 0.0 }, &self.state.y);
         if let Model::Network(network) = &mut self.model
-            && network.is_overstretched(network.halves(y).0)
+            && network.is_overstretched(network.halves(y).0, share)
         {
             let before = energy_of(network, t, y).total();
-            network.tear(network.halves(y).0);
+            network.tear(network.halves(y).0, share);
             let after = energy_of(network, t, y).total();
             self.state.balance.allow(after - before);
             self.watch.forget_drive();
@@ -272,10 +412,70 @@ impl Simulation {
         let system = self.model.system();
         self.phases.begin(&self.model, &y, false);
         let step = Control::Step(time - t);
-        let taken = self.stepper.integrate(system, step, t, &mut y);
+        let taken = self.stepper.integrate(system, step, t, time - t, &mut y);
         let settled = self.phases.settle(&self.model, (t, time - t), &mut y);
         if taken.is_ok() && settled.is_ok() && y.iter().all(|y| y.is_finite()) {
             self.state.y = y;
+        }
+    }
+}
+
+/// Part of a run that a step takes it on by: a length and the time at its end (s).
+#[derive(Clone, Copy)]
+struct Part {
+    h: f64,
+    end: f64,
+    /// Whether it ends at an event, after which the motion is no longer smooth.
+    is_cut: bool,
+}
+
+impl Part {
+    fn of(t: f64, h: f64) -> Self {
+        Self {
+            h,
+            end: t + h,
+            is_cut: true,
+        }
+    }
+}
+
+/// Limits of a step: its longest length, and the time (s) at which one of that length ends.
+#[derive(Clone, Copy)]
+struct Reach {
+    longest: f64,
+    until: Option<f64>,
+}
+
+impl Default for Reach {
+    fn default() -> Self {
+        Self {
+            longest: f64::INFINITY,
+            until: None,
+        }
+    }
+}
+
+impl Reach {
+    /// Limits of a step from t up to a time `until` (s) at which a motion changes: no evaluation is
+    /// at or after that.
+    fn up_to(t: f64, until: f64) -> Self {
+        let mut longest = until - t;
+        while t + longest >= until && longest > 0.0 {
+            longest = longest.next_down();
+        }
+        Self {
+            longest,
+            until: Some(until),
+        }
+    }
+
+    /// The step from t that takes h (s).
+    fn part(&self, t: f64, h: f64) -> Part {
+        let until = self.until.filter(|_| h == self.longest);
+        Part {
+            h,
+            end: until.unwrap_or(t + h),
+            is_cut: until.is_some(),
         }
     }
 }

@@ -16,7 +16,10 @@ fn circle(name: &str, relative: f64) -> (f64, usize) {
         .unwrap();
     let (mut t, mut y, mut worst, mut steps) = (0.0, circle.state.clone(), 0.0f64, 0);
     while t < 10.0 * TAU {
-        t += adaptive.advance(system, t, &mut y).unwrap().h;
+        t += adaptive
+            .advance(system, t, f64::INFINITY, &mut y)
+            .unwrap()
+            .h;
         steps += 1;
         worst = worst.max((y[0] - t.cos()).hypot(y[1] - t.sin()));
     }
@@ -54,7 +57,9 @@ fn dense_output_has_its_order() {
                 .unwrap();
             adaptive.try_first(h);
             let mut y = circle.state.clone();
-            let Taken { h: taken, .. } = adaptive.advance(system, 0.0, &mut y).unwrap();
+            let Taken { h: taken, .. } = adaptive
+                .advance(system, 0.0, f64::INFINITY, &mut y)
+                .unwrap();
             assert_eq!(taken, h);
             let mut worst: f64 = 0.0;
             for k in 0..=20 {
@@ -230,7 +235,7 @@ fn where_no_step_will_do_it_says_so() {
         let mut adaptive = m.adaptive(&Pole, tolerance).unwrap();
         let (mut t, mut y) = (0.0, vec![1.0; 3]);
         let error = loop {
-            match adaptive.advance(&Pole, t, &mut y) {
+            match adaptive.advance(&Pole, t, f64::INFINITY, &mut y) {
                 Ok(taken) => t += taken.h,
                 Err(error) => break error,
             }

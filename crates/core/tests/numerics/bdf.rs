@@ -66,7 +66,7 @@ fn circle(relative: f64) -> (f64, u32) {
     let mut bdf = method("bdf").adaptive(system, tolerance).unwrap();
     let (mut t, mut y, mut worst, mut steps) = (0.0, circle.state.clone(), 0.0f64, 0);
     while t < 25.0 {
-        t += bdf.advance(system, t, &mut y).unwrap().h;
+        t += bdf.advance(system, t, f64::INFINITY, &mut y).unwrap().h;
         steps += 1;
         worst = worst.max((y[0] - t.cos()).hypot(y[1] - t.sin()));
         // Within the step the polynomial is as good.
@@ -102,7 +102,7 @@ fn stiff_motion_dies_out_in_a_few_steps() {
     (y[1], y[3]) = (1e-13, 1e-13);
     let (mut t, mut steps) = (0.0, 0);
     while t < 1.0 && steps < 1000 {
-        t += bdf.advance(&network, t, &mut y).unwrap().h;
+        t += bdf.advance(&network, t, f64::INFINITY, &mut y).unwrap().h;
         steps += 1;
     }
     println!("{steps} steps to {t} s, {:e}", size(&y));
@@ -117,7 +117,7 @@ fn steps_grow_where_each_has_no_past() {
     let mut bdf = method("bdf").adaptive(system, tolerance).unwrap();
     let (mut t, mut y, mut steps) = (0.0, circle.state.clone(), 0);
     while t < 1.0 && steps < 1000 {
-        t += bdf.advance(system, t, &mut y).unwrap().h;
+        t += bdf.advance(system, t, f64::INFINITY, &mut y).unwrap().h;
         steps += 1;
         // As contact does.
         y[0] += 1e-9;

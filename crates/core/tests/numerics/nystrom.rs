@@ -49,7 +49,10 @@ fn strong_drag_is_followed() {
             adaptive.restart();
             adaptive.try_first(first);
             while t < 0.02 {
-                t += adaptive.advance(&system, t, &mut y).unwrap().h;
+                t += adaptive
+                    .advance(&system, t, f64::INFINITY, &mut y)
+                    .unwrap()
+                    .h;
             }
             let root = omega * (zeta * zeta - 1.0f64).sqrt();
             let (slow, fast) = (root - zeta * omega, -root - zeta * omega);

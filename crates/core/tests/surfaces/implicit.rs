@@ -15,7 +15,7 @@ fn pile(stiffness: f64, damping: f64) -> String {
         [[cloth]]
         grid = [10, 10]
         width = 1
-        density = 0.2
+        density = 0.2469
         stiffness = [{stiffness}, {}, {}]
         damping_ratio = {damping}
         at = [0, 1.05, 0]

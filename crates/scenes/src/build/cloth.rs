@@ -27,6 +27,19 @@ impl Cloth {
         Ok(if by_width { size / cells as f64 } else { size })
     }
 
+    /// Mass of each particle (kg): equal shares of the density times the area.
+    pub(super) fn checked_mass(&self) -> Result<f64, Fault> {
+        let (grid, spacing) = (self.checked_grid()?, self.checked_spacing()?);
+        let (by_area, mass) = one_of(("density", self.density), ("mass", self.mass))?;
+        at(
+            if by_area { "density" } else { "mass" },
+            positive("it", mass),
+        )?;
+        let cells = (grid.rows() - 1) * (grid.cols() - 1);
+        let share = spacing * spacing * (cells as f64 / grid.particles() as f64);
+        Ok(if by_area { mass * share } else { mass })
+    }
+
     /// Unit vector along that key's direction.
     fn axis(&self, key: &str) -> Result<Vector3<f64>, Fault> {
         let (given, usual) = match key {
@@ -57,16 +70,7 @@ impl Body for Cloth {
     fn add_to(&self, assembly: &mut Assembly) -> Result<(), Fault> {
         let grid = self.checked_grid()?;
         let (rows, cols, spacing) = (grid.rows(), grid.cols(), self.checked_spacing()?);
-        let (by_area, mass) = one_of(("density", self.density), ("mass", self.mass))?;
-        at(
-            if by_area { "density" } else { "mass" },
-            positive("it", mass),
-        )?;
-        let mass = if by_area {
-            mass * spacing * spacing
-        } else {
-            mass
-        };
+        let mass = self.checked_mass()?;
         let [structural, shear, bend] = self.stiffness;
         let time = damping_time(self.damping, self.damping_ratio, mass, structural)?;
         let sheet = at("stiffness", Sheet::new(grid, spacing, self.stiffness, time))?;

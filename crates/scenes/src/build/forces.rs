@@ -18,7 +18,12 @@ pub(super) fn set(description: &Description, network: &mut Network) -> Result<()
     let drag = match (description.drag, description.drag_per_mass) {
         (Some(_), Some(_)) => return Err(Fault::not_both("drag", "drag_per_mass")),
         (Some(drag), None) => Some(("drag", drag)),
-        (None, Some(rate)) => Some(("drag_per_mass", rate * mean(network.masses()))),
+        (None, Some(rate)) => {
+            // Points that rigid bodies carry have neither mass nor drag.
+            let masses = network.masses().iter().copied().filter(|m| *m > 0.0);
+            let masses: Vec<_> = masses.collect();
+            Some(("drag_per_mass", rate * mean(&masses)))
+        }
         (None, None) => None,
     };
     if let Some((key, drag)) = drag {

@@ -62,12 +62,13 @@ impl Description {
             ));
         };
         let in_cloth = |fault: Fault| fault.within("cloth");
-        let own_spacing = own.checked_spacing().map_err(in_cloth)?;
+        let own_mass = own.checked_mass().map_err(in_cloth)?;
         let mut other = self.clone();
         other.cloth[0].grid = [grid.rows(), grid.cols()];
-        let spacing = other.cloth[0].checked_spacing().map_err(in_cloth)?;
+        let mass = other.cloth[0].checked_mass().map_err(in_cloth)?;
         let mut setup = other.assemble(Some(grid), mesh)?;
-        setup.defaults.step_scale = (spacing / own_spacing).min(1.0);
+        // Its springs are as stiff, so its fastest motion goes with the root of 1 / m.
+        setup.defaults.step_scale = (mass / own_mass).sqrt().min(1.0);
         // A larger cloth is seen from farther away, in proportion.
         if let Ok(own) = self.assemble(None, mesh) {
             let (was, small) = own.scene.extent();

@@ -25,7 +25,7 @@ pub struct Cloth {
     pub width: Option<f64>,
     /// Distance between neighbouring particles (m). An alternative is `width`.
     pub spacing: Option<f64>,
-    /// Mass per area (kg/m2): each particle has the mass of one cell. An alternative is `mass`.
+    /// Mass per area (kg/m2), in equal shares for all particles. An alternative is `mass`.
     pub density: Option<f64>,
     /// Mass of each particle (kg). An alternative is `density`.
     pub mass: Option<f64>,

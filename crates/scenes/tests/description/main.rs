@@ -5,6 +5,7 @@ mod building;
 mod faults;
 mod fluids;
 mod json;
+mod masses;
 mod solids;
 mod words;
 

@@ -1,0 +1,107 @@
+//! Signed distances of points from shapes.
+
+use nalgebra::Vector3;
+
+use super::shape::Shape;
+
+/// Separation of a point from a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Separation {
+    /// Distance from the surface (m), below 0 inside.
+    pub distance: f64,
+    /// Direction in which the distance grows fastest: a unit vector.
+    pub normal: Vector3<f64>,
+}
+
+impl Shape {
+    /// Separation of a point d, seen from the shape's place.
+    pub(crate) fn separation(&self, d: Vector3<f64>) -> Separation {
+        match self {
+            Self::Sphere { radius } => around(d, *radius),
+            Self::Box { half_extents, axes } => of_box(d, *half_extents, *axes),
+            Self::Capsule {
+                ends: [a, b],
+                radius,
+            } => {
+                let axis = b - a;
+                let squared = axis.norm_squared();
+                let share = if squared > 0.0 {
+                    ((d - a).dot(&axis) / squared).clamp(0.0, 1.0)
+                } else {
+                    0.0
+                };
+                around(d - (a + axis * share), *radius)
+            }
+            Self::Mesh(mesh) => mesh.separation(d),
+            Self::Floor => Separation {
+                distance: d.y,
+                normal: Vector3::y(),
+            },
+        }
+    }
+
+    /// Whether the shape is convex: the plane across the normal of a separation is then nowhere
+    /// farther from a point than the shape is.
+    pub(crate) fn is_convex(&self) -> bool {
+        !matches!(self, Self::Mesh(_))
+    }
+
+    /// Depth (m) of the deepest point inside, which is half of the least width; 0 for a mesh, of
+    /// which it is not known.
+    pub(crate) fn greatest_depth(&self) -> f64 {
+        match self {
+            Self::Sphere { radius } | Self::Capsule { radius, .. } => *radius,
+            Self::Box { half_extents, .. } => half_extents.min(),
+            Self::Mesh(_) => 0.0,
+            Self::Floor => f64::INFINITY,
+        }
+    }
+
+    /// Radius (m) of a ball around the place that contains the shape.
+    pub(crate) fn reach(&self) -> f64 {
+        match self {
+            Self::Sphere { radius } => *radius,
+            Self::Box { half_extents, .. } => half_extents.norm(),
+            Self::Capsule {
+                ends: [a, b],
+                radius,
+            } => a.norm().max(b.norm()) + radius,
+            Self::Mesh(mesh) => mesh.reach(),
+            Self::Floor => f64::INFINITY,
+        }
+    }
+}
+
+/// Separation of d from a ball of that radius (m) around the origin.
+fn around(d: Vector3<f64>, radius: f64) -> Separation {
+    let distance = d.norm();
+    Separation {
+        distance: distance - radius,
+        normal: d.try_normalize(0.0).unwrap_or_else(Vector3::y),
+    }
+}
+
+/// Separation of d from a box around the origin.
+fn of_box(d: Vector3<f64>, half_extents: Vector3<f64>, axes: [Vector3<f64>; 3]) -> Separation {
+    let local = axes.map(|axis| axis.dot(&d));
+    let beyond: [f64; 3] = std::array::from_fn(|k| local[k].abs() - half_extents[k]);
+    let sign = |k: usize| if local[k] < 0.0 { -1.0 } else { 1.0 };
+    let outside = (0..3).filter(|k| beyond[*k] > 0.0);
+    let offset = outside.fold(Vector3::zeros(), |sum, k| {
+        sum + axes[k] * (sign(k) * beyond[k])
+    });
+    if let Some(normal) = offset.try_normalize(0.0) {
+        return Separation {
+            distance: offset.norm(),
+            normal,
+        };
+    }
+    let k = (1..3).fold(
+        0,
+        |k, other| if beyond[other] > beyond[k] { other } else { k },
+    );
+    Separation {
+        distance: beyond[k],
+        normal: axes[k] * sign(k),
+    }
+}

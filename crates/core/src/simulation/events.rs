@@ -1,0 +1,348 @@
+//! Events within a step: a particle touches an obstacle, or a spring is stretched so far that it
+//! breaks.
+//!
+//! They are found on the step's own polynomial. It is sampled at the ends of some pieces, and
+//! between these it is a cubic. On each piece, no first contact is missed, see
+//! [`Approach`](crate::contact::Approach), nor a spring that is too long for a moment. Newton's
+//! method then finds the time on the polynomial itself.
+
+use nalgebra::Vector3;
+
+use crate::contact::{Approach, Course};
+use crate::network::Network;
+use crate::system::Mechanics;
+
+/// Pieces in which a step is searched.
+const PIECES: usize = 8;
+
+/// Steps of Newton's method from a piece's cubic to the polynomial.
+const NEWTON_STEPS: usize = 8;
+
+/// Most times that a search of a piece goes on after what was no event.
+const MOST_GRAZES: usize = 8;
+
+/// Share of a piece after which a search goes on.
+const AFTER: f64 = 1e-5;
+
+/// Share of a piece below which an interval of a spring's length is not halved.
+const FINEST: f64 = 1e-4;
+
+/// Kind of an event.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kind {
+    /// A particle touches an obstacle: their numbers.
+    Touch { particle: usize, obstacle: usize },
+    /// A particle that rests on an obstacle sank into it by more than is allowed.
+    Sunk,
+    /// A spring reaches the length (m) at which it breaks: its ends.
+    Tear { ends: [usize; 2], longest: f64 },
+}
+
+/// First event within a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Event {
+    /// Share of the step at which it happens.
+    pub share: f64,
+    pub kind: Kind,
+}
+
+/// Step whose events are sought, between two times and states.
+pub(super) struct Step<'a> {
+    pub network: &'a Network,
+    pub t: f64,
+    pub h: f64,
+    pub ends: [&'a [f64]; 2],
+    /// Distance (m) that counts as none.
+    pub none: f64,
+    /// Depth (m) into an obstacle that needs no event.
+    pub shallow: f64,
+    /// Depth (m) to which what rests may sink.
+    pub deepest: f64,
+}
+
+/// State at a share of the step, written to the slice.
+type StateAt<'a> = &'a mut dyn FnMut(f64, &mut [f64]);
+
+/// Particle that comes near an obstacle.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    particle: usize,
+    obstacle: usize,
+    /// Whether it touches since the beginning of the step.
+    touches: bool,
+}
+
+/// Search for events, with its scratch.
+#[derive(Default)]
+pub(super) struct Events {
+    pairs: Vec<Pair>,
+    springs: Vec<([usize; 2], f64)>,
+    pieces: [Vec<f64>; 2],
+    /// State at the last event that was found.
+    pub state: Vec<f64>,
+}
+
+impl Events {
+    /// Finds the first event of a step, and the state there.
+    pub fn first(&mut self, step: &Step, state_at: StateAt) -> Option<Event> {
+        self.list_pairs(step);
+        self.list_springs(step);
+        if self.pairs.is_empty() && self.springs.is_empty() {
+            return None;
+        }
+        self.state.resize(step.ends[0].len(), 0.0);
+        self.pieces[0].clear();
+        self.pieces[0].extend_from_slice(step.ends[0]);
+        for k in 1..=PIECES {
+            self.pieces[1].resize(step.ends[1].len(), 0.0);
+            if k == PIECES {
+                self.pieces[1].copy_from_slice(step.ends[1]);
+            } else {
+                state_at(k as f64 / PIECES as f64, &mut self.pieces[1]);
+            }
+            if let Some(event) = self.first_in(step, k - 1, state_at) {
+                return Some(event);
+            }
+            self.pieces.swap(0, 1);
+        }
+        None
+    }
+
+    /// Finds the first event of a piece.
+    fn first_in(&mut self, step: &Step, piece: usize, state_at: StateAt) -> Option<Event> {
+        let Self {
+            pairs,
+            springs,
+            pieces,
+            state,
+        } = self;
+        let n = step.network.particles();
+        let begin = piece as f64 / PIECES as f64;
+        let (t, h) = (step.t + begin * step.h, step.h / PIECES as f64);
+        let mut first: Option<Event> = None;
+        for pair in pairs.iter_mut() {
+            let course = course(pieces, pair.particle, h, n);
+            let obstacle = &step.network.obstacles()[pair.obstacle];
+            let approach = Approach::new(obstacle, &course, t);
+            if pair.touches {
+                let deepest = step.deepest.min(0.25 * obstacle.shape.greatest_depth());
+                let sunk = approach.first(0.0, deepest).filter(|_| deepest > 0.0);
+                if let Some(share) = sunk {
+                    let share = begin + share / PIECES as f64;
+                    keep_first(&mut first, share, Kind::Sunk);
+                } else {
+                    pair.touches = approach.separation(1.0).distance <= step.none;
+                }
+                continue;
+            }
+            let mut from = 0.0;
+            for _ in 0..MOST_GRAZES {
+                let Some(share) = approach.first(from, 0.0) else {
+                    break;
+                };
+                let kind = Kind::Touch {
+                    particle: pair.particle,
+                    obstacle: pair.obstacle,
+                };
+                let guess = begin + share / PIECES as f64;
+                if first.is_some_and(|event| event.share <= guess) {
+                    break;
+                }
+                if step.ends_shallow(pair, &approach.separation(share).normal) {
+                    break;
+                }
+                match step.refine(guess, kind, state, state_at) {
+                    Some(share) => {
+                        keep_first(&mut first, share, kind);
+                        break;
+                    }
+                    None => from = share + AFTER,
+                }
+                if from >= 1.0 {
+                    break;
+                }
+            }
+        }
+        for &(ends, longest) in springs.iter() {
+            let [a, b] = ends.map(|i| course(pieces, i, h, n));
+            let apart = Course {
+                x: [b.x[0] - a.x[0], b.x[1] - a.x[1]],
+                v: [b.v[0] - a.v[0], b.v[1] - a.v[1]],
+                h,
+            };
+            let Some(share) = first_longer(&apart, longest) else {
+                continue;
+            };
+            let guess = begin + share / PIECES as f64;
+            let kind = Kind::Tear { ends, longest };
+            if first.is_none_or(|event| guess < event.share) {
+                let share = step.refine(guess, kind, state, state_at).unwrap_or(guess);
+                keep_first(&mut first, share, kind);
+            }
+        }
+        let event = first?;
+        state_at(event.share, state);
+        Some(event)
+    }
+
+    /// Lists the particles that come near an obstacle.
+    fn list_pairs(&mut self, step: &Step) {
+        self.pairs.clear();
+        let network = step.network;
+        if network.contact_layer().is_some() {
+            return;
+        }
+        let (n, inverse_masses) = (network.particles(), network.inverse_masses());
+        let times = [step.t, step.t + step.h];
+        for (obstacle, body) in network.obstacles().iter().enumerate() {
+            let [speed, _] = body.path.bounds(times);
+            let place = body.path.at(step.t + 0.5 * step.h).position;
+            let reach = body.shape.reach() + 0.5 * speed * step.h;
+            let is_floor = reach.is_infinite();
+            let begun = body.at(step.t);
+            for particle in (0..inverse_masses.len()).filter(|i| inverse_masses[*i] > 0.0) {
+                let course = course(&step.ends, particle, step.h, n);
+                let middle = 0.5 * (course.x[0] + course.x[1]) - place;
+                let room = course.reach();
+                let is_near = if is_floor {
+                    middle.y <= room + 0.5 * speed * step.h
+                } else {
+                    middle.norm_squared() <= (reach + room).powi(2)
+                };
+                // What is not finite is reported elsewhere.
+                if is_near {
+                    let seen = begun.inwards(course.x[0] - begun.place.position);
+                    self.pairs.push(Pair {
+                        particle,
+                        obstacle,
+                        touches: body.shape.separation(seen).distance <= step.none,
+                    });
+                }
+            }
+        }
+    }
+
+    /// Lists the springs that may become longer than where they break.
+    fn list_springs(&mut self, step: &Step) {
+        self.springs.clear();
+        let Some(limit) = step.network.tear_limit() else {
+            return;
+        };
+        let n = step.network.particles();
+        for spring in step.network.all_springs() {
+            let longest = limit * spring.law.rest_length;
+            let ends = [spring.i, spring.j];
+            let [a, b] = ends.map(|i| course(&step.ends, i, step.h, n));
+            let farthest = (0..2).map(|k| (a.x[k] - b.x[k]).norm()).fold(0.0, f64::max);
+            // Half of the bulge of the course of one end past the other.
+            let bulge = 0.5
+                * (0..2)
+                    .map(|k| (a.v[k] - b.v[k]).norm() * step.h)
+                    .sum::<f64>();
+            if longest > 0.0 && farthest + bulge > longest {
+                self.springs.push((ends, longest));
+            }
+        }
+    }
+}
+
+impl Step<'_> {
+    /// Whether a pair ends the step so little inside, on the side where it touches with that
+    /// normal, that it may be put out there.
+    fn ends_shallow(&self, pair: &Pair, normal: &Vector3<f64>) -> bool {
+        let obstacle = &self.network.obstacles()[pair.obstacle];
+        let (pose, n) = (obstacle.at(self.t + self.h), self.network.particles());
+        let x = course(&self.ends, pair.particle, self.h, n).x[1];
+        let end = obstacle
+            .shape
+            .separation(pose.inwards(x - pose.place.position));
+        let shallow = self.shallow.min(0.25 * obstacle.shape.greatest_depth());
+        (-shallow..=0.0).contains(&end.distance) && end.normal.dot(normal) > 0.5
+    }
+
+    /// Share of the step at which an event happens on the polynomial, near a guess; `None` if it
+    /// does not. Leaves a state near it.
+    fn refine(&self, guess: f64, kind: Kind, state: &mut [f64], state_at: StateAt) -> Option<f64> {
+        let mut share = guess;
+        let mut gap = f64::INFINITY;
+        for _ in 0..NEWTON_STEPS {
+            state_at(share, state);
+            let (found, rate) = self.gap(share, kind, state);
+            let next = share - found / (rate * self.h);
+            if found.abs() >= gap.abs() || !(0.0..=1.0).contains(&next) {
+                gap = found;
+                break;
+            }
+            gap = found;
+            if (next - share).abs() <= f64::EPSILON {
+                break;
+            }
+            share = next;
+        }
+        (gap.abs() <= self.none).then_some(share)
+    }
+
+    /// Distance (m) from an event at a share of the step, and its rate (m/s).
+    fn gap(&self, share: f64, kind: Kind, y: &[f64]) -> (f64, f64) {
+        let n = self.network.particles();
+        let row = |first: usize, i: usize| {
+            Vector3::new(y[first + i], y[first + n + i], y[first + 2 * n + i])
+        };
+        match kind {
+            Kind::Touch { particle, obstacle } => {
+                let obstacle = &self.network.obstacles()[obstacle];
+                let pose = obstacle.at(self.t + share * self.h);
+                let d = row(0, particle) - pose.place.position;
+                let seen = obstacle.shape.separation(pose.inwards(d));
+                let normal = pose.outwards(seen.normal);
+                let spin = pose.orientation.map(|turned| turned.spin.cross(&d));
+                let own = pose.place.velocity + spin.unwrap_or_default();
+                (seen.distance, normal.dot(&(row(3 * n, particle) - own)))
+            }
+            Kind::Tear {
+                ends: [i, j],
+                longest,
+            } => {
+                let (d, v) = (row(0, j) - row(0, i), row(3 * n, j) - row(3 * n, i));
+                (longest - d.norm(), -d.dot(&v) / d.norm())
+            }
+            Kind::Sunk => (0.0, 0.0),
+        }
+    }
+}
+
+/// Keeps the earlier of two events.
+fn keep_first(first: &mut Option<Event>, share: f64, kind: Kind) {
+    if first.is_none_or(|event| share < event.share) {
+        *first = Some(Event { share, kind });
+    }
+}
+
+/// Course of particle i between two states.
+fn course<Y: AsRef<[f64]>>(ends: &[Y; 2], i: usize, h: f64, n: usize) -> Course {
+    let row = |y: &[f64], first: usize| {
+        Vector3::new(y[first + i], y[first + n + i], y[first + 2 * n + i])
+    };
+    Course {
+        x: [0, 1].map(|k| row(ends[k].as_ref(), 0)),
+        v: [0, 1].map(|k| row(ends[k].as_ref(), 3 * n)),
+        h,
+    }
+}
+
+/// Share of a piece at which a vector is first longer than `longest` (m).
+fn first_longer(apart: &Course, longest: f64) -> Option<f64> {
+    let [speed, _] = apart.bounds();
+    let mut intervals = vec![[0.0, 1.0]];
+    while let Some([a, b]) = intervals.pop() {
+        let middle = 0.5 * (a + b);
+        if apart.position(middle).norm() + speed * 0.5 * (b - a) < longest {
+            continue;
+        }
+        if b - a < FINEST {
+            return Some(a);
+        }
+        intervals.extend([[middle, b], [a, middle]]);
+    }
+    None
+}

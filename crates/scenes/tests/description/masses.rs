@@ -1,0 +1,192 @@
+//! Masses: what is given by a density weighs density times its area or volume.
+
+use std::f64::consts::PI;
+
+use a3_scenes::{Description, Mesh};
+
+use super::{build, scene};
+
+/// Lengths of the units (m) in which the same body is described.
+const UNITS: [f64; 3] = [1e-3, 1.0, 1e3];
+
+fn masses(text: &str) -> Vec<f64> {
+    let scene = build(text).unwrap_or_else(|fault| panic!("{fault}\n{text}"));
+    scene.model.network().unwrap().masses().to_vec()
+}
+
+/// Asserts that the particles of a scene weigh so much (kg) together.
+fn assert_weight(text: &str, expected: f64) {
+    let weight: f64 = masses(text).iter().sum();
+    let off = (weight / expected - 1.0).abs();
+    assert!(off < 1e-12, "{weight} instead of {expected}:\n{text}");
+}
+
+/// Cloths of any grid, given by their width or by the distance of their particles, in any unit: all
+/// particles share the weight equally.
+#[test]
+fn a_cloth_weighs_its_density_times_its_area() {
+    for unit in UNITS {
+        for [rows, cols] in [[2, 2], [9, 9], [20, 20], [2, 130], [130, 2], [7, 31]] {
+            let body = format!("[[cloth]]\ngrid = [{rows}, {cols}]\nstiffness = [40, 20, 5]\n");
+            let (down, along) = (f64::from(rows - 1), f64::from(cols - 1));
+            let width = 1.3 * unit;
+            let text = format!("{body}width = {width}\ndensity = 0.2\n");
+            assert_weight(&text, 0.2 * width * width * down / along);
+            let text = format!("{body}spacing = {width}\ndensity = 0.2\n");
+            assert_weight(&text, 0.2 * width * width * down * along);
+            let masses = masses(&text);
+            assert!(masses.iter().all(|m| *m == masses[0]));
+            // Given by the masses of its particles, it weighs what these do.
+            let text = format!("{body}width = {width}\nmass = 0.5\n");
+            assert_weight(&text, 0.5 * f64::from(rows * cols));
+        }
+    }
+}
+
+/// The grid asked for samples the same cloth, whose default steps are shorter as its fastest motion
+/// is faster.
+#[test]
+fn another_grid_weighs_as_much() {
+    for name in ["cloth", "flag"] {
+        let weight = |grid| {
+            let setup = scene(name, grid);
+            let masses = setup.scene.model.network().unwrap().masses();
+            (masses.iter().sum::<f64>(), masses[0], setup.defaults)
+        };
+        let (own, mass, _) = weight(None);
+        let [rows, cols] = if name == "cloth" { [39, 39] } else { [21, 31] };
+        let (fine, lighter, defaults) = weight(Some([rows, cols]));
+        assert!((fine / own - 1.0).abs() < 1e-12, "{name}: {fine} and {own}");
+        let scale = (lighter / mass).sqrt();
+        assert!(scale < 0.6 && (defaults.step_scale - scale).abs() < 1e-12);
+    }
+    // The same width in two rows: the area falls to a nineteenth, the number of particles to a tenth.
+    let flat = scene("cloth", Some([2, 20])).defaults.step_scale;
+    assert!((flat - (10.0_f64 / 19.0).sqrt()).abs() < 1e-12, "{flat}");
+    assert!(scene("mit", Some([40, 30])).defaults.step_scale == 1.0);
+}
+
+#[test]
+fn a_jelly_and_a_solid_weigh_their_density_times_their_volume() {
+    for unit in UNITS {
+        let size = [1.2, 0.2, 0.3].map(|edge| edge * unit);
+        let weight = 1100.0 * size.iter().product::<f64>();
+        for grid in [[2, 2, 2], [3, 2, 4], [9, 5, 6]] {
+            let body =
+                format!("grid = {grid:?}\nsize = {size:?}\ndensity = 1100\nat = [1, 2, 3]\n");
+            assert_weight(&format!("[[jelly]]\n{body}stiffness = [9, 9, 9]\n"), weight);
+            assert_weight(
+                &format!("[[solid]]\n{body}young = 1e5\npoisson = 0.3\n"),
+                weight,
+            );
+        }
+    }
+}
+
+/// A square from a file, and a sphere of many triangles, whose area is nearly that of a sphere.
+#[test]
+fn a_mesh_weighs_its_density_times_its_area() {
+    for unit in UNITS {
+        let text = |file: &str| {
+            format!(
+                "[[mesh]]\nfile = '{file}'\nscale = {unit}\ndensity = 0.3\nstiffness = [40, 10]\n\
+                 at = [5, 6, 7]\nrotation = [1, 2, 3]\n"
+            )
+        };
+        assert_weight(&text("square.obj"), 0.3 * unit * unit);
+        let description = Description::parse(&text("ball.obj")).unwrap();
+        let setup = description.build(None, &mut |_| Ok(ball())).unwrap();
+        let weight: f64 = setup.scene.model.network().unwrap().masses().iter().sum();
+        let sphere = 0.3 * 4.0 * PI * unit * unit;
+        assert!(weight < sphere && weight > 0.99 * sphere, "{weight}");
+    }
+}
+
+/// Sphere of radius 1 in rings of triangles.
+fn ball() -> Mesh {
+    let [rings, around] = [30_u32, 60];
+    let mut mesh = Mesh::default();
+    for i in 0..=rings {
+        for j in 0..around {
+            let polar = PI * f64::from(i) / f64::from(rings);
+            let turn = 2.0 * PI * f64::from(j) / f64::from(around);
+            let radius = if i % rings == 0 { 0.0 } else { polar.sin() };
+            mesh.positions
+                .push([radius * turn.cos(), polar.cos(), radius * turn.sin()]);
+        }
+    }
+    for i in 0..rings {
+        for j in 0..around {
+            let at = |i: u32, j: u32| i * around + j % around;
+            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+            // At the poles, a ring is one point.
+            if i > 0 {
+                mesh.triangles.push([a, b, c]);
+            }
+            if i + 1 < rings {
+                mesh.triangles.push([a, c, d]);
+            }
+        }
+    }
+    mesh
+}
+
+/// Each part by its formula, in its own place, and two of them together. The centre has the mass of
+/// the body, and the points that it carries have none.
+#[test]
+fn a_rigid_body_weighs_its_density_times_its_volume() {
+    for unit in UNITS {
+        let cube = unit.powi(3);
+        let [a, b, c] = [0.5, 0.2, 0.3].map(|edge| edge * unit);
+        let (r, l) = (0.2 * unit, 0.7 * unit);
+        let cuboid = (format!("{{ box = [{a}, {b}, {c}] }}"), 0.03 * cube);
+        let ball = (
+            format!("{{ ball = {r}, at = [{l}, 0, 0] }}"),
+            4.0 / 3.0 * PI * 0.008 * cube,
+        );
+        let capsule = (
+            format!("{{ capsule = [{l}, {r}], rotation = [1, 0, 2] }}"),
+            PI * (0.7 * 0.04 + 4.0 / 3.0 * 0.008) * cube,
+        );
+        let both = (format!("{}, {}", cuboid.0, ball.0), cuboid.1 + ball.1);
+        for (parts, volume) in [cuboid, ball, capsule, both] {
+            let text = format!("[[body]]\nparts = [{parts}]\ndensity = 700\nat = [1, 2, 3]\n");
+            assert_weight(&text, 700.0 * volume);
+            // Drag divided by the mass is the rate at which the body is braked.
+            let scene = build(&format!("drag_per_mass = 0.4\n{text}")).unwrap();
+            let drag = scene.model.network().unwrap().drag().unwrap();
+            assert!(
+                (drag / (700.0 * volume) / 0.4 - 1.0).abs() < 1e-12,
+                "{drag}"
+            );
+        }
+    }
+}
+
+/// A box of fluid weighs its density times its volume. A ball consists of the places of a lattice
+/// that are in it, so its weight comes near that of a ball as the spacing shrinks.
+#[test]
+fn a_fluid_weighs_its_density_times_its_volume() {
+    for unit in UNITS {
+        let fluid = |dimensions: i32, edges: [f64; 3], spacing: f64, shape: &str| {
+            let [x, y, z] = edges.map(|edge| edge * unit);
+            format!(
+                "[[fluid]]\ndimensions = {dimensions}\nsize = [{x}, {y}, {z}]\nspacing = {}\n\
+                 shape = '{shape}'\ndensity = 800\nsound = 10\nat = [0, 0, 0]\n",
+                spacing * unit
+            )
+        };
+        let (square, cube) = (unit * unit, unit.powi(3));
+        let flat = fluid(2, [1.0, 2.0, 0.0], 0.1, "box");
+        assert_weight(&flat, 800.0 * 2.0 * square);
+        let deep = fluid(3, [1.0, 0.5, 0.8], 0.1, "box");
+        assert_weight(&deep, 800.0 * 0.4 * cube);
+        for (text, volume) in [
+            (fluid(2, [2.0, 2.0, 0.0], 0.04, "ball"), PI * square),
+            (fluid(3, [1.0, 1.0, 1.0], 0.05, "ball"), PI / 6.0 * cube),
+        ] {
+            let weight: f64 = masses(&text).iter().sum();
+            assert!((weight / (800.0 * volume) - 1.0).abs() < 0.01, "{weight}");
+        }
+    }
+}
