@@ -100,15 +100,20 @@ impl Network {
 
     /// Whether the constraints at the state (x, v) at time t (s) are nearly singular, as those of a
     /// chain that is stretched straight between two pins: no force holds it there. Not known for
-    /// those of rigid bodies.
-    #[must_use]
-    pub fn is_nearly_singular(&self, t: f64, x: &[f64], v: &[f64]) -> bool {
+    /// those of rigid bodies. Writes the forces to f.
+    pub(crate) fn is_nearly_singular(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        f: &mut Vec<f64>,
+    ) -> bool {
         if !self.is_constrained() || !self.bodies.is_empty() {
             return false;
         }
-        let mut f = vec![0.0; x.len()];
-        self.other_forces(t, x, v, &mut f);
-        self.hold_particles(t, [x, v], &mut f)
+        f.resize(x.len(), 0.0);
+        self.other_forces(t, x, v, f);
+        self.hold_particles(t, [x, v], f)
     }
 
     /// Sets the natural frequency w (1/s) with which errors of the constraints are taken back, like

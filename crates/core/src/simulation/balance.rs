@@ -108,8 +108,14 @@ impl Balance {
         0.5 * (0..3).map(squared).sum::<f64>() > LOST * self.scale()
     }
 
-    /// Looks at the energy of y at time t (s). Returns the gain by which the run is lost.
-    fn look(&mut self, network: &Network, t: f64, y: &[f64]) -> Option<Cause> {
+    /// Looks at the energy of y at time t (s), with room for forces. Returns the gain by which the
+    /// run is lost.
+    fn look(
+        &mut self,
+        network: &Network,
+        (t, y): (f64, &[f64]),
+        f: &mut Vec<f64>,
+    ) -> Option<Cause> {
         let energy = energy_of(network, t, y);
         self.fall = self.fall.max(self.gravitational - energy.gravitational);
         self.gain = energy.total() - self.begin - self.work;
@@ -121,7 +127,7 @@ impl Balance {
             });
         }
         let (x, v) = network.halves(y);
-        self.singular |= network.is_nearly_singular(t, x, v);
+        self.singular |= network.is_nearly_singular(t, x, v, f);
         (self.share > LOST).then(|| {
             let (particle, speed) = fastest_particle(v);
             Cause::Gained {
@@ -143,6 +149,8 @@ pub(super) struct Watch {
     radius: f64,
     /// Time of the beginning of the last step (s), and its work (J).
     last: (f64, f64),
+    /// Forces (N).
+    scratch: Vec<f64>,
 }
 
 impl Watch {
@@ -152,10 +160,13 @@ impl Watch {
         let mass = network.masses().iter().sum::<f64>();
         let weight = network.gravity().map_or(0.0, |g| g.norm()) * mass;
         let unseen = 0.5 * mass * (UNSEEN * radius).powi(2);
+        // A step allocates nothing.
         *self = Self {
             radius,
+            scratch: Vec::with_capacity(y.len() / 2),
             ..Self::default()
         };
+        self.drive.begin(network, t, y);
         let moving = energy.kinetic + energy.elastic + energy.contact;
         Balance {
             time: t,
@@ -193,7 +204,7 @@ impl Watch {
         if t < end && begin < end {
             balance.work -= work * (end - t) / (end - begin);
         }
-        balance.look(network, t, y);
+        balance.look(network, (t, y), &mut self.scratch);
         balance.open = true;
     }
 
@@ -259,7 +270,7 @@ impl Watch {
         let gained = if early && !exceeded() {
             None
         } else {
-            balance.look(network, t, y)
+            balance.look(network, (t, y), &mut self.scratch)
         };
         let broken = worst.filter(|unmet| unmet.share > BROKEN).map(Cause::Unmet);
         let lost = lost.filter(|_| !balance.is_sound());
@@ -279,10 +290,10 @@ impl Simulation {
     /// Balance at the end of the last step.
     fn balance_now(&self) -> (Balance, Option<Cause>) {
         let mut balance = self.state.balance;
-        let lost = self.model.network().and_then(|network| {
-            let (t, y) = self.last_end();
-            balance.look(network, t, y)
-        });
+        let lost = self
+            .model
+            .network()
+            .and_then(|network| balance.look(network, self.last_end(), &mut vec![]));
         (balance, lost)
     }
 

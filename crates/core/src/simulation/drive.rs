@@ -157,6 +157,7 @@ impl Pins {
         let mut own = vec![];
         pins.gather(y, &mut own);
         pins.power = pins.power_at(network, &own);
+        pins.scratch = [(); 2].map(|()| Vec::with_capacity(own.len()));
         pins.y = own;
         pins
     }
