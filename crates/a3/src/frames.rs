@@ -21,7 +21,7 @@ pub struct FrameTimes {
     /// The number of frames, at least 1.
     pub count: usize,
     /// The end of the run (s).
-    until: f64,
+    pub until: f64,
 }
 
 impl FrameTimes {

@@ -47,9 +47,17 @@ fn tell(pane: &mut Pane) -> Result<(), Failure> {
         progress::advance(simulation, f64::from(second), |simulation| {
             show.follow(simulation);
         })
-        .map_err(|error| verdict::lost(simulation, &error, ""))?;
+        .and_then(|()| {
+            if second == SECONDS {
+                simulation.conclude()
+            } else {
+                Ok(())
+            }
+        })
+        .map_err(|error| verdict::lost(simulation, &error, "", f64::from(SECONDS)))?;
         output::say(&line(simulation))?;
     }
+    verdict::warn(simulation);
     Ok(())
 }
 

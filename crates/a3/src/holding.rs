@@ -3,19 +3,50 @@
 use a3_core::stability::{Mode, largest_step, spectrum};
 use a3_core::{Control, Simulation};
 
-use crate::bounds::LARGEST_STEP;
+use crate::bounds::{LARGEST_STEP, SMALLEST_STEP};
 
-/// Simulated time (s) for which a step was seen to hold before it is said to hold.
+/// Least simulated time (s) for which the window sees a step hold before it says so.
 const HOLDING: f64 = 10.0;
-/// Most [work](a3_core::Model::work) of the runs that try steps, after which a step counts
-/// as holding: the same on every machine, so that the step that is named is the same too.
+/// Most [work](a3_core::Model::work) of the runs that try steps while a window waits: the same on
+/// every machine, so that the step that is named is the same too.
 const MOST_WORK: f64 = 8e6;
+/// Most such work at the end of a command.
+#[cfg(not(target_arch = "wasm32"))]
+const MOST_WORK_OF_COMMANDS: f64 = 1e8;
 
-/// The longest step (s) that was seen to hold on the scene of a run, if it takes fixed steps.
-pub fn step_that_holds(run: &Simulation) -> Option<f64> {
+/// Trials of steps on the scene of a run.
+struct Trials<'a> {
+    run: &'a Simulation,
+    /// Simulated time for which a step has to hold (s).
+    until: f64,
+    /// Work that is left (evaluations).
+    left: f64,
+    /// Whether trials may go on, after so much work.
+    goes_on: &'a dyn Fn(f64) -> bool,
+}
+
+/// The longest step (s) that was seen to hold until then (s) on the scene of a run, if it takes
+/// fixed steps. `None` where none was found.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn step_that_holds(run: &Simulation, until: f64) -> Option<f64> {
     let scene = run.scene();
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
-    would_hold(run, &modes)
+    crate::interrupt::listen();
+    let left = MOST_WORK_OF_COMMANDS / run.model().work();
+    let bar = crate::progress::Bar::new(left);
+    bar.say("looking for a step that holds ".into());
+    let trials = Trials {
+        run,
+        until,
+        left,
+        goes_on: &|work| {
+            bar.advance(work);
+            crate::interrupt::go_on()
+        },
+    };
+    let holds = trials.longest(&modes);
+    bar.clear();
+    holds
 }
 
 /// A step (s) for a run whose own fixed step does not hold on its scene; `None` where that was not
@@ -29,45 +60,74 @@ pub fn shorter_step(run: &Simulation) -> Option<f64> {
     let past = limit.is_some_and(|limit| step > limit.step);
     let network = run.model().network();
     let slow = network.is_some_and(|n| n.contact_layer().is_some() || !n.bodies().is_empty());
-    let mut left = MOST_WORK / run.model().work();
-    let fails = past || !slow && !holds(run, step, &mut left);
+    let mut trials = Trials::of_window(run, HOLDING);
+    let fails = past || !slow && trials.hold(step) == Some(false);
     let shorter = if slow {
         limit.map(|limit| rounded(0.9 * limit.step))
     } else {
-        would_hold(run, &modes)
+        would_hold(run, HOLDING, &modes)
     };
-    shorter.filter(|shorter| fails && *shorter < step)
+    shorter.filter(|shorter| fails && (SMALLEST_STEP..step).contains(shorter))
 }
 
-/// The longest step (s) that was seen to hold, from just below the limit of all motion at the start
-/// of the scene. It depends on the scene and the method alone: not on the state that was lost, nor
-/// on the step that was too long. `None` for a run to a tolerance.
-pub fn would_hold(run: &Simulation, modes: &[Mode]) -> Option<f64> {
-    run.control().step()?;
-    // Never fails for a method in METHODS.
-    let limit = largest_step(run.method(), modes).ok().flatten()?;
-    let mut step = rounded(0.9 * limit.step.min(LARGEST_STEP));
-    let mut left = MOST_WORK / run.model().work();
-    while left > 0.0 && !holds(run, step, &mut left) {
-        step = rounded(0.6 * step);
-    }
-    Some(step)
+/// The longest step (s) shorter than the run's own that was seen to hold until then (s), at least
+/// for ten seconds, from just below the limit of all motion at the start of the scene. It depends on
+/// the scene and the method alone: not on the state that was lost, nor on the step that was too
+/// long. `None` where none was found, and for a run to a tolerance.
+pub fn would_hold(run: &Simulation, until: f64, modes: &[Mode]) -> Option<f64> {
+    Trials::of_window(run, until.max(HOLDING)).longest(modes)
 }
 
-/// Whether a run from the start of the scene is not lost with steps of h (s), for which it does no
-/// more work (in evaluations) than is `left`.
-fn holds(run: &Simulation, h: f64, left: &mut f64) -> bool {
-    let Ok(mut again) = Simulation::new(run.scene().clone(), run.method(), Control::Step(h)) else {
-        return true;
-    };
-    while again.time() < HOLDING && *left > 0.0 {
-        let before = again.work().total();
-        if again.take_steps(4).is_err() {
-            return false;
+impl<'a> Trials<'a> {
+    /// Trials that a window waits for.
+    fn of_window(run: &'a Simulation, until: f64) -> Self {
+        Self {
+            run,
+            until,
+            left: MOST_WORK / run.model().work(),
+            goes_on: &|_| true,
         }
-        *left -= again.work().total() - before;
     }
-    true
+
+    /// The longest step (s) below the limit of these modes, and below the run's own, that holds.
+    fn longest(mut self, modes: &[Mode]) -> Option<f64> {
+        let own = self.run.control().step()?;
+        // Never fails for a method in METHODS.
+        let limit = largest_step(self.run.method(), modes).ok().flatten();
+        let most = limit.map_or(own, |limit| limit.step).min(LARGEST_STEP);
+        let mut step = rounded(0.9 * most);
+        while step >= SMALLEST_STEP {
+            if step < own && self.hold(step)? {
+                return Some(step);
+            }
+            step = rounded(0.6 * step);
+        }
+        None
+    }
+
+    /// Whether a run like this one, from the start of the scene with steps of h (s), is not lost,
+    /// gains no energy and meets its constraints. `None` if that takes too much work.
+    fn hold(&mut self, h: f64) -> Option<bool> {
+        let (run, control) = (self.run, Control::Step(h));
+        let mut again = Simulation::new(run.scene().clone(), run.method(), control).ok()?;
+        again.set_wind(run.windy());
+        again.set_swinging(run.swinging());
+        // Surfaces that cross at the beginning cannot touch there.
+        again.set_touching(run.touching()).ok()?;
+        while again.time() < self.until {
+            let before = again.work().total();
+            if again.take_steps(4).is_err() {
+                return Some(false);
+            }
+            let work = again.work().total() - before;
+            self.left -= work;
+            if self.left <= 0.0 || !(self.goes_on)(work) {
+                return None;
+            }
+        }
+        let broken = again.worst_constraint().is_some_and(|c| c.is_visible());
+        Some(again.conclude().is_ok() && again.gained().is_none() && !broken)
+    }
 }
 
 /// A number rounded down to one digit.

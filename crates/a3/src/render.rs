@@ -25,11 +25,13 @@ pub fn run(options: &Render) -> Result<(), Failure> {
     if let Some(film) = film {
         return film::shoot(&mut simulation, &mut show, &mut painter, film, path);
     }
-    progress::advance(&mut simulation, options.run.end()?, |simulation| {
+    let end = options.run.end()?;
+    progress::advance(&mut simulation, end, |simulation| {
         show.follow(simulation);
     })
-    .map_err(|error| verdict::lost(&simulation, &error, ""))?;
-    verdict::warn_of_gain(&simulation);
+    .and_then(|()| simulation.conclude())
+    .map_err(|error| verdict::lost(&simulation, &error, "", end))?;
+    verdict::warn(&simulation);
     let pixels = painter.draw(&mut show, &simulation)?;
     output::write(path, &output::png(&pixels, size)?)
 }

@@ -52,7 +52,8 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         failure: None,
     };
     interrupt::listen();
-    let bar = Bar::new(options.run.end()? - simulation.time());
+    let end = options.run.end()?;
+    let bar = Bar::new(end - simulation.time());
     let mut goes_on = looks.look(&simulation);
     for (k, time) in frames.times().enumerate() {
         let mut before = simulation.time();
@@ -62,11 +63,16 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
             goes_on &= looks.look(simulation);
             goes_on
         });
+        // The last look comes before anything is complete.
+        let reached = match reached {
+            Ok(true) if k + 1 == frames.count => simulation.conclude().map(|()| true),
+            other => other,
+        };
         if reached != Ok(true) {
             bar.clear();
             let written = written(&options.output, k, frames.count);
             return Err(match reached {
-                Err(error) => verdict::lost(&simulation, &error, &written),
+                Err(error) => verdict::lost(&simulation, &error, &written, end),
                 Ok(_) => looks.stopped(&simulation, &written),
             });
         }
@@ -83,7 +89,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
             options.output.display()
         ));
     }
-    verdict::warn_of_gain(&simulation);
+    verdict::warn(&simulation);
     if let (Some(path), Some(extremes)) = (&options.summary, &looks.extremes) {
         summary::write(path, &simulation, frames.count, extremes, begun)?;
     }

@@ -61,6 +61,10 @@ struct Summary {
     energy: Option<Energy>,
     /// Energy that nothing put in, if it is much (J).
     energy_gained: Option<f64>,
+    /// Energy gained or, below 0, lost (percent); none where the forces do not keep it.
+    energy_change_percent: Option<f64>,
+    /// The constraint that was farthest from being met; none if all were met.
+    constraint: Option<Broken>,
     /// Largest length over rest length of a spring; none without springs.
     largest_stretch: Option<f64>,
     /// Number of springs that broke.
@@ -69,6 +73,31 @@ struct Summary {
     contact: Option<Contact>,
     /// Real time (s).
     wall_time: f64,
+}
+
+/// Error of a constraint over its length from which on it is in a summary.
+const BROKEN: f64 = 1e-4;
+
+/// Constraint that was not met.
+#[derive(Serialize)]
+struct Broken {
+    /// Number, counted from 0.
+    number: usize,
+    /// What it is.
+    name: String,
+    /// Largest error over its length (percent).
+    off_by_percent: f64,
+}
+
+impl Broken {
+    fn of(simulation: &Simulation) -> Option<Self> {
+        let unmet = simulation.worst_constraint()?;
+        (unmet.share > BROKEN).then(|| Self {
+            number: unmet.number,
+            name: unmet.constraint.to_string(),
+            off_by_percent: 100.0 * unmet.share,
+        })
+    }
 }
 
 /// What the guard of surfaces did.
@@ -112,6 +141,8 @@ pub fn write(
         evaluations: simulation.work().evaluations,
         energy: extremes.energy,
         energy_gained: simulation.gained().map(|gain| gain.energy),
+        energy_change_percent: simulation.energy_change().map(|share| 100.0 * share),
+        constraint: Broken::of(simulation),
         largest_stretch: extremes.stretch,
         torn: simulation.tears(),
         contact: Contact::of(simulation),

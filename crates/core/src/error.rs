@@ -4,6 +4,7 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
+use crate::constraints::Unmet;
 use crate::control::Control;
 
 /// Reason why something could not be built or stepped.
@@ -105,6 +106,10 @@ pub enum Cause {
     },
     /// Force that depends on the velocity, which the method does not serve.
     ReadsVelocity,
+    /// Constraint that is far from being met.
+    Unmet(Unmet),
+    /// Constraint that cannot be met, whatever the step: it contradicts others, or pins.
+    Contradiction(Unmet),
     /// Surfaces that are led, by pins or as obstacles, and leave no room for what is between them.
     Squeezed {
         /// Vertices on either side.
@@ -179,6 +184,13 @@ impl fmt::Display for BlowUp {
             }
             Cause::NoConvergence { residual } => not_solved(*residual, f),
             Cause::ReadsVelocity => write!(f, "{SERVES_POSITIONS}"),
+            Cause::Unmet(unmet) => {
+                write!(f, "{unmet}, is off by {:.0} %", 100.0 * unmet.share)
+            }
+            Cause::Contradiction(unmet) => write!(
+                f,
+                "{unmet}, contradicts other constraints or pins: no positions meet them all"
+            ),
             Cause::Squeezed { vertices: [a, b] } => write!(
                 f,
                 "surfaces are squeezed: pins or moving obstacles leave no room between {a} and {b}"

@@ -82,7 +82,7 @@ mod testing;
 mod threads;
 mod work;
 
-pub use constraints::Constraint;
+pub use constraints::{Constraint, Unmet};
 pub use control::Control;
 pub use coupling::{AxialCoupling, BlockCoupling, Coupling, Diagonal, GeneralCoupling, Matrix};
 pub use elements::{Element, Sheet};

@@ -145,6 +145,9 @@ pub fn shoot(
             show.follow(simulation);
             interrupt::go_on()
         });
+        if end == Ok(true) && shot + 1 == frames.count {
+            end = simulation.conclude().map(|()| true);
+        }
         if end != Ok(true) {
             break;
         }
@@ -170,10 +173,10 @@ pub fn shoot(
     };
     match end {
         Ok(true) => {
-            verdict::warn_of_gain(simulation);
+            verdict::warn(simulation);
             Ok(())
         }
         Ok(false) => Err(Failure::Interrupted(format!("interrupted: {kept}"))),
-        Err(error) => Err(verdict::lost(simulation, &error, &kept)),
+        Err(error) => Err(verdict::lost(simulation, &error, &kept, frames.until)),
     }
 }

@@ -13,24 +13,25 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
     let method = lost.method;
     let same = method == pane.simulation.method().title;
     let limit = pane.limit.limit().map(|limit| limit.step);
-    let hold = limit.zip(pane.limit.would_hold());
-    ui.label(text(match (lost.control, hold) {
+    ui.label(text(match (lost.control, pane.limit.would_hold()) {
         _ if lost.cause == Cause::ReadsVelocity => format!("{method} does not serve such forces."),
-        _ if is_squeezed(lost) => "A shorter step does not help.".into(),
+        _ if is_hopeless(lost) => "A shorter step does not help.".into(),
         (Control::Tolerance(tolerance), _) if matches!(lost.cause, Cause::StepTooSmall { .. }) => {
             format!("{method} found no step to a tolerance of {tolerance:e}: a larger one may do.")
         }
         (Control::Tolerance(tolerance), _) => {
             format!("A tolerance of {tolerance:e} was too large for {method}.")
         }
-        (Control::Step(step), Some((limit, would_hold))) if same => {
-            let past = if step > limit {
+        (Control::Step(step), Some(would_hold)) if same => {
+            let past = limit.filter(|limit| step > *limit).map(|limit| {
                 format!(": past its limit here of {} ms", digits(1e3 * limit))
-            } else {
-                String::new()
-            };
+            });
+            let past = past.unwrap_or_default();
             format!("A step of {step} s was too long for {method}{past}. {would_hold} s would have held.")
         }
+        (Control::Step(step), None) if same => format!(
+            "A step of {step} s was too long for {method}, and no shorter one was found to hold."
+        ),
         (Control::Step(step), _) => format!("A step of {step} s was too long for {method}."),
     }));
 }
@@ -38,6 +39,11 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
 /// Whether surfaces that are led left no room, whatever the step.
 fn is_squeezed(lost: &BlowUp) -> bool {
     matches!(lost.cause, Cause::Squeezed { .. })
+}
+
+/// Whether no step would have held.
+fn is_hopeless(lost: &BlowUp) -> bool {
+    is_squeezed(lost) || matches!(lost.cause, Cause::Contradiction(_))
 }
 
 /// The keys that lead out of a blow-up.

@@ -134,6 +134,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
     let (name, value) = energy(pane);
     let energy = (name, text(value));
     let gained = words::gained(run).map(|words| ("gained", words));
+    let broken = words::broken(run).map(|words| ("constraint", words));
     let contact = words::contact(run).map(|words| ("contact", text(words)));
     let cost = ("cost", text(cost));
     let lines = if low {
@@ -146,6 +147,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
             vec![error],
             vec![energy],
             gained.into_iter().collect(),
+            broken.into_iter().collect(),
             contact.into_iter().collect(),
             vec![cost],
         ]

@@ -78,6 +78,9 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
             if let Some(gained) = words::gained(simulation) {
                 row("gained", gained);
             }
+            if let Some(broken) = words::broken(simulation) {
+                row("constraint", broken);
+            }
             if let Some(stretch) = pane.stretch {
                 row("stretch", text(format!("{stretch:.3} at most")));
             }

@@ -118,10 +118,21 @@ pub fn time(simulation: &Simulation) -> String {
     format!("{:.digits$} s", simulation.time())
 }
 
-/// The reading that tells best whether the run holds: its energy, or the radius of the circle.
+/// The reading that tells best whether the run holds: its energy, with its change where the forces
+/// keep it, or the radius of the circle.
 pub fn energy(pane: &Pane) -> (&'static str, String) {
     match pane.energy {
-        Some(energy) => ("energy", format!("{energy:.3} J")),
+        Some(energy) => {
+            let change = pane.simulation.energy_change().unwrap_or_default();
+            let percent = format!("{:+.2}", 100.0 * change);
+            let is_kept = percent.trim_start_matches(['+', '-']) == "0.00";
+            let said = if is_kept {
+                String::new()
+            } else {
+                format!(" ({percent} %)")
+            };
+            ("energy", format!("{energy:.3} J{said}"))
+        }
         None => (
             "radius",
             format!("{:.6} m", pane.simulation.position(0).norm()),
@@ -134,6 +145,17 @@ pub fn gained(simulation: &Simulation) -> Option<RichText> {
     let gain = simulation.gained()?;
     let words = format!("{} J from nowhere: shorten the step", digits(gain.energy));
     Some(WARNING.text(&words))
+}
+
+/// The constraint that the run does not meet, if it is off by much.
+pub fn broken(simulation: &Simulation) -> Option<RichText> {
+    let unmet = simulation.worst_constraint()?;
+    let words = format!(
+        "{} was off by {:.1} %",
+        unmet.constraint,
+        100.0 * unmet.share
+    );
+    unmet.is_visible().then(|| WARNING.text(&words))
 }
 
 /// The rate of frames.

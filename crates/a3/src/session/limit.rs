@@ -23,6 +23,8 @@ pub struct LimitWatch {
     limit: Option<Limit>,
     next: Option<Instant>,
     would_hold: Option<f64>,
+    /// Whether such a step was looked for.
+    tried: bool,
 }
 
 impl LimitWatch {
@@ -39,22 +41,23 @@ impl LimitWatch {
     /// Estimates again if the last estimate is old enough, or if the run was just lost.
     pub fn look(&mut self, run: &Simulation) {
         let begun = Instant::now();
-        let lost = run.blow_up().is_some();
-        let wait = if lost {
-            self.would_hold.is_some()
+        let lost = run.blow_up();
+        let wait = if lost.is_some() {
+            self.tried
         } else {
             self.next.is_some_and(|next| begun < next)
         };
         if wait {
             return;
         }
-        if lost {
+        if let Some(lost) = lost {
             // The state of a lost run is crumpled: the limits that count are those of the scene.
             let scene = run.scene();
             let modes = spectrum(scene.model.system(), 0.0, &scene.state);
             self.mode = modes.first().copied();
             self.ask(run.method());
-            self.would_hold = would_hold(run, &modes);
+            self.would_hold = would_hold(run, lost.time, &modes);
+            self.tried = true;
             return;
         }
         let y = run.state();
@@ -82,7 +85,7 @@ impl LimitWatch {
         let modes = self.mode.as_slice();
         // Fails for a method that does not serve damped springs, on a mode that they damp.
         self.limit = largest_step(method, modes).ok().flatten();
-        self.would_hold = None;
+        (self.would_hold, self.tried) = (None, false);
     }
 }
 

@@ -125,11 +125,12 @@ impl Pane {
     pub fn run_to(&mut self, time: f64) {
         let (begun, mut aside) = (Instant::now(), Duration::ZERO);
         let show = &mut self.show;
-        let _ = progress::advance(&mut self.simulation, time, |simulation| {
+        let done = progress::advance(&mut self.simulation, time, |simulation| {
             let begun = Instant::now();
             show.follow(simulation);
             aside += begun.elapsed();
         });
+        let _ = done.and_then(|()| self.simulation.conclude());
         self.computing += begun.elapsed().saturating_sub(aside);
         self.read_state();
         self.read_cost();

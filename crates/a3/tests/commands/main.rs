@@ -27,6 +27,7 @@ mod signals;
 mod states;
 mod sweeps;
 mod usage;
+mod watch;
 mod words;
 
 use std::fs;

@@ -3,6 +3,8 @@
 //! masses W and all other forces Q; that of a pin is the one of its path, apin. The multipliers
 //! solve C'' = J a + J' v = -ks C - kd C', which takes back what a step missed, or
 //! J W J^T lambda = -(J' v + J (W Q + apin) + ks C + kd C').
+//! Where J is so nearly singular that lambda would be huge, as for a chain stretched straight between
+//! two pins, J W J^T is made a little larger, and C'' is met as nearly as bounded forces allow.
 //! Andrew Witkin, *Physically Based Modeling: Constrained Dynamics*, SIGGRAPH course notes.
 //!
 //! Each row of C is a distance (m), and each row of J a unit vector, and its opposite at the other
@@ -11,6 +13,7 @@
 
 mod constraint;
 mod direct;
+mod errors;
 mod pool;
 mod row;
 mod solve;
@@ -24,6 +27,7 @@ use crate::error::{Error, positive};
 use crate::threads::each;
 pub use constraint::Constraint;
 use direct::Pattern;
+pub use errors::Unmet;
 use pool::Pool;
 use row::Row;
 use solve::Scratch;
@@ -159,10 +163,8 @@ impl Constraints {
     /// The largest error |C| (m).
     pub fn error(&self, x: &[f64]) -> Option<f64> {
         let mut largest = None;
-        for constraint in &self.all {
-            let (first, second) = constraint.ends();
-            let from = second.map_or_else(Vector3::zeros, |j| vector(x, j));
-            constraint.equations(vector(x, first) - from, Vector3::zeros(), |equation| {
+        for (k, constraint) in self.all.iter().enumerate() {
+            constraint.equations(self.relative(k, x), Vector3::zeros(), |equation| {
                 largest = Some(equation.value.abs().max(largest.unwrap_or(0.0)));
             });
         }
@@ -171,14 +173,15 @@ impl Constraints {
 
     /// Adds J^T lambda (N) to all other forces f: on pinned particles too. `motion` gives the
     /// inverse mass (1/kg) of a particle that no body carries and its acceleration (m/s2) without
-    /// constraints, and `turning` how a body turns, both under the forces f.
+    /// constraints, and `turning` how a body turns, both under the forces f. Returns whether the
+    /// constraints are too near to a singular state for exact multipliers.
     pub fn add_forces(
         &self,
         motion: impl Fn(usize, &[f64]) -> (f64, Vector3<f64>),
         turning: impl Fn(usize, &[f64]) -> Turning,
         [x, v]: [&[f64]; 2],
         f: &mut [f64],
-    ) {
+    ) -> bool {
         self.scratch.lend(|scratch| {
             scratch.clear();
             for moved in &self.moved {
@@ -240,7 +243,7 @@ impl Constraints {
                 let back = ks * equation.value + kd * gradient.dot(&v_relative);
                 row.want(-bend - a - back, weights);
             });
-            scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
+            let soft = scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
             let n = f.len() / 3;
             for (row, (owner, _)) in scratch.rows.iter().zip(&self.owners) {
                 let ([first, second], force) = (self.ends[*owner], row.force());
@@ -251,7 +254,8 @@ impl Constraints {
                     }
                 }
             }
-        });
+            soft
+        })
     }
 
     /// What each equation moves.

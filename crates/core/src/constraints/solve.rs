@@ -20,6 +20,12 @@ const MANY: usize = 12;
 const TOLERANCE: f64 = 1e-15;
 /// Largest number of iterations per row: one would be enough without rounding.
 const MOST: usize = 4;
+/// Largest b . lambda over b . b that is taken as it is: the least eigenvalue of A is then about the
+/// inverse of that, and what it stands for is hardly held, whatever the force.
+const NEARLY_SINGULAR: f64 = 1e5;
+/// Most of what is then added to the diagonal of A, when that number is ten times as large. A chain
+/// of two rods of 1 m, straight and level between two pins, sags by about a millimetre.
+const SOFTNESS: f64 = 1e-8;
 
 /// Scratch of an evaluation: for each place of what moves its inverse mass (1/kg) or those of a
 /// rotation (1/kg m2), a vector, and how it turns, if it is a body; and the rows.
@@ -50,11 +56,29 @@ impl Scratch {
         self.rows.reserve(rows);
     }
 
-    /// Finds the multipliers.
-    pub fn solve<'a>(&mut self, pattern: impl Fn() -> &'a Arc<Pattern>) {
+    /// Finds the multipliers. Returns whether A is nearly singular, and was made softer.
+    pub fn solve<'a>(&mut self, pattern: impl Fn() -> &'a Arc<Pattern>) -> bool {
         if self.rows.len() < MANY || !self.solve_directly(pattern()) {
-            self.iterate();
+            self.iterate(0.0);
         }
+        let (mut all, mut amplified) = (0.0, 0.0);
+        for row in &self.rows {
+            all += row.wanted * row.wanted;
+            amplified += row.wanted * row.multiplier;
+        }
+        // It grows from nothing, so that forces are continuous.
+        let excess = (amplified / (NEARLY_SINGULAR * all) - 1.0) / 9.0;
+        let soft = excess > 0.0;
+        if soft {
+            self.iterate(SOFTNESS * excess.min(1.0));
+        }
+        soft
+    }
+
+    /// Writes W J^T lambda to the vectors: the changes that the multipliers make.
+    pub fn spread(&mut self) {
+        transpose(&self.rows, |row| row.multiplier, &mut self.vectors);
+        weigh(&self.weights, &mut self.vectors);
     }
 
     /// Whether a factorisation of A finds the multipliers.
@@ -84,8 +108,9 @@ impl Scratch {
         true
     }
 
-    /// Finds the multipliers by conjugate residuals, beginning with zero.
-    fn iterate(&mut self) {
+    /// Finds the multipliers by conjugate residuals, beginning with zero, with `softness` added to
+    /// the diagonal of A.
+    fn iterate(&mut self, softness: f64) {
         let Self {
             weights,
             vectors: u,
@@ -100,13 +125,20 @@ impl Scratch {
         for _ in 0..MOST * rows.len() {
             // u = W J^T r, and r . A r from it: never below zero.
             transpose(rows, |row| row.residual, u);
-            let rest = weigh(weights, u);
+            let mut rest = weigh(weights, u);
+            if softness > 0.0 {
+                let squares = rows.iter().map(|row| row.residual * row.residual);
+                rest += softness * squares.sum::<f64>();
+            }
             let turn = rest / last;
             last = rest;
             let mut square = 0.0;
             for row in &mut *rows {
                 row.direction = row.residual + turn * row.direction;
                 row.image = row.product(u) + turn * row.image;
+                if softness > 0.0 {
+                    row.image += softness * row.residual;
+                }
                 square += row.image * row.image;
             }
             // Written so that NaN ends it.

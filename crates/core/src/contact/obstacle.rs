@@ -45,6 +45,12 @@ impl Obstacle {
         }
     }
 
+    /// Whether it neither moves nor turns.
+    #[must_use]
+    pub fn is_still(&self) -> bool {
+        matches!(self.path, Path::Still(_)) && self.turn.is_none()
+    }
+
     /// # Errors
     /// The shape has no size, the friction is negative, or the restitution is not from 0 to 1; or a
     /// number is not finite.

@@ -3,11 +3,15 @@
 use nalgebra::Vector3;
 
 use super::Network;
-use crate::constraints::{Constraint, Constraints, Turning};
+use crate::constraints::{Constraint, Constraints, Turning, Unmet};
 use crate::elements::{Attraction, Element};
 use crate::error::Error;
 use crate::path::Path;
 use crate::rigid::Body;
+
+/// Time in which a contradiction counts as one that is already there, over that in which errors are
+/// taken back.
+const SOON: f64 = 0.1;
 
 impl Network {
     /// Adds a constraint, which is held by forces: a state that breaks it is drawn back to it.
@@ -69,6 +73,49 @@ impl Network {
         self.constraints.error(x)
     }
 
+    /// The constraint that is farthest from being met at x, in a scene of that radius (m).
+    #[must_use]
+    pub fn worst_constraint(&self, x: &[f64], radius: f64) -> Option<Unmet> {
+        self.constraints.worst(x, radius)
+    }
+
+    /// A constraint that cannot be met near x (m) at time t (s), when pins are in their places, or
+    /// soon after, because it contradicts others or the pins. Not known for those of rigid bodies.
+    #[must_use]
+    pub fn contradiction(&self, t: f64, x: &[f64], radius: f64) -> Option<Unmet> {
+        let n = self.particles();
+        let soon = SOON / self.constraints.baumgarte_frequency();
+        [t, t + soon].into_iter().find_map(|t| {
+            let mut x = x.to_vec();
+            for (i, path) in self.pins() {
+                let place = path.at(t).position;
+                for axis in 0..3 {
+                    x[axis * n + i] = place[axis];
+                }
+            }
+            let masses = &self.inverse_masses;
+            self.constraints.contradiction(masses, &mut x, radius)
+        })
+    }
+
+    /// Whether the constraints at the state (x, v) at time t (s) are nearly singular, as those of a
+    /// chain that is stretched straight between two pins: no force holds it there. Not known for
+    /// those of rigid bodies. Writes the forces to f.
+    pub(crate) fn is_nearly_singular(
+        &self,
+        t: f64,
+        x: &[f64],
+        v: &[f64],
+        f: &mut Vec<f64>,
+    ) -> bool {
+        if !self.is_constrained() || !self.bodies.is_empty() {
+            return false;
+        }
+        f.resize(x.len(), 0.0);
+        self.other_forces(t, x, v, f);
+        self.hold_particles(t, [x, v], f)
+    }
+
     /// Sets the natural frequency w (1/s) with which errors of the constraints are taken back, like
     /// a critically damped spring, C'' = -w2 C - 2 w C' (Baumgarte). It is 10 unless set: errors
     /// are gone within a second, slowly for any step that shows motion at all. Explicit methods
@@ -96,24 +143,25 @@ impl Network {
     }
 
     /// Adds the forces of the constraints, if there are any, to all others, where there are no
-    /// rigid bodies: positions and velocities alone do not say how these turn.
-    pub(super) fn hold_particles(&self, t: f64, state: [&[f64]; 2], f: &mut [f64]) {
-        if self.bodies.is_empty() {
-            self.hold(t, state, |_, _| unreachable!("there are no bodies"), f);
-        }
+    /// rigid bodies: positions and velocities alone do not say how these turn. Returns whether the
+    /// constraints are nearly singular.
+    pub(super) fn hold_particles(&self, t: f64, state: [&[f64]; 2], f: &mut [f64]) -> bool {
+        let none = |_, _: &[f64]| unreachable!("there are no bodies");
+        self.bodies.is_empty() && self.hold(t, state, none, f)
     }
 
     /// Adds the forces of the constraints, if there are any, to all others. `bodies` gives how a
-    /// body turns and the acceleration of its centre, under given forces.
+    /// body turns and the acceleration of its centre, under given forces. Returns whether the
+    /// constraints are nearly singular.
     pub(super) fn hold(
         &self,
         t: f64,
         [x, v]: [&[f64]; 2],
         bodies: impl Fn(usize, &[f64]) -> (Turning, Vector3<f64>),
         f: &mut [f64],
-    ) {
+    ) -> bool {
         if !self.is_constrained() {
-            return;
+            return false;
         }
         let motion = |i: usize, f: &[f64]| {
             let (n, w) = (self.particles(), self.inverse_masses[i]);
@@ -129,7 +177,7 @@ impl Network {
             (w, acceleration)
         };
         self.constraints
-            .add_forces(motion, |k, f| bodies(k, f).0, [x, v], f);
+            .add_forces(motion, |k, f| bodies(k, f).0, [x, v], f)
     }
 }
 

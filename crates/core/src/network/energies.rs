@@ -1,7 +1,10 @@
 //! The energy in a state of a network.
 
 use super::Network;
+use crate::contact::Obstacle;
+use crate::elements::Element;
 use crate::energy::Energy;
+use crate::path::Path;
 
 impl Network {
     /// The energy in the state (x, v) at time 0, and at all times if no obstacle moves. Drag,
@@ -37,5 +40,30 @@ impl Network {
             energy.kinetic += body.energy(&self.rotation(k, y));
         }
         energy
+    }
+
+    /// Adds the forces of wind (N) in the state (x, v) at time t (s) to f.
+    pub(crate) fn add_wind(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        for element in &self.elements {
+            if matches!(element, Element::Wind(_) | Element::Airflow(_)) {
+                element.force().add_forces(&self.at(t, x, v), f);
+            }
+        }
+    }
+
+    /// Whether the forces leave the energy as it is: nothing is damped, blows or moves by itself,
+    /// and no spring is kept short or breaks. What obstacles do is left out.
+    pub(crate) fn is_conservative(&self) -> bool {
+        let loses = |element: &Element| {
+            let force = element.force();
+            let carried = force.carried().is_some_and(|carried| carried.drag > 0.0);
+            let blows = matches!(element, Element::Wind(_) | Element::Attraction(_));
+            carried || blows || force.carried().is_none() && force.reads_velocity()
+        };
+        let mut paths = self.pins().map(|(_, path)| path);
+        !self.elements.iter().any(loses)
+            && paths.all(|path| matches!(path, Path::Still(_)))
+            && self.obstacles().iter().all(Obstacle::is_still)
+            && self.strain_limits.is_empty()
     }
 }

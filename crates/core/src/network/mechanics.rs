@@ -28,6 +28,11 @@ impl Network {
         }
     }
 
+    /// Writes all forces but those of constraints to f.
+    pub(super) fn other_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.evaluate(&self.at(t, x, v), f, &self.finish(Terms::AllForces));
+    }
+
     /// Gravity and drag together.
     pub(super) fn carried(&self) -> Carried {
         let all = self.elements.iter().filter_map(|e| e.force().carried());
@@ -158,7 +163,7 @@ impl Mechanics for Network {
     }
 
     fn forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
-        self.evaluate(&self.at(t, x, v), f, &self.finish(Terms::AllForces));
+        self.other_forces(t, x, v, f);
         self.hold_particles(t, [x, v], f);
     }
 

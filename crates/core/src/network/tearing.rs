@@ -124,17 +124,26 @@ impl Network {
         self.triangles = self.triangles.iter().filter(whole).copied().collect();
     }
 
+    /// Whether springs at x (m) are so long that they break, or lack no more than that share of
+    /// their length.
+    pub(crate) fn is_overstretched(&self, x: &[f64], share: f64) -> bool {
+        self.tear.is_some() && self.all_springs().any(|s| self.is_too_long(x, &s, share))
+    }
+
+    /// Whether a spring at x (m) is so long that it breaks, or lacks no more than that share of its
+    /// length.
+    fn is_too_long(&self, x: &[f64], s: &Spring, share: f64) -> bool {
+        let most = self.tear.unwrap_or(f64::INFINITY) * s.law.rest_length * (1.0 - share);
+        most > 0.0 && distance_squared(x, s.i, s.j) > most * most
+    }
+
     /// Breaks the springs that are too long at x (m), or lack no more than that share of their
     /// length, and those that go with them. Returns between how many pairs.
     pub fn tear(&mut self, x: &[f64], share: f64) -> usize {
-        let Some(limit) = self.tear else { return 0 };
-        let is_too_long = |s: &Spring| {
-            let most = limit * s.law.rest_length * (1.0 - share);
-            most > 0.0 && distance_squared(x, s.i, s.j) > most * most
-        };
-        if !self.all_springs().any(|s| is_too_long(&s)) {
+        if !self.is_overstretched(x, share) {
             return 0;
         }
+        let is_too_long = |s: &Spring| self.is_too_long(x, s, share);
         let springs: Vec<Spring> = self.all_springs().collect();
         let mut torn: Vec<_> = springs
             .iter()

@@ -1,36 +1,32 @@
-//! Balance of energy: what a run gains beyond the work that was done on it.
+//! Balance of energy: what a run gains beyond the work that was done on it, and how far constraints
+//! are from being met.
 //!
-//! The forces take energy from a motion or leave it as it is, unless something works on it: a pin
-//! or an obstacle that moves, wind, a hand. The power of all that together is the rate at which the
-//! energy of the exact motion grows, dE/dt = (E(t + e, y + e f) - E(t - e, y - e f)) / 2e. What a
-//! run has beyond the integral of that was made by its method, by a step that is too long.
+//! The forces take energy from a motion or leave it as it is, unless something [works](super::drive)
+//! on it: a pin or an obstacle that moves, wind, a hand. What a run has beyond that work was made by
+//! its method, by a step that is too long.
 
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
+use super::drive::{Drive, End};
+use crate::constraints::Unmet;
 use crate::contact::{Obstacle, Statistics};
-use crate::elements::Element;
 use crate::energy::Energy;
-use crate::error::Cause;
+use crate::error::{Cause, Error};
 use crate::network::Network;
-use crate::path::Path;
 use crate::scene::Model;
-use crate::system::ParticleSystem;
 
-/// Time from one look at the energy to the next (s), at least, while nothing works on the scene ...
-const REST: f64 = 0.1;
-
-/// ... and while something does.
-const DRIVEN: f64 = 1.0 / 60.0;
-
-/// Half of the time over which the power is found (s).
-const MOMENT: f64 = 1e-7;
+/// Time from one look at the energy to the next (s), at least.
+const INTERVAL: f64 = 0.1;
 
 /// Gain, in energies of the scene, from which on a run is said to gain energy.
 const NOTED: f64 = 0.5;
 
 /// Gain, in energies of the scene, from which on a run is lost.
 const LOST: f64 = 100.0;
+
+/// Error of a constraint over its length from which on a run is lost.
+const BROKEN: f64 = 0.1;
 
 /// Speed that nobody sees, in radii of the scene (1/s): rounding moves what is at rest more slowly.
 const UNSEEN: f64 = 1e-9;
@@ -41,7 +37,7 @@ pub struct Gain {
     /// The energy (J).
     pub energy: f64,
     /// The energy over that of the scene: what it began with, what its weight gives it over its own
-    /// size, and the work done on it.
+    /// size, and the work that was done on it and by it.
     pub share: f64,
 }
 
@@ -50,35 +46,54 @@ pub struct Gain {
 pub struct Balance {
     /// Time of the last look (s).
     time: f64,
-    /// Energy at the last look.
-    energy: f64,
-    /// Energy at the beginning, with what hands have changed since.
+    /// Energy at the beginning, with what hands and tears have changed since.
     begin: f64,
     /// Energy of the scene: kinetic and elastic at the beginning, its weight times its radius, and
     /// that of a motion that nobody sees.
     own: f64,
+    /// Kinetic and elastic energy at the beginning.
+    moving: f64,
     /// Largest fall of the gravitational energy, and that energy at the beginning.
     fall: f64,
     gravitational: f64,
-    /// Most work that was done on the run.
+    /// Work that was done on the run, less that which it did.
     work: f64,
-    /// Power at the last look (W).
-    power: f64,
-    /// Share of the last look's gain.
+    /// Work that was done on the run and by it.
+    turnover: f64,
+    /// Gain at the last look, and its share.
+    gain: f64,
     share: f64,
     /// Largest gain.
     most: Option<Gain>,
+    /// Number of the constraint that was farthest from being met, and its share.
+    worst: Option<(usize, f64)>,
+    /// Whether constraints were nearly singular at a look.
+    singular: bool,
+    /// Whether hands, contact or tears may have changed the energy.
+    open: bool,
 }
 
 impl Balance {
     /// Energy that the gain of a run is compared with (J).
     fn scale(&self) -> f64 {
-        self.own + self.fall + self.work
+        self.own + self.fall + self.turnover
     }
 
     /// Whether the run had gained little when it was last looked at.
     pub(super) fn is_sound(&self) -> bool {
         self.share < NOTED
+    }
+
+    /// Adds work (J) that was done on the run.
+    fn add(&mut self, work: f64) {
+        self.work += work;
+        self.turnover += work.abs();
+    }
+
+    /// Takes a change of the energy (J) by a tear as no gain.
+    pub(super) fn allow(&mut self, change: f64) {
+        self.begin += change;
+        self.open = true;
     }
 
     /// Whether the particles alone move with more energy than a run may gain. What flies through a
@@ -92,17 +107,50 @@ impl Balance {
         };
         0.5 * (0..3).map(squared).sum::<f64>() > LOST * self.scale()
     }
+
+    /// Looks at the energy of y at time t (s), with room for forces. Returns the gain by which the
+    /// run is lost.
+    fn look(
+        &mut self,
+        network: &Network,
+        (t, y): (f64, &[f64]),
+        f: &mut Vec<f64>,
+    ) -> Option<Cause> {
+        let energy = energy_of(network, t, y);
+        self.fall = self.fall.max(self.gravitational - energy.gravitational);
+        self.gain = energy.total() - self.begin - self.work;
+        (self.time, self.share) = (t, self.gain / self.scale());
+        if self.gain > 0.0 && self.most.is_none_or(|most| self.share > most.share) {
+            self.most = Some(Gain {
+                energy: self.gain,
+                share: self.share,
+            });
+        }
+        let (x, v) = network.halves(y);
+        self.singular |= network.is_nearly_singular(t, x, v, f);
+        (self.share > LOST).then(|| {
+            let (particle, speed) = fastest_particle(v);
+            Cause::Gained {
+                energy: self.gain,
+                particle,
+                speed,
+            }
+        })
+    }
 }
 
-/// Scratch of a balance, and what it is found by.
+/// What a balance is found by.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
-    /// Whether a hand has changed the run since the last look.
-    pub disturbed: bool,
+    drive: Drive,
+    /// Whether something has changed the run since its last step.
+    disturbed: bool,
     /// Radius of the scene (m).
     radius: f64,
-    /// A state, and f.
-    scratch: [Vec<f64>; 2],
+    /// Time of the beginning of the last step (s), and its work (J).
+    last: (f64, f64),
+    /// Forces (N).
+    scratch: Vec<f64>,
 }
 
 impl Watch {
@@ -112,14 +160,19 @@ impl Watch {
         let mass = network.masses().iter().sum::<f64>();
         let weight = network.gravity().map_or(0.0, |g| g.norm()) * mass;
         let unseen = 0.5 * mass * (UNSEEN * radius).powi(2);
-        (self.disturbed, self.radius) = (false, radius);
         // A step allocates nothing.
-        self.scratch = [(); 2].map(|()| vec![0.0; y.len()]);
+        *self = Self {
+            radius,
+            scratch: Vec::with_capacity(y.len() / 2),
+            ..Self::default()
+        };
+        self.drive.begin(network, t, y);
+        let moving = energy.kinetic + energy.elastic + energy.contact;
         Balance {
             time: t,
-            energy: energy.total(),
             begin: energy.total(),
-            own: energy.kinetic + energy.elastic + energy.contact + weight * radius + unseen,
+            own: moving + weight * radius + unseen,
+            moving,
             gravitational: energy.gravitational,
             ..Balance::default()
         }
@@ -128,97 +181,100 @@ impl Watch {
     /// Goes on from another state.
     pub fn resume(&mut self) {
         self.disturbed = false;
+        self.drive.forget();
     }
 
     /// Forgets what the run gained: it goes on by other steps.
     pub fn start_over(&mut self, balance: &mut Balance) {
-        (balance.most, self.disturbed) = (None, true);
+        (balance.most, balance.gain, balance.share) = (None, 0.0, 0.0);
+        (balance.worst, balance.singular) = (None, false);
+        self.disturbed = true;
+        self.drive.forget();
     }
 
-    /// Takes what hands changed since the last look as theirs.
+    /// Looks at the run at y at time t (s), where something is about to change it, on the way or
+    /// at the end of a step that ends at `end` (s).
+    pub fn disturb(&mut self, model: &Model, balance: &mut Balance, t: f64, end: f64, y: &[f64]) {
+        self.drive.forget();
+        let Some(network) = model.network().filter(|_| !self.disturbed) else {
+            return;
+        };
+        self.disturbed = true;
+        let (begin, work) = self.last;
+        if t < end && begin < end {
+            balance.work -= work * (end - t) / (end - begin);
+        }
+        balance.look(network, (t, y), &mut self.scratch);
+        balance.open = true;
+    }
+
+    /// Takes what was changed as no gain.
     pub fn forgive(&mut self, network: &Network, balance: &mut Balance, t: f64, y: &[f64]) {
         if std::mem::take(&mut self.disturbed) {
             let energy = energy_of(network, t, y).total();
-            balance.begin += energy - balance.energy;
-            (balance.time, balance.energy, balance.power) = (t, energy, 0.0);
-            balance.share = 0.0;
+            balance.begin = energy - balance.work - balance.gain;
         }
     }
 
-    /// Notes a step to y at time t (s), in which obstacles were met, and after which a particle
-    /// seems lost. Returns why the run is lost: what is far away because it fell or was thrown
-    /// there has gained nothing, and is not.
-    pub fn met(
+    /// Gets ready for a step from y at time t (s).
+    pub fn begin_step(&mut self, model: &Model, t: f64, y: &[f64]) {
+        if let Some(network) = model.network() {
+            self.drive.begin(network, t, y);
+        }
+        self.last = (t, 0.0);
+    }
+
+    /// Forgets what works on the scene: springs have torn.
+    pub fn forget_drive(&mut self) {
+        self.drive.forget();
+    }
+
+    /// Notes the end of a step in which obstacles were met, and after which a particle seems lost.
+    /// Returns why the run is lost: what is far away because it fell or was thrown there has gained
+    /// nothing, and is not.
+    pub fn end_step(
         &mut self,
         model: &Model,
         balance: &mut Balance,
-        now: (f64, &[f64]),
+        end: End,
         met: &Statistics,
         lost: Option<Cause>,
     ) -> Option<Cause> {
         let Some(network) = model.network() else {
             return lost;
         };
+        let away = matches!(lost, Some(Cause::Away { .. }));
+        if lost.is_some() && !away {
+            return lost;
+        }
+        let End { t, y, .. } = end;
+        let mut work = self.drive.work(network, end);
         let impulse = met.impulse.max(met.guarded.impulse);
         if impulse > 0.0 {
             // Most of the work that obstacles did.
-            let speed = |obstacle: &Obstacle| fastest(obstacle, now.0, self.radius);
+            let speed = |obstacle: &Obstacle| fastest(obstacle, t, self.radius);
             let speeds = network.obstacles().iter().map(speed);
-            balance.work += impulse * speeds.fold(0.0, f64::max);
+            work += impulse * speeds.fold(0.0, f64::max);
+            balance.open = true;
         }
-        match lost {
-            Some(Cause::Away { .. }) => {
-                self.look(network, balance, now, true);
-                lost.filter(|_| !balance.is_sound())
-            }
-            Some(_) => lost,
-            None => self.look(network, balance, now, false),
+        balance.add(work);
+        self.last.1 = work;
+        let worst = network.worst_constraint(network.halves(y).0, self.radius);
+        if let Some(unmet) = worst
+            && balance.worst.is_none_or(|(_, share)| unmet.share > share)
+        {
+            balance.worst = Some((unmet.number, unmet.share));
         }
-    }
-
-    /// Looks at the energy of y at time t (s), if it is time to, or at once. Returns the gain by
-    /// which the run is lost.
-    fn look(
-        &mut self,
-        network: &Network,
-        balance: &mut Balance,
-        (t, y): (f64, &[f64]),
-        at_once: bool,
-    ) -> Option<Cause> {
-        let driven = is_driven(network);
-        let since = t - balance.time;
-        let early = !at_once && since < if driven { DRIVEN } else { REST };
-        if early && !(network.contact_layer().is_some() && balance.is_exceeded(network, y)) {
-            return None;
-        }
-        let energy = energy_of(network, t, y);
-        let power = if driven {
-            power(network, t, y, &mut self.scratch).max(0.0)
+        let early = t - balance.time < INTERVAL && !away;
+        let exceeded = || network.contact_layer().is_some() && balance.is_exceeded(network, y);
+        let gained = if early && !exceeded() {
+            None
         } else {
-            0.0
+            balance.look(network, (t, y), &mut self.scratch)
         };
-        balance.work += 0.5 * (balance.power + power) * since;
-        balance.fall = balance
-            .fall
-            .max(balance.gravitational - energy.gravitational);
-        (balance.time, balance.energy, balance.power) = (t, energy.total(), power);
-        let gain = balance.energy - balance.begin - balance.work;
-        let share = gain / balance.scale();
-        balance.share = share;
-        if gain > 0.0 && balance.most.is_none_or(|most| share > most.share) {
-            balance.most = Some(Gain {
-                energy: gain,
-                share,
-            });
-        }
-        (share > LOST).then(|| {
-            let (particle, speed) = fastest_particle(network.halves(y).1);
-            Cause::Gained {
-                energy: gain,
-                particle,
-                speed,
-            }
-        })
+        let broken = worst.filter(|unmet| unmet.share > BROKEN).map(Cause::Unmet);
+        let lost = lost.filter(|_| !balance.is_sound());
+        broken.or(lost).or(gained)
     }
 }
 
@@ -231,11 +287,71 @@ impl Simulation {
         }
     }
 
+    /// Balance at the end of the last step.
+    fn balance_now(&self) -> (Balance, Option<Cause>) {
+        let mut balance = self.state.balance;
+        let lost = self
+            .model
+            .network()
+            .and_then(|network| balance.look(network, self.last_end(), &mut vec![]));
+        (balance, lost)
+    }
+
+    /// Looks at the energy at the end of a run: a run that is shorter than the time between two
+    /// looks may be lost too, and one that is lost since the last look.
+    ///
+    /// # Errors
+    /// The run blew up, now or earlier.
+    pub fn conclude(&mut self) -> Result<(), Error> {
+        if let Some(blow_up) = self.blow_up {
+            return Err(blow_up.into());
+        }
+        match self.balance_now().1 {
+            Some(cause) => self.lose(cause, self.last_end().0),
+            None => Ok(()),
+        }
+    }
+
     /// Energy that the method put into the run, if it is more than the scene has of its own: the
     /// step is too long.
     #[must_use]
     pub fn gained(&self) -> Option<Gain> {
-        self.state.balance.most.filter(|gain| gain.share > NOTED)
+        self.balance_now().0.most.filter(|gain| gain.share > NOTED)
+    }
+
+    /// Energy that the run has gained or, below 0, lost since the beginning, over the kinetic,
+    /// elastic and gravitational energy that its motion has had. `None` if the forces do not keep
+    /// the energy, if contact, tears or hands may have changed it, or if nothing moves.
+    #[must_use]
+    pub fn energy_change(&self) -> Option<f64> {
+        let conserves = |network: &&Network| network.is_conservative();
+        self.model.network().filter(conserves)?;
+        let balance = self.balance_now().0;
+        let motion = balance.moving + balance.fall;
+        let moves = motion > UNSEEN * balance.own;
+        let energy = balance.gain + balance.work;
+        (moves && !balance.open).then_some(energy / motion)
+    }
+
+    /// The constraint that was farthest from being met at the end of a step, with its largest
+    /// error.
+    #[must_use]
+    pub fn worst_constraint(&self) -> Option<Unmet> {
+        let (number, share) = self.state.balance.worst?;
+        let constraints = self.model.network()?.constraints();
+        let constraint = *constraints.get(number)?;
+        Some(Unmet {
+            number,
+            constraint,
+            share,
+        })
+    }
+
+    /// Whether constraints were so nearly singular that bounded forces could not hold them exactly,
+    /// as a chain that is stretched straight between two pins.
+    #[must_use]
+    pub fn was_nearly_singular(&self) -> bool {
+        self.balance_now().0.singular
     }
 }
 
@@ -261,23 +377,9 @@ fn fastest_particle(v: &[f64]) -> (usize, f64) {
         .unwrap_or_default()
 }
 
-/// Whether something may work on a network, beside obstacles that particles meet.
-fn is_driven(network: &Network) -> bool {
-    let moves = |path: &Path| !matches!(path, Path::Still(_));
-    let touches = network.contact_layer().is_some();
-    let mut obstacles = network.obstacles().iter().filter(|_| touches);
-    network.wind().is_some()
-        || network.pins().any(|(_, path)| moves(&path))
-        || network
-            .elements()
-            .iter()
-            .any(|element| matches!(element, Element::Attraction(_)))
-        || obstacles.any(|obstacle| moves(&obstacle.path) || obstacle.turn.is_some())
-}
-
 /// Energy of y at time t (s), without that of the motion of pins, which is given and may begin at
 /// once.
-fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
+pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
     let (_, v) = network.halves(y);
     let (n, masses) = (network.particles(), network.masses());
     let mut energy = network.energy_of(t, y);
@@ -286,15 +388,4 @@ fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
         energy.kinetic -= 0.5 * masses[i] * squared;
     }
     energy
-}
-
-/// Rate at which the energy of the exact motion grows at y at time t (W).
-fn power(network: &Network, t: f64, y: &[f64], [state, f]: &mut [Vec<f64>; 2]) -> f64 {
-    network.eval_f(t, y, f);
-    let mut at = |moment: f64| {
-        state.clear();
-        state.extend(y.iter().zip(&*f).map(|(y, f)| y + moment * f));
-        energy_of(network, t + moment, state).total()
-    };
-    (at(MOMENT) - at(-MOMENT)) / (2.0 * MOMENT)
 }

@@ -47,20 +47,30 @@ impl Simulation {
     /// shape.
     pub(super) fn judge(&mut self, cause: Option<Cause>, time: f64) -> Result<(), Error> {
         self.state.steps += 1;
-        let Some(cause) = cause else { return Ok(()) };
-        let blow_up = BlowUp {
+        cause.map_or(Ok(()), |cause| self.lose(cause, time))
+    }
+
+    /// Ends the run, which was lost by `time` (s), and goes back to the last state in shape.
+    pub(super) fn lose(&mut self, cause: Cause, time: f64) -> Result<(), Error> {
+        let mut blow_up = BlowUp {
             method: self.state.method.title,
             control: self.state.control,
             step: self.state.steps,
             time,
             cause,
         };
-        self.blow_up = Some(blow_up);
         if let Some(good) = self.good.take() {
             let result = self.go_back(&good);
             self.good = Some(good);
             result?;
         }
+        // Constraints that contradict one another are lost in many ways.
+        if let Some(network) = self.model.network() {
+            let (x, _) = network.halves(&self.state.y);
+            let contradiction = network.contradiction(time, x, self.radius);
+            blow_up.cause = contradiction.map_or(cause, Cause::Contradiction);
+        }
+        self.blow_up = Some(blow_up);
         Err(blow_up.into())
     }
 

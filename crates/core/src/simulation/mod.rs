@@ -3,6 +3,7 @@
 mod balance;
 mod blow_up;
 mod checkpoint;
+mod drive;
 mod events;
 mod hands;
 mod phases;

@@ -7,7 +7,9 @@
 //! at the first event within it, and whether it is taken again, shorter ([`share_of_retry`]).
 
 use super::Simulation;
+use super::balance::energy_of;
 use super::blow_up::blow_up_by;
+use super::drive::End;
 use super::events::{Event, EventKind, Searched};
 use super::phases::Settled;
 use super::stepper::Kind;
@@ -50,6 +52,7 @@ impl Simulation {
         let target = whole.map(|h| self.state.since + (self.state.taken + 1) as f64 * h);
         loop {
             self.list_strained();
+            self.watch.begin_step(&self.model, begin, &self.state.y);
             let (cause, part) = match self.integrate_and_settle(begin, target)? {
                 Err(cause) => (Some(cause), Part::of(begin, whole.unwrap_or(0.0))),
                 Ok((part, settled)) => (self.watch_step(part.end, &settled), part),
@@ -235,10 +238,17 @@ impl Simulation {
     /// Notes the end of a step at time t (s). Returns why the run is lost, if it is.
     fn watch_step(&mut self, t: f64, settled: &Settled) -> Option<Cause> {
         let lost = self.lost(&self.state.y);
-        let (state, now) = (&mut self.state, t);
-        let (balance, y) = (&mut state.balance, &state.y[..]);
+        let state = &mut self.state;
+        let (balance, y, order) = (&mut state.balance, &state.y[..], state.method.order);
+        let end = End { order, t, y };
         self.watch
-            .met(&self.model, balance, (now, y), &settled.met, lost)
+            .end_step(&self.model, balance, end, &settled.met, lost)
+    }
+
+    /// Time (s) and state at the end of the last step.
+    pub(super) fn last_end(&self) -> (f64, &[f64]) {
+        let within = self.stepper.within.end();
+        within.unwrap_or_else(|| (self.state.time(), &self.state.y))
     }
 
     /// Lists the springs that are limited again, if springs or pins have changed.
@@ -248,15 +258,22 @@ impl Simulation {
         }
     }
 
-    /// Breaks what is stretched too far at the end of a step, or was located to be there. The run is
-    /// there: a state that is shown within the step still has what breaks at its end.
+    /// Breaks what is stretched too far at the end of a step, or was located to be there: that
+    /// changes the energy. The run is there: a state that is shown within the step still has what
+    /// breaks at its end.
     pub(super) fn tear(&mut self) {
         let locates = self.stepper.is_adaptive() || self.locates;
-        let share = if locates { NONE } else { 0.0 };
+        let (share, t) = (if locates { NONE } else { 0.0 }, self.state.end());
+        let y = &self.state.y;
         if let Model::Network(network) = &mut self.model
-            && network.tear(network.halves(&self.state.y).0, share) > 0
+            && network.is_overstretched(network.halves(y).0, share)
         {
-            self.look_again();
+            let before = energy_of(network, t, y).total();
+            network.tear(network.halves(y).0, share);
+            let after = energy_of(network, t, y).total();
+            self.state.balance.allow(after - before);
+            self.watch.forget_drive();
+            self.stepper.forget();
             self.refit();
         }
     }

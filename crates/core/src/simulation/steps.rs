@@ -123,8 +123,9 @@ impl Simulation {
     /// Ends the step at the time shown, before the state or the system changes there: an adaptive
     /// step by its polynomial, and a fixed one by a shorter step, whose end is as stable.
     pub(super) fn look_again(&mut self) {
+        let time = self.time();
+        let end = self.stepper.within.until().unwrap_or(time);
         if let Some([begin, _]) = self.stepper.within.times() {
-            let time = self.time();
             if !self.stepper.is_adaptive() {
                 self.shorten_step(begin, time);
             }
@@ -132,7 +133,8 @@ impl Simulation {
         }
         self.state.shown = None;
         self.stepper.forget();
-        self.watch.disturbed = true;
+        let (balance, y) = (&mut self.state.balance, &self.state.y[..]);
+        self.watch.disturb(&self.model, balance, time, end, y);
     }
 
     /// Takes the step that began at time t (s) again, to the time shown. A state that is read off

@@ -35,6 +35,11 @@ impl Within {
         self.times.map(|times| times[1])
     }
 
+    /// Time (s) and state at the end of the step, if the time shown is within one.
+    pub fn end(&self) -> Option<(f64, &[f64])> {
+        self.times.map(|times| (times[1], &self.ends[1][..]))
+    }
+
     /// Times of the step (s).
     pub fn times(&self) -> Option<[f64; 2]> {
         self.times

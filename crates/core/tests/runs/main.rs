@@ -4,6 +4,7 @@
 mod common;
 
 mod balance;
+mod broken;
 mod checkpoint;
 mod default_cloth;
 mod hands;
@@ -14,3 +15,4 @@ mod simulation;
 mod strain;
 mod tuning;
 mod turning;
+mod work;

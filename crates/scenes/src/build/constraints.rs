@@ -1,10 +1,37 @@
 //! Rods and wires.
 
-use a3_core::{Constraint, Network, Vector3};
+use a3_core::{Constraint, Network, Scene, Vector3};
 
 use crate::check::{at, key_of};
 use crate::description::{ConstraintSpec, Description};
 use crate::fault::Fault;
+
+/// Largest error of a constraint at the start, over its length.
+const MET: f64 = 1e-3;
+
+/// `Ok` if the scene begins with its constraints met.
+pub(super) fn check(description: &Description, scene: &Scene) -> Result<(), Fault> {
+    let network = scene.model.network();
+    let (_, radius) = scene.extent();
+    let worst = network
+        .and_then(|network| network.worst_constraint(network.halves(&scene.state).0, radius));
+    let Some((network, unmet)) = network.zip(worst.filter(|unmet| unmet.share > MET)) else {
+        return Ok(());
+    };
+    // The rods of chains come first.
+    let count = description.constraint.len();
+    let rods = network.constraints().len() - count;
+    let (key, number) = match unmet.number.checked_sub(rods) {
+        Some(k) => (key_of("constraint", k, count), format!("constraint {k}, ")),
+        None => ("chain".into(), String::new()),
+    };
+    let why = format!(
+        "{number}{} is off by {:.3} % at the start, and a scene has to begin with its constraints met",
+        unmet.constraint,
+        100.0 * unmet.share
+    );
+    Err(Fault::new(key, why))
+}
 
 /// Adds the constraints of the description. The state gives the lengths of rods that have none.
 pub(super) fn add(

@@ -120,6 +120,10 @@ impl Description {
         let mut scene = Scene::new(self.name.clone().unwrap_or_default(), model, state);
         scene.limits.max_step = self.max_step;
         scene.touch = touch;
+        // A state that is given goes on from a run, which tells its own errors.
+        if self.state.is_none() {
+            constraints::check(self, &scene)?;
+        }
         let presentation = Presentation {
             viewpoint: self.viewpoint(&scene)?,
             surface,

@@ -236,3 +236,60 @@ strain_limit = 1.5
     let said = said(&tearing);
     assert!(said.contains("never break at 1.25 times"), "{said}");
 }
+
+/// A scene whose constraints are not met at the start is refused with the number of one of them.
+#[test]
+fn constraints_are_met_at_the_start() {
+    let build = |text: &str| {
+        let setup = Description::parse(text)
+            .unwrap()
+            .build(None, &mut |_| unreachable!());
+        setup.map(drop)
+    };
+    let particles = "[particles]\npositions = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\nmass = 1\n";
+    let rods = |length: f64| {
+        format!(
+            "{particles}[[constraint]]\nrod = [0, 1]\n[[constraint]]\nrod = [1, 2]\nlength = {length}\n"
+        )
+    };
+    build(&rods(1.0)).unwrap();
+    build(&rods(1.0005)).unwrap();
+    let refused = build(&rods(1.05)).unwrap_err();
+    assert_eq!(refused.key, "constraint.1");
+    assert!(
+        refused
+            .why
+            .starts_with("constraint 1, the rod between particles 1 and 2, is off by 4.762 %"),
+        "{refused}"
+    );
+    for (wire, name) in [
+        ("point = [0, 0.5, 0]", "point"),
+        (
+            "line = { point = [0, 0.5, 0], direction = [1, 0, 0] }",
+            "line",
+        ),
+        (
+            "circle = { center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }",
+            "circle",
+        ),
+        ("sphere = { center = [0, 0, 0], radius = 1 }", "sphere"),
+    ] {
+        let refused = build(&format!(
+            "{particles}[[constraint]]\nparticle = 0\n{wire}\n"
+        ));
+        let why = refused.unwrap_err().why;
+        assert!(
+            why.starts_with(&format!(
+                "constraint 0, the {name} of particle 0, is off by"
+            )),
+            "{why}"
+        );
+    }
+    // A ball of 10 cm cannot hang half a metre from its middle.
+    let hung = "[[body]]\nparts = [{ ball = 0.1 }]\nmass = 1\n\
+        [[constraint]]\nparticle = 1\npoint = [0, 0.5, 0]\n";
+    assert!(build(hung).is_err());
+    // What goes on from a run tells its own errors.
+    let state = "[state]\npositions = [[0, 0, 0], [1, 0, 0], [2.05, 0, 0]]\n";
+    build(&format!("{}{state}", rods(1.0))).unwrap();
+}

@@ -1,0 +1,189 @@
+//! How far constraints are from being met, and whether they can be met at all.
+
+use std::fmt;
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use super::{Constraint, Constraints, Moved, Row, Scratch, vector};
+use crate::random::SplitMix;
+
+/// Largest number of Newton's steps towards positions that meet all constraints.
+const MAX_ITERATIONS: usize = 100;
+
+/// Share up to which a constraint counts as met by such positions, and from which on it cannot be
+/// met if no step leads nearer.
+const MET: f64 = 1e-9;
+const NOT_MET: f64 = 1e-6;
+
+/// Largest displacement of Newton's method in one step, over the shortest length of a constraint.
+const MAX_DISPLACEMENT: f64 = 0.3;
+
+/// Displacement, over that length, of particles from places where Newton's method stays: what lies
+/// on a straight line knows of no way out of it.
+const JITTER: f64 = 1e-2;
+
+/// Share from which on an error is seen, and worth a warning.
+const VISIBLE: f64 = 0.01;
+
+/// Constraint that is not met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unmet {
+    /// Number of the constraint, counted from 0.
+    pub number: usize,
+    /// The constraint.
+    pub constraint: Constraint,
+    /// Error over the length of a rod, over the radius of a circle or of a sphere, or over the
+    /// radius of the scene.
+    pub share: f64,
+}
+
+impl Unmet {
+    /// Whether the error is large enough to be seen: 1 % or more.
+    #[must_use]
+    pub fn is_visible(&self) -> bool {
+        self.share >= VISIBLE
+    }
+}
+
+impl fmt::Display for Constraint {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Point { particle, .. } => write!(f, "the point of particle {particle}"),
+            Self::Line { particle, .. } => write!(f, "the line of particle {particle}"),
+            Self::Circle { particle, .. } => write!(f, "the circle of particle {particle}"),
+            Self::Sphere { particle, .. } => write!(f, "the sphere of particle {particle}"),
+            Self::Rod { i, j, .. } => write!(f, "the rod between particles {i} and {j}"),
+        }
+    }
+}
+
+impl fmt::Display for Unmet {
+    /// The number and the name of the constraint.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "constraint {}, {}", self.number, self.constraint)
+    }
+}
+
+impl Constraint {
+    /// Its own length (m), if it has one.
+    fn length(&self) -> Option<f64> {
+        match *self {
+            Self::Rod { length, .. } => Some(length),
+            Self::Circle { radius, .. } | Self::Sphere { radius, .. } => Some(radius),
+            Self::Point { .. } | Self::Line { .. } => None,
+        }
+    }
+}
+
+impl Constraints {
+    /// The constraint that is farthest from being met at x, in a scene of that radius (m).
+    pub fn worst(&self, x: &[f64], radius: f64) -> Option<Unmet> {
+        let mut worst: Option<Unmet> = None;
+        for (number, &constraint) in self.all.iter().enumerate() {
+            let length = constraint.length().unwrap_or(radius);
+            let mut error = 0.0_f64;
+            constraint.equations(self.relative(number, x), Vector3::zeros(), |equation| {
+                error = error.max(equation.value.abs());
+            });
+            let share = error / length;
+            if worst.is_none_or(|worst| share > worst.share) {
+                worst = Some(Unmet {
+                    number,
+                    constraint,
+                    share,
+                });
+            }
+        }
+        worst
+    }
+
+    /// A constraint that is not met by any positions near x (m), where particles without inverse
+    /// mass stay, if there is one. `None` too where constraints hold rigid bodies.
+    pub fn contradiction(
+        &self,
+        inverse_masses: &[f64],
+        x: &mut [f64],
+        radius: f64,
+    ) -> Option<Unmet> {
+        if !self.rotations.is_empty() {
+            return None;
+        }
+        let left = self.approach(inverse_masses, x, radius)?;
+        let mut random = SplitMix(1);
+        let shortest = self.shortest(radius);
+        for (k, x) in x.iter_mut().enumerate() {
+            if inverse_masses[k % inverse_masses.len()] > 0.0 {
+                *x += JITTER * shortest * random.between(-1.0, 1.0);
+            }
+        }
+        self.approach(inverse_masses, x, radius).map(|_| left)
+    }
+
+    /// The shortest length of a constraint (m).
+    fn shortest(&self, radius: f64) -> f64 {
+        let lengths = self.all.iter().map(|c| c.length().unwrap_or(radius));
+        lengths.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Moves x towards positions that meet all constraints, by Newton's method with the smallest
+    /// displacement, weighted by the masses. Returns the worst constraint if it does not get there.
+    fn approach(&self, inverse_masses: &[f64], x: &mut [f64], radius: f64) -> Option<Unmet> {
+        let most = MAX_DISPLACEMENT * self.shortest(radius);
+        let mut scratch = Scratch::default();
+        for _ in 0..MAX_ITERATIONS {
+            let worst = self.worst(x, radius)?;
+            // Written so that NaN ends it.
+            if !(worst.share > MET) {
+                return None;
+            }
+            self.displace(inverse_masses, x, &mut scratch);
+            let (moves, n) = (&scratch.vectors, inverse_masses.len());
+            let longest = moves.iter().map(Vector3::norm).fold(0.0, f64::max);
+            let scale = (most / longest).min(1.0);
+            for (moved, step) in self.moved.iter().zip(moves) {
+                if let Moved::Particle(i) = *moved {
+                    for axis in 0..3 {
+                        x[axis * n + i] += scale * step[axis];
+                    }
+                }
+            }
+        }
+        self.worst(x, radius).filter(|worst| worst.share > NOT_MET)
+    }
+
+    /// Writes the displacements (m) of a step of Newton's method at x to the vectors of the
+    /// scratch.
+    fn displace(&self, inverse_masses: &[f64], x: &[f64], scratch: &mut Scratch) {
+        scratch.clear();
+        for moved in &self.moved {
+            let weight = match *moved {
+                Moved::Particle(i) => inverse_masses[i],
+                Moved::Nothing | Moved::Body(_) => 0.0,
+            };
+            scratch.weights.push(Vector3::repeat(weight));
+            scratch.vectors.push(Vector3::zeros());
+        }
+        scratch.rows.clear();
+        for (number, constraint) in self.all.iter().enumerate() {
+            let [first, second] = self.ends[number];
+            let relative = self.relative(number, x);
+            constraint.equations(relative, Vector3::zeros(), |equation| {
+                let mut row = Row::default();
+                row.add(first.place, equation.gradient);
+                row.add(second.place, -equation.gradient);
+                row.want(-equation.value, &scratch.weights);
+                scratch.rows.push(row);
+            });
+        }
+        scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
+        scratch.spread();
+    }
+
+    /// The place of the first particle of a constraint, relative to its second one if it has one.
+    pub(super) fn relative(&self, number: usize, x: &[f64]) -> Vector3<f64> {
+        let (first, second) = self.all[number].ends();
+        let from = second.map_or_else(Vector3::zeros, |j| vector(x, j));
+        vector(x, first) - from
+    }
+}

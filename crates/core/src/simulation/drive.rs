@@ -1,0 +1,342 @@
+//! Work on a scene: by pins that move, wind, constraints and obstacles.
+//!
+//! A pin works against the springs at its particle and against gravity. Its power is integrated over
+//! each step: by Simpson's rule, with the state in the middle from the Hermite polynomial, where the
+//! method has an order above 2, and by the trapezoidal rule elsewhere. The force F of wind changes
+//! slowly: its work is F . dx over short times, whatever particles do meanwhile. Where more than
+//! that works on a scene, the power of all together is the rate at which the energy of the exact
+//! motion grows, dE/dt = (E(t + e, y + e f) - E(t - e, y - e f)) / 2e.
+
+use nalgebra::Vector3;
+
+use super::balance::energy_of;
+use crate::contact::Obstacle;
+use crate::elements::Element;
+use crate::network::Network;
+use crate::path::Path;
+use crate::spring::Spring;
+use crate::system::{Mechanics, ParticleSystem};
+
+/// Time (s) after which wind, and all that works together, is looked at again, where a look at each
+/// step would take too long ...
+const INTERVAL: f64 = 1.0 / 60.0;
+
+/// ... because there are more particles than this.
+const FEW: usize = 200;
+
+/// Half of the time over which the power of all together is found (s).
+const MOMENT: f64 = 1e-7;
+
+/// Order above which a method's steps are long, and Simpson's rule is needed.
+const LOW_ORDER: u32 = 2;
+
+/// End of a step.
+#[derive(Clone, Copy)]
+pub(super) struct End<'a> {
+    /// Order of the method.
+    pub order: u32,
+    /// Time (s).
+    pub t: f64,
+    /// State.
+    pub y: &'a [f64],
+}
+
+/// All that works on a scene.
+#[derive(Debug, Default)]
+pub(super) struct Drive {
+    /// Whether the parts are those of the network and the state as they are.
+    is_fresh: bool,
+    pins: Option<Pins>,
+    wind: Option<Breeze>,
+    all: Option<All>,
+}
+
+impl Drive {
+    /// Gets ready for a step from y at time t (s), if it is not.
+    pub fn begin(&mut self, network: &Network, t: f64, y: &[f64]) {
+        if std::mem::replace(&mut self.is_fresh, true) {
+            return;
+        }
+        (self.pins, self.wind, self.all) = (None, None, None);
+        if works_together(network) {
+            self.all = Some(All::new(network, t, y));
+        } else {
+            let moving = network.pins().any(|(_, path)| moves(&path));
+            self.pins = moving.then(|| Pins::new(network, t, y));
+            self.wind = network.wind().map(|_| Breeze::new(network, t, y));
+        }
+    }
+
+    /// Forgets the scene: the network or the state is no longer the same.
+    pub fn forget(&mut self) {
+        self.is_fresh = false;
+    }
+
+    /// Work (J) up to the end of a step since the last one that was found.
+    pub fn work(&mut self, network: &Network, end: End) -> f64 {
+        let pins = self.pins.as_mut().map(|pins| pins.work(network, end));
+        let wind = self.wind.as_mut().map(|wind| wind.work(network, end));
+        let all = self.all.as_mut().map(|all| all.work(network, end));
+        [pins, wind, all].into_iter().flatten().sum()
+    }
+}
+
+/// Whether a path moves.
+fn moves(path: &Path) -> bool {
+    !matches!(path, Path::Still(_))
+}
+
+/// Whether more works on a scene than pins at springs and wind.
+fn works_together(network: &Network) -> bool {
+    let has = |is: fn(&Element) -> bool| network.elements().iter().any(is);
+    let pinned = network.pins().any(|(_, path)| moves(&path));
+    let pushed = !network.obstacles().iter().all(Obstacle::is_still);
+    !network.constraints().is_empty()
+        || has(|e| matches!(e, Element::Attraction(_)))
+        || network.contact_layer().is_some() && pushed
+        || !network.bodies().is_empty() && (pinned || network.wind().is_some())
+        || pinned
+            && has(|e| {
+                matches!(
+                    e,
+                    Element::Solid(_) | Element::BucklingSprings(_) | Element::Fluid(_)
+                )
+            })
+}
+
+/// Work of moving pins on springs.
+#[derive(Debug)]
+struct Pins {
+    /// The moving pins and their masses (kg): the first of the particles.
+    paths: Vec<(Path, f64)>,
+    /// Those particles, and then those at the other ends of their springs.
+    particles: Vec<usize>,
+    /// The springs, whose ends are numbers among these particles.
+    springs: Vec<Spring>,
+    /// Time (s), state of the particles, [x | v], and power (W) at the end of the last step.
+    t: f64,
+    y: Vec<f64>,
+    power: f64,
+    /// States of the particles.
+    scratch: [Vec<f64>; 2],
+}
+
+impl Pins {
+    fn new(network: &Network, t: f64, y: &[f64]) -> Self {
+        let (masses, moving) = (network.masses(), |p: &(usize, Path)| moves(&p.1));
+        let moving: Vec<_> = network.pins().filter(moving).collect();
+        let mut particles: Vec<_> = moving.iter().map(|(i, _)| *i).collect();
+        let mut places = vec![usize::MAX; masses.len()];
+        for (k, i) in particles.iter().enumerate() {
+            places[*i] = k;
+        }
+        let mut springs = vec![];
+        for spring in network.springs() {
+            let is_moved = |i: usize| places[i] < moving.len();
+            if is_moved(spring.i) || is_moved(spring.j) {
+                let [i, j] = [spring.i, spring.j].map(|i| {
+                    if places[i] == usize::MAX {
+                        places[i] = particles.len();
+                        particles.push(i);
+                    }
+                    places[i]
+                });
+                springs.push(Spring { i, j, ..spring });
+            }
+        }
+        let paths = moving.into_iter().map(|(i, path)| (path, masses[i]));
+        let mut pins = Self {
+            paths: paths.collect(),
+            particles,
+            springs,
+            t,
+            y: vec![],
+            power: 0.0,
+            scratch: [vec![], vec![]],
+        };
+        let mut own = vec![];
+        pins.gather(y, &mut own);
+        pins.power = pins.power_at(network, &own);
+        pins.scratch = [(); 2].map(|()| Vec::with_capacity(own.len()));
+        pins.y = own;
+        pins
+    }
+
+    /// Writes the state of the particles, of that of all.
+    fn gather(&self, y: &[f64], own: &mut Vec<f64>) {
+        own.clear();
+        let n = y.len() / 6;
+        // The rotations of bodies come last, and have none of the first places.
+        for column in y.chunks_exact(n.max(1)).take(6) {
+            own.extend(self.particles.iter().map(|i| column[*i]));
+        }
+    }
+
+    fn work(&mut self, network: &Network, end: End) -> f64 {
+        let [mut middle, mut own] = std::mem::take(&mut self.scratch);
+        self.gather(end.y, &mut own);
+        let power = self.power_at(network, &own);
+        let h = end.t - self.t;
+        let mut mean = 0.5 * (self.power + power);
+        if end.order > LOW_ORDER {
+            write_middle(&self.y, &own, h, &mut middle);
+            let n = self.particles.len();
+            for (k, (path, _)) in self.paths.iter().enumerate() {
+                let place = path.at(self.t + 0.5 * h);
+                for axis in 0..3 {
+                    middle[axis * n + k] = place.position[axis];
+                    middle[(3 + axis) * n + k] = place.velocity[axis];
+                }
+            }
+            mean = (2.0 * mean + 4.0 * self.power_at(network, &middle)) / 6.0;
+        }
+        (self.t, self.power) = (end.t, power);
+        std::mem::swap(&mut self.y, &mut own);
+        self.scratch = [middle, own];
+        mean * h
+    }
+
+    /// Power (W) of the pins where the particles have that state.
+    fn power_at(&self, network: &Network, y: &[f64]) -> f64 {
+        let (n, pins) = (self.particles.len(), self.paths.len());
+        let row = |i: usize, first: usize| {
+            let first = first * n + i;
+            Vector3::new(y[first], y[first + n], y[first + 2 * n])
+        };
+        let mut power = 0.0;
+        for Spring { i, j, law, .. } in &self.springs {
+            let (d, v) = (row(*i, 0) - row(*j, 0), [row(*i, 3), row(*j, 3)]);
+            let length = d.norm();
+            if length > 0.0 {
+                let along = d / length;
+                let rate = along.dot(&(v[0] - v[1]));
+                let pull = law.stiffness * (length - law.rest_length) + law.damping * rate;
+                if *i < pins {
+                    power += pull * along.dot(&v[0]);
+                }
+                if *j < pins {
+                    power -= pull * along.dot(&v[1]);
+                }
+            }
+        }
+        if let Some(g) = network.gravity() {
+            let weights = self.paths.iter().enumerate();
+            power -= weights
+                .map(|(k, (_, m))| m * g.dot(&row(k, 3)))
+                .sum::<f64>();
+        }
+        power
+    }
+}
+
+/// Work of wind.
+#[derive(Debug)]
+struct Breeze {
+    /// Time (s), positions (m) and forces (N) at the last look.
+    t: f64,
+    x: Vec<f64>,
+    f: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+impl Breeze {
+    fn new(network: &Network, t: f64, y: &[f64]) -> Self {
+        let (x, v) = network.halves(y);
+        let mut f = vec![0.0; x.len()];
+        network.add_wind(t, x, v, &mut f);
+        let (x, scratch) = (x.to_vec(), vec![0.0; f.len()]);
+        Self { t, x, f, scratch }
+    }
+
+    fn work(&mut self, network: &Network, End { t, y, .. }: End) -> f64 {
+        let few = network.particles() <= FEW;
+        if !few && t - self.t < INTERVAL {
+            return 0.0;
+        }
+        let (x, v) = network.halves(y);
+        let (free, n) = (network.inverse_masses(), network.particles());
+        self.scratch.fill(0.0);
+        network.add_wind(t, x, v, &mut self.scratch);
+        let mut work = 0.0;
+        for (k, (x1, x0)) in x.iter().zip(&self.x).enumerate() {
+            if free[k % n] > 0.0 {
+                work += 0.5 * (self.f[k] + self.scratch[k]) * (x1 - x0);
+            }
+        }
+        self.t = t;
+        self.x.copy_from_slice(x);
+        std::mem::swap(&mut self.f, &mut self.scratch);
+        work
+    }
+}
+
+/// Work of all together.
+#[derive(Debug)]
+struct All {
+    /// Time (s) and power (W) at the last look, and the state, where it is needed.
+    t: f64,
+    power: f64,
+    y: Vec<f64>,
+    /// States, and f.
+    scratch: [Vec<f64>; 3],
+}
+
+impl All {
+    fn new(network: &Network, t: f64, y: &[f64]) -> Self {
+        let mut all = Self {
+            t,
+            power: 0.0,
+            y: y.to_vec(),
+            scratch: [(); 3].map(|()| vec![0.0; y.len()]),
+        };
+        all.power = all.power_at(network, t, y);
+        all
+    }
+
+    fn work(&mut self, network: &Network, end: End) -> f64 {
+        let h = end.t - self.t;
+        let few = network.particles() <= FEW;
+        if !few && h < INTERVAL {
+            return 0.0;
+        }
+        let before = self.power;
+        let after = self.power_at(network, end.t, end.y);
+        let mut mean = 0.5 * (before + after);
+        if !few {
+            // What happens between these looks must not be taken for a gain.
+            mean = 0.5 * (before.max(0.0) + after.max(0.0));
+        } else if end.order > LOW_ORDER && network.bodies().is_empty() {
+            let mut middle = std::mem::take(&mut self.scratch[2]);
+            let t = self.t + 0.5 * h;
+            write_middle(&self.y, end.y, h, &mut middle);
+            network.hold(t, &mut middle);
+            mean = (2.0 * mean + 4.0 * self.power_at(network, t, &middle)) / 6.0;
+            self.scratch[2] = middle;
+        }
+        (self.t, self.power) = (end.t, after);
+        self.y.copy_from_slice(end.y);
+        mean * h
+    }
+
+    /// Rate (W) at which the energy of the exact motion grows at y at time t (s).
+    fn power_at(&mut self, network: &Network, t: f64, y: &[f64]) -> f64 {
+        let [state, f, _] = &mut self.scratch;
+        network.eval_f(t, y, f);
+        let mut at = |moment: f64| {
+            state.clear();
+            state.extend(y.iter().zip(&*f).map(|(y, f)| y + moment * f));
+            energy_of(network, t + moment, state).total()
+        };
+        (at(MOMENT) - at(-MOMENT)) / (2.0 * MOMENT)
+    }
+}
+
+/// Writes the state [x | v] in the middle of a step of h (s) from y0 to y1, by the Hermite
+/// polynomial of x.
+fn write_middle(y0: &[f64], y1: &[f64], h: f64, out: &mut Vec<f64>) {
+    let half = y0.len() / 2;
+    let ([x0, v0], [x1, v1]) = ([&y0[..half], &y0[half..]], [&y1[..half], &y1[half..]]);
+    out.clear();
+    out.extend((0..half).map(|k| 0.5 * (x0[k] + x1[k]) + 0.125 * h * (v0[k] - v1[k])));
+    out.extend((0..half).map(|k| 1.5 * (x1[k] - x0[k]) / h - 0.25 * (v0[k] + v1[k])));
+}

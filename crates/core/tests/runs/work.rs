@@ -1,0 +1,231 @@
+//! Work on a run is integrated over each step, whatever drives it and however often it is looked at.
+
+use a3_core::{Cause, Control, Error, Simulation};
+
+use super::common::{described, method};
+
+/// Random numbers from 0 to 1.
+struct Random(u64);
+
+impl Random {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        let unit = (self.0 >> 11) as f64 / (1u64 << 53) as f64;
+        low + (high - low) * unit
+    }
+}
+
+/// A mass (1 kg) on a spring of 1 m at rest, whose other end moves as a sin(w t + phase).
+#[derive(Clone, Copy, Debug)]
+struct Shaken {
+    stiffness: f64,
+    damping: f64,
+    amplitude: f64,
+    rate: f64,
+    phase: f64,
+}
+
+impl Shaken {
+    fn random(random: &mut Random) -> Self {
+        let stiffness = 10f64.powf(random.between(1.0, 5.0));
+        let own = f64::sqrt(stiffness);
+        Self {
+            stiffness,
+            damping: random.between(0.0, 0.2) * own,
+            amplitude: random.between(0.001, 0.05),
+            rate: own * random.between(0.2, 3.0),
+            phase: random.between(0.0, 6.0),
+        }
+    }
+
+    fn scene(&self) -> String {
+        let Self {
+            stiffness,
+            damping,
+            amplitude,
+            rate,
+            phase,
+        } = self;
+        let begin = amplitude * phase.sin();
+        format!(
+            "[particles]\npositions = [[0, 0, 0], [{}, 0, 0]]\nmass = 1\n\
+             springs = [[0, 1, {stiffness}, 1, {damping}]]\n[[pin]]\nparticles = [0]\n\
+             sine = {{ center = [0, 0, 0], amplitude = [{amplitude}, 0, 0], rate = {rate}, phase = {phase} }}\n",
+            1.0 + begin
+        )
+    }
+
+    /// Work of the pin until then (s): a few lines of the classical Runge-Kutta method on the
+    /// distance of the mass from its place at rest, its velocity and the work.
+    fn work(&self, until: f64) -> f64 {
+        let f = |t: f64, [u, v, _]: [f64; 3]| {
+            let (sine, cosine) = (self.rate * t + self.phase).sin_cos();
+            let (p, speed) = (self.amplitude * sine, self.amplitude * self.rate * cosine);
+            let pull = self.stiffness * (u - p) + self.damping * (v - speed);
+            [v, -pull, -pull * speed]
+        };
+        let fastest = self.rate.max(self.stiffness.sqrt());
+        let count = (until * fastest * 200.0).ceil();
+        let h = until / count;
+        let mut y = [self.amplitude * self.phase.sin(), 0.0, 0.0];
+        for k in 0..count as usize {
+            let t = k as f64 * h;
+            let add = |a: [f64; 3], s: f64| [0, 1, 2].map(|i| y[i] + s * a[i]);
+            let a = f(t, y);
+            let b = f(t + 0.5 * h, add(a, 0.5 * h));
+            let c = f(t + 0.5 * h, add(b, 0.5 * h));
+            let d = f(t + h, add(c, h));
+            y = [0, 1, 2].map(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+        }
+        y[2]
+    }
+}
+
+/// A number of the balance of a run (J).
+fn balance(run: &Simulation, key: &str) -> f64 {
+    let balance = serde_json::to_value(run.moment().run.balance).unwrap();
+    balance[key].as_f64().unwrap()
+}
+
+#[test]
+fn work_of_pins_is_that_of_the_exact_motion() {
+    let mut random = Random(36);
+    for _ in 0..20 {
+        let shaken = Shaken::random(&mut random);
+        let own = shaken.stiffness.sqrt().max(shaken.rate);
+        let until = 60.0 / own;
+        let expected = shaken.work(until);
+        for (name, control, within) in [
+            ("rk4", Control::Step(0.1 / own), 1e-3),
+            ("pefrl", Control::Step(0.1 / own), 1e-3),
+            ("dop853", Control::Tolerance(1e-8), 1e-2),
+            ("dopri5", Control::Tolerance(1e-6), 1e-2),
+            ("verlet", Control::Step(0.02 / own), 2e-2),
+            ("implicit-midpoint", Control::Step(0.02 / own), 2e-2),
+        ] {
+            let Some(method) = a3_core::integrators::find(name) else {
+                panic!("no method {name}")
+            };
+            if method.positions_only && shaken.damping > 0.0 {
+                continue;
+            }
+            let scene = described(&shaken.scene());
+            let mut run = Simulation::new(scene, method, control).unwrap();
+            run.advance_to(until).unwrap();
+            let (work, turnover) = (balance(&run, "work"), balance(&run, "turnover"));
+            // A step may reach past the end.
+            let past = shaken.work(run.time()) - expected;
+            let off = (work - expected - past).abs() / turnover;
+            assert!(off < within, "{name} on {shaken:?}: {off}");
+            assert_eq!(run.gained(), None, "{name} on {shaken:?}");
+        }
+    }
+}
+
+#[test]
+fn how_often_one_looks_changes_no_work() {
+    let shaken = Shaken::random(&mut Random(7));
+    for (name, control) in [
+        ("verlet", Control::Step(0.001)),
+        ("dopri5", Control::Tolerance(1e-5)),
+    ] {
+        let [once, often] = [1, 97].map(|frames| {
+            let scene = described(&shaken.scene());
+            let mut run = Simulation::new(scene, method(name), control).unwrap();
+            for k in 1..=frames {
+                run.advance_to(0.5 * f64::from(k) / f64::from(frames))
+                    .unwrap();
+            }
+            ["work", "turnover", "gain"].map(|key| balance(&run, key).to_bits())
+        });
+        assert_eq!(once, often, "{name}");
+    }
+}
+
+/// A shaker at 60 Hz, which sixty looks a second always find in the same phase.
+#[test]
+fn a_shaker_is_not_accused() {
+    let shaker = "[particles]\npositions = [[0, 0, 0], [1, 0, 0]]\nmass = 1\n\
+        springs = [[0, 1, 142122.3, 1, 4]]\n[[pin]]\nparticles = [0]\n\
+        sine = { amplitude = [0.001, 0, 0], rate = 376.99111843, phase = 1.5707963 }\n";
+    for (name, control) in [
+        ("rk4", Control::Step(1.0 / 6000.0)),
+        ("dop853", Control::Tolerance(1e-8)),
+        ("verlet", Control::Step(1.0 / 6000.0)),
+        ("implicit", Control::Step(1.0 / 6000.0)),
+    ] {
+        let mut run = Simulation::new(described(shaker), method(name), control).unwrap();
+        run.advance_to(2.0).unwrap();
+        run.conclude().unwrap();
+        assert_eq!(run.gained(), None, "{name}");
+    }
+    // A step past the limit is still found.
+    let mut run = Simulation::new(described(shaker), method("rk4"), Control::Step(0.0078)).unwrap();
+    let end = run.advance_to(2.0).and_then(|()| run.conclude());
+    assert!(end.is_err() || run.gained().is_some());
+}
+
+#[test]
+fn a_sheet_that_is_blown_away_is_not_accused() {
+    for wind in [
+        "[wind]\non = true\nforce_per_mass = [30, 0, 5]\n",
+        "[wind]\non = true\nvelocity = [20, 3, 0]\nair_density = 1.2\n",
+    ] {
+        let sheet = format!(
+            "[[cloth]]\ngrid = [16, 16]\nwidth = 1\nmass = 0.001\nstiffness = [40, 20, 1]\n{wind}"
+        );
+        let Ok(description) = a3_scenes::Description::parse(&sheet) else {
+            continue;
+        };
+        let scene = description
+            .build(None, &mut |_| unreachable!())
+            .unwrap()
+            .scene;
+        for (name, control) in [
+            ("rk4", Control::Step(0.002)),
+            ("verlet", Control::Step(0.002)),
+            ("dopri5", Control::Tolerance(1e-4)),
+            ("implicit", Control::Step(0.01)),
+        ] {
+            let mut run = Simulation::new(scene.clone(), method(name), control).unwrap();
+            let end = run.advance_to(3.0).and_then(|()| run.conclude());
+            if let Err(Error::BlowUp(lost)) = end {
+                panic!("{name}: {lost}");
+            }
+            assert_eq!(run.gained(), None, "{name}");
+        }
+    }
+}
+
+/// Energy that a step which is too long makes between two tears is no part of the tears' own.
+#[test]
+fn tears_forgive_their_own_change_only() {
+    let tear = include_str!("../../../../docs/scenes/tear.toml");
+    let run = |h: f64| {
+        let mut run = Simulation::new(described(tear), method("rk4"), Control::Step(h)).unwrap();
+        let end = run.advance_to(4.0).and_then(|()| run.conclude());
+        end.is_err() || run.gained().is_some()
+    };
+    assert!(run(0.005));
+    assert!(!run(0.002));
+}
+
+/// Springs that stretch a thousandfold within 0.06 s, in a scene of 5 mm.
+#[test]
+fn a_run_shorter_than_a_look_is_looked_at() {
+    let short = "gravity = [0, -9.81, 0]\n[[chain]]\nparticles = 6\nfrom = [0, 0, 0]\n\
+        to = [0.005, 0, 0]\nmass = 1e-6\nstiffness = 0.2\npin = [{ at = [\"first\"] }]\n";
+    let mut run = Simulation::new(described(short), method("v"), Control::Step(0.0028)).unwrap();
+    let end = run.advance_to(0.06).and_then(|()| run.conclude());
+    let Err(Error::BlowUp(lost)) = end else {
+        panic!("it went on");
+    };
+    assert!(
+        matches!(lost.cause, Cause::Gained { .. } | Cause::Away { .. }),
+        "{lost}"
+    );
+    assert_eq!(run.conclude(), Err(lost.into()));
+}
