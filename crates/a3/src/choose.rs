@@ -7,7 +7,9 @@ use a3_core::stability::spectrum;
 use a3_core::{Control, Method, Scene};
 
 use crate::chart::measure::{precision, reference, time, words};
-use crate::chart::{check_contact, describe, look_ahead, methods, metric, scope, unit};
+use crate::chart::{
+    check_contact, check_motion, describe, look_ahead, methods, metric, scope, unit,
+};
 use crate::cli::{Choose, What};
 use crate::failure::Failure;
 use crate::progress::Bar;
@@ -30,6 +32,7 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
     let bar = Bar::new(methods as f64);
     bar.say("looking ahead  ".into());
     let horizon = look_ahead(&scene, options.until, 1.0, &bar)?.ok_or_else(stopped)?;
+    check_motion(&scene, &horizon)?;
     let until = horizon.until;
     bar.say("reference  ".into());
     let precision = match options.error {

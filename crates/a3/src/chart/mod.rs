@@ -45,6 +45,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
         let Some(found) = look_ahead(&scene, options.until, factor, &bar)? else {
             continue;
         };
+        check_motion(&scene, &found)?;
         until = Some(until.map_or(found.until, |until: f64| until.min(found.until)));
         studies.push((factor, scene, found.motion));
     }
@@ -131,6 +132,18 @@ pub fn methods(scene: &Scene, asked: &[&'static Method]) -> Result<Vec<&'static 
         }
     }
     Ok(methods)
+}
+
+/// Refuses a scene in which nothing moves.
+pub fn check_motion(scene: &Scene, horizon: &Horizon) -> Result<(), Failure> {
+    if horizon.motion > 0.0 {
+        return Ok(());
+    }
+    Err(Failure::usage(format!(
+        "nothing moves in {} within {} s, so there are no errors to measure: give something a velocity or a force, or \
+         ask for a longer --until",
+        scene.name, horizon.until
+    )))
 }
 
 /// Refuses a metric of contact whose error is 0 for a run in which nothing moves: then there is no

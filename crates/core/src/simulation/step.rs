@@ -200,8 +200,8 @@ impl Simulation {
     /// to it within a step.
     fn shallow(&self) -> f64 {
         let relative = self.state.control.tolerance().unwrap_or(0.0);
-        let tolerance = self.scene.tolerance(relative);
-        let absolute = tolerance.map_or(0.0, |tolerance| tolerance.absolute);
+        let absolute = self.scene.limits.absolute;
+        let absolute = absolute.unwrap_or(relative * self.radius);
         absolute.min(MAX_PENETRATION * self.radius)
     }
 
