@@ -30,6 +30,7 @@ mod repulsion;
 mod resolve;
 mod solids;
 mod strain;
+mod strike;
 mod surface;
 #[cfg(test)]
 mod tests;

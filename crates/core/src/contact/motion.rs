@@ -9,6 +9,7 @@ use super::advance::time_of_impact;
 use super::candidates::{Candidates, Stretch};
 use super::impulses::Impulses;
 use super::listing::Candidate;
+use super::rebound::Course;
 use super::solids::{Field, Solid};
 use super::surface::Surface;
 use crate::geometry::{PairKind, closest};
@@ -60,7 +61,7 @@ pub(super) struct Motion {
     pub x0: Vec<Vector3<f64>>,
     /// Displacements.
     pub moves: Field,
-    /// Velocities at its beginning, where friction acts.
+    /// Velocities at its beginning, where friction acts or bodies are rigid or elastic.
     pub v0: Field,
     /// Velocities at its end.
     pub v: Field,
@@ -109,6 +110,16 @@ impl Motion {
             self.v0.add_solid(before);
             self.v.add_solid(after);
         }
+    }
+
+    /// Velocity of vertex i at a share of a step of h (s): that of the cubic through both ends.
+    pub fn velocity(&self, i: usize, share: f64, h: f64) -> Vector3<f64> {
+        Course {
+            x: [Vector3::zeros(), self.moves[i]],
+            v: [self.v0[i], self.v[i]],
+            h,
+        }
+        .velocity(share)
     }
 
     /// Takes the points of rigid body k to where its rotation has them at the end of the step.

@@ -158,6 +158,32 @@ impl Solid {
         change.turned += self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
     }
 
+    /// The angular velocity (rad/s) and the inverse of the inertia (1/(kg m2)) at a time `left` (s)
+    /// before the end of the step, that is after a share of it, where its angular velocity at the
+    /// end is `spin`.
+    pub fn at(&self, spin: Vector3<f64>, share: f64, left: f64) -> (Vector3<f64>, Matrix3<f64>) {
+        let back = UnitQuaternion::new_unchecked(turn(spin * -left));
+        let back = back.to_rotation_matrix().into_inner();
+        let inverse_inertia = back * self.inverse_inertia * back.transpose();
+        let momentum = self.ends[0].momentum.lerp(&(self.inertia * spin), share);
+        (inverse_inertia * momentum, inverse_inertia)
+    }
+
+    /// Changes the motion of this body, which is number k, by an impulse (N s) at the end of a lever
+    /// (m), times a span, but for its points, which [`settle`](Self::settle) moves.
+    pub fn push_at(
+        &self,
+        k: usize,
+        lever: Vector3<f64>,
+        impulse: Vector3<f64>,
+        span: f64,
+        field: &mut Field,
+    ) {
+        let change = &mut field.changes[k];
+        change.along += impulse * (span * self.inverse_mass);
+        change.turned += self.inverse_inertia * lever.cross(&impulse) * span;
+    }
+
     /// Gives the points of this body, which is number k, what impulses changed of it. Returns
     /// whether they did.
     pub fn settle(&self, k: usize, field: &mut Field) -> bool {
