@@ -220,6 +220,7 @@ fn push(
         return;
     };
     let friction = surface.law(candidate.kind, &candidate.points).skin.friction;
+    let turning = motion.turning(surface, candidate);
     let Motion {
         moves,
         v,
@@ -239,6 +240,18 @@ fn push(
     guarded.impulse += by_speed.norm().max(by_move.norm() / h);
     for i in candidate.points {
         moved[i as usize] |= inverse_masses[i as usize] > 0.0;
+    }
+    // Displacements are stopped apart from velocities: what that changes of the angular momentum
+    // of both, their spins give back.
+    if let Some(before) = turning
+        && let Some(after) = motion.turning(surface, candidate)
+    {
+        let count = contact.solids().count() as f64;
+        for k in contact.solids() {
+            let change = motion.solids[k].spun((before - after) / count);
+            motion.v.turns[k] += change;
+            motion.solids[k].spin_points(change, &mut motion.v);
+        }
     }
     for k in contact.solids() {
         motion.bend(k);

@@ -122,6 +122,31 @@ impl Motion {
         .velocity(share)
     }
 
+    /// Angular momentum (kg m2/s), at the end of the step, of what a pair moves, if a side is a
+    /// rigid body and nothing is led.
+    pub fn turning(&self, surface: &Surface, pair: &Candidate) -> Option<Vector3<f64>> {
+        let bodies = pair.points.map(|i| surface.solid(i));
+        let first = bodies.into_iter().flatten().next()?;
+        let about = self.x0[self.solids[first].center];
+        let mut sum = Vector3::zeros();
+        for (number, (i, body)) in pair.points.into_iter().zip(bodies).enumerate() {
+            if self.is_led(surface, i) {
+                return None;
+            }
+            // The points of a body are its own, and count once.
+            if body.is_some() && bodies[..number].contains(&body) {
+                continue;
+            }
+            let i = body.map_or(i as usize, |k| self.solids[k].center);
+            let state = (self.x0[i] + self.moves[i], self.v[i]);
+            sum += match body {
+                Some(k) => self.solids[k].turning(state, self.v.turns[k], about),
+                None => (state.0 - about).cross(&(state.1 / self.inverse_masses[i])),
+            };
+        }
+        Some(sum)
+    }
+
     /// Takes the points of rigid body k to where its rotation has them at the end of the step.
     /// Impulses move them across their levers, which is right to first order.
     pub fn bend(&mut self, k: usize) {

@@ -31,8 +31,12 @@ use crate::geometry::{PairKind, closest, weighted};
 const CROSSED: f64 = 0.05;
 
 /// Share of its energy that a pair without restitution would keep because its force changes over a
-/// range of speeds: by quadrature, for the range of a tenth.
-const TURNED: f64 = 0.018;
+/// range of speeds: by quadrature, for one and for four points of a body.
+const TURNED: f64 = 0.035;
+
+/// Speed of a rigid or elastic pair, over that which the repulsion stops, at which half of the
+/// repulsion is left: what is much too fast for it is left to impulses, which are exact.
+const FAST: f64 = 8.0;
 
 /// Step of the difference quotient of a force, as a share of the thickness.
 const DIFFERENCE: f64 = 1e-5;
@@ -111,26 +115,35 @@ impl Pair {
     /// Damping at a share of the thickness and a rate of the gap (m/s): its factor of the force, and
     /// the derivative of that.
     fn damping(&self, share: f64, rate: f64) -> (f64, f64) {
+        let (Skin { damping: c, .. }, r) = (self.law.skin, self.law.skin.damping * rate);
+        let (lost, size) = self.loss(share);
+        let root = (size + r * r).sqrt();
+        let (factor, slope) = (1.0 - lost * r / root, -lost * c * size / (root * root * root));
+        if self.law.stopped.is_infinite() {
+            return (factor, slope);
+        }
+        let speed = rate / (FAST * self.law.stopped);
+        let squared = speed * speed;
+        let felt = 1.0 / (1.0 + squared * squared);
+        let fades = -4.0 * squared * speed * felt * felt / (FAST * self.law.stopped);
+        (factor * felt, slope * felt + factor * fades)
+    }
+
+    /// Share q of the force by which damping changes it at most, and the square of the rate at which
+    /// it changes, over that at which damping counts fully.
+    fn loss(&self, share: f64) -> (f64, f64) {
         let Skin {
-            damping: c,
             restitution,
             stiffness,
             thickness,
             ..
         } = self.law.skin;
-        let r = c * rate;
-        if restitution > 0.0 {
-            let size = 4.0 * self.potential(share) / (stiffness * thickness * thickness);
-            let squared = ((restitution * restitution - TURNED) / (1.0 - TURNED)).max(0.0);
-            let lost = (1.0 - squared) / (1.0 + squared);
-            let root = (size + r * r).sqrt();
-            return (
-                1.0 - lost * r / root,
-                -lost * c * size / (root * root * root),
-            );
+        if restitution == 0.0 {
+            return (1.0, 1.0);
         }
-        let root = (1.0 + r * r).sqrt();
-        (1.0 - r / root, -c / (root * root * root))
+        let squared = ((restitution * restitution - TURNED) / (1.0 - TURNED)).max(0.0);
+        let size = 4.0 * self.potential(share) / (stiffness * thickness * thickness);
+        ((1.0 - squared) / (1.0 + squared), size)
     }
 
     /// Factor of the potential of two edges, and its derivatives by the vectors along them.

@@ -184,6 +184,29 @@ impl Solid {
         change.turned += self.inverse_inertia * lever.cross(&impulse) * span;
     }
 
+    /// Angular momentum (kg m2/s) of the body about a point (m) at the end of the step, with its
+    /// centre at x (m).
+    pub fn turning(
+        &self,
+        (x, v): (Vector3<f64>, Vector3<f64>),
+        spin: Vector3<f64>,
+        about: Vector3<f64>,
+    ) -> Vector3<f64> {
+        (x - about).cross(&(v / self.inverse_mass)) + self.inertia * spin
+    }
+
+    /// Angular velocity (rad/s) that an angular momentum (kg m2/s) gives the body.
+    pub fn spun(&self, momentum: Vector3<f64>) -> Vector3<f64> {
+        self.inverse_inertia * momentum
+    }
+
+    /// Changes the velocities of the points by an angular velocity (rad/s).
+    pub fn spin_points(&self, spin: Vector3<f64>, field: &mut Field) {
+        for (i, lever) in self.points.clone().zip(&self.arms) {
+            field.points[i] += spin.cross(lever);
+        }
+    }
+
     /// Gives the points of this body, which is number k, what impulses changed of it. Returns
     /// whether they did.
     pub fn settle(&self, k: usize, field: &mut Field) -> bool {

@@ -32,7 +32,7 @@ pub struct Skin {
     pub friction: f64,
     /// Coefficient e of restitution, from 0 to 1. With one above 0, it takes the place of damping.
     pub restitution: f64,
-    /// Mass with which a point of it meets others (kg), if there is a restitution.
+    /// Mass with which a point of it meets others (kg), if it is rigid or has a restitution.
     pub mass: f64,
 }
 
@@ -56,6 +56,9 @@ pub(super) struct Law {
     pub skin: Skin,
     /// Sum of the radii of round obstacles and bodies, which count as solid (m).
     pub radius: f64,
+    /// Speed of an approach that the repulsion stops where the gap is 0 (m/s), if a side is rigid
+    /// or elastic.
+    pub stopped: f64,
 }
 
 impl Law {
@@ -285,13 +288,18 @@ impl Surface {
             restitution: a.restitution.max(b.restitution),
             mass: 1.0 / (a.mass.recip() + b.mass.recip()),
         };
+        // The speed at which the repulsion alone stops a body where the gap is 0.
+        let stopped = if self.is_sharp_pair(kind, points) {
+            skin.thickness * (skin.stiffness / (2.0 * skin.mass)).sqrt()
+        } else {
+            f64::INFINITY
+        };
         if skin.restitution > 0.0 {
-            // The speed at which the repulsion stops a body where the gap is 0.
-            let stopped = skin.thickness * (skin.stiffness / (2.0 * skin.mass)).sqrt();
             skin.damping = 1.0 / (TURN * stopped);
         }
         Law {
             skin,
+            stopped,
             radius: self.radii(kind, points),
         }
     }
