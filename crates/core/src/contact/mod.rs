@@ -19,6 +19,7 @@ mod cut;
 mod exact;
 mod friction;
 mod guard;
+mod hits;
 mod impulses;
 mod items;
 mod layer;

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::path::Pose;
+
 /// Halvings of a step that locate a touch.
 const HALVINGS: usize = 52;
 
@@ -60,6 +62,34 @@ pub(super) fn first_inside(is_inside: impl Fn(f64) -> bool) -> Option<f64> {
         }
     }
     Some(after)
+}
+
+/// Change of a particle's velocity by a rebound (m/s), and what is left of the step then (s).
+pub(super) struct Rebound {
+    pub change: Vector3<f64>,
+    pub left: f64,
+}
+
+/// Velocity of a point of an obstacle, seen from its place, in a pose.
+pub(super) fn velocity(pose: &Pose, point: Vector3<f64>) -> Vector3<f64> {
+    let along = pose.place.velocity;
+    let turned = pose.orientation;
+    turned.map_or(along, |turned| along + turned.spin.cross(&point))
+}
+
+/// Part of a vector at right angles to a unit normal.
+pub(super) fn across(a: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
+    a - normal * a.dot(&normal)
+}
+
+pub(super) fn vector(a: &[f64], n: usize, i: usize) -> Vector3<f64> {
+    Vector3::new(a[i], a[n + i], a[2 * n + i])
+}
+
+pub(super) fn set(a: &mut [f64], n: usize, i: usize, to: Vector3<f64>) {
+    for axis in 0..3 {
+        a[axis * n + i] = to[axis];
+    }
 }
 
 #[cfg(test)]

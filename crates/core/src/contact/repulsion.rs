@@ -118,7 +118,10 @@ impl Pair {
         let (Skin { damping: c, .. }, r) = (self.law.skin, self.law.skin.damping * rate);
         let (lost, size) = self.loss(share);
         let root = (size + r * r).sqrt();
-        let (factor, slope) = (1.0 - lost * r / root, -lost * c * size / (root * root * root));
+        let (factor, slope) = (
+            1.0 - lost * r / root,
+            -lost * c * size / (root * root * root),
+        );
         if self.law.stopped.is_infinite() {
             return (factor, slope);
         }

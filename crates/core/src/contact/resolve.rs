@@ -9,7 +9,7 @@ use super::impulses::Impulses;
 use super::layer::ContactLayer;
 use super::motion::Guarded;
 use super::obstacle::Obstacle;
-use super::rebound::{Course, first_inside, rebound_speed};
+use super::rebound::{Course, Rebound, across, first_inside, rebound_speed, set, vector, velocity};
 use crate::geometry::Shape;
 use crate::geometry::nearest::{Nearest, of_box, of_capsule, of_floor, of_sphere};
 use crate::path::Pose;
@@ -389,33 +389,5 @@ impl Met<'_> {
     fn kept(&self, slip: Vector3<f64>, normal: f64) -> f64 {
         let (slip, most) = (slip.norm(), self.friction * normal);
         if slip > most { 1.0 - most / slip } else { 0.0 }
-    }
-}
-
-/// Change of a particle's velocity by a rebound (m/s), and what is left of the step then (s).
-struct Rebound {
-    change: Vector3<f64>,
-    left: f64,
-}
-
-/// Velocity of a point of an obstacle, seen from its place, in a pose.
-fn velocity(pose: &Pose, point: Vector3<f64>) -> Vector3<f64> {
-    let along = pose.place.velocity;
-    let turned = pose.orientation;
-    turned.map_or(along, |turned| along + turned.spin.cross(&point))
-}
-
-/// Part of a vector at right angles to a unit normal.
-fn across(a: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
-    a - normal * a.dot(&normal)
-}
-
-fn vector(a: &[f64], n: usize, i: usize) -> Vector3<f64> {
-    Vector3::new(a[i], a[n + i], a[2 * n + i])
-}
-
-fn set(a: &mut [f64], n: usize, i: usize, to: Vector3<f64>) {
-    for axis in 0..3 {
-        a[axis * n + i] = to[axis];
     }
 }
