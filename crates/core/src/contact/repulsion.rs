@@ -13,8 +13,9 @@
 //! ```
 //!
 //! 1 + q for an approach and 1 - q for a parting, whose ratio is e2: what enters with the speed u
-//! leaves with e u, however deep it comes, and also where an impact with restitution e turns it. F, F' and F'' are zero where the force
-//! begins, so that methods of order four keep their order.
+//! leaves with e u, however deep it comes, and also where an impact with restitution e turns it.
+//! F, F' and F'' are zero where the force begins, so that methods of order four keep their order.
+//! Rigid and elastic pairs that are much too fast for the force hardly feel it.
 //!
 //! Closest points of parallel edges jump, so the potential of two edges is multiplied by a function
 //! of their angle that is 1 but for nearly parallel ones, and 0 for parallel ones (Li et al.,
@@ -112,8 +113,8 @@ impl Pair {
             }
     }
 
-    /// Damping at a share of the thickness and a rate of the gap (m/s): its factor of the force, and
-    /// the derivative of that.
+    /// Damping at a share of the thickness and a rate of the gap (m/s): its factor of the force,
+    /// and the derivative of that.
     fn damping(&self, share: f64, rate: f64) -> (f64, f64) {
         let (Skin { damping: c, .. }, r) = (self.law.skin, self.law.skin.damping * rate);
         let (lost, size) = self.loss(share);
@@ -132,8 +133,8 @@ impl Pair {
         (factor * felt, slope * felt + factor * fades)
     }
 
-    /// Share q of the force by which damping changes it at most, and the square of the rate at which
-    /// it changes, over that at which damping counts fully.
+    /// Share q of the force by which damping changes it at most, and the square of the rate at
+    /// which it changes, over that at which damping counts fully.
     fn loss(&self, share: f64) -> (f64, f64) {
         let Skin {
             restitution,

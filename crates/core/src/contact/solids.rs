@@ -169,8 +169,8 @@ impl Solid {
         (inverse_inertia * momentum, inverse_inertia)
     }
 
-    /// Changes the motion of this body, which is number k, by an impulse (N s) at the end of a lever
-    /// (m), times a span, but for its points, which [`settle`](Self::settle) moves.
+    /// Changes the motion of this body, which is number k, by an impulse (N s) at the end of a
+    /// lever (m), times a span, but for its points, which [`settle`](Self::settle) moves.
     pub fn push_at(
         &self,
         k: usize,
