@@ -1,7 +1,8 @@
 //! Guard after a step: no two primitives pass through one another.
 //!
 //! Vertices move in straight lines from the state at the beginning of the step to that at its end.
-//! Friction holds pairs that the contact force keeps apart. Then pairs that would come too near get
+//! Friction holds pairs that the contact force keeps apart. Rigid and elastic bodies have their
+//! [impacts](super::strike). Then pairs that would still come too near get
 //! inelastic impulses with Coulomb friction, in canonical order and in several passes (Bridson,
 //! Fedkiw, Anderson, *Robust treatment of collisions, contact and friction for cloth animation*,
 //! 2002). What is left after them is [cut](super::cut).
@@ -13,6 +14,7 @@ use super::impulses::Impulses;
 use super::layer::{ContactLayer, Scratch};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
+use super::strike::strike;
 use super::surface::Surface;
 use crate::geometry::{Closest, closest};
 use crate::rigid::ROTATION;
@@ -80,7 +82,7 @@ impl ContactLayer {
             &y1[half..2 * half],
             &mut motion.v.points,
         );
-        if surface.is_rough() {
+        if surface.is_rough() || surface.is_sharp() {
             surface.speeds(
                 self.obstacles(),
                 t,
@@ -95,6 +97,9 @@ impl ContactLayer {
         let mut guarded = Guarded::default();
         motion.cover(surface, candidates);
         let mut changed = rub(surface, h, candidates, motion, &mut guarded);
+        if surface.is_sharp() {
+            changed |= strike(surface, h, candidates, motion, &mut guarded);
+        }
         let mut rounds = 0;
         while !push_apart(surface, h, candidates, motion, &mut guarded, &mut changed) {
             match cuts.cut(surface, candidates, motion) {
@@ -168,7 +173,7 @@ fn write_back(motion: &Motion, n: usize, y0: &[f64], y1: &mut [f64]) {
 
 /// The pairs that come too near, with the share of the step at which they do: all, or those of
 /// which a vertex has moved.
-fn find(
+pub(super) fn find(
     surface: &Surface,
     candidates: &Candidates,
     motion: &Motion,
@@ -215,6 +220,7 @@ fn push(
         return;
     };
     let friction = surface.law(candidate.kind, &candidate.points).skin.friction;
+    let turning = motion.turning(surface, candidate);
     let Motion {
         moves,
         v,
@@ -234,6 +240,18 @@ fn push(
     guarded.impulse += by_speed.norm().max(by_move.norm() / h);
     for i in candidate.points {
         moved[i as usize] |= inverse_masses[i as usize] > 0.0;
+    }
+    // Displacements are stopped apart from velocities: what that changes of the angular momentum
+    // of both, their spins give back.
+    if let Some(before) = turning
+        && let Some(after) = motion.turning(surface, candidate)
+    {
+        let count = contact.solids().count() as f64;
+        for k in contact.solids() {
+            let change = motion.solids[k].spun((before - after) / count);
+            motion.v.turns[k] += change;
+            motion.solids[k].spin_points(change, &mut motion.v);
+        }
     }
     for k in contact.solids() {
         motion.bend(k);

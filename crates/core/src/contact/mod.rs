@@ -20,6 +20,7 @@ mod cut;
 mod exact;
 mod friction;
 mod guard;
+mod hits;
 mod impulses;
 mod items;
 mod layer;
@@ -32,6 +33,7 @@ mod repulsion;
 mod resolve;
 mod solids;
 mod strain;
+mod strike;
 mod surface;
 #[cfg(test)]
 mod tests;

@@ -9,6 +9,7 @@ use super::advance::{are_apart, time_of_impact};
 use super::candidates::{Candidates, Stretch};
 use super::impulses::Impulses;
 use super::listing::Candidate;
+use super::rebound::Course;
 use super::solids::{Field, Solid};
 use super::surface::Surface;
 use crate::geometry::closest;
@@ -60,7 +61,7 @@ pub(super) struct Motion {
     pub x0: Vec<Vector3<f64>>,
     /// Displacements.
     pub moves: Field,
-    /// Velocities at its beginning, where friction acts.
+    /// Velocities at its beginning, where friction acts or bodies are rigid or elastic.
     pub v0: Field,
     /// Velocities at its end.
     pub v: Field,
@@ -109,6 +110,41 @@ impl Motion {
             self.v0.add_solid(before);
             self.v.add_solid(after);
         }
+    }
+
+    /// Velocity of vertex i at a share of a step of h (s): that of the cubic through both ends.
+    pub fn velocity(&self, i: usize, share: f64, h: f64) -> Vector3<f64> {
+        Course {
+            x: [Vector3::zeros(), self.moves[i]],
+            v: [self.v0[i], self.v[i]],
+            h,
+        }
+        .velocity(share)
+    }
+
+    /// Angular momentum (kg m2/s), at the end of the step, of what a pair moves, if a side is a
+    /// rigid body and nothing is led.
+    pub fn turning(&self, surface: &Surface, pair: &Candidate) -> Option<Vector3<f64>> {
+        let bodies = pair.points.map(|i| surface.solid(i));
+        let first = bodies.into_iter().flatten().next()?;
+        let about = self.x0[self.solids[first].center];
+        let mut sum = Vector3::zeros();
+        for (number, (i, body)) in pair.points.into_iter().zip(bodies).enumerate() {
+            if self.is_led(surface, i) {
+                return None;
+            }
+            // The points of a body are its own, and count once.
+            if body.is_some() && bodies[..number].contains(&body) {
+                continue;
+            }
+            let i = body.map_or(i as usize, |k| self.solids[k].center);
+            let state = (self.x0[i] + self.moves[i], self.v[i]);
+            sum += match body {
+                Some(k) => self.solids[k].turning(state, self.v.turns[k], about),
+                None => (state.0 - about).cross(&(state.1 / self.inverse_masses[i])),
+            };
+        }
+        Some(sum)
     }
 
     /// Takes the points of rigid body k to where its rotation has them at the end of the step.

@@ -158,6 +158,55 @@ impl Solid {
         change.turned += self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
     }
 
+    /// The angular velocity (rad/s) and the inverse of the inertia (1/(kg m2)) at a time `left` (s)
+    /// before the end of the step, that is after a share of it, where its angular velocity at the
+    /// end is `spin`.
+    pub fn at(&self, spin: Vector3<f64>, share: f64, left: f64) -> (Vector3<f64>, Matrix3<f64>) {
+        let back = UnitQuaternion::new_unchecked(turn(spin * -left));
+        let back = back.to_rotation_matrix().into_inner();
+        let inverse_inertia = back * self.inverse_inertia * back.transpose();
+        let momentum = self.ends[0].momentum.lerp(&(self.inertia * spin), share);
+        (inverse_inertia * momentum, inverse_inertia)
+    }
+
+    /// Changes the motion of this body, which is number k, by an impulse (N s) at the end of a
+    /// lever (m), times a span, but for its points, which [`settle`](Self::settle) moves.
+    pub fn push_at(
+        &self,
+        k: usize,
+        lever: Vector3<f64>,
+        impulse: Vector3<f64>,
+        span: f64,
+        field: &mut Field,
+    ) {
+        let change = &mut field.changes[k];
+        change.along += impulse * (span * self.inverse_mass);
+        change.turned += self.inverse_inertia * lever.cross(&impulse) * span;
+    }
+
+    /// Angular momentum (kg m2/s) of the body about a point (m) at the end of the step, with its
+    /// centre at x (m).
+    pub fn turning(
+        &self,
+        (x, v): (Vector3<f64>, Vector3<f64>),
+        spin: Vector3<f64>,
+        about: Vector3<f64>,
+    ) -> Vector3<f64> {
+        (x - about).cross(&(v / self.inverse_mass)) + self.inertia * spin
+    }
+
+    /// Angular velocity (rad/s) that an angular momentum (kg m2/s) gives the body.
+    pub fn spun(&self, momentum: Vector3<f64>) -> Vector3<f64> {
+        self.inverse_inertia * momentum
+    }
+
+    /// Changes the velocities of the points by an angular velocity (rad/s).
+    pub fn spin_points(&self, spin: Vector3<f64>, field: &mut Field) {
+        for (i, lever) in self.points.clone().zip(&self.arms) {
+            field.points[i] += spin.cross(lever);
+        }
+    }
+
     /// Gives the points of this body, which is number k, what impulses changed of it. Returns
     /// whether they did.
     pub fn settle(&self, k: usize, field: &mut Field) -> bool {

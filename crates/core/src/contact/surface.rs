@@ -13,6 +13,10 @@ use crate::rigid::Body;
 /// Least gap that is kept between two surfaces, as a share of their thickness.
 const KEPT: f64 = 1e-3;
 
+/// Speed over which the force of an elastic pair changes from that of an approach to that of a
+/// parting, over the speed that its repulsion alone would give.
+const TURN: f64 = 0.1;
+
 /// What a surface is like to touch. Where two surfaces meet, the thickness and the damping are the
 /// means of theirs, the stiffness is the smaller one, and the friction and the restitution are the
 /// larger ones.
@@ -28,7 +32,7 @@ pub struct Skin {
     pub friction: f64,
     /// Coefficient e of restitution, from 0 to 1. With one above 0, it takes the place of damping.
     pub restitution: f64,
-    /// Mass with which a point of it meets others (kg), if there is a restitution.
+    /// Mass with which a point of it meets others (kg), if it is rigid or has a restitution.
     pub mass: f64,
 }
 
@@ -52,6 +56,9 @@ pub(super) struct Law {
     pub skin: Skin,
     /// Sum of the radii of round obstacles and bodies, which count as solid (m).
     pub radius: f64,
+    /// Speed of an approach that the repulsion stops where the gap is 0 (m/s), if a side is rigid
+    /// or elastic.
+    pub stopped: f64,
 }
 
 impl Law {
@@ -216,7 +223,8 @@ impl Surface {
 
     /// Whether damping acts anywhere.
     pub(super) fn is_damped(&self) -> bool {
-        self.skins.iter().any(|skin| skin.damping > 0.0)
+        let takes = |skin: &Skin| skin.damping > 0.0 || skin.restitution > 0.0;
+        self.skins.iter().any(takes)
     }
 
     /// The rigid bodies.
@@ -246,6 +254,19 @@ impl Surface {
         self.skins.iter().any(|skin| skin.friction > 0.0)
     }
 
+    /// Whether anything is rigid or elastic.
+    pub(super) fn is_sharp(&self) -> bool {
+        !self.rigid.is_empty() || self.skins.iter().any(|skin| skin.restitution > 0.0)
+    }
+
+    /// Whether a side of a pair is rigid, or the pair elastic.
+    pub(super) fn is_sharp_pair(&self, kind: PairKind, points: &[u32; 4]) -> bool {
+        let sides = [points[0], points[kind.first()]];
+        sides
+            .iter()
+            .any(|i| self.solid(*i).is_some() || self.skins[*i as usize].restitution > 0.0)
+    }
+
     /// Gap beyond their thickness (m) below which surfaces may come nearer than what they keep.
     pub(super) fn nearest(&self) -> f64 {
         2.0 * KEPT * self.thickest - self.thinnest
@@ -259,15 +280,26 @@ impl Surface {
     /// What holds between the primitives of a pair.
     pub(super) fn law(&self, kind: PairKind, points: &[u32; 4]) -> Law {
         let [a, b] = [points[0], points[kind.first()]].map(|i| self.skins[i as usize]);
+        let mut skin = Skin {
+            thickness: self.thickness(kind, points),
+            stiffness: a.stiffness.min(b.stiffness),
+            damping: a.damping.max(b.damping),
+            friction: a.friction.max(b.friction),
+            restitution: a.restitution.max(b.restitution),
+            mass: 1.0 / (a.mass.recip() + b.mass.recip()),
+        };
+        // The speed at which the repulsion alone stops a body where the gap is 0.
+        let stopped = if self.is_sharp_pair(kind, points) {
+            skin.thickness * (skin.stiffness / (2.0 * skin.mass)).sqrt()
+        } else {
+            f64::INFINITY
+        };
+        if skin.restitution > 0.0 {
+            skin.damping = 1.0 / (TURN * stopped);
+        }
         Law {
-            skin: Skin {
-                thickness: self.thickness(kind, points),
-                stiffness: a.stiffness.min(b.stiffness),
-                damping: a.damping.max(b.damping),
-                friction: a.friction.max(b.friction),
-                restitution: a.restitution.max(b.restitution),
-                mass: 1.0 / (a.mass.recip() + b.mass.recip()),
-            },
+            skin,
+            stopped,
             radius: self.radii(kind, points),
         }
     }

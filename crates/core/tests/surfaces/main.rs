@@ -13,6 +13,7 @@ mod impact;
 mod implicit;
 mod led;
 mod pairs;
+mod rebound;
 mod resting;
 mod rigid;
 mod scenes;

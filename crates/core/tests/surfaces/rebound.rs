@@ -1,0 +1,273 @@
+//! Impacts of rigid and elastic bodies against closed forms, and restitution.
+
+use a3_core::{Control, Simulation, Vector3, integrators};
+
+use crate::common::{described, method};
+use crate::pairs::Random;
+
+const G: f64 = 9.81;
+
+fn run(text: &str, name: &str, control: Control) -> Simulation {
+    Simulation::new(described(text), method(name), control).unwrap()
+}
+
+/// Velocity and angular velocity of a body, its mass, and its centre.
+struct Moving {
+    x: Vector3<f64>,
+    v: Vector3<f64>,
+    spin: Vector3<f64>,
+    momentum: Vector3<f64>,
+    mass: f64,
+}
+
+fn moving(run: &Simulation, k: usize) -> Moving {
+    let network = run.model().network().unwrap();
+    let pose = network.pose(k, run.state());
+    Moving {
+        x: pose.place.position,
+        v: pose.place.velocity,
+        spin: pose.orientation.unwrap().spin,
+        momentum: network.rotation(k, run.state()).momentum,
+        mass: network.masses()[network.bodies()[k].center()],
+    }
+}
+
+/// Momentum, angular momentum about the origin, and kinetic energy of all bodies.
+fn conserved(run: &Simulation) -> (Vector3<f64>, Vector3<f64>, f64) {
+    let (mut p, mut l) = (Vector3::zeros(), Vector3::zeros());
+    for k in 0..run.model().network().unwrap().bodies().len() {
+        let body = moving(run, k);
+        p += body.v * body.mass;
+        l += body.x.cross(&(body.v * body.mass)) + body.momentum;
+    }
+    (p, l, run.energy().unwrap().kinetic)
+}
+
+/// Greatest height of the lowest point after the first bounce, over that of the drop.
+fn rebound(text: &str, name: &str, control: Control, scale: f64, size: f64) -> f64 {
+    let mut run = run(text, name, control);
+    let apex = (2.0 * scale / G).sqrt() * 1.8;
+    let mut highest = 0.0_f64;
+    for k in -10..=10 {
+        run.advance_to(apex * (1.0 + 0.005 * f64::from(k))).unwrap();
+        highest = highest.max(run.state()[run.model().particles()] - size);
+    }
+    highest / scale
+}
+
+/// What is dropped from a height rebounds to the square of its restitution, whether the floor or
+/// the body has it, and whatever its size.
+#[test]
+fn a_body_rebounds_to_the_square_of_its_restitution() {
+    for scale in [1.0_f64, 1e-3, 100.0] {
+        let [size, height] = [0.1 * scale, 1.1 * scale];
+        let of_floor = "floor = { height = 0, restitution = 0.8 }";
+        let bodies = [
+            format!(
+                "{of_floor}\n[[body]]\nparts = [{{ ball = {size} }}]\ndensity = 900\nat = [0, {height}, 0]"
+            ),
+            format!(
+                "floor = 0\n[[body]]\nparts = [{{ ball = {size} }}]\ndensity = 9\nat = [0, {height}, 0]\nrestitution = 0.8"
+            ),
+            format!(
+                "{of_floor}\n[[body]]\nparts = [{{ box = [{0}, {0}, {0}] }}]\ndensity = 900\nat = [0, {height}, 0]",
+                2.0 * size
+            ),
+            format!(
+                "floor = 0\n[particles]\npositions = [[0, {scale}, 0]]\nmass = 0.2\nrestitution = 0.8\nthickness = {}",
+                0.01 * scale
+            ),
+        ];
+        for (k, body) in bodies.iter().enumerate() {
+            let text = format!("gravity = [0, -{G}, 0]\n{body}");
+            let size = if k == 3 { 0.0 } else { size };
+            for m in integrators::METHODS {
+                let scene = described(&text);
+                let is_slow = m.implicit && (k < 3 || scale != 1.0);
+                if is_slow || m.check(scene.model.system()).is_err() {
+                    continue;
+                }
+                let mut controls = vec![];
+                if m.check_control(Control::Step(1e-3)).is_ok() {
+                    // A method of order 1 needs shorter steps for 1 %.
+                    let step = if m.order == 1 { 2e-4 } else { 1e-3 };
+                    controls.push(Control::Step(step * scale.sqrt()));
+                }
+                if m.check_control(Control::Tolerance(1e-6)).is_ok() && scale == 1.0 {
+                    controls.push(Control::Tolerance(1e-6));
+                }
+                for control in controls {
+                    let found = rebound(&text, m.name, control, scale, size);
+                    let what = format!("{}, {control:?}, body {k}, {scale} m: {found}", m.name);
+                    assert!((found / 0.64 - 1.0).abs() < 0.01, "{what}");
+                }
+            }
+        }
+    }
+}
+
+/// What rebounds comes to rest, and lies still.
+#[test]
+fn bodies_that_rebound_come_to_rest() {
+    for part in ["ball = 0.1", "box = [0.2, 0.2, 0.2]"] {
+        let text = format!(
+            "gravity = [0, -{G}, 0]
+            floor = {{ height = 0, restitution = 0.8 }}
+            [[body]]
+            parts = [{{ {part} }}]
+            density = 900
+            at = [0, 0.6, 0]"
+        );
+        for (name, step) in [("rk4", 1e-3), ("verlet", 1e-3), ("verlet", 2e-3)] {
+            let mut run = run(&text, name, Control::Step(step));
+            run.advance_to(5.0).unwrap();
+            let mut fastest = 0.0_f64;
+            for _ in 0..200 {
+                run.take_steps(1).unwrap();
+                fastest = fastest.max(moving(&run, 0).v.norm());
+            }
+            assert!(fastest < 1e-4, "{part} {name} {step}: {fastest} m/s");
+        }
+    }
+}
+
+/// Two free bodies, of which a part and the rest of the second one are given.
+fn pair(first: &str, second: &str, restitution: f64) -> String {
+    format!("[[body]]\n{first}\n[[body]]\n{second}\nrestitution = {restitution}")
+}
+
+/// Two balls that meet off their centres: the closed form of an impact without friction.
+#[test]
+fn balls_meet_as_the_closed_form_says() {
+    let mut random = Random(7);
+    for (k, restitution) in [0.0, 0.3, 0.8, 1.0, 0.5, 0.9].into_iter().enumerate() {
+        let scale = [1.0_f64, 1e-3, 100.0][k % 3];
+        let [a, b] = [(); 2].map(|()| scale * (0.1 + 0.2 * random.unit()));
+        let [m1, m2] = [(); 2].map(|()| 0.1 + 3.0 * random.unit());
+        let off = (a + b) * (0.1 + 0.7 * random.unit());
+        let speed = 4.0 * scale.sqrt();
+        let thickness = 0.002 * scale;
+        let text = pair(
+            &format!(
+                "parts = [{{ ball = {a} }}]\nmass = {m1}\nthickness = {thickness}\nspin = [0, 0, 1]"
+            ),
+            &format!(
+                "parts = [{{ ball = {b} }}]\nmass = {m2}\nthickness = {thickness}\nat = [{}, {off}, 0]\nvelocity = [-{speed}, 0, 0]",
+                2.0 * (a + b)
+            ),
+            restitution,
+        );
+        let mut run = run(&text, "rk4", Control::Step(1e-3 * scale.sqrt()));
+        let (p0, l0, e0) = conserved(&run);
+        run.advance_to(2.5 * (a + b) / speed).unwrap();
+        let (p1, l1, e1) = conserved(&run);
+        assert!((p1 - p0).norm() < 1e-12 * p0.norm());
+        // Runge-Kutta itself loses some where the layer pushes.
+        assert!((l1 - l0).norm() < 1e-9 * l0.norm(), "{l0} {l1}");
+        // Along the line of centres at the touch.
+        let sin = off / (a + b);
+        let along = Vector3::new((1.0 - sin * sin).sqrt(), sin, 0.0);
+        let approach = speed * along.x;
+        let impulse = (1.0 + restitution) * approach / (1.0 / m1 + 1.0 / m2);
+        let exact = along * (-impulse / m1);
+        let found = moving(&run, 0).v;
+        let lost =
+            0.5 * (1.0 - restitution * restitution) * approach * approach / (1.0 / m1 + 1.0 / m2);
+        assert!((found - exact).norm() < 0.01 * speed, "{found} {exact}");
+        assert!((e0 - e1 - lost).abs() < 0.01 * e0, "{} {lost}", e0 - e1);
+    }
+}
+
+/// A ball that hits a rod near its end: the rod turns away.
+#[test]
+fn a_rod_hit_at_its_end_turns() {
+    for (restitution, arm, step) in [
+        (0.0, 0.45, 1e-3),
+        (0.8, 0.45, 1e-3),
+        (1.0, 0.3, 1e-3),
+        (0.8, 0.45, 1e-4),
+    ] {
+        let (mass, ball, speed) = (2.0, 0.5, 3.0);
+        let text = pair(
+            &format!("parts = [{{ box = [0.02, 1, 0.02] }}]\nmass = {mass}"),
+            &format!(
+                "parts = [{{ ball = 0.05 }}]\nmass = {ball}\nat = [-0.5, {arm}, 0]\nvelocity = [{speed}, 0, 0]"
+            ),
+            restitution,
+        );
+        let mut run = run(&text, "rk4", Control::Step(step));
+        let (p0, l0, _) = conserved(&run);
+        run.advance_to(0.3).unwrap();
+        let (p1, l1, _) = conserved(&run);
+        assert!((p1 - p0).norm() < 1e-12 * p0.norm());
+        // Runge-Kutta itself loses some where the layer pushes.
+        assert!((l1 - l0).norm() < 1e-9 * l0.norm(), "{l0} {l1}");
+        let inertia = mass * (1.0 + 0.02 * 0.02) / 12.0;
+        let impulse = (1.0 + restitution) * speed / (1.0 / ball + 1.0 / mass + arm * arm / inertia);
+        let [rod, of_ball] = [0, 1].map(|k| moving(&run, k));
+        let exact = [
+            impulse / mass,
+            -arm * impulse / inertia,
+            speed - impulse / ball,
+        ];
+        let found = [rod.v.x, rod.spin.z, of_ball.v.x];
+        for (found, exact) in found.iter().zip(exact) {
+            assert!((found - exact).abs() < 0.01 * speed, "{found} {exact}");
+        }
+    }
+}
+
+/// Two bodies of random shapes that spin and meet.
+fn meeting(seed: usize, scale: f64, restitution: f64, random: &mut Random) -> String {
+    let mut body = |k: usize| {
+        let [a, b, c] = [(); 3].map(|()| scale * (0.1 + 0.2 * random.unit()));
+        let part = match k % 3 {
+            0 => format!("box = [{a}, {b}, {c}]"),
+            1 => format!("capsule = [{}, {}]", 2.0 * a, 0.5 * b),
+            _ => format!("ball = {}", 0.7 * a),
+        };
+        let [x, y, z] = [(); 3].map(|()| (4.0 * random.unit() - 2.0) / scale.sqrt());
+        format!(
+            "parts = [{{ {part} }}]\nmass = {}\nrotation = [{x}, {y}, {z}]\nspin = [{y}, {z}, {x}]",
+            0.2 + random.unit()
+        )
+    };
+    let (first, second) = (body(seed), body(seed / 3));
+    let [off, up] = [(); 2].map(|()| scale * 0.1 * (random.unit() - 0.5));
+    let speed = 4.0 * scale.sqrt();
+    pair(
+        &first,
+        &format!("{second}\nat = [{scale}, {off}, {up}]\nvelocity = [-{speed}, {off}, 0]"),
+        restitution,
+    )
+}
+
+/// Boxes, capsules and balls that spin and meet anywhere, without friction.
+#[test]
+fn impacts_conserve_momenta() {
+    let mut random = Random(11);
+    let mut impulses = 0;
+    for seed in 0..24 {
+        let scale = [1.0_f64, 1e-3, 100.0][seed % 3];
+        let restitution = [0.0, 0.5, 1.0, 0.8][seed % 4];
+        let text = meeting(seed, scale, restitution, &mut random);
+        // Runge-Kutta itself loses some where the layer pushes.
+        for (name, most) in [("rk4", 1e-7), ("verlet", 1e-12)] {
+            let mut run = run(&text, name, Control::Step(1e-3 * scale.sqrt()));
+            let (p0, l0, e0) = conserved(&run);
+            run.advance_to(0.5 * scale.sqrt()).unwrap();
+            let (p1, l1, e1) = conserved(&run);
+            impulses += run.guarded().impulses;
+            let size = scale * p0.norm();
+            assert!((p1 - p0).norm() < 1e-12 * p0.norm());
+            assert!(
+                (l1 - l0).norm() < most * size,
+                "{seed} {name}: {:e}",
+                (l1 - l0).norm() / size
+            );
+            // The layer of the smallest bodies is hardly resolved.
+            assert!(e1 < e0 * 1.05, "{seed} {name}: {e0} {e1}");
+        }
+    }
+    assert!(impulses > 40, "{impulses}");
+}
