@@ -1,6 +1,6 @@
 //! From arguments to sessions, of windows and of pictures.
 
-use a3_core::Simulation;
+use a3_core::{Simulation, StepLimits};
 
 use crate::cli::{Compare, Drawing, What, WindowOptions};
 use crate::failure::Failure;
@@ -17,7 +17,8 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
         ));
     }
     let solver = what.scene.solver_or(options.solver);
-    let setup = build(what)?;
+    let mut setup = build(what)?;
+    setup.scene.limits = options.limits.given().or(setup.scene.limits);
     let simulation = simulate(what, &setup, solver, options.step)?;
     check_particle(&simulation, options.springs_of)?;
     check_drawing(&simulation, options.look.manner, false)?;
@@ -25,7 +26,12 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
         manner: options.look.manner.of(options.springs_of),
         paused: options.look.paused,
     };
-    Session::new(origin(what), setup, vec![simulation], &beginning)
+    Session::new(
+        origin(what, options.limits.given()),
+        setup,
+        vec![simulation],
+        &beginning,
+    )
 }
 
 /// The session of a comparison.
@@ -37,7 +43,8 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         )));
     }
     let what = &options.what;
-    let setup = build(what)?;
+    let mut setup = build(what)?;
+    setup.scene.limits = options.limits.given().or(setup.scene.limits);
     let simulations = options
         .methods
         .iter()
@@ -48,14 +55,20 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
         manner: options.look.manner.of(None),
         paused: options.look.paused,
     };
-    Session::new(origin(what), setup, simulations, &beginning)
+    Session::new(
+        origin(what, options.limits.given()),
+        setup,
+        simulations,
+        &beginning,
+    )
 }
 
 /// The origin of the scene.
-fn origin(what: &What) -> Origin {
+fn origin(what: &What, limits: StepLimits) -> Origin {
     Origin {
         source: what.scene.clone(),
         grid: what.grid,
+        limits,
     }
 }
 

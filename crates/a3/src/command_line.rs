@@ -1,6 +1,6 @@
 //! The command line that makes what a window shows now.
 
-use a3_core::Simulation;
+use a3_core::{Simulation, StepLimits};
 use a3_render::Style;
 use clap::Parser;
 
@@ -61,6 +61,14 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
         let methods = runs.map(|run| format!("{}:{}", run.method().name, control(run)));
         ["compare".into()].into_iter().chain(methods).collect()
     };
+    let StepLimits { absolute, max_step } = session.origin().limits;
+    for (name, limit) in [("--absolute", absolute), ("--max-step", max_step)] {
+        words.extend(
+            limit
+                .into_iter()
+                .flat_map(|limit| [name.into(), limit.to_string()]),
+        );
+    }
     let show = &session.panes[at].show;
     let mut option = |name: &str, value: &str| words.extend([name.into(), value.into()]);
     option("--scene", scene);

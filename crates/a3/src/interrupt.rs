@@ -1,6 +1,6 @@
 //! Requests to end, as signals: Ctrl-C (SIGINT), SIGTERM, and SIGHUP when the terminal is closed. A
 //! command that listens comes to an end of its own, with what it has; every other, and one that
-//! does not notice, ends at once. No unfinished file stays.
+//! goes on computing, ends within a second. No unfinished file stays.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -9,8 +9,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Time that a command has to notice a request, before it is ended at once.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// Time after a request in which a command has to stop computing, before it is ended at once.
+const PATIENCE: Duration = Duration::from_millis(500);
 /// Time for the last message, which nobody may read.
 const LAST_WORDS: Duration = Duration::from_millis(200);
 /// SIGINT, for systems without signals.
@@ -20,8 +20,8 @@ const INTERRUPT: u8 = 2;
 static SIGNAL: AtomicU8 = AtomicU8::new(0);
 /// Whether the command comes to an end of its own.
 static LISTENING: AtomicBool = AtomicBool::new(false);
-/// Whether the command has noticed the request.
-static NOTICED: AtomicBool = AtomicBool::new(false);
+/// Whether the command computes no more, and only writes what it has.
+static WRITING: AtomicBool = AtomicBool::new(false);
 /// What must not outlive the program.
 static LOOSE: Mutex<Vec<Loose>> = Mutex::new(vec![]);
 
@@ -71,11 +71,12 @@ pub fn listen() {
 
 /// Whether no end has been requested.
 pub fn go_on() -> bool {
-    let go_on = SIGNAL.load(Ordering::SeqCst) == 0;
-    if !go_on {
-        NOTICED.store(true, Ordering::SeqCst);
-    }
-    go_on
+    SIGNAL.load(Ordering::SeqCst) == 0
+}
+
+/// Lets a command of which an end was requested write what it has, however long that takes.
+pub fn write_on() {
+    WRITING.store(!go_on(), Ordering::SeqCst);
 }
 
 /// Exit code of a program that was ended by a signal, as shells have it.
@@ -94,7 +95,7 @@ fn request(signal: u8) {
     }
     thread::spawn(|| {
         thread::sleep(PATIENCE);
-        if !NOTICED.load(Ordering::SeqCst) {
+        if !WRITING.load(Ordering::SeqCst) {
             end();
         }
     });

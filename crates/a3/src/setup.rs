@@ -12,7 +12,20 @@ use crate::failure::Failure;
 /// The simulation of a run without a window, and what of it is shown.
 pub fn simulation(options: &RunOptions) -> Result<(Simulation, Arc<Presentation>), Failure> {
     let what = &options.what;
-    let (setup, solver) = (build(what)?, what.scene.solver_or(options.solver));
+    if let Some(solver) = options.solver.filter(|solver| !solver.is_adaptive()) {
+        let given = [
+            (options.limits.absolute, "--absolute"),
+            (options.limits.max_step, "--max-step"),
+        ];
+        if let Some((_, option)) = given.iter().find(|(value, _)| value.is_some()) {
+            return Err(Failure::usage(format!(
+                "{} takes a step, not a tolerance: leave out {option}",
+                solver.name
+            )));
+        }
+    }
+    let (mut setup, solver) = (build(what)?, what.scene.solver_or(options.solver));
+    setup.scene.limits = options.limits.given().or(setup.scene.limits);
     let simulation = simulate(what, &setup, solver, options.step)?;
     Ok((simulation, setup.presentation))
 }

@@ -137,6 +137,7 @@ impl Looks<'_> {
 
     /// Why a run was stopped that has written so much.
     fn stopped(&mut self, run: &Simulation, written: &str) -> Failure {
+        interrupt::write_on();
         if let Some(failure) = self.failure.take() {
             return failure;
         }

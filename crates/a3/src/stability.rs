@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use a3_core::stability::{
-    Edge, GROWTH, Growth, Limit, Mode, Motion, Observation, RestState, largest_step,
+    Budget, Edge, GROWTH, Growth, Limit, Mode, Motion, Observation, RestState, largest_step,
     observe_at_rest, rest, spectrum, tenfold_time,
 };
 use a3_core::{Error, Method, Scene};
@@ -16,6 +16,11 @@ use crate::cli::Stability;
 use crate::failure::Failure;
 use crate::progress::Bar;
 use crate::{interrupt, list, output, setup};
+
+/// Work of all searches in motion, and of those at rest, in that of a [`Budget`].
+const MOST_WORK: [f64; 2] = [1.5e9, 8e8];
+/// Share of it that all searches together may do before those that need more get the rest.
+const FIRST: f64 = 0.3;
 
 /// The limits of a method.
 #[derive(Clone, Copy)]
@@ -29,6 +34,8 @@ struct MethodLimits {
     bounded: Option<Observation>,
     /// The largest step of an accurate run (s).
     accurate: Option<f64>,
+    /// Whether runs were shorter or fewer than they should be, for the time that they take.
+    is_short: bool,
 }
 
 /// Measures, prints and draws what the command line asks for.
@@ -47,7 +54,8 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     let measured: Vec<_> = (methods.iter().enumerate())
         .filter_map(|(k, &method)| (first(method) == Some(k)).then_some(method))
         .collect();
-    let bar = Bar::new(2.0 + 3.0 * measured.len() as f64);
+    // Each method's share is counted as half done, in case it is measured again.
+    let bar = Bar::new(2.0 + 2.0 * measured.len() as f64);
     bar.say("the true motion and the state of rest ".into());
     let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
     let say = |method: &Method, stage| bar.say(format!("{} {stage} ", method.name));
@@ -55,34 +63,39 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     let in_motion = || {
         let motion = Motion::of(&scene, interrupt::go_on)?;
         bar.advance(1.0);
-        let limits = each(&measured, |method| {
+        let limits = each(&measured, MOST_WORK[0], |method, budget| {
             let Some(motion) = &motion else {
                 return Ok(None);
             };
             say(method, "in motion");
-            let bounded = motion.bounded(method, interrupt::go_on)?;
-            bar.advance(1.0);
+            budget.allow(0.6);
+            let bounded = motion.bounded(method, budget, interrupt::go_on)?;
+            bar.advance(0.5);
             say(method, "its errors");
+            budget.allow(1.0);
             let longest = bounded.map_or(f64::INFINITY, |seen| seen.step);
-            let accurate = motion.accurate(method, longest, interrupt::go_on)?;
-            bar.advance(1.0);
-            Ok(interrupt::go_on().then_some((bounded, accurate)))
+            let accurate = motion.accurate(method, longest, budget, interrupt::go_on)?;
+            bar.advance(0.5);
+            let found = (bounded, accurate, budget.limits());
+            Ok(interrupt::go_on().then_some(found))
         });
         Ok::<_, Error>((motion, limits?))
     };
     let at_rest = || {
-        let hanging = rest(&scene)?;
+        let hanging = rest(&scene, interrupt::go_on)?;
         bar.advance(1.0);
-        let limits = each(&measured, |method| {
+        let limits = each(&measured, MOST_WORK[1], |method, budget| {
             say(method, "at rest");
             let by_modes = |rest: &RestState| largest_step(method, &rest.modes);
             let limit = hanging.as_ref().map(by_modes).transpose()?.flatten();
             let seen = match &hanging {
-                Some(rest) => observe_at_rest(rest, method, limit.as_ref(), interrupt::go_on)?,
+                Some(rest) => {
+                    observe_at_rest(rest, method, limit.as_ref(), budget, interrupt::go_on)?
+                }
                 None => None,
             };
-            bar.advance(1.0);
-            Ok(interrupt::go_on().then_some((limit, seen)))
+            bar.advance(0.5);
+            Ok(interrupt::go_on().then_some((limit, seen, budget.limits())))
         });
         Ok::<_, Error>((hanging, limits?))
     };
@@ -99,6 +112,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     };
     let rows: Vec<_> = methods.iter().filter_map(|method| row(method)).collect();
     bar.clear();
+    interrupt::write_on();
     if rows.is_empty() {
         return Err(nothing());
     }
@@ -123,26 +137,41 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     }
 }
 
-/// What is found of each method, in their order. The runs of implicit methods take longest, so they
-/// begin first.
+/// What is found of each method, in their order, with so much work in all. The runs of implicit
+/// methods take longest, so they begin first. Methods that need more than their share of the work
+/// are measured again, with what the others have left.
 fn each<T: Send>(
     methods: &[&'static Method],
-    find: impl Fn(&'static Method) -> Result<T, Error> + Sync,
+    work: f64,
+    find: impl Fn(&'static Method, &Budget) -> Result<T, Error> + Sync,
 ) -> Result<Vec<T>, Error> {
     let mut places: Vec<_> = (0..methods.len()).collect();
     places.sort_by_key(|k| !methods[*k].implicit);
-    let found = places.into_iter().par_bridge();
-    let found = found.map(|k| find(methods[k]).map(|found| (k, found)));
-    let mut found: Vec<_> = found.collect::<Result<_, _>>()?;
-    found.sort_by_key(|(k, _)| *k);
-    Ok(found.into_iter().map(|(_, found)| found).collect())
+    let measure = |places: Vec<usize>, work: f64| {
+        let share = work / places.len() as f64;
+        let found = places.into_iter().par_bridge().map(|k| {
+            let budget = Budget::new(share);
+            find(methods[k], &budget).map(|found| (k, found, budget))
+        });
+        found.collect::<Result<Vec<_>, _>>()
+    };
+    let mut found = measure(places, FIRST * work)?;
+    let spent: f64 = found.iter().map(|(_, _, budget)| budget.spent()).sum();
+    let limited = |budget: &Budget| budget.limits() && interrupt::go_on();
+    let again: Vec<_> = (found.iter())
+        .filter_map(|(k, _, budget)| limited(budget).then_some(*k))
+        .collect();
+    found.retain(|(k, _, _)| !again.contains(k));
+    found.extend(measure(again, work - spent)?);
+    found.sort_by_key(|(k, _, _)| *k);
+    Ok(found.into_iter().map(|(_, found, _)| found).collect())
 }
 
 /// The limits of a method, from those at rest and those in motion.
 fn limits(
     method: &'static Method,
-    (rest, seen_at_rest): (Option<Limit>, Option<Observation>),
-    (mut bounded, accurate): (Option<Observation>, Option<f64>),
+    (rest, seen_at_rest, short_at_rest): (Option<Limit>, Option<Observation>, bool),
+    (mut bounded, accurate, short_in_motion): (Option<Observation>, Option<f64>, bool),
 ) -> MethodLimits {
     // What fails at rest at a shorter step may not blow up from the start, but it never rests.
     if let (Some(seen), Some(limit)) = (&mut bounded, rest)
@@ -157,6 +186,7 @@ fn limits(
         seen_at_rest,
         bounded,
         accurate,
+        is_short: short_at_rest || short_in_motion,
     }
 }
 
@@ -219,7 +249,12 @@ fn text(
     }
     let frequency = |modes: &[Mode]| {
         let returning = modes.first().filter(|mode| mode.frequency() > 0.0);
-        returning.map_or("none that returns".to_owned(), |mode| {
+        let none = if modes.is_empty() {
+            "none that could be computed"
+        } else {
+            "none that returns"
+        };
+        returning.map_or(none.to_owned(), |mode| {
             let damping = 0.5 * (mode.drag + mode.damping) / mode.frequency();
             format!("{:.1} rad/s, damping ratio {damping:.3}", mode.frequency())
         })
@@ -250,6 +285,15 @@ fn text(
     }
     if marked(Edge::Open) {
         text += ">         no longer step was tried\n";
+    }
+    let short: Vec<_> = rows.iter().filter(|row| row.is_short).collect();
+    if !short.is_empty() {
+        let names: Vec<_> = short.iter().map(|row| row.method.name).collect();
+        let _ = writeln!(
+            text,
+            "short     the runs were shorter than 10 s, or too few to tell more, because they take long: {}",
+            names.join(", ")
+        );
     }
     text
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::elements::{Sheet, Wind};
+use crate::elements::{Element, Sheet, Wind};
 use crate::error::Error;
 use crate::geometry::Shape;
 use crate::grid::Grid;
@@ -14,6 +14,9 @@ use crate::system::ParticleSystem;
 
 /// What an evaluation with its guard costs where surfaces touch, over one of springs alone.
 const TOUCHING: f64 = 100.0;
+
+/// What an evaluation of a fluid, each of whose particles has dozens of neighbours, costs over that.
+const FLUID: f64 = 10.0;
 
 /// First-order system, shared among runs.
 pub type FirstOrder = Arc<dyn ParticleSystem + Send + Sync>;
@@ -57,13 +60,17 @@ impl Model {
     /// springs: what searches count to end at the same run on every machine.
     #[must_use]
     pub fn work(&self) -> f64 {
-        let touches = |network: &Network| network.contact_layer().is_some();
-        let each = if self.network().is_some_and(touches) {
-            TOUCHING
-        } else {
-            1.0
+        let each = |network: &Network| {
+            let mut elements = network.elements().iter();
+            if network.contact_layer().is_some() {
+                TOUCHING
+            } else if elements.any(|element| matches!(element, Element::Fluid(_))) {
+                FLUID
+            } else {
+                1.0
+            }
         };
-        self.particles() as f64 * each
+        self.particles() as f64 * self.network().map_or(1.0, each)
     }
 }
 
@@ -93,11 +100,29 @@ pub struct Scene {
     pub touch: Option<Arc<Touch>>,
     /// Largest length, in rest lengths, to which a hand pulls the springs of the particle it holds.
     pub reach: f64,
-    /// Error of positions that a step to a tolerance may make (m); by default the tolerance times
-    /// the scene's radius.
+    /// Limits of adaptive steps.
+    pub limits: StepLimits,
+}
+
+/// Limits of adaptive steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepLimits {
+    /// Error of positions that a step may make (m); by default the tolerance times the scene's
+    /// radius.
     pub absolute: Option<f64>,
-    /// Longest step of an adaptive method (s), if it is limited.
+    /// Longest step (s); by default the error and the prescribed motions alone limit it.
     pub max_step: Option<f64>,
+}
+
+impl StepLimits {
+    /// These limits, and those of a scene where there are none.
+    #[must_use]
+    pub fn or(self, own: Self) -> Self {
+        Self {
+            absolute: self.absolute.or(own.absolute),
+            max_step: self.max_step.or(own.max_step),
+        }
+    }
 }
 
 impl Scene {
@@ -118,8 +143,7 @@ impl Scene {
             wind: None,
             touch: None,
             reach: 10.0,
-            absolute: None,
-            max_step: None,
+            limits: StepLimits::default(),
         }
     }
 
@@ -191,7 +215,7 @@ impl Scene {
     /// # Errors
     /// The tolerance, or the scene's absolute one, is not a finite number above 0.
     pub fn tolerance(&self, relative: f64) -> Result<Tolerance, Error> {
-        let absolute = self.absolute.unwrap_or(relative * self.extent().1);
+        let absolute = self.limits.absolute.unwrap_or(relative * self.extent().1);
         Tolerance::with_absolute(relative, absolute)
     }
 }

@@ -6,6 +6,12 @@ use nalgebra::{Isometry3, Matrix4, Orthographic3, Perspective3, Point3, Vector3}
 const FIELD_OF_VIEW: f32 = 0.75;
 /// Largest pitch (rad). The eye does not pass over the poles.
 const STEEPEST: f32 = 1.5;
+/// First distances of the eye (m) at which the unit of length is 1 m.
+const METRES: std::ops::Range<f32> = 0.3..100.0;
+/// Least and largest distance of the eye, and farthest target, in units of length.
+const NEAREST: f32 = 0.05;
+const FARTHEST: f32 = 1e3;
+const AWAY: f32 = 1e6;
 
 /// A camera that looks at its target from a distance, turned by a yaw around the vertical and
 /// raised by a pitch.
@@ -21,6 +27,8 @@ pub struct Camera {
     distance: f32,
     /// Whether the projection is parallel: orthographic, not perspective.
     parallel: bool,
+    /// Unit of length of what is seen (m).
+    unit: f32,
 }
 
 impl Camera {
@@ -29,7 +37,7 @@ impl Camera {
     pub fn look_at(eye: [f32; 3], target: [f32; 3]) -> Self {
         let target = Point3::from(target);
         let d = Point3::from(eye) - target;
-        let distance = d.norm().max(1e-3);
+        let distance = d.norm().max(1e-9);
         Self {
             target,
             yaw: d.x.atan2(d.z),
@@ -39,6 +47,29 @@ impl Camera {
                 .clamp(-STEEPEST, STEEPEST),
             distance,
             parallel: false,
+            unit: if METRES.contains(&distance) {
+                1.0
+            } else {
+                10.0f32.powf(distance.log10().floor())
+            },
+        }
+    }
+
+    /// Unit of length (m) of what the camera was made to look at: 1, or a power of ten for what is
+    /// much smaller or larger. Balls, and the squares of the floor, are drawn by it.
+    #[must_use]
+    pub fn unit(&self) -> f32 {
+        self.unit
+    }
+
+    /// Moves the target, unless that is too far away.
+    fn aim(&mut self, target: Point3<f32>) {
+        if target
+            .coords
+            .iter()
+            .all(|c| c.abs() < AWAY * self.unit.max(1.0))
+        {
+            self.target = target;
         }
     }
 
@@ -56,10 +87,7 @@ impl Camera {
 
     /// Moves eye and target by a vector (m).
     pub fn shift(&mut self, by: [f32; 3]) {
-        let moved = self.target + Vector3::from(by);
-        if moved.coords.iter().all(|c| c.abs() < 1e6) {
-            self.target = moved;
-        }
+        self.aim(self.target + Vector3::from(by));
     }
 
     /// Turns the eye around the target (rad).
@@ -74,16 +102,18 @@ impl Camera {
     pub fn pan(&mut self, right: f32, up: f32) {
         let height = 2.0 * self.distance * (0.5 * FIELD_OF_VIEW).tan();
         let (x, y, _) = self.axes();
-        let moved = self.target + (x * right + y * up) * height;
-        if moved.coords.iter().all(|c| c.abs() < 1e6) {
-            self.target = moved;
-        }
+        self.aim(self.target + (x * right + y * up) * height);
+    }
+
+    /// Sets the distance of the eye from the target (m), within bounds.
+    fn set_distance(&mut self, distance: f32) {
+        self.distance = distance.clamp(NEAREST * self.unit, FARTHEST * self.unit);
     }
 
     /// Multiplies the distance of the eye from the target by a factor.
     pub fn zoom(&mut self, factor: f32) {
         if factor.is_finite() {
-            self.distance = (self.distance * factor).clamp(0.05, 1000.0);
+            self.set_distance(self.distance * factor);
         }
     }
 
@@ -93,10 +123,7 @@ impl Camera {
         let stays = Point3::from(self.unproject(at, self.distance, aspect));
         let before = self.distance;
         self.zoom(factor);
-        let moved = stays + (self.target - stays) * (self.distance / before);
-        if moved.coords.iter().all(|c| c.abs() < 1e6) {
-            self.target = moved;
-        }
+        self.aim(stays + (self.target - stays) * (self.distance / before));
     }
 
     /// Turns the eye to a yaw around the vertical, from the z-axis towards the x-axis, and a pitch
@@ -108,9 +135,9 @@ impl Camera {
 
     /// Moves the camera so that a ball (m) fills the picture, seen from the same side.
     pub fn see(&mut self, center: [f32; 3], radius: f32) {
-        if center.iter().all(|c| c.abs() < 1e6) && radius < 1e3 {
-            self.target = Point3::from(center);
-            self.distance = (radius / (0.5 * FIELD_OF_VIEW).sin()).clamp(0.05, 1000.0);
+        if radius < FARTHEST * self.unit {
+            self.aim(Point3::from(center));
+            self.set_distance(radius / (0.5 * FIELD_OF_VIEW).sin());
         }
     }
 
@@ -151,12 +178,12 @@ impl Camera {
         let projection = if self.parallel {
             let half = self.distance * (0.5 * fovy).tan();
             // What is behind the eye is seen too: there is no point from which one looks.
-            let far = 5.0 * self.distance + 50.0;
+            let far = 5.0 * self.distance + 50.0 * self.unit;
             let wide = half * aspect;
             Orthographic3::new(-wide, wide, -half, half, -far, far).to_homogeneous()
         } else {
             let near = 0.02 * self.distance;
-            let far = 20.0 * self.distance + 100.0;
+            let far = 20.0 * self.distance + 100.0 * self.unit;
             Perspective3::new(aspect, fovy, near, far).to_homogeneous()
         };
         half_depth
@@ -322,6 +349,27 @@ mod tests {
                     camera.view_projection(1.6).iter().all(|m| m.is_finite()),
                     "{camera:?}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_a_thousand_times_as_small_looks_the_same() {
+        for parallel in [false, true] {
+            let seen = |unit: f32| {
+                let scaled = |p: [f32; 3]| p.map(|x| unit * x);
+                let mut camera = Camera::look_at(scaled([2.0, 3.0, 4.0]), scaled([0.0, 1.0, 0.0]));
+                camera.set_parallel(parallel);
+                camera.zoom(0.1);
+                let matrix = camera.view_projection(1.5);
+                let clip = matrix * Point3::from(scaled([0.1, 1.2, 0.1])).to_homogeneous();
+                (camera.unit() / unit, clip.xyz() / clip.w)
+            };
+            let metres = seen(1.0);
+            for unit in [1e-6, 1e-3, 1e3] {
+                let found = seen(unit);
+                assert!((found.0 / metres.0 - 1.0).abs() < 1e-5, "{found:?}");
+                assert!((found.1 - metres.1).norm() < 1e-4, "{found:?} {metres:?}");
             }
         }
     }

@@ -5,6 +5,7 @@
 
 struct Globals {
     view_proj: mat4x4<f32>,
+    // Position of the eye, and unit of length (m).
     eye: vec4<f32>,
     // The direction towards the light, in world space.
     light: vec4<f32>,
@@ -97,7 +98,7 @@ fn dither(pixel: vec2<f32>) -> f32 {
     return vec4(background(pixel.xy) + dither(pixel.xy), 1.0);
 }
 
-// ---- Floor: a faint grid of metres that fades into the background.
+// ---- Floor: a faint grid of units of length that fades into the background.
 
 struct Floor { @builtin(position) clip: vec4<f32>, @location(0) world: vec3<f32> };
 
@@ -117,8 +118,9 @@ fn floor_fade(world: vec3<f32>) -> f32 {
 
 // The visibility of the lines of the grid, from 0 between them to 1 on them.
 fn floor_grid(world: vec3<f32>) -> f32 {
-    let width = max(fwidth(world.xz), vec2(1e-5));
-    let line = 1.0 - min(abs(fract(world.xz - 0.5) - 0.5) / width / globals.depth.z, vec2(1.0));
+    let at = world.xz / globals.eye.w;
+    let width = max(fwidth(at), vec2(1e-5));
+    let line = 1.0 - min(abs(fract(at - 0.5) - 0.5) / width / globals.depth.z, vec2(1.0));
     return max(line.x, line.y) * min(1.0, 0.2 / max(width.x, width.y));
 }
 
@@ -161,7 +163,7 @@ fn shadow(p: vec3<f32>) -> Shadow {
 fn shadow_color(world: vec3<f32>, height: f32) -> vec4<f32> {
     let color = mix(vec3(0.10, 0.11, 0.17), vec3(0.0), globals.depth.w);
     let opacity = mix(0.34, 0.6, globals.depth.w);
-    return vec4(color, opacity * floor_fade(world) / (1.0 + 0.35 * height));
+    return vec4(color, opacity * floor_fade(world) / (1.0 + 0.35 * height / globals.eye.w));
 }
 
 @vertex fn mesh_shadow_vertex(@builtin(vertex_index) i: u32) -> Shadow {

@@ -11,10 +11,10 @@ use crate::picture::{Picture, Style, Tile};
 
 /// The direction towards the light: from above, over the left shoulder.
 const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
-/// The radius of the floor: its least value (m), and its ratio to the distance of the eye from the
-/// target.
+/// The radius of the floor: its least value in units of length, and its ratio to the distance of
+/// the eye from the target.
 const FLOOR_REACH: (f32, f32) = (14.0, 1.4);
-/// The radii (m) from which balls are drawn with more triangles.
+/// The radii, in units of length, from which balls are drawn with more triangles.
 const LARGER: [f32; 2] = [0.03, 0.25];
 
 /// The uniforms of the shaders, as `scene.wgsl` declares them.
@@ -119,7 +119,8 @@ impl View {
         corners.write(gpu, picture.liquid.corners);
         triangles.write(gpu, picture.liquid.triangles);
         let globals = globals(picture, tile);
-        let below = |radius: f32| balls.partition_point(|ball| ball.radius < radius) as u32;
+        let unit = picture.camera.unit();
+        let below = |radius: f32| balls.partition_point(|ball| ball.radius < radius * unit) as u32;
         queue.write_buffer(&self.globals, 0, bytemuck::bytes_of(&globals));
         self.frame = Frame {
             tile,
@@ -171,12 +172,12 @@ fn globals(picture: &Picture, tile: Tile) -> Globals {
         });
     Globals {
         view_projection: picture.camera.view_projection(tile.aspect()).into(),
-        eye: [eye.x, eye.y, eye.z, 1.0],
+        eye: [eye.x, eye.y, eye.z, picture.camera.unit()],
         light: [LIGHT[0] / length, LIGHT[1] / length, LIGHT[2] / length, 0.0],
         tile: [tile.x, tile.y, tile.width, tile.height].map(|side| side as f32),
         floor: [
             picture.floor.unwrap_or(0.0),
-            FLOOR_REACH.0.max(FLOOR_REACH.1 * (eye - target).norm()),
+            (FLOOR_REACH.0 * picture.camera.unit()).max(FLOOR_REACH.1 * (eye - target).norm()),
             target.x,
             target.z,
         ],

@@ -71,6 +71,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
         }
     }
     bar.clear();
+    interrupt::write_on();
     data.save()?;
     let studies: Vec<_> = studies
         .iter()

@@ -7,9 +7,10 @@
 #[cfg(not(target_arch = "wasm32"))]
 mod keeper;
 
+use std::fmt::Write;
 use std::path::Path;
 
-use a3_core::{Checkpoint, Grid, Simulation};
+use a3_core::{Checkpoint, Grid, Simulation, StepLimits};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
@@ -123,7 +124,7 @@ impl Kept {
         }
         if self.scene != identity(source, grid, run) {
             return Err(refuse(format!(
-                "this checkpoint is of another scene {name}: its file, its meshes or its grid were others"
+                "this checkpoint is of another scene {name}: its file, its meshes, its grid or the limits of its steps were others"
             )));
         }
         Ok(())
@@ -132,11 +133,15 @@ impl Kept {
 
 /// What tells the scene of a run from others of its name.
 fn identity(source: &Source, grid: Option<Grid>, run: &Simulation) -> String {
-    let own = source.fingerprint(run.scene());
-    match grid {
-        Some(grid) => format!("{own} {}x{}", grid.rows(), grid.cols()),
-        None => own,
+    let mut identity = source.fingerprint(run.scene());
+    if let Some(grid) = grid {
+        let _ = write!(identity, " {}x{}", grid.rows(), grid.cols());
     }
+    let StepLimits { absolute, max_step } = run.scene().limits;
+    for limit in [absolute, max_step].into_iter().flatten() {
+        let _ = write!(identity, " {limit}");
+    }
+    identity
 }
 
 /// The bytes of a file of the page.

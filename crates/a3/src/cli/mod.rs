@@ -12,7 +12,7 @@ mod window;
 
 use std::path::PathBuf;
 
-use a3_core::{Grid, Method};
+use a3_core::{Grid, Method, StepLimits};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 #[cfg(not(target_arch = "wasm32"))]
 use clap_complete::Shell;
@@ -22,7 +22,8 @@ use crate::lessons;
 use crate::scene_file::Source;
 use names::{SCENE, SOLVER};
 use values::{
-    budget, error, factor, grid, horizon, particle, pause, picture_size, rate, step, threads, until,
+    absolute, budget, error, factor, grid, horizon, max_step, particle, pause, picture_size, rate,
+    step, threads, until,
 };
 
 #[cfg(feature = "window")]
@@ -301,6 +302,28 @@ pub struct Choose {
     pub until: Option<f64>,
 }
 
+/// Limits of adaptive steps.
+#[derive(Args)]
+pub struct StepOptions {
+    /// Error of positions that a step of an adaptive solver may make, in m; by default the
+    /// tolerance times the radius of the scene
+    #[arg(long, value_name = "M", value_parser = absolute, allow_negative_numbers = true)]
+    pub absolute: Option<f64>,
+    /// Longest step of an adaptive solver, in s; by default the scene's own, if it has one
+    #[arg(long, value_name = "S", value_parser = max_step, allow_negative_numbers = true)]
+    pub max_step: Option<f64>,
+}
+
+impl StepOptions {
+    /// The limits that are given.
+    pub fn given(&self) -> StepLimits {
+        StepLimits {
+            absolute: self.absolute,
+            max_step: self.max_step,
+        }
+    }
+}
+
 /// A run without a window.
 #[derive(Args)]
 pub struct RunOptions {
@@ -315,6 +338,8 @@ pub struct RunOptions {
     /// there
     #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true)]
     pub until: Option<f64>,
+    #[command(flatten)]
+    pub limits: StepOptions,
     #[command(flatten)]
     pub what: What,
 }

@@ -43,6 +43,26 @@ pub fn step(text: &str) -> Result<f64, String> {
     within(text, *TOLERANCES.start()..=LARGEST_STEP, &right)
 }
 
+/// An absolute tolerance (m).
+pub fn absolute(text: &str) -> Result<f64, String> {
+    within(
+        text,
+        1e-18..=1e6,
+        "an absolute tolerance is a number of metres from 1e-18 to 1e6, such as 1e-6",
+    )
+}
+
+/// The longest step of an adaptive solver (s).
+pub fn max_step(text: &str) -> Result<f64, String> {
+    within(
+        text,
+        SMALLEST_STEP..=LARGEST_STEP,
+        &format!(
+            "a longest step is a number of seconds from {SMALLEST_STEP} to {LARGEST_STEP}, such as 0.01"
+        ),
+    )
+}
+
 /// The number of a particle.
 pub fn particle(text: &str) -> Result<usize, String> {
     text.parse()
@@ -90,8 +110,8 @@ pub fn beginning(text: &str) -> Result<f64, String> {
 pub fn rate(text: &str) -> Result<f64, String> {
     within(
         text,
-        0.1..=1000.0,
-        "a rate is a number of frames per second from 0.1 to 1000, such as 30",
+        0.1..=1e6,
+        "a rate is a number of frames per second from 0.1 to 1e6, such as 30",
     )
 }
 

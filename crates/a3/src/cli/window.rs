@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::names::{SOLVER_AND_STEP, SOLVER_OR_COMMAND};
 use super::values::{beginning, particle, rate, size, step, until};
-use super::{Drawing, RunOptions, What};
+use super::{Drawing, RunOptions, StepOptions, What};
 
 #[derive(Args)]
 pub struct WindowOptions {
@@ -18,6 +18,8 @@ pub struct WindowOptions {
     /// else the solver's
     #[arg(value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
+    #[command(flatten)]
+    pub limits: StepOptions,
     #[command(flatten)]
     pub what: What,
     /// Show and list the springs attached to particle I
@@ -89,6 +91,8 @@ pub struct Compare {
     /// a colon, as in e:0.05 r:0.05; by default the solver's own
     #[arg(value_name = "SOLVER[:STEP]", value_parser = SOLVER_AND_STEP, hide_possible_values = true)]
     pub methods: Vec<(&'static Method, Option<f64>)>,
+    #[command(flatten)]
+    pub limits: StepOptions,
     #[command(flatten)]
     pub what: What,
     #[command(flatten)]

@@ -163,6 +163,7 @@ pub fn shoot(
     let kept = if shot == 0 {
         "nothing was filmed".to_owned()
     } else {
+        interrupt::write_on();
         film.finish()?;
         format!(
             "{} has the first {shot} of {} frames",

@@ -62,11 +62,8 @@ impl Session {
             .iter()
             .find(|origin| origin.source.typed == name)
             .cloned();
-        let origin = asked.map_or_else(
-            || Source::find(&name).map(|source| Origin { source, grid: None }),
-            Ok,
-        );
-        match origin.and_then(|origin| Ok((origin.source.build(origin.grid)?, origin))) {
+        let origin = asked.map_or_else(|| Source::find(&name).map(Origin::of), Ok);
+        match origin.and_then(|origin| Ok((origin.build()?, origin))) {
             Ok((setup, origin)) => {
                 self.shown = origin;
                 self.scene_number = number;
@@ -86,7 +83,7 @@ impl Session {
                 let summary = source.description.summary.as_deref();
                 let what = summary.map_or(String::new(), |what| format!(": {what}"));
                 self.say(format!("opened {}{what}", source.typed));
-                self.shown = Origin { source, grid: None };
+                self.shown = Origin::of(source);
                 let same = |origin: &Origin| origin.source.typed == self.shown.source.typed;
                 self.asked.retain(|origin| !same(origin));
                 self.asked.insert(0, self.shown.clone());
@@ -110,9 +107,12 @@ impl Session {
         let Some(number) = self.asked.iter().position(begun) else {
             return false;
         };
-        let Origin { source: old, grid } = self.asked[number].clone();
-        let loaded = Source::find(&old.typed);
-        let loaded = loaded.and_then(|source| Ok((source.build(grid)?, source)));
+        let begun = self.asked[number].clone();
+        let old = begun.source.clone();
+        let loaded = Source::find(&old.typed).and_then(|source| {
+            let origin = Origin { source, ..begun };
+            Ok((origin.build()?, origin.source))
+        });
         let (setup, source) = match loaded {
             Ok(loaded) => loaded,
             Err(why) => {

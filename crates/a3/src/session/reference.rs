@@ -38,8 +38,9 @@ impl ReferenceRun {
         };
         let (method, control) = choose(panes);
         let run = &first.simulation;
-        let mut simulation =
-            Simulation::new(run.scene().clone(), method, control).map_err(Failure::run)?;
+        let mut scene = run.scene().clone();
+        scene.limits.absolute = None;
+        let mut simulation = Simulation::new(scene, method, control).map_err(Failure::run)?;
         simulation.set_wind(run.windy());
         simulation.set_swinging(run.swinging());
         simulation

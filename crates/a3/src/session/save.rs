@@ -65,7 +65,7 @@ impl Session {
 
     /// The description of the run: the scene as it is tuned, and the state as it is now.
     fn description(&self, run: &Simulation) -> Description {
-        let Origin { source, grid } = &self.shown;
+        let Origin { source, grid, .. } = &self.shown;
         let mut description = Description::clone(&source.description);
         if let (Some(grid), Some(cloth)) = (grid, description.cloth.first_mut()) {
             cloth.grid = [grid.rows(), grid.cols()];

@@ -9,17 +9,18 @@ const TURNS: usize = 12;
 /// Straight pieces of a turn.
 const PIECES: usize = 14;
 
-/// The points of a coil from a to b (m) with straight ends. A stretched coil is thinner.
-pub fn coil(a: Vector3<f64>, b: Vector3<f64>, spring: &Spring) -> Vec<[f32; 3]> {
+/// The points of a coil from a to b (m) with straight ends, in a picture with that unit of length
+/// (m). A stretched coil is thinner.
+pub fn coil(a: Vector3<f64>, b: Vector3<f64>, spring: &Spring, unit: f64) -> Vec<[f32; 3]> {
     let along = b - a;
     let length = along.norm();
-    if length < 1e-6 {
+    if length < 1e-6 * unit {
         return vec![];
     }
     let side = perpendicular(along);
     let other = along.cross(&side) / length;
-    let rest = spring.law.rest_length.max(1e-3);
-    let radius = 0.07 * rest.min(1.0) * (rest / length).clamp(0.4, 1.5).sqrt();
+    let rest = spring.law.rest_length.max(1e-3 * unit);
+    let radius = 0.07 * rest.min(unit) * (rest / length).clamp(0.4, 1.5).sqrt();
     let count = TURNS * PIECES;
     let mut points = vec![to_f32(a)];
     points.extend((0..=count).map(|k| {

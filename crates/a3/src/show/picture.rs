@@ -55,6 +55,8 @@ pub struct Show {
     lines: Vec<Line>,
     liquid: Liquid,
     floor: Option<f32>,
+    /// Unit of length of the scene (m).
+    unit: f32,
 }
 
 impl Show {
@@ -64,6 +66,7 @@ impl Show {
         colouring.set_quantity(manner.colour);
         let mut field = Field::default();
         field.set_arrows(manner.arrows);
+        let unit = view::camera(&presentation).unit();
         Self {
             presentation,
             style: manner.style,
@@ -83,12 +86,14 @@ impl Show {
             lines: vec![],
             liquid: Liquid::default(),
             floor: None,
+            unit,
         }
     }
 
     /// Shows another scene in the same way.
     pub fn set_presentation(&mut self, presentation: Arc<Presentation>) {
         self.presentation = presentation;
+        self.unit = view::camera(&self.presentation).unit();
         self.springs_of = None;
         self.hovered = None;
         self.colouring.forget();
@@ -198,7 +203,10 @@ impl Show {
         self.highlight(simulation);
         if let Some(i) = simulation.grabbed() {
             self.ball(i, 0.055, AMBER);
-            if let Some((line, ball)) = self.hand.and_then(|hand| pull(simulation, i, hand)) {
+            if let Some((line, ball)) = self
+                .hand
+                .and_then(|hand| pull(simulation, i, hand, self.unit))
+            {
                 self.lines.push(line);
                 self.balls.push(ball);
             }
@@ -232,11 +240,11 @@ impl Show {
         [x, y, z]
     }
 
-    /// Draws a ball (m) at particle i.
+    /// Draws a ball at particle i, whose radius is so many units of length.
     fn ball(&mut self, i: usize, radius: f32, color: [f32; 4]) {
         self.balls.push(Ball {
             center: self.at(i),
-            radius,
+            radius: radius * self.unit,
             color,
         });
     }
@@ -265,7 +273,7 @@ impl Show {
                 continue;
             }
             let [a, b] = ends.map(|i| simulation.position(i));
-            let points = coil(a, b, spring);
+            let points = coil(a, b, spring, f64::from(self.unit));
             let half = points.len() / 2;
             for (k, part) in points.windows(2).enumerate() {
                 let end = if k < half { spring.i } else { spring.j };
@@ -278,7 +286,8 @@ impl Show {
         if let Some(network) = network {
             let points = &self.points;
             let at = |i: usize| [points[i][0], points[i][1], points[i][2]];
-            self.lines.extend(wires::lines(network, at, STEEL));
+            self.lines
+                .extend(wires::lines(network, at, f64::from(self.unit), STEEL));
         }
         let fluid = network.and_then(Network::fluid);
         for i in self.parts.single().to_vec() {
@@ -308,7 +317,7 @@ impl Show {
         let in_wall = self.presentation.tanks.iter().any(|tank| tank.contains(&i));
         if let Some(fluid) = fluid.filter(|_| self.style != Style::Shaded && !in_wall) {
             let color = self.colouring.of(i, BLUE);
-            self.ball(i, 0.3 * fluid.law().spacing as f32, color);
+            self.ball(i, 0.3 * fluid.law().spacing as f32 / self.unit, color);
         }
     }
 

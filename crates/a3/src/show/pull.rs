@@ -10,8 +10,13 @@ use super::vectors::to_f32;
 const STRONG: f64 = 0.5;
 
 /// A line from particle i to the hand (m), thicker and redder the farther it is, and a ball at its
-/// end; none while the hand is at the particle.
-pub fn pull(simulation: &Simulation, i: usize, hand: Vector3<f64>) -> Option<(Line, Ball)> {
+/// end, in a picture with that unit of length (m); none while the hand is at the particle.
+pub fn pull(
+    simulation: &Simulation,
+    i: usize,
+    hand: Vector3<f64>,
+    unit: f32,
+) -> Option<(Line, Ball)> {
     let place = simulation.position(i);
     let strength = (hand - place).norm() / simulation.extent().1;
     if strength < 0.01 {
@@ -22,7 +27,7 @@ pub fn pull(simulation: &Simulation, i: usize, hand: Vector3<f64>) -> Option<(Li
     let to = to_f32(hand);
     let ball = Ball {
         center: to,
-        radius: 0.035,
+        radius: 0.035 * unit,
         color,
     };
     let line = Line::new(to_f32(place), to, 2.0 + 6.0 * share, color);

@@ -7,13 +7,15 @@ use super::vectors::{perpendicular, to_f32};
 
 /// Straight pieces of a circle.
 const PIECES: usize = 96;
-/// Length of a straight wire to either side of its point (m).
+/// Length of a straight wire to either side of its point, in units of length.
 const REACH: f64 = 20.0;
 
-/// Lines for the constraints of a network, with `at` for the points of particles (m).
+/// Lines for the constraints of a network, with `at` for the points of particles (m), in a picture
+/// with that unit of length (m).
 pub fn lines(
     network: &Network,
     at: impl Fn(usize) -> [f32; 3],
+    unit: f64,
     color: [f32; 4],
 ) -> impl Iterator<Item = Line> {
     let faint = [color[0], color[1], color[2], 0.45];
@@ -27,7 +29,8 @@ pub fn lines(
             Constraint::Line {
                 point, direction, ..
             } => {
-                let ends = [point - direction * REACH, point + direction * REACH];
+                let way = direction * (REACH * unit);
+                let ends = [point - way, point + way];
                 let [a, b] = ends.map(to_f32);
                 vec![Line::new(a, b, 1.6, faint)]
             }

@@ -43,6 +43,21 @@ fn bounded_accurate_and_slowly_growing_steps_are_told_apart() {
 }
 
 #[test]
+fn an_absolute_tolerance_is_in_metres() {
+    let folder = tempfile::tempdir().unwrap();
+    let steps = |more: &[&str]| -> u64 {
+        let words = "simulate x 1e-4 --scene chain --until 1 -o x.json --summary -";
+        let words: Vec<_> = words.split(' ').chain(more.iter().copied()).collect();
+        let text = said(folder.path(), &words);
+        let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+        summary["steps"].as_u64().unwrap()
+    };
+    let (usual, close) = (steps(&[]), steps(&["--absolute", "1e-9"]));
+    // Errors of order 8: a hundred thousandth takes 10^(5/8) = 4 times the steps.
+    assert!(close > 2 * usual, "{usual} {close}");
+}
+
+#[test]
 fn a_choice_comes_with_its_command() {
     let folder = tempfile::tempdir().unwrap();
     let text = said(

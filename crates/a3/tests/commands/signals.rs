@@ -126,6 +126,24 @@ fn a_run_that_does_not_notice_is_ended() {
     assert!(text(&output.stderr).contains("no unfinished file was kept"));
 }
 
+/// A step of the implicit midpoint rule on a very large cloth takes many seconds.
+#[test]
+fn a_run_is_ended_within_a_long_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = [
+        "simulate", "n", "0.05", "--grid", "400x400", "--until", "10", "-o", "x.csv",
+    ];
+    let child = begin(folder.path(), &words);
+    std::thread::sleep(Duration::from_secs(1));
+    let begun = Instant::now();
+    kill(&child, "-TERM");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(143), "{}", text(&output.stderr));
+    // A second, and more where the machine is busy.
+    assert!(begun.elapsed() < Duration::from_secs(4));
+    assert_eq!(names(folder.path()), [""; 0]);
+}
+
 /// What `kill -9` leaves behind is deleted by the next run, and only that.
 #[test]
 fn the_next_run_sweeps_what_a_killed_one_left() {

@@ -55,6 +55,8 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
         (vec!["t", "0.01", "--springs-of", "-1"], "whole number"),
         (vec!["v", "0.01", "--scene", "simple"], "first order"),
         (vec!["t", "0.01", "--wire"], "--wireframe"),
+        (with(&["--absolute", "1e-6"]), "leave out --absolute"),
+        (vec!["x", "1e-6", "--absolute", "0"], "such as 1e-6"),
         (
             vec!["simulate", "t", "0.01", "--output", "x.json"],
             "--until",

@@ -210,7 +210,9 @@ fn between(good: Control, bad: f64, until: f64) -> Option<Control> {
     let middle = (good.value() * bad).sqrt();
     match good {
         Control::Tolerance(good) => {
-            (bad > CLOSE_TOLERANCE * good).then_some(Control::Tolerance(middle))
+            // As someone would type it: the run that is recommended is one that was made.
+            let typed = format!("{middle:.1e}").parse().unwrap_or(middle);
+            (bad > CLOSE_TOLERANCE * good).then_some(Control::Tolerance(typed))
         }
         Control::Step(good) => {
             let (most, least) = ((until / good).round() as u64, (until / bad).round() as u64);

@@ -201,7 +201,9 @@ type Run = (Vec<Snapshot>, f64);
 impl Making<'_> {
     /// Run of a method. `None` if `go_on` returned false.
     fn run(&mut self, method: &'static Method, control: Control) -> Result<Option<Run>, Error> {
-        let mut simulation = Simulation::new(self.scene.clone(), method, control)?;
+        let mut scene = self.scene.clone();
+        scene.absolute = None;
+        let mut simulation = Simulation::new(scene, method, control)?;
         simulation.locate_events();
         let frames = self.reference.frames;
         let start = &self.reference.start;

@@ -11,8 +11,8 @@ use crate::simulation::Simulation;
 const CLOSE: f64 = 1e-9;
 /// Number of ends of steps through which states between them are interpolated.
 const NODES: u64 = 3;
-/// Most steps between two questions whether to go on.
-const PORTION: u64 = 1000;
+/// Most steps between two questions whether to go on, and most of their work.
+const PORTION: (u64, f64) = (1000, 4e5);
 
 /// Use of the state y at frame k, counted from 1, of a run.
 pub type Visit<'a> = &'a mut dyn FnMut(u64, &Simulation, &[f64]);
@@ -106,11 +106,12 @@ fn to_step(
     go_on: GoOn,
 ) -> Result<bool, Error> {
     let last = simulation.control().step().map(|step| frames.steps(step));
+    let most = ((PORTION.1 / simulation.model().work()) as u64).clamp(1, PORTION.0);
     while simulation.steps() < n {
         if !go_on() {
             return Ok(false);
         }
-        let mut portion = (n - simulation.steps()).min(PORTION);
+        let mut portion = (n - simulation.steps()).min(most);
         // The last step ends at the last frame, whatever rounding or a sliver of time is left.
         if last == Some(simulation.steps() + portion) {
             portion -= 1;

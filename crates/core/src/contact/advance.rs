@@ -14,6 +14,10 @@
 //! of the paper puts the sum of both lengths for the product with n, and advances less; a pair that
 //! slides or parts needs one plane here. Whatever the closest points are, a plane that lies between
 //! the primitives proves that they are apart, so errors of the closest points do no harm.
+//!
+//! Where the far end of a long primitive moves much, it cuts every plane near the other primitive
+//! soon. So where planes advance little, the longer primitive is halved, or the step is, and halves
+//! whose boxes stay apart are left out.
 
 use crate::geometry::{Closest, PairKind, closest, weighted};
 use nalgebra::Vector3;
@@ -33,6 +37,12 @@ const NEAR: f64 = 0.1;
 
 /// Number of planes after which the time reached so far is given.
 const PLANES: usize = 20_000;
+
+/// Number of planes after which a pair is halved, ...
+const FEW: usize = 256;
+
+/// ... and after which a half is.
+const FEWER: usize = 16;
 
 /// Share of a step at which a pair comes as near as `gap`, or `None` if it never does.
 ///
@@ -74,7 +84,7 @@ pub fn time_of_impact(
     }
     // As point 0 sees it: exact where coordinates are large and distances small.
     let (from, moves) = (from.map(|x| x - from[0]), moves.map(|u| u - moves[0]));
-    let mut plane = Plane::between(kind, &from, &moves);
+    let plane = Plane::between(kind, &from, &moves);
     let mut least = gap;
     if plane.apart <= gap + 2.0 * tolerance {
         let room = plane.apart - radius;
@@ -85,19 +95,97 @@ pub fn time_of_impact(
         least = plane.apart - (NEAR * room).max(2.0 * tolerance);
     }
     let near = least + tolerance + NEAR * gap.min(plane.apart - least);
-    let mut t = 0.0;
-    for _ in 0..PLANES {
-        if plane.apart <= near {
-            break;
+    let mut search = Search {
+        kind,
+        gaps: [least, near],
+        planes: PLANES,
+    };
+    search.first_hit(&from, &moves, plane, FEW)
+}
+
+/// Search for the first time at which a pair, or a part of it, comes near.
+struct Search {
+    kind: PairKind,
+    /// Distance (m) that is kept, and that which counts as near.
+    gaps: [f64; 2],
+    /// Number of planes that are left.
+    planes: usize,
+}
+
+impl Search {
+    /// Share of the motion at which primitives come near that have this plane between them at
+    /// first: by at most `few` planes, and then by their halves.
+    fn first_hit(
+        &mut self,
+        from: &[Vector3<f64>; 4],
+        moves: &[Vector3<f64>; 4],
+        mut plane: Plane,
+        few: usize,
+    ) -> Option<f64> {
+        let [least, near] = self.gaps;
+        let (mut t, mut at) = (0.0, *from);
+        for _ in 0..few.min(self.planes) {
+            self.planes -= 1;
+            if plane.apart <= near {
+                return Some(t);
+            }
+            t += plane.holds_for(least + NEAR * (near - least));
+            if t >= 1.0 {
+                return None;
+            }
+            at = std::array::from_fn(|i| from[i] + moves[i] * t);
+            plane = Plane::between(self.kind, &at, moves);
         }
-        t += plane.holds_for(least + NEAR * (near - least));
-        if t >= 1.0 {
+        let left = 1.0 - t;
+        if self.planes == 0 {
+            return Some(t);
+        }
+        let mut moves = moves.map(|u| u * left);
+        let [a, b] = longest_edge(self.kind, &at);
+        let length = (at[a] - at[b]).norm();
+        let travel = moves.map(|u| (u - moves[0]).norm()).into_iter();
+        if travel.fold(0.0, f64::max) > length {
+            moves = moves.map(|u| 0.5 * u);
+            let middle = std::array::from_fn(|i| at[i] + moves[i]);
+            let first = self.hit_of_part(&at, &moves);
+            let hit = first.or_else(|| Some(1.0 + self.hit_of_part(&middle, &moves)?));
+            return hit.map(|hit| t + 0.5 * left * hit);
+        }
+        let mut hit = None;
+        for (end, other) in [(a, b), (b, a)] {
+            let halved = |points: &[Vector3<f64>; 4]| {
+                let mut half = *points;
+                half[end] = 0.5 * (points[end] + points[other]);
+                half
+            };
+            // The second half may only be hit before the first.
+            let until = hit.unwrap_or(1.0);
+            let moves = halved(&moves).map(|u| u * until);
+            let earlier = self.hit_of_part(&halved(&at), &moves);
+            hit = earlier.map(|earlier| until * earlier).or(hit);
+        }
+        hit.map(|hit| t + left * hit)
+    }
+
+    /// Share of a part's motion at which it comes near.
+    fn hit_of_part(&mut self, from: &[Vector3<f64>; 4], moves: &[Vector3<f64>; 4]) -> Option<f64> {
+        if are_apart(self.kind, from, moves, self.gaps[1]) {
             return None;
         }
-        let at = std::array::from_fn(|i| from[i] + moves[i] * t);
-        plane = Plane::between(kind, &at, &moves);
+        let plane = Plane::between(self.kind, from, moves);
+        self.first_hit(from, moves, plane, FEWER)
     }
-    Some(t)
+}
+
+/// Ends of the longest edge of two primitives.
+fn longest_edge(kind: PairKind, x: &[Vector3<f64>; 4]) -> [usize; 2] {
+    let edges = match kind {
+        PairKind::EdgeEdge => &[[0, 1], [2, 3]][..],
+        _ => &[[1, 2], [2, 3], [3, 1]],
+    };
+    let length = |[a, b]: &[usize; 2]| (x[*a] - x[*b]).norm_squared();
+    let longest = edges.iter().max_by(|a, b| length(a).total_cmp(&length(b)));
+    longest.copied().unwrap_or([1, 2])
 }
 
 /// Sum of the magnitudes of all coordinates of points (m).
@@ -119,6 +207,35 @@ fn sinks_to(gap: f64, height: f64, rise: f64, tolerance: f64, approach: f64) -> 
     }
     let near = NEAR * (tolerance + NEAR * gap.min(above));
     (above + rise < near).then(|| (above - near) / -rise)
+}
+
+/// Whether the boxes of two primitives, as point 0 sees them move, are farther apart than a gap.
+pub(super) fn are_apart(
+    kind: PairKind,
+    from: &[Vector3<f64>; 4],
+    moves: &[Vector3<f64>; 4],
+    gap: f64,
+) -> bool {
+    let (x, u) = (from.map(|x| x - from[0]), moves.map(|u| u - moves[0]));
+    (0..3).any(|axis| {
+        let low = |k: usize| x[k][axis].min(x[k][axis] + u[k][axis]);
+        let high = |k: usize| x[k][axis].max(x[k][axis] + u[k][axis]);
+        let [first, second] = match kind {
+            PairKind::VertexTriangle => [
+                [0.0; 2],
+                [
+                    low(1).min(low(2)).min(low(3)),
+                    high(1).max(high(2)).max(high(3)),
+                ],
+            ],
+            PairKind::EdgeEdge => [
+                [low(1).min(0.0), high(1).max(0.0)],
+                [low(2).min(low(3)), high(2).max(high(3))],
+            ],
+            PairKind::VertexFloor => return false,
+        };
+        second[0] - first[1] > gap || first[0] - second[1] > gap
+    })
 }
 
 /// Plane between two primitives, across their closest points.

@@ -5,13 +5,13 @@ use std::ops::AddAssign;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::advance::time_of_impact;
+use super::advance::{are_apart, time_of_impact};
 use super::candidates::{Candidates, Stretch};
 use super::impulses::Impulses;
 use super::listing::Candidate;
 use super::solids::{Field, Solid};
 use super::surface::Surface;
-use crate::geometry::{PairKind, closest};
+use crate::geometry::closest;
 use crate::rigid::{ROTATION, Rotation};
 
 /// What the guard did in a step.
@@ -153,33 +153,4 @@ impl Motion {
         let law = surface.law(candidate.kind, &candidate.points);
         law.kept(closest(candidate.kind, x).offset.norm())
     }
-}
-
-/// Whether the boxes of two primitives, as point 0 sees them move, are farther apart than a gap.
-fn are_apart(
-    kind: PairKind,
-    from: &[Vector3<f64>; 4],
-    moves: &[Vector3<f64>; 4],
-    gap: f64,
-) -> bool {
-    let (x, u) = (from.map(|x| x - from[0]), moves.map(|u| u - moves[0]));
-    (0..3).any(|axis| {
-        let low = |k: usize| x[k][axis].min(x[k][axis] + u[k][axis]);
-        let high = |k: usize| x[k][axis].max(x[k][axis] + u[k][axis]);
-        let [first, second] = match kind {
-            PairKind::VertexTriangle => [
-                [0.0; 2],
-                [
-                    low(1).min(low(2)).min(low(3)),
-                    high(1).max(high(2)).max(high(3)),
-                ],
-            ],
-            PairKind::EdgeEdge => [
-                [low(1).min(0.0), high(1).max(0.0)],
-                [low(2).min(low(3)), high(2).max(high(3))],
-            ],
-            PairKind::VertexFloor => return false,
-        };
-        second[0] - first[1] > gap || first[0] - second[1] > gap
-    })
 }

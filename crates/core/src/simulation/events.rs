@@ -29,7 +29,7 @@ const FINEST: f64 = 1e-4;
 
 /// Kind of an event.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Kind {
+pub(super) enum EventKind {
     /// A particle touches an obstacle: their numbers.
     Touch { particle: usize, obstacle: usize },
     /// A particle that rests on an obstacle sank into it by more than is allowed.
@@ -43,11 +43,11 @@ pub(super) enum Kind {
 pub(super) struct Event {
     /// Share of the step at which it happens.
     pub share: f64,
-    pub kind: Kind,
+    pub kind: EventKind,
 }
 
 /// Step whose events are sought, between two times and states.
-pub(super) struct Step<'a> {
+pub(super) struct Searched<'a> {
     pub network: &'a Network,
     pub t: f64,
     pub h: f64,
@@ -84,7 +84,7 @@ pub(super) struct Events {
 
 impl Events {
     /// Finds the first event of a step, and the state there.
-    pub fn first(&mut self, step: &Step, state_at: StateAt) -> Option<Event> {
+    pub fn first(&mut self, step: &Searched, state_at: StateAt) -> Option<Event> {
         self.list_pairs(step);
         self.list_springs(step);
         if self.pairs.is_empty() && self.springs.is_empty() {
@@ -109,7 +109,7 @@ impl Events {
     }
 
     /// Finds the first event of a piece.
-    fn first_in(&mut self, step: &Step, piece: usize, state_at: StateAt) -> Option<Event> {
+    fn first_in(&mut self, step: &Searched, piece: usize, state_at: StateAt) -> Option<Event> {
         let Self {
             pairs,
             springs,
@@ -129,7 +129,7 @@ impl Events {
                 let sunk = approach.first(0.0, deepest).filter(|_| deepest > 0.0);
                 if let Some(share) = sunk {
                     let share = begin + share / PIECES as f64;
-                    keep_first(&mut first, share, Kind::Sunk);
+                    keep_first(&mut first, share, EventKind::Sunk);
                 } else {
                     pair.touches = approach.separation(1.0).distance <= step.none;
                 }
@@ -140,7 +140,7 @@ impl Events {
                 let Some(share) = approach.first(from, 0.0) else {
                     break;
                 };
-                let kind = Kind::Touch {
+                let kind = EventKind::Touch {
                     particle: pair.particle,
                     obstacle: pair.obstacle,
                 };
@@ -174,7 +174,7 @@ impl Events {
                 continue;
             };
             let guess = begin + share / PIECES as f64;
-            let kind = Kind::Tear { ends, longest };
+            let kind = EventKind::Tear { ends, longest };
             if first.is_none_or(|event| guess < event.share) {
                 let share = step.refine(guess, kind, state, state_at).unwrap_or(guess);
                 keep_first(&mut first, share, kind);
@@ -186,7 +186,7 @@ impl Events {
     }
 
     /// Lists the particles that come near an obstacle.
-    fn list_pairs(&mut self, step: &Step) {
+    fn list_pairs(&mut self, step: &Searched) {
         self.pairs.clear();
         let network = step.network;
         if network.contact_layer().is_some() {
@@ -223,7 +223,7 @@ impl Events {
     }
 
     /// Lists the springs that may become longer than where they break.
-    fn list_springs(&mut self, step: &Step) {
+    fn list_springs(&mut self, step: &Searched) {
         self.springs.clear();
         let Some(limit) = step.network.tear_limit() else {
             return;
@@ -246,7 +246,7 @@ impl Events {
     }
 }
 
-impl Step<'_> {
+impl Searched<'_> {
     /// Whether a pair ends the step so little inside, on the side where it touches with that
     /// normal, that it may be put out there.
     fn ends_shallow(&self, pair: &Pair, normal: &Vector3<f64>) -> bool {
@@ -262,7 +262,13 @@ impl Step<'_> {
 
     /// Share of the step at which an event happens on the polynomial, near a guess; `None` if it
     /// does not. Leaves a state near it.
-    fn refine(&self, guess: f64, kind: Kind, state: &mut [f64], state_at: StateAt) -> Option<f64> {
+    fn refine(
+        &self,
+        guess: f64,
+        kind: EventKind,
+        state: &mut [f64],
+        state_at: StateAt,
+    ) -> Option<f64> {
         let mut share = guess;
         let mut gap = f64::INFINITY;
         for _ in 0..NEWTON_STEPS {
@@ -283,13 +289,13 @@ impl Step<'_> {
     }
 
     /// Distance (m) from an event at a share of the step, and its rate (m/s).
-    fn gap(&self, share: f64, kind: Kind, y: &[f64]) -> (f64, f64) {
+    fn gap(&self, share: f64, kind: EventKind, y: &[f64]) -> (f64, f64) {
         let n = self.network.particles();
         let row = |first: usize, i: usize| {
             Vector3::new(y[first + i], y[first + n + i], y[first + 2 * n + i])
         };
         match kind {
-            Kind::Touch { particle, obstacle } => {
+            EventKind::Touch { particle, obstacle } => {
                 let obstacle = &self.network.obstacles()[obstacle];
                 let pose = obstacle.at(self.t + share * self.h);
                 let d = row(0, particle) - pose.place.position;
@@ -299,20 +305,20 @@ impl Step<'_> {
                 let own = pose.place.velocity + spin.unwrap_or_default();
                 (seen.distance, normal.dot(&(row(3 * n, particle) - own)))
             }
-            Kind::Tear {
+            EventKind::Tear {
                 ends: [i, j],
                 longest,
             } => {
                 let (d, v) = (row(0, j) - row(0, i), row(3 * n, j) - row(3 * n, i));
                 (longest - d.norm(), -d.dot(&v) / d.norm())
             }
-            Kind::Sunk => (0.0, 0.0),
+            EventKind::Sunk => (0.0, 0.0),
         }
     }
 }
 
 /// Keeps the earlier of two events.
-fn keep_first(first: &mut Option<Event>, share: f64, kind: Kind) {
+fn keep_first(first: &mut Option<Event>, share: f64, kind: EventKind) {
     if first.is_none_or(|event| share < event.share) {
         *first = Some(Event { share, kind });
     }

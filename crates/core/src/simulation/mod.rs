@@ -9,6 +9,7 @@ mod hands;
 mod phases;
 mod readings;
 mod state;
+mod step;
 mod stepper;
 mod steps;
 mod tuning;

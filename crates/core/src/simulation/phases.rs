@@ -1,7 +1,9 @@
 //! Phases after an integrator's step: springs that are too long are shortened, particles leave
 //! obstacles, or surfaces do not pass through one another, and pins are in their places.
 
-use crate::contact::{Contact, Squeezed, Statistics, StrainLimiter, Strained};
+use crate::contact::{
+    Contact, Impulses, Squeezed, Statistics, Step, StrainLimiter, Strained, resolve,
+};
 use crate::error::Cause;
 use crate::network::Network;
 use crate::scene::Model;
@@ -86,6 +88,31 @@ impl Phases {
         self.shorten(network, h, y1, &mut settled);
         settled.met = self.part(network, (t, h), y1)?;
         Ok(settled)
+    }
+
+    /// Settles a state that is shown, h (s) after the beginning of a step from t (s). A polynomial
+    /// knows of no surfaces. That of an adaptive step does not know of obstacles either, and that of
+    /// a fixed step leads to where they have been met.
+    pub fn settle_shown(
+        &self,
+        network: &Network,
+        (t, h): (f64, f64),
+        knows_obstacles: bool,
+        y: &mut [f64],
+    ) {
+        let y0 = self.contact.y0();
+        if y0.len() != y.len() {
+            return;
+        }
+        let inverse_masses = network.inverse_masses();
+        if let Some(layer) = network.contact_layer() {
+            // Where prescribed motion leaves no room, the step itself has ended the run.
+            let none = &mut Impulses::default();
+            let _ = layer.guard(inverse_masses, (t, h), y0, y, none);
+        } else if !knows_obstacles {
+            resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
+        }
+        network.hold(t + h, y);
     }
 
     /// Shortens springs that are too long.

@@ -27,7 +27,7 @@ use crate::system::{Compliant, Linearized, Mechanics, Splitting, place_pins};
 pub use limit::{GROWTH, HORIZON, Limit, STEPS, largest_step, tenfold_time};
 pub use motion::Motion;
 pub use rest::{RestState, observe_at_rest, rest};
-pub use search::{Edge, Observation};
+pub use search::{Budget, Edge, Observation};
 pub use spectrum::{LargestMode, spectrum};
 
 /// Rate of growth, over the frequency, that differences of forces may show of a mode that does not

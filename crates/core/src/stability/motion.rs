@@ -6,7 +6,7 @@
 //! however long the run, and never grows: this multiple is known (`Growth::swing`) and allowed.
 //! A run is *accurate* while its error is below a hundredth of the motion.
 
-use super::search::{MOST, bisect, step_and_look, steps};
+use super::search::{Budget, MOST, bisect, step_and_look, steps};
 use super::{Edge, GROWTH, Growth, HORIZON, Mode, Observation, largest_step, spectrum};
 use std::cell::RefCell;
 
@@ -158,14 +158,16 @@ impl Motion {
     /// Runs take [`HORIZON`] and [`STEPS`](super::STEPS) steps at least. The search begins at the
     /// limit by the modes. The limit that is seen is sharp if that one is, if a run ten times as
     /// long holds with a step a tenth shorter, and if one fails with a step a tenth longer. If the
-    /// former fails, the limit is that of runs of this length. `None` if the runs would take too
-    /// long, and soon after `go_on` returns false.
+    /// former fails, the limit is that of runs of this length. It is blurred where the budget
+    /// limits the runs. `None` if the runs would take too long, and soon after `go_on` returns
+    /// false.
     ///
     /// # Errors
     /// The method does not support the scene.
     pub fn bounded(
         &self,
         method: &'static Method,
+        budget: &Budget,
         go_on: impl Fn() -> bool,
     ) -> Result<Option<Observation>, Error> {
         let work = self.scene.model.work();
@@ -188,13 +190,16 @@ impl Motion {
                 .map(swing)
                 .fold(1.0, f64::max);
             let most = self.most[0] + self.most[1] * swings.min(SWING);
-            let count = steps(h, expected);
+            let count = budget.room(method, &self.scene.model, steps(h, expected));
             let cost = count as f64 * work * f64::from(method.evaluations);
             let affordable = (LONG / cost).max(1.0) as u64;
             let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
             Ok(step_and_look(
                 count * times.min(affordable.max(1)),
-                |count| go_on() && run.take_steps(count).is_ok() && level(&run) < most,
+                |count| {
+                    let holds = budget.take(&mut run, count).filter(|_| go_on())?;
+                    Some(holds && level(&run) < most)
+                },
             ))
         };
         let mut seen = bisect(expected, work, PRECISION, false, |h| holds(h, 1))?;
@@ -202,9 +207,9 @@ impl Motion {
         if let Some(Observation { step, edge, .. }) = &mut seen
             && *edge == Edge::Sharp
         {
-            if !sharp || holds(*step * NEAR, LONGER)? {
+            if !sharp || holds(*step * NEAR, LONGER)? != Some(false) || budget.limits() {
                 *edge = Edge::Blurred;
-            } else if !holds(*step / NEAR, LONGER)? {
+            } else if holds(*step / NEAR, LONGER)? != Some(true) {
                 // The energy grows slowly at shorter steps: the long runs tell which of them hold.
                 let long = |h| holds(h, LONGER);
                 seen = bisect(*step / NEAR, work, PRECISION, false, long)?;
@@ -218,8 +223,9 @@ impl Motion {
 
     /// Largest step (s) up to `longest` with which the error of a run is below a hundredth of the
     /// motion: the root mean square distance of the particles from where they should be, over the
-    /// largest from where they started, within the predictable time. `None` if nothing moves, if
-    /// the runs would take too long, and soon after `go_on` returns false.
+    /// largest from where they started, within the predictable time. Where the budget is spent, an
+    /// accurate step that may not be the largest. `None` if nothing moves, if the runs would take
+    /// too long, and soon after `go_on` returns false.
     ///
     /// # Errors
     /// The method does not support the scene.
@@ -227,6 +233,7 @@ impl Motion {
         &self,
         method: &'static Method,
         longest: f64,
+        budget: &Budget,
         go_on: impl Fn() -> bool,
     ) -> Result<Option<f64>, Error> {
         // A step of a small scene, and one that solves equations, cost more than their particles.
@@ -245,7 +252,10 @@ impl Motion {
             if low.0 < shortest || !go_on() {
                 return Ok(None);
             }
-            low.1 = self.error(method, low.0, most, &go_on)?;
+            let Some(error) = self.error(method, low.0, most, budget)? else {
+                return Ok(None);
+            };
+            low.1 = error;
             if low.1 <= 1.0 {
                 break;
             }
@@ -263,7 +273,10 @@ impl Motion {
             let middle = low.0 * (gap * part).clamp(edge, (gap - edge).max(edge)).exp();
             // The search ends if this run fails, whatever its error is.
             let most = if middle <= CLOSE * low.0 { 1.0 } else { most };
-            let error = self.error(method, middle, most, &go_on)?;
+            let error = self.error(method, middle, most, budget)?;
+            let Some(error) = error.filter(|_| go_on()) else {
+                break;
+            };
             *(if error <= 1.0 { &mut low } else { &mut high }) = (middle, error);
         }
         Ok(Some(low.0).filter(|_| go_on()))
@@ -271,13 +284,14 @@ impl Motion {
 
     /// Largest error of a run in whole steps of about h (s) within the predictable time, over that
     /// of an accurate run; infinite if the run fails. The run ends once its error exceeds `most`.
+    /// `None` if the budget is spent.
     fn error(
         &self,
         method: &'static Method,
         h: f64,
         most: f64,
-        go_on: impl Fn() -> bool,
-    ) -> Result<f64, Error> {
+        budget: &Budget,
+    ) -> Result<Option<f64>, Error> {
         let count = (self.predictable / h).ceil().max(1.0);
         let h = self.predictable / count;
         let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
@@ -285,15 +299,17 @@ impl Motion {
         let stride = (left / CHECKS).max(1);
         while left > 0 && error <= most {
             let steps = stride.min(left);
-            if !go_on() || run.take_steps(steps).is_err() {
-                return Ok(f64::INFINITY);
+            match budget.take(&mut run, steps) {
+                None => return Ok(None),
+                Some(false) => return Ok(Some(f64::INFINITY)),
+                Some(true) => {}
             }
             left -= steps;
             let truth = self.at(run.time());
             let apart = distance(&run.state()[..truth.len()], &truth);
             error = error.max(apart / (ACCURATE * self.size));
         }
-        Ok(error)
+        Ok(Some(error))
     }
 
     /// True positions (m) at a time (s), by a cubic polynomial between the states that are kept.

@@ -1,7 +1,7 @@
 //! Scenes at rest: the state of rest, and the largest step with which a small
 //! disturbance around it does not grow.
 
-use super::search::{bisect, step_and_look, steps};
+use super::search::{Budget, bisect, cost, step_and_look, steps};
 use super::spectrum::shapes;
 use super::{Edge, GROWTH, Limit, Mode, Observation};
 use crate::control::Control;
@@ -31,6 +31,9 @@ const SETTLING: [(f64, u32, bool); 5] = [
     (5.0, 400, false),
 ];
 
+/// Most work of these rounds, in that of a [`Budget`].
+const MOST: f64 = 2.5e8;
+
 /// Next step over one in which the guard of surfaces acted, and over one in which it did not.
 const SHORTER: f64 = 0.25;
 const LONGER: f64 = 1.5;
@@ -51,11 +54,12 @@ pub struct RestState {
 /// implicit Euler with growing steps.
 ///
 /// `None` for a first-order scene, for one that implicit Euler does not support, for one with rigid
-/// bodies, for one whose pins or obstacles move, and for one that does not settle.
+/// bodies, for one whose pins or obstacles move, and for one that does not settle, or takes too
+/// much work to; soon after `go_on` returns false, too.
 ///
 /// # Errors
 /// The scene cannot be run.
-pub fn rest(scene: &Scene) -> Result<Option<RestState>, Error> {
+pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>, Error> {
     let Some((implicit, network)) = find("implicit").zip(scene.model.network()) else {
         return Ok(None);
     };
@@ -69,6 +73,8 @@ pub fn rest(scene: &Scene) -> Result<Option<RestState>, Error> {
     }
     let mut run = Simulation::new(scene.clone(), implicit, Control::Step(0.05))?;
     let mut random = SplitMix(4);
+    // A run that begins again counts from nothing.
+    let mut before_push = 0.0;
     for (step, steps, leaves) in SETTLING {
         if leaves {
             // A fold may be balanced on its edge. The push makes it fall to one side, and it needs
@@ -81,13 +87,15 @@ pub fn rest(scene: &Scene) -> Result<Option<RestState>, Error> {
                     *x += size * random.between(-1.0, 1.0);
                 }
             }
+            before_push = cost(&run);
             run = Simulation::new(pushed, implicit, Control::Step(step))?;
         }
         run.set_control(Control::Step(step))?;
         for _ in 0..steps {
             let before = run.state().to_vec();
             let held = acts(&run);
-            if run.take_steps(1).is_err() {
+            let dear = before_push + cost(&run) > MOST;
+            if dear || !go_on() || run.take_steps(1).is_err() {
                 return Ok(None);
             }
             // Where the guard of surfaces holds what falls, nothing rests on the force of contact.
@@ -139,8 +147,9 @@ fn acts(run: &Simulation) -> usize {
 /// times in [`HORIZON`](super::HORIZON).
 ///
 /// The disturbance is a velocity in the mode that limits the method, with a small random part.
-/// Bisection begins at the predicted limit. `None` if no limit is given, if the runs would take too
-/// long, and soon after `go_on` returns false.
+/// Bisection begins at the predicted limit. The limit is blurred where the budget limits the runs.
+/// `None` if no limit is given, if the runs would take too long, and soon after `go_on` returns
+/// false.
 ///
 /// # Errors
 /// The method does not support the scene.
@@ -148,6 +157,7 @@ pub fn observe_at_rest(
     rest: &RestState,
     method: &'static Method,
     limit: Option<&Limit>,
+    budget: &Budget,
     go_on: impl Fn() -> bool,
 ) -> Result<Option<Observation>, Error> {
     let still = &rest.scene;
@@ -179,17 +189,18 @@ pub fn observe_at_rest(
         let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
         let mut beside = Simulation::new(still.clone(), method, Control::Step(h))?;
         Ok(step_and_look(steps(h, guess), |count| {
-            let held = go_on() && run.take_steps(count).is_ok() && beside.take_steps(count).is_ok();
+            let held = budget.take(&mut run, count).filter(|_| go_on())?;
+            let held = held && budget.take(&mut beside, count)?;
             let both = run.state().iter().zip(beside.state());
             let apart: Vec<_> = both.map(|(a, b)| a - b).collect();
             let (dx, dv) = apart.split_at(half);
-            held && size.of(dx, dv) < GROWTH * nudge
+            Some(held && size.of(dx, dv) < GROWTH * nudge)
         }))
     };
     let mut seen = bisect(guess, still.model.work(), PRECISION, true, holds)?;
     if let Some(seen) = seen
         .as_mut()
-        .filter(|s| s.edge == Edge::Sharp && !limit.is_sharp())
+        .filter(|s| s.edge == Edge::Sharp && (budget.limits() || !limit.is_sharp()))
     {
         seen.edge = Edge::Blurred;
     }

@@ -1,7 +1,13 @@
-//! Search for the largest step that holds, by bisection over runs.
+//! Search for the largest step that holds, by bisection over runs, within a budget of work.
+
+use std::cell::Cell;
 
 use super::{HORIZON, STEPS};
+use crate::elements::Element;
 use crate::error::Error;
+use crate::integrators::Method;
+use crate::scene::Model;
+use crate::simulation::Simulation;
 
 /// Longest step that is tried where no limit is expected (s).
 const LONGEST: f64 = 1.0;
@@ -11,13 +17,129 @@ const BEYOND: f64 = 32.0;
 pub(super) const MOST: f64 = 2e8;
 /// Number of checks during a run that holds.
 const LOOKS: u64 = 200;
+/// Longest run of a search, as a share of the search's budget.
+const RUN: f64 = 0.25;
+/// Least number of particles that count: a small system costs more than its particles.
+const PARTICLES: usize = 20;
+/// Number of steps to which no run is shortened.
+const FEWEST: f64 = 100.0;
+
+/// Price of an evaluation for a particle, over that for one of a sheet of springs: with other
+/// forces, ...
+const OTHER: f64 = 3.5;
+/// ... in a fluid, ...
+const FLUID: f64 = 10.0;
+/// ... and where surfaces touch, whose pairs are listed anew at each step of a violent motion.
+const TOUCHING: f64 = 200.0;
+/// Price of an impulse of the guard of surfaces, with the search for what it meets next.
+const IMPULSE: f64 = 50.0;
+
+/// Work that a search may do, in evaluations of one particle on a sheet of springs, which take 20
+/// to 40 ns: counted, so that a search ends at the same run on every machine.
+#[derive(Debug)]
+pub struct Budget {
+    most: f64,
+    /// What may be spent now.
+    allowed: Cell<f64>,
+    spent: Cell<f64>,
+    limits: Cell<bool>,
+}
+
+impl Budget {
+    /// Budget of that much work.
+    #[must_use]
+    pub fn new(most: f64) -> Self {
+        Self {
+            most,
+            allowed: Cell::new(most),
+            spent: Cell::new(0.0),
+            limits: Cell::new(false),
+        }
+    }
+
+    /// Budget that limits nothing.
+    #[must_use]
+    pub fn unlimited() -> Self {
+        Self::new(f64::INFINITY)
+    }
+
+    /// Allows what comes next a share of what is left.
+    pub fn allow(&self, share: f64) {
+        let spent = self.spent.get();
+        self.allowed.set(spent + share * (self.most - spent));
+    }
+
+    /// Work that was done.
+    #[must_use]
+    pub fn spent(&self) -> f64 {
+        self.spent.get()
+    }
+
+    /// Whether it ended a search, or made its runs shorter.
+    #[must_use]
+    pub fn limits(&self) -> bool {
+        self.limits.get()
+    }
+
+    /// Number of steps of a run, at most `wanted`, that this budget has room for.
+    pub(super) fn room(&self, method: &Method, model: &Model, wanted: u64) -> u64 {
+        let each = f64::from(method.evaluations) * price(model);
+        let room = (RUN * self.most / each).max(FEWEST);
+        if room < wanted as f64 {
+            self.limits.set(true);
+            return room as u64;
+        }
+        wanted
+    }
+
+    /// Takes steps of a run. Returns whether it holds; `None` once the budget is spent.
+    pub(super) fn take(&self, run: &mut Simulation, steps: u64) -> Option<bool> {
+        let before = cost(run);
+        let holds = run.take_steps(steps).is_ok();
+        self.spent.set(self.spent.get() + cost(run) - before);
+        if holds && self.spent.get() > self.allowed.get() {
+            self.limits.set(true);
+            return None;
+        }
+        Some(holds)
+    }
+}
+
+/// Price of an evaluation of a model.
+fn price(model: &Model) -> f64 {
+    let each = model.network().map_or(1.0, |network| {
+        let any = |is: fn(&Element) -> bool| network.elements().iter().any(is);
+        if network.contact_layer().is_some() {
+            TOUCHING
+        } else if any(|element| matches!(element, Element::Fluid(_))) {
+            FLUID
+        } else if any(|element| {
+            let light = matches!(
+                element,
+                Element::Sheet(_) | Element::Gravity(_) | Element::Drag(_)
+            );
+            !light
+        }) {
+            OTHER
+        } else {
+            1.0
+        }
+    });
+    each * model.particles().max(PARTICLES) as f64
+}
+
+/// Work of a run so far.
+pub(super) fn cost(run: &Simulation) -> f64 {
+    run.work().total() * price(run.model()) + IMPULSE * run.guarded().impulses as f64
+}
 
 /// Nature of a limit that was observed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
     /// Runs hold at all shorter steps, however long they are, and fail soon at longer ones.
     Sharp,
-    /// Some longer runs fail at shorter steps too, or some runs hold at longer steps.
+    /// Some longer runs fail at shorter steps too, or some runs hold at longer steps; or it was not
+    /// found out whether they do.
     Blurred,
     /// No run failed: the step is the longest that was tried.
     Open,
@@ -42,17 +164,99 @@ pub(super) fn steps(h: f64, expected: f64) -> u64 {
 }
 
 /// Calls `look` with numbers of steps to take and to check, `steps` in all, and then 8 more, one by
-/// one. Returns false as soon as `look` does.
-pub(super) fn step_and_look(steps: u64, mut look: impl FnMut(u64) -> bool) -> bool {
+/// one. Returns what `look` does as soon as that is not `Some(true)`.
+pub(super) fn step_and_look(steps: u64, mut look: impl FnMut(u64) -> Option<bool>) -> Option<bool> {
     let mut left = steps;
     while left > 0 {
         let count = (steps / LOOKS).clamp(1, left);
-        if !look(count) {
-            return false;
+        if !look(count)? {
+            return Some(false);
         }
         left -= count;
     }
-    (0..8).all(|_| look(1))
+    for _ in 0..8 {
+        if !look(1)? {
+            return Some(false);
+        }
+    }
+    Some(true)
+}
+
+/// Why a search ends before it has found what it looks for.
+enum Stop {
+    /// A run says neither that its step holds nor that it does not.
+    Open,
+    Failed(Error),
+}
+
+/// Trials of steps (s), and what they have shown.
+struct Trials<F> {
+    holds: F,
+    runs: u32,
+    /// Longest step that held, and shortest that did not.
+    held: Option<f64>,
+    failed: Option<f64>,
+}
+
+impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
+    fn hold(&mut self, h: f64) -> Result<bool, Stop> {
+        self.runs += 1;
+        let holds = (self.holds)(h).map_err(Stop::Failed)?.ok_or(Stop::Open)?;
+        let known = if holds {
+            &mut self.held
+        } else {
+            &mut self.failed
+        };
+        *known = Some(h);
+        Ok(holds)
+    }
+
+    /// Brackets the limit, from an expected one (s), and bisects it. Returns its nature; `None` if
+    /// no step of at least `shortest` (s) holds.
+    fn search(
+        &mut self,
+        guess: f64,
+        [shortest, longest]: [f64; 2],
+        precision: f64,
+        near: bool,
+    ) -> Result<Option<Edge>, Stop> {
+        let (mut low, mut high);
+        if self.hold(guess)? {
+            (low, high) = (guess, (guess * 1.05).min(longest));
+            if near && guess < longest && !self.hold(next(low, high, precision))? {
+                high = low;
+            }
+            while low < high && self.hold(high)? {
+                (low, high) = (high, (high * 1.4).min(longest));
+            }
+            if low == longest {
+                return Ok(Some(Edge::Open));
+            }
+        } else {
+            (low, high) = (guess / 1.05, guess);
+            let close = next(high, low, precision);
+            if near && self.hold(close)? {
+                low = close;
+            } else {
+                while !self.hold(low)? {
+                    (low, high) = (low / 1.4, low);
+                    if low < shortest {
+                        return Ok(None);
+                    }
+                }
+            }
+        }
+        while high / low > 1.0 + precision {
+            let middle = (low * high).sqrt();
+            if self.hold(middle)? {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        self.held = Some(low);
+        Ok(Some(Edge::Sharp))
+    }
 }
 
 /// Largest step (s) for which `holds` returns true, by bisection of its logarithm from the expected
@@ -62,19 +266,16 @@ pub(super) fn step_and_look(steps: u64, mut look: impl FnMut(u64) -> bool) -> bo
 /// With `near`, the step next to the limit is tried before the others: two runs are enough where
 /// the limit is as expected, if steps shorter than one that holds hold too.
 ///
-/// The limit is open or sharp: whoever calls this finds out whether it is blurred.
+/// The limit is open or sharp: whoever calls this finds out whether it is blurred. Where `holds`
+/// returns `None`, the search ends with what it knows: the longest step that held, if one did,
+/// which is blurred if a longer one failed.
 pub(super) fn bisect(
     expected: f64,
     work: f64,
     precision: f64,
     near: bool,
-    holds: impl Fn(f64) -> Result<bool, Error>,
+    holds: impl Fn(f64) -> Result<Option<bool>, Error>,
 ) -> Result<Option<Observation>, Error> {
-    let mut runs = 0;
-    let mut holds = |h: f64| {
-        runs += 1;
-        holds(h)
-    };
     let shortest = (HORIZON * work / MOST).max(1e-6);
     let limited = expected.is_finite();
     let longest = if limited { BEYOND * expected } else { LONGEST };
@@ -82,43 +283,23 @@ pub(super) fn bisect(
     if guess < shortest {
         return Ok(None);
     }
-    let (mut low, mut high);
-    if holds(guess)? {
-        (low, high) = (guess, (guess * 1.05).min(longest));
-        if near && guess < longest && !holds(next(low, high, precision))? {
-            high = low;
-        }
-        while low < high && holds(high)? {
-            (low, high) = (high, (high * 1.4).min(longest));
-        }
-        if low == longest {
-            let (step, edge) = (longest, Edge::Open);
-            return Ok(Some(Observation { step, edge, runs }));
-        }
-    } else {
-        (low, high) = (guess / 1.05, guess);
-        let close = next(high, low, precision);
-        if near && holds(close)? {
-            low = close;
-        } else {
-            while !holds(low)? {
-                (low, high) = (low / 1.4, low);
-                if low < shortest {
-                    return Ok(None);
-                }
-            }
-        }
-    }
-    while high / low > 1.0 + precision {
-        let middle = (low * high).sqrt();
-        if holds(middle)? {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let (step, edge) = (low, Edge::Sharp);
-    Ok(Some(Observation { step, edge, runs }))
+    let mut trials = Trials {
+        holds,
+        runs: 0,
+        held: None,
+        failed: None,
+    };
+    let edge = match trials.search(guess, [shortest, longest], precision, near) {
+        Ok(edge) => edge,
+        Err(Stop::Open) if trials.failed.is_some() => Some(Edge::Blurred),
+        Err(Stop::Open) => Some(Edge::Open),
+        Err(Stop::Failed(error)) => return Err(error),
+    };
+    Ok(edge.zip(trials.held).map(|(edge, step)| Observation {
+        step,
+        edge,
+        runs: trials.runs,
+    }))
 }
 
 /// Step next to one end of an interval that is bisected to a relative precision.

@@ -1,7 +1,7 @@
 //! Modes of a scene around a state, from products with the force differential alone: Lanczos's
 //! method with full reorthogonalisation, and power iteration.
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
 
 use super::Mode;
 use crate::random::SplitMix;
@@ -14,14 +14,20 @@ const PRODUCTS: usize = 64;
 const MULTIPLICATIONS: f64 = 2e9;
 /// Largest dimension of a first-order system whose Jacobian is computed.
 const DENSE: usize = 300;
+/// Most iterations of the QR algorithm for an eigenvalue; two or three are usual.
+const ITERATIONS: usize = 20;
+/// Precisions to which that decides what is zero: rounding alone, and, where that is never reached,
+/// what central differences leave of it.
+const PRECISIONS: [f64; 2] = [f64::EPSILON, 1e-8];
 
 /// Modes around the state y at time t (s), fastest first.
 ///
 /// For a linearised mechanical system they come from Lanczos's method on the mass-normalised
 /// stiffness, each with the damping of its own shape. Constraints add the mode in which their
 /// errors decay. For a small first-order system the modes come from the eigenvalues of its
-/// Jacobian, by what f reads: not by what rigid bodies carry. For any other system there are none.
-/// A mode of negative stiffness buckles.
+/// Jacobian, by what f reads: not by what rigid bodies carry. For any other system there are none,
+/// and where the eigenvalues are not found in a limited number of iterations. A mode of negative
+/// stiffness buckles.
 #[must_use]
 pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let mut modes = match system.mechanics().and_then(Mechanics::linearized) {
@@ -201,7 +207,11 @@ fn of_mechanics(
         1 => beta[i.min(j)],
         _ => 0.0,
     });
-    let eigen = tridiagonal.symmetric_eigen();
+    let most = ITERATIONS * m;
+    let find = |precision| SymmetricEigen::try_new(tridiagonal.clone(), precision, most);
+    let Some(eigen) = PRECISIONS.into_iter().find_map(find) else {
+        return;
+    };
     let mut shape = vec![0.0; x.len()];
     for (k, weights) in eigen.eigenvectors.column_iter().enumerate() {
         shape.fill(0.0);
@@ -252,14 +262,33 @@ fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
         return vec![];
     }
     let scale = jacobian.amax();
-    jacobian
-        .complex_eigenvalues()
-        .iter()
+    let eigenvalues = eigenvalues(&jacobian).into_iter();
+    eigenvalues
         // Parts that central differences cannot tell from zero become zero.
         .map(|l| [l.re, l.im].map(|part| if part.abs() < 1e-9 * scale { 0.0 } else { part }))
         .filter(|[re, im]| *im >= 0.0 && (*re, *im) != (0.0, 0.0))
         .map(|[re, im]| Mode::of_eigenvalue(re, im))
         .collect()
+}
+
+/// Eigenvalues of a matrix; none where the QR algorithm does not find them in a limited number of
+/// iterations.
+///
+/// A rotation of the axes into one another is a fixed point of the algorithm: what a random
+/// reflection makes of the matrix is none, and has the same eigenvalues. Where many eigenvalues are
+/// zero, rounding keeps entries from becoming small beside their neighbours: larger ones count as
+/// zero then.
+fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    let n = matrix.nrows();
+    let mut random = SplitMix(1);
+    let u = DVector::from_fn(n, |_, _| random.between(-1.0, 1.0)).normalize();
+    let reflection = DMatrix::identity(n, n) - 2.0 * &u * u.transpose();
+    let reflected = || &reflection * matrix * &reflection;
+    let schur = |matrix, precision| Schur::try_new(matrix, precision, ITERATIONS * n);
+    schur(matrix.clone(), PRECISIONS[0])
+        .or_else(|| schur(reflected(), PRECISIONS[1]))
+        .map(|schur| schur.complex_eigenvalues().iter().copied().collect())
+        .unwrap_or_default()
 }
 
 /// Fastest mode of a run in progress, by power iteration from the shape at the last estimate.
@@ -310,5 +339,35 @@ impl LargestMode {
         let mode = stiffness.mode(largest, &self.shape, &mut next);
         let faster = of_constraints(mechanics).filter(|other| other.stiffness > mode.stiffness);
         faster.or(Some(mode))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Eigenvalues, sorted by their real and imaginary parts.
+    fn sorted(matrix: &DMatrix<f64>) -> Vec<[f64; 2]> {
+        let mut all: Vec<_> = eigenvalues(matrix).iter().map(|l| [l.re, l.im]).collect();
+        all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        all
+    }
+
+    /// Which takes each axis to the next one: steps of the QR algorithm leave it as it is.
+    #[test]
+    fn a_rotation_of_axes_has_the_roots_of_one() {
+        let n = 5;
+        let matrix = DMatrix::from_fn(n, n, |i, j| f64::from(u8::from(i == (j + 1) % n)));
+        let all = sorted(&matrix);
+        assert_eq!(all.len(), n);
+        for [re, im] in all {
+            let power = Complex::new(re, im).powu(n as u32);
+            assert!((power - 1.0).norm() < 1e-10, "{re} {im}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_has_no_eigenvalues() {
+        assert!(sorted(&DMatrix::from_element(4, 4, f64::NAN)).is_empty());
     }
 }

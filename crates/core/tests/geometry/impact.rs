@@ -114,6 +114,47 @@ fn distances_on_the_way_are_larger_than_the_gap_until_the_time_of_impact() {
     );
 }
 
+/// The far end of a long primitive that turns about its near end moves by half its length: what it
+/// meets near that end, it meets when it is there, and not when few planes have been tried.
+#[test]
+fn a_long_primitive_meets_what_is_near_its_slow_end_in_time() {
+    let gap: f64 = 0.1;
+    // At the share t the primitive has the direction (t / 2, 0, -1) from the y axis, and is
+    // |2 - 5 t| / sqrt(1 + t^2 / 4) from what is at x = 2, z = -10.
+    let [a, b, c] = [25.0 - gap * gap / 4.0, -20.0, 4.0 - gap * gap];
+    let exact = (-b - (b * b - 4.0 * a * c).sqrt()) / (2.0 * a);
+    for length in [1e2, 1e5, 1e9] {
+        for (kind, beside) in [
+            (EdgeEdge, 0.0),
+            (EdgeEdge, 1.3),
+            (VertexTriangle, 0.0),
+            (VertexTriangle, 1.3),
+        ] {
+            let [p, q] = [0.0, 1.0].map(|y| Vector3::new(2.0, beside + y, -10.0));
+            let far = Vector3::new(0.0, 0.0, -length);
+            let from = match kind {
+                EdgeEdge => [p, q, Vector3::zeros(), far],
+                _ => [p, -Vector3::y(), Vector3::y(), far],
+            };
+            let mut moves = [Vector3::zeros(); 4];
+            moves[3].x = 0.5 * length;
+            let pair = Pair { kind, from, moves };
+            let time = pair.time_of_impact(gap);
+            if beside > 0.0 {
+                assert_eq!(time, None, "{kind:?} {length:e}");
+                continue;
+            }
+            let tolerance = 1e-12 * length;
+            let left = pair.distance(time.unwrap()) - gap;
+            assert!(
+                time.unwrap() <= exact + tolerance,
+                "{kind:?} {length:e}: {time:?}"
+            );
+            assert!(left < 0.11 * gap + tolerance, "{kind:?} {length:e}: {left}");
+        }
+    }
+}
+
 /// Points of a vertex at a height above a triangle (m).
 fn above(height: f64) -> [Vector3<f64>; 4] {
     [

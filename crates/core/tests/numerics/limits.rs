@@ -1,6 +1,6 @@
 //! Stability limits by modes, against exact ones.
 
-use crate::common::{method, scene, scene_with_grid};
+use crate::common::{described, method, scene, scene_with_grid};
 use a3_core::stability::{GROWTH, Growth, LargestMode, Mode, largest_step, spectrum, tenfold_time};
 use a3_core::{
     Grid, Mechanics, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Vector3, integrators,
@@ -301,6 +301,56 @@ fn a_scene_of_any_shape_has_a_spectrum() {
     }
     let tall = scene_with_grid("cloth", 60, 4);
     assert!(spectrum(tall.model.system(), 0.0, &tall.state)[0].frequency() > 0.0);
+}
+
+/// Beside a free body, whose eigenvalues are zero many times over, a fluid and a solid have the
+/// modes that they have alone, where these come from Lanczos's method.
+#[test]
+fn eigenvalues_are_found_beside_many_that_are_zero() {
+    let fluid = "
+        [[fluid]]
+        dimensions = 2
+        size = [0.5, 0.5, 0]
+        spacing = 0.1
+        at = [0, -2, 0]
+        density = 1000
+        sound = 10
+    ";
+    let capsule = "
+        drag = 0.01
+        [[body]]
+        parts = [{ capsule = [0.15, 0.08] }]
+        density = 600
+    ";
+    let solid = "
+        [[solid]]
+        grid = [3, 2, 4]
+        size = [0.164572, 1.31998, 0.695598]
+        density = 158.335
+        young = 7.17465e+06
+        poisson = 0.275164
+        at = [0.007671, -0.4899, -0.1751]
+    ";
+    let brick = "
+        drag_per_mass = 4.56997
+        [[chain]]
+        particles = 6
+        from = [-0.506569, -1.56093, -0.118498]
+        to = [-1.19329, 1.11387, -1.72772]
+        mass = 1.9218
+        [[body]]
+        parts = [{ box = [0.0757611, 0.612294, 0.685748], at = [-0.0950336, 0.271119, 0.0245021] }]
+        mass = 10.7196
+        at = [2.281, 0.2326, 0.000271]
+    ";
+    for (alone, body) in [(fluid, capsule), (solid, brick)] {
+        let fastest = |text: &str| {
+            let scene = described(text);
+            spectrum(scene.model.system(), 0.0, &scene.state)[0].frequency()
+        };
+        let both = fastest(&format!("{body}{alone}"));
+        assert_relative_eq!(both, fastest(alone), max_relative = 1e-4);
+    }
 }
 
 #[test]

@@ -15,5 +15,6 @@ mod nystrom;
 mod observed;
 mod order;
 mod reference;
+mod scales;
 mod stability;
 mod views;

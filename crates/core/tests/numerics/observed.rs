@@ -3,7 +3,7 @@
 
 use crate::common::{described, method, scene_with_grid};
 use a3_core::integrators;
-use a3_core::stability::{Edge, Motion, largest_step, observe_at_rest, rest};
+use a3_core::stability::{Budget, Edge, Motion, largest_step, observe_at_rest, rest};
 use approx::assert_relative_eq;
 
 /// Three particles on springs without rest length, whose motion is linear.
@@ -26,19 +26,28 @@ fn motion_is_bounded_where_it_is_not_accurate() {
     for name in ["rk4", "symplectic", "verlet", "pefrl", "dop853"] {
         let m = method(name);
         let limit = largest_step(m, &motion.modes).unwrap().unwrap().step;
-        let seen = motion.bounded(m, || true).unwrap().unwrap();
+        let seen = motion
+            .bounded(m, &Budget::unlimited(), || true)
+            .unwrap()
+            .unwrap();
         assert_eq!(seen.edge, Edge::Sharp, "{name}");
         assert_relative_eq!(seen.step, limit, max_relative = 0.03);
-        let accurate = motion.accurate(m, seen.step, || true).unwrap().unwrap();
+        let accurate = motion
+            .accurate(m, seen.step, &Budget::unlimited(), || true)
+            .unwrap()
+            .unwrap();
         assert!(accurate < 0.7 * limit, "{name}: {accurate}");
         if name == "symplectic" {
             assert!(accurate < 0.05 * limit, "{name}: {accurate}");
         }
     }
-    let euler = motion.bounded(method("euler"), || true).unwrap().unwrap();
+    let euler = motion
+        .bounded(method("euler"), &Budget::unlimited(), || true)
+        .unwrap()
+        .unwrap();
     assert_eq!(euler.edge, Edge::Blurred);
     let implicit = motion
-        .bounded(method("implicit"), || true)
+        .bounded(method("implicit"), &Budget::unlimited(), || true)
         .unwrap()
         .unwrap();
     assert_eq!((implicit.step, implicit.edge), (1.0, Edge::Open));
@@ -65,7 +74,10 @@ fn slow_heating_in_motion_is_seen_and_marked() {
     let verlet = method("verlet");
     let limit = largest_step(verlet, &motion.modes).unwrap().unwrap();
     assert!(limit.is_sharp());
-    let seen = motion.bounded(verlet, || true).unwrap().unwrap();
+    let seen = motion
+        .bounded(verlet, &Budget::unlimited(), || true)
+        .unwrap()
+        .unwrap();
     assert_eq!(seen.edge, Edge::Blurred);
     assert!(
         (0.3..0.75).contains(&(seen.step / limit.step)),
@@ -79,7 +91,7 @@ fn slow_heating_in_motion_is_seen_and_marked() {
 #[test]
 fn limits_are_seen_on_the_cloth() {
     let cloth = scene_with_grid("cloth", 8, 8);
-    let rest = rest(&cloth).unwrap().unwrap();
+    let rest = rest(&cloth, || true).unwrap().unwrap();
     let motion = Motion::of(&cloth, || true).unwrap().unwrap();
     for m in integrators::METHODS.iter().filter(|m| !m.positions_only) {
         let predicted = largest_step(m, &rest.modes).unwrap().unwrap();
@@ -88,7 +100,7 @@ fn limits_are_seen_on_the_cloth() {
             assert!(predicted.step.is_infinite(), "{}", m.name);
             continue;
         }
-        let seen = observe_at_rest(&rest, m, Some(&predicted), || true)
+        let seen = observe_at_rest(&rest, m, Some(&predicted), &Budget::unlimited(), || true)
             .unwrap()
             .unwrap();
         if m.implicit {
@@ -98,7 +110,10 @@ fn limits_are_seen_on_the_cloth() {
         let ratio = seen.step / predicted.step;
         assert!((0.98..1.01).contains(&ratio), "{} at rest: {ratio}", m.name);
         let in_motion = largest_step(m, &motion.modes).unwrap().unwrap();
-        let seen = motion.bounded(m, || true).unwrap().unwrap();
+        let seen = motion
+            .bounded(m, &Budget::unlimited(), || true)
+            .unwrap()
+            .unwrap();
         // A fast mode may pass before it has grown. What is not sharp grows so slowly that the
         // cloth changes its shape before it is seen.
         let most = if seen.edge == Edge::Sharp { 1.2 } else { 5.0 };
@@ -129,10 +144,11 @@ fn rest_is_without_tears_and_not_of_what_moves() {
         let text = cloth.replace("TEAR", tear).replace("MOVES", moves);
         described(&text)
     };
-    let [whole, torn] = ["100", "1.2"].map(|tear| rest(&build(tear, "")).unwrap().unwrap());
+    let [whole, torn] =
+        ["100", "1.2"].map(|tear| rest(&build(tear, ""), || true).unwrap().unwrap());
     assert_eq!(whole.scene.state, torn.scene.state);
     assert_eq!(whole.modes, torn.modes);
     assert!(torn.scene.model.network().unwrap().tear_limit().is_none());
     let moves = ", shift = { by = [0, 0, 1], start = 0.1, end = 0.2 }";
-    assert!(rest(&build("100", moves)).unwrap().is_none());
+    assert!(rest(&build("100", moves), || true).unwrap().is_none());
 }

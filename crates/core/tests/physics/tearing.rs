@@ -286,7 +286,7 @@ fn bend_springs_with_nothing_along_them_or_another_way_round_hold() {
             }
             network.set_tear(Some(1.5)).unwrap();
             assert_eq!(network.tear(&line(0.49), 0.0), 0);
-            assert_eq!(network.tear(&line(0.51)), torn, "{links:?}");
+            assert_eq!(network.tear(&line(0.51), 0.0), torn, "{links:?}");
             assert_eq!(network.is_torn(2, 0), torn == 2);
             assert_eq!(
                 network.buckling().count(),
@@ -294,7 +294,7 @@ fn bend_springs_with_nothing_along_them_or_another_way_round_hold() {
             );
             // With the particles far apart, all springs tear.
             let far: Vec<f64> = line(0.0).iter().map(|x| x * 4.0).collect();
-            assert_eq!(network.tear(&far), links.len() + 1 - torn);
+            assert_eq!(network.tear(&far, 0.0), links.len() + 1 - torn);
             assert_eq!(network.springs().count() + network.buckling().count(), 0);
         }
     }

@@ -21,7 +21,7 @@ fn energy_from_nowhere_is_noticed() {
         ("jelly", "i", 0.04),
         ("jelly", "i", 0.24),
     ] {
-        let (run, end) = run(name, solver, h, 5.0);
+        let (run, end) = run(name, solver, h, 4.5);
         end.unwrap();
         let gain = run.gained().unwrap_or_else(|| panic!("{name} by {solver}"));
         assert!(gain.share > 0.5 && gain.energy > 100.0, "{name}: {gain:?}");

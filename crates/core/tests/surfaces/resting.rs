@@ -1,6 +1,6 @@
 //! Stability of what rests on the force of contact.
 
-use a3_core::stability::{Edge, RestState, largest_step, observe_at_rest, rest, spectrum};
+use a3_core::stability::{Budget, Edge, RestState, largest_step, observe_at_rest, rest, spectrum};
 use a3_core::{Control, Model, Scene, Simulation};
 
 use crate::bead_above_floor;
@@ -71,7 +71,7 @@ fn multiplied(mut scene: Scene, stiffness: f64, damping: f64) -> Scene {
 
 /// State of rest, on the force of contact alone.
 fn at_rest(scene: &Scene) -> RestState {
-    let rest = rest(scene).unwrap().expect("a state of rest");
+    let rest = rest(scene, || true).unwrap().expect("a state of rest");
     let y = &rest.scene.state;
     let mut f = y.clone();
     rest.scene.model.system().eval_f(0.0, y, &mut f);
@@ -161,7 +161,7 @@ fn limits_of_sheets_that_lie_on_one_another_are_seen() {
         for name in ["symplectic", "rk4"] {
             let m = method(name);
             let limit = largest_step(m, &rest.modes).unwrap().unwrap();
-            let seen = observe_at_rest(&rest, m, Some(&limit), || true)
+            let seen = observe_at_rest(&rest, m, Some(&limit), &Budget::unlimited(), || true)
                 .unwrap()
                 .unwrap();
             assert!(

@@ -118,6 +118,7 @@ impl Description {
             return Err(Fault::no_particle("trail", trail, n));
         }
         let mut scene = Scene::new(self.name.clone().unwrap_or_default(), model, state);
+        scene.limits.max_step = self.max_step;
         scene.touch = touch;
         // A state that is given goes on from a run, which tells its own errors.
         if self.state.is_none() {
@@ -174,7 +175,11 @@ impl Description {
                 Fault::new("solver", unknown_choice(name, &names))
             })?),
         };
-        for (key, number) in [("step", self.step), ("duration", self.duration)] {
+        for (key, number) in [
+            ("step", self.step),
+            ("max_step", self.max_step),
+            ("duration", self.duration),
+        ] {
             if let Some(number) = number {
                 at(key, positive("it", number))?;
             }

@@ -43,6 +43,8 @@ pub struct Description {
     pub solver: Option<String>,
     /// Step of the solver (s), or relative tolerance of an adaptive solver.
     pub step: Option<f64>,
+    /// Longest step of an adaptive solver (s).
+    pub max_step: Option<f64>,
     /// Length of a run (s), where no other is asked for.
     pub duration: Option<f64>,
     /// Gravity (m/s2), such as [0, -9.81, 0]; none if not given.

@@ -2,22 +2,25 @@
 //! the Jacobian J from central differences.
 
 use super::changes::Changes;
-use super::{MOST, Newton, norm};
+use super::{MOST, Newton, dot};
 use crate::error::Error;
 use crate::integrators::{Work, check_dim};
-use crate::system::ParticleSystem;
+use crate::system::{Measure, ParticleSystem};
 
 /// Largest number of unknowns; the Jacobian of a larger system takes too long.
 pub(super) const LARGEST: usize = 1024;
 
+/// Half the length of a difference, over the unit of what is changed.
+const DIFFERENCE: f64 = 1e-6;
+/// The same for speeds, which move hardly anything, over that for positions.
+const SLOW: f64 = 1e-3;
+
 /// The numbers of the state that the equations are solved for: all, but for those of what rigid
 /// bodies carry, which no f reads.
 pub(super) fn unknowns(system: &dyn ParticleSystem) -> Vec<usize> {
-    let all = 0..system.dim();
-    match system.rigid() {
-        Some(rigid) => all.filter(|k| !rigid.is_carried(*k)).collect(),
-        None => all.collect(),
-    }
+    let mut all = vec![];
+    system.measures(&mut |numbers, _| all.extend(numbers));
+    all
 }
 
 /// Solver of the implicit stages of a small system, with its scratch. What rigid bodies carry
@@ -25,6 +28,8 @@ pub(super) fn unknowns(system: &dyn ParticleSystem) -> Vec<usize> {
 pub(super) struct Dense {
     dim: usize,
     unknowns: Vec<usize>,
+    /// Unit of each unknown, in which changes are compared, and half the length of its difference.
+    units: Vec<[f64; 2]>,
     /// Matrix 1 - a J, row by row, or its factors L and U in place.
     matrix: Vec<f64>,
     /// Row that was exchanged with each row in turn.
@@ -45,6 +50,7 @@ impl Dense {
         let room = room.unwrap_or(0);
         Self {
             dim,
+            units: Vec::with_capacity(unknowns.len()),
             unknowns,
             matrix: vec![0.0; room * room],
             pivots: vec![0; room],
@@ -78,7 +84,12 @@ impl Dense {
                 }
             }
             work += self.correct(system, t, a, base, y);
-            changes.add(norm(&self.change), norm(y), 0.0);
+            // Where bodies are does not matter.
+            let size = match system.rigid() {
+                Some(_) => (self.unknowns.len() as f64).sqrt(),
+                None => self.norm(y),
+            };
+            changes.add(self.norm(&self.change), size, 0.0);
             if newton == Newton::Once || changes.are_over(1e-9) {
                 return Ok(work);
             }
@@ -89,11 +100,54 @@ impl Dense {
         Err(changes.failure())
     }
 
+    /// Norm of the unknowns in a state, in their units.
+    fn norm(&self, y: &[f64]) -> f64 {
+        let numbers = self.unknowns.iter().zip(&self.units);
+        let squares = numbers.map(|(i, [unit, _])| (y[*i] / unit).powi(2));
+        squares.sum::<f64>().sqrt()
+    }
+
+    /// Finds the units at y: with rigid bodies, the largest radius, the speed that moves by it in a
+    /// time a, the length of a quaternion, and the angular momentum at which the surface of its
+    /// body has that speed; without, plain numbers.
+    fn measure(&mut self, system: &dyn ParticleSystem, a: f64, y: &[f64]) {
+        let mut length: f64 = 0.0;
+        system.measures(&mut |_, measure| {
+            if let Measure::Rotation { radius } = measure {
+                length = length.max(radius);
+            }
+        });
+        let speed = length / a.abs();
+        self.units.clear();
+        system.measures(&mut |numbers, measure| {
+            let unit = match measure {
+                Measure::Position => length,
+                Measure::Rotation { .. } => dot(&y[numbers.clone()], &y[numbers.clone()]).sqrt(),
+                Measure::Velocity => speed,
+                Measure::Momentum { speed: own } => speed / own,
+                Measure::Plain => 0.0,
+            };
+            let difference = match measure {
+                Measure::Position | Measure::Rotation { .. } => DIFFERENCE * unit,
+                _ => SLOW * DIFFERENCE * unit,
+            };
+            self.units.extend(numbers.map(|k| {
+                if unit > 0.0 {
+                    [unit, difference]
+                } else {
+                    [1.0, DIFFERENCE * y[k].abs().max(1.0)]
+                }
+            }));
+        });
+    }
+
     /// Writes 1 - a J at y into the matrix.
     fn form(&mut self, system: &dyn ParticleSystem, t: f64, a: f64, y: &[f64]) -> Work {
+        self.measure(system, a, y);
         let count = self.unknowns.len();
         let Self {
             unknowns,
+            units,
             matrix,
             at,
             above,
@@ -102,7 +156,7 @@ impl Dense {
         } = self;
         at.copy_from_slice(y);
         for (column, &j) in unknowns.iter().enumerate() {
-            let h = 1e-6 * y[j].abs().max(1.0);
+            let [_, h] = units[column];
             at[j] = y[j] + h;
             system.eval_f(t, at, above);
             at[j] = y[j] - h;

@@ -316,7 +316,7 @@ fn stability_knows_of_the_feedback() {
     let x = &scene.state[..scene.state.len() / 2];
     let fastest = LargestMode::default().estimate(mechanics, 0.0, x).unwrap();
     assert_eq!(fastest.frequency(), 10.0);
-    assert!(rest(&scene).unwrap().is_none());
+    assert!(rest(&scene, || true).unwrap().is_none());
 }
 
 /// A sheet that hangs from point constraints moves like one that hangs from pins; it is stepped by

@@ -1,0 +1,363 @@
+//! Contacts of particles with one obstacle in a step.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::approach::Approach;
+use super::impulses::Impulses;
+use super::motion::Guarded;
+use super::obstacle::Obstacle;
+use super::rebound::{Course, rebound_speed};
+use crate::geometry::Shape;
+use crate::geometry::nearest::Nearest;
+use crate::path::Pose;
+
+/// Gap before a step, as a share of the depth after it, up to which a particle counts as touching
+/// from the beginning of the step: rounding errors are no gap.
+const TOUCHING: f64 = 1e-6;
+
+/// What contact did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Number of contacts: of particles, once for each obstacle that they were put out of.
+    pub contacts: usize,
+    /// Sum of the magnitudes of their impulses (N s).
+    pub impulse: f64,
+    /// Largest depth to which a particle moved into an obstacle during the step (m).
+    pub depth: f64,
+    /// Share of the step after which that particle touched the obstacle, if both moved uniformly.
+    pub touched: f64,
+    /// What the guard of surfaces did, if surfaces touch.
+    pub guarded: Guarded,
+    /// Slide that ends within the step, if friction stops one: that which goes on longest after its
+    /// end, if friction were not there.
+    pub stop: Stop,
+}
+
+/// End of a slide within a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stop {
+    /// Share of the step after which the slide ends.
+    pub share: f64,
+    /// Way from there to the end of the step at half of the speed with which it began (m); 0 where
+    /// nothing slides.
+    pub way: f64,
+}
+
+/// Obstacle as a step meets it.
+pub(super) struct Met<'a> {
+    /// Positions of the particles at the beginning of the step, if they are known (m).
+    pub x0: Option<&'a [f64]>,
+    /// Their velocities there (m/s).
+    pub v0: Option<&'a [f64]>,
+    pub inverse_masses: &'a [f64],
+    pub obstacle: &'a Obstacle,
+    pub friction: f64,
+    /// Time at the beginning of the step, and its length (s).
+    pub span: (f64, f64),
+    /// Place and orientation of the obstacle at the beginning of the step.
+    pub before: Pose,
+    /// Place and orientation of the obstacle at the end of the step.
+    pub after: Pose,
+    /// Axes along which contact without friction pushes.
+    pub axes: Range<usize>,
+}
+
+impl Met<'_> {
+    /// Resolves the contacts with a surface: a function of a particle's position, seen from the
+    /// obstacle's place before it turned, that answers from there if the particle is inside.
+    pub fn resolve(
+        &self,
+        y1: &mut [f64],
+        (statistics, impulses): &mut (&mut Statistics, &mut Impulses),
+        surface: impl Fn(Vector3<f64>) -> Option<Nearest>,
+    ) {
+        let n = self.inverse_masses.len();
+        let (x, v) = y1.split_at_mut(3 * n);
+        let surface = |d: Vector3<f64>| {
+            surface(self.after.inwards(d)).map(|nearest| Nearest {
+                point: self.after.outwards(nearest.point),
+                normal: self.after.outwards(nearest.normal),
+            })
+        };
+        let c = self.after.place.position;
+        for i in 0..n {
+            let d = Vector3::new(x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
+            let inside = surface(d);
+            let at = vector(x, n, i);
+            let may_pass = self.may_pass(i, at);
+            if inside.is_none() && !may_pass || self.inverse_masses[i] == 0.0 {
+                continue;
+            }
+            let touch = (may_pass || self.obstacle.restitution > 0.0)
+                .then(|| self.touch(i, [at, vector(v, n, i)]))
+                .flatten();
+            let passed = touch
+                .as_ref()
+                .and_then(|touch| touch.passed(d, inside.as_ref()));
+            let Some(nearest) = passed.or(inside) else {
+                continue;
+            };
+            if let Some(rebound) = touch.and_then(|touch| self.rebound(vector(v, n, i), &touch)) {
+                let end = at + rebound.change * rebound.left;
+                // What comes back within the step is put out at its end.
+                if surface(end - c).is_none() {
+                    set(x, n, i, end);
+                    set(v, n, i, vector(v, n, i) + rebound.change);
+                    let depth = nearest.normal.dot(&(nearest.point - d));
+                    if depth > statistics.depth {
+                        statistics.depth = depth;
+                        statistics.touched = 1.0 - rebound.left / self.span.1;
+                    }
+                    let impulse = rebound.change / self.inverse_masses[i];
+                    statistics.contacts += 1;
+                    statistics.impulse += impulse.norm();
+                    impulses.add(i, impulse);
+                    continue;
+                }
+            }
+            let own = self.velocity(nearest.point);
+            let velocity = vector(v, n, i) - own;
+            let outwards = velocity.dot(&nearest.normal);
+            let inwards = outwards.min(0.0);
+            for axis in self.axes.clone() {
+                x[axis * n + i] = c[axis] + nearest.point[axis];
+                v[axis * n + i] -= inwards * nearest.normal[axis];
+            }
+            if let Some(x0) = self.x0 {
+                // Where it would be if the obstacle had carried it along.
+                let carried = self.carried(vector(x0, n, i));
+                let depth = nearest.normal.dot(&(nearest.point - d));
+                let approach = nearest.normal.dot(&(carried - at));
+                if self.friction > 0.0 {
+                    let share = if approach > depth * (1.0 + TOUCHING) {
+                        depth / approach
+                    } else {
+                        1.0
+                    };
+                    let touched = carried + (at - carried) * (1.0 - share);
+                    let slip = across(vector(x, n, i) - touched, nearest.normal);
+                    let kept = self.kept(slip, depth);
+                    let held = if kept > 0.0 {
+                        vector(x, n, i) - slip * (1.0 - kept)
+                    } else {
+                        surface(touched - c).map_or(touched, |nearest| c + nearest.point)
+                    };
+                    set(x, n, i, held);
+                }
+                let moved_in = depth.min(approach);
+                if moved_in > statistics.depth {
+                    statistics.depth = moved_in;
+                    statistics.touched = 1.0 - moved_in / approach;
+                }
+            }
+            if self.friction > 0.0 {
+                let slip = across(velocity, nearest.normal);
+                let outwards = nearest.normal * outwards.max(0.0);
+                let kept = self.kept(slip, -inwards);
+                if kept == 0.0 {
+                    let stop = self.stop(i, slip, (nearest.normal, -inwards));
+                    if stop.way > statistics.stop.way {
+                        statistics.stop = stop;
+                    }
+                }
+                // What sticks moves as the point at which it was left.
+                let own = if kept > 0.0 {
+                    own
+                } else {
+                    self.velocity(vector(x, n, i) - c)
+                };
+                set(v, n, i, own + outwards + slip * kept);
+            }
+            statistics.contacts += 1;
+            let change = vector(v, n, i) - own - velocity;
+            statistics.impulse += change.norm() / self.inverse_masses[i];
+            impulses.add(i, change / self.inverse_masses[i]);
+        }
+    }
+
+    /// Whether particle i, at x at the end of the step, may have passed through the obstacle: it
+    /// moved past it by more than half of the greatest depth.
+    fn may_pass(&self, i: usize, x: Vector3<f64>) -> bool {
+        let shape = &self.obstacle.shape;
+        let (Some(x0), false) = (self.x0, *shape == Shape::Floor) else {
+            return false;
+        };
+        let x0 = vector(x0, self.inverse_masses.len(), i);
+        let way = (x - self.carried(x0)).norm();
+        let near = shape.reach() + way;
+        way > 0.5 * shape.greatest_depth()
+            && (x - self.after.place.position).norm_squared() <= near * near
+    }
+
+    /// First touch of particle i in the step, at whose end its position and velocity are these, if
+    /// it begins outside.
+    fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2]) -> Option<Touch> {
+        let ((t, h), n) = (self.span, self.inverse_masses.len());
+        let course = Course {
+            x: [vector(self.x0?, n, i), x],
+            v: [vector(self.v0?, n, i), v],
+            h,
+        };
+        let approach = Approach::new(self.obstacle, &course, t);
+        // What touches at the beginning may sink a little, as long as it does not pass.
+        let begun = approach.separation(0.0).distance;
+        let touches = begun <= TOUCHING * course.reach();
+        let shape = &self.obstacle.shape;
+        if touches && !shape.is_convex() {
+            return None;
+        }
+        let depth = if touches {
+            0.25 * shape.greatest_depth() - begun.min(0.0)
+        } else {
+            0.0
+        };
+        let share = approach.first(0.0, depth)?;
+        let (point, normal) = approach.touched(share);
+        let pose = self.obstacle.at(t + share * h);
+        Some(Touch {
+            share,
+            touches,
+            end: [point, normal].map(|vector| self.after.outwards(vector)),
+            there: [point, normal].map(|vector| pose.outwards(vector)),
+            pose,
+            begun: course.v[0],
+            speed: course.velocity(share),
+        })
+    }
+
+    /// Effect of restitution on a particle, whose velocity at the end of the step is v, if there is
+    /// any.
+    fn rebound(&self, v: Vector3<f64>, touch: &Touch) -> Option<Rebound> {
+        let ((_, h), restitution) = (self.span, self.obstacle.restitution);
+        if restitution == 0.0 || touch.touches {
+            return None;
+        }
+        let Touch {
+            share,
+            there: [point, normal],
+            ref pose,
+            ..
+        } = *touch;
+        let relative = touch.speed - velocity(pose, point);
+        let [begun, ended] = [(touch.begun, &self.before), (v, &self.after)]
+            .map(|(v, pose)| v - velocity(pose, point));
+        let press = (begun - ended).dot(&normal) / h;
+        let approach = -relative.dot(&normal);
+        let speed = rebound_speed(restitution, approach, press, h);
+        (speed > 0.0).then(|| {
+            let along = approach + speed;
+            let slip = across(relative, normal);
+            Rebound {
+                change: normal * along - slip * (1.0 - self.kept(slip, along)),
+                left: (1.0 - share) * h,
+            }
+        })
+    }
+
+    /// End of the slide of particle i, whose slip (m/s) at the end of the step friction takes, where
+    /// contact changed the velocity by that much along the normal `up` (m/s).
+    fn stop(&self, i: usize, slip: Vector3<f64>, (up, change): (Vector3<f64>, f64)) -> Stop {
+        let (Some(x0), Some(v0)) = (self.x0, self.v0) else {
+            return Stop::default();
+        };
+        let n = self.inverse_masses.len();
+        let d = vector(x0, n, i) - self.before.place.position;
+        let begun = vector(v0, n, i) - velocity(&self.before, d);
+        let begun = across(begun, up);
+        let speed = begun.norm();
+        // It falls linearly, by what friction takes and by other forces.
+        let fall = speed - slip.dot(&begun) / speed + self.friction * change;
+        let share = speed / fall;
+        if share > 0.0 && share < 1.0 {
+            let way = 0.5 * speed * (1.0 - share) * self.span.1;
+            Stop { share, way }
+        } else {
+            Stop::default()
+        }
+    }
+
+    /// Velocity of the obstacle at the end of the step, at a point seen from its place.
+    fn velocity(&self, point: Vector3<f64>) -> Vector3<f64> {
+        velocity(&self.after, point)
+    }
+
+    /// Position at the end of the step of what is at x at its beginning and moves with the
+    /// obstacle.
+    fn carried(&self, x: Vector3<f64>) -> Vector3<f64> {
+        let (before, after) = (&self.before.place.position, &self.after.place.position);
+        if self.after.orientation.is_some() {
+            after + self.after.outwards(self.before.inwards(x - before))
+        } else {
+            x + (after - before)
+        }
+    }
+
+    /// Share of a slip along the surface that friction leaves, where contact changed so much along
+    /// the normal.
+    fn kept(&self, slip: Vector3<f64>, normal: f64) -> f64 {
+        let (slip, most) = (slip.norm(), self.friction * normal);
+        if slip > most { 1.0 - most / slip } else { 0.0 }
+    }
+}
+
+/// First touch of a particle and the obstacle in a step.
+struct Touch {
+    /// Share of the step after which they touch.
+    share: f64,
+    /// Whether they touch from the beginning.
+    touches: bool,
+    /// Point of the obstacle, seen from its place, and its normal: at the end of the step, and when
+    /// they touch.
+    end: [Vector3<f64>; 2],
+    there: [Vector3<f64>; 2],
+    /// Place and orientation of the obstacle when they touch.
+    pose: Pose,
+    /// Velocity of the particle at the beginning of the step, and when they touch (m/s).
+    begun: Vector3<f64>,
+    speed: Vector3<f64>,
+}
+
+impl Touch {
+    /// Where a particle belongs that has passed through the surface at the touch: to the plane
+    /// there. At the end of the step it is at d, seen from the obstacle's place, for which `inside`
+    /// is the nearest point of the surface, if it is inside still.
+    fn passed(&self, d: Vector3<f64>, inside: Option<&Nearest>) -> Option<Nearest> {
+        let [point, normal] = self.end;
+        let depth = normal.dot(&(point - d));
+        let leaves_here = inside.is_some_and(|inside| inside.normal.dot(&normal) > 0.0);
+        (depth > 0.0 && !leaves_here).then(|| Nearest {
+            point: d + normal * depth,
+            normal,
+        })
+    }
+}
+
+/// Change of a particle's velocity by a rebound (m/s), and what is left of the step then (s).
+struct Rebound {
+    change: Vector3<f64>,
+    left: f64,
+}
+
+/// Velocity of a point of an obstacle, seen from its place, in a pose.
+pub(super) fn velocity(pose: &Pose, point: Vector3<f64>) -> Vector3<f64> {
+    let along = pose.place.velocity;
+    let turned = pose.orientation;
+    turned.map_or(along, |turned| along + turned.spin.cross(&point))
+}
+
+/// Part of a vector at right angles to a unit normal.
+pub(super) fn across(a: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
+    a - normal * a.dot(&normal)
+}
+
+pub(super) fn vector(a: &[f64], n: usize, i: usize) -> Vector3<f64> {
+    Vector3::new(a[i], a[n + i], a[2 * n + i])
+}
+
+pub(super) fn set(a: &mut [f64], n: usize, i: usize, to: Vector3<f64>) {
+    for axis in 0..3 {
+        a[axis * n + i] = to[axis];
+    }
+}

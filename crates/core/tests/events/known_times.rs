@@ -1,0 +1,89 @@
+//! Times at which a prescribed motion begins or ends.
+
+use crate::common::{described, method};
+use a3_core::Simulation;
+
+/// Height of particle 1 at a time (s).
+fn height(toml: &str, name: &str, value: f64, until: f64) -> f64 {
+    let method = method(name);
+    let mut run = Simulation::new(described(toml), method, method.control(value)).unwrap();
+    run.advance_to(until).unwrap();
+    run.position(1).y
+}
+
+/// After 20 s at rest, a pin moves by 0.1 m within 50 ms: the mass that hangs from it swings by
+/// (a / w T) (sin w (t - 20.05) - sin w (t - 20)) about the new place, by the response to two ramps.
+#[test]
+fn a_rest_lets_no_pulse_pass() {
+    let toml = "
+        gravity = [0, -10, 0]
+        [particles]
+        positions = [[0, 0, 0], [0, -1.4, 0]]
+        mass = 1
+        springs = [[0, 1, 25, 1, 0]]
+        [[pin]]
+        particles = [0]
+        shift = { by = [0, 0.1, 0], start = 20, end = 20.05 }
+    ";
+    let response = |t: f64| {
+        let (w, ramp) = (5.0, 2.0);
+        let of = |t: f64| {
+            if t > 0.0 {
+                ramp * (t - f64::sin(w * t) / w)
+            } else {
+                0.0
+            }
+        };
+        -1.4 + of(t - 20.0) - of(t - 20.05)
+    };
+    for (name, tolerance, bound) in [
+        ("dop853", 1e-8, 1e-6),
+        ("dopri5", 1e-7, 1e-4),
+        ("verner65", 1e-7, 1e-4),
+        ("dprkn86", 1e-8, 1e-5),
+        ("bdf", 1e-7, 1e-2),
+    ] {
+        for until in [20.02, 20.3, 25.0] {
+            let found = height(toml, name, tolerance, until);
+            let error = (found - response(until)).abs();
+            assert!(error < bound, "{name} at {until}: {error}");
+        }
+    }
+}
+
+/// A pin starts and stops to move at once: the tightest tolerance is met, by few steps.
+#[test]
+fn tight_tolerances_are_met_where_a_pin_starts() {
+    let toml = "
+        gravity = [0, -9.81, 0]
+        springs = [[0, 1, 40.0, 0.5, 0.3]]
+        [particles]
+        positions = [[0, 0, 0], [0.5, 0, 0]]
+        mass = 0.1
+        [[pin]]
+        particles = [0]
+        shift = { by = [0.3, 0, 0], start = 0.31, end = 0.67 }
+    ";
+    let mut run = Simulation::new(
+        described(toml),
+        method("dop853"),
+        method("dop853").control(1e-13),
+    )
+    .unwrap();
+    run.advance_to(1.0).unwrap();
+    assert!(run.work().rejections < run.steps(), "{:?}", run.work());
+    let loose = height(toml, "dop853", 1e-10, 1.0);
+    assert!((run.position(1).y - loose).abs() < 1e-8);
+    assert!((loose - height(toml, "rk4", 1e-4, 1.0)).abs() < 1e-5);
+}
+
+/// A longest step is kept.
+#[test]
+fn no_step_is_longer_than_the_longest() {
+    let mut scene = described("[particles]\npositions = [[0, 0, 0]]\nmass = 1");
+    scene.limits.max_step = Some(0.125);
+    let method = method("dop853");
+    let mut run = Simulation::new(scene, method, method.control(1e-3)).unwrap();
+    run.advance_to(4.0).unwrap();
+    assert!(run.steps() >= 32 && run.step_size().unwrap() <= 0.125);
+}

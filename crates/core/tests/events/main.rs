@@ -1,0 +1,10 @@
+//! Tests of what begins, ends, is hit or breaks within a step.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod frames;
+mod known_times;
+mod tears;
+mod thin;
+mod touches;
