@@ -100,7 +100,7 @@ pub struct Compare {
     /// Picture to write instead of opening a window, ending in .png
     #[arg(long, short, value_name = "FILE.png", requires = "until")]
     pub output: Option<PathBuf>,
-    /// Simulated seconds until the picture; the last step is shortened to end exactly there
+    /// Simulated seconds until the picture
     #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true, requires = "output")]
     pub until: Option<f64>,
     /// Width and height of the picture in pixels

@@ -85,7 +85,7 @@ mod tests {
             network.add_constraint(constraint).unwrap();
         }
         let at = |i: usize| [i as f32, 0.0, 0.0];
-        let lines: Vec<_> = lines(&network, at, [0.0; 4]).collect();
+        let lines: Vec<_> = lines(&network, at, 1.0, [0.0; 4]).collect();
         assert_eq!((lines[0].from, lines[0].to), (at(0), at(1)));
         assert_eq!(lines.len(), 1 + PIECES);
         for line in &lines[1..] {

@@ -202,7 +202,7 @@ impl Making<'_> {
     /// Run of a method. `None` if `go_on` returned false.
     fn run(&mut self, method: &'static Method, control: Control) -> Result<Option<Run>, Error> {
         let mut scene = self.scene.clone();
-        scene.absolute = None;
+        scene.limits.absolute = None;
         let mut simulation = Simulation::new(scene, method, control)?;
         simulation.locate_events();
         let frames = self.reference.frames;

@@ -245,6 +245,12 @@ impl Simulation {
             .end_step(&self.model, balance, end, &settled.met, lost)
     }
 
+    /// Time (s) and state at the end of the last step.
+    pub(super) fn last_end(&self) -> (f64, &[f64]) {
+        let within = self.stepper.within.end();
+        within.unwrap_or_else(|| (self.state.time(), &self.state.y))
+    }
+
     /// Lists the springs that are limited again, if springs or pins have changed.
     fn list_strained(&mut self) {
         if let Model::Network(network) = &mut self.model {
@@ -252,13 +258,13 @@ impl Simulation {
         }
     }
 
-    /// Breaks what is stretched too far at the end of a step, or was located to be there. The run is
-    /// there: a state that is shown within the step still has what breaks at its end. The energy
-    /// changes by that of what breaks.
+    /// Breaks what is stretched too far at the end of a step, or was located to be there: that
+    /// changes the energy. The run is there: a state that is shown within the step still has what
+    /// breaks at its end.
     pub(super) fn tear(&mut self) {
         let locates = self.stepper.is_adaptive() || self.locates;
-        let share = if locates { NONE } else { 0.0 };
-        let (t, y) = (self.state.end(), &self.state.y);
+        let (share, t) = (if locates { NONE } else { 0.0 }, self.state.end());
+        let y = &self.state.y;
         if let Model::Network(network) = &mut self.model
             && network.is_overstretched(network.halves(y).0, share)
         {

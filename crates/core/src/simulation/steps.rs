@@ -93,12 +93,6 @@ impl Simulation {
         is_within
     }
 
-    /// Time (s) and state at the end of the last step.
-    pub(super) fn last_end(&self) -> (f64, &[f64]) {
-        let within = self.stepper.within.end();
-        within.unwrap_or_else(|| (self.state.time(), &self.state.y))
-    }
-
     /// Shows the state at a time (s) within the step: as its polynomial has it, with contact and
     /// pins as at the end of a step.
     fn show(&mut self, time: f64) {

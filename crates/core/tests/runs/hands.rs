@@ -2,7 +2,7 @@
 
 use crate::common::{method, simulation};
 use a3_core::contact::Shape;
-use a3_core::{Checkpoint, Simulation, Vector3};
+use a3_core::{Simulation, Vector3};
 use approx::assert_relative_eq;
 
 #[test]

@@ -184,7 +184,7 @@ fn surfaces_begin_to_touch_while_they_are_apart() {
     assert!(!run.touching());
     assert_eq!(run.model().network().unwrap().touch(), None);
     run.restore(&after).unwrap();
-    assert!(run.touching() && run.state() == after.y);
+    assert!(run.touching() && run.state() == after.run.y);
     run.set_touching(false).unwrap();
     assert_eq!(run.model().network().unwrap().touch(), None);
 }
