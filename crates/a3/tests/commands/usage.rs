@@ -5,6 +5,24 @@ use std::time::{Duration, Instant};
 use crate::refused;
 
 #[test]
+fn limits_of_adaptive_steps_are_for_adaptive_solvers() {
+    let folder = tempfile::tempdir().unwrap();
+    let simulate = [
+        "simulate", "t", "0.01", "--until", "1", "--output", "x.json",
+    ];
+    let with = |more: &[&'static str]| [&simulate[..], more].concat();
+    for (words, says) in [
+        (with(&["--absolute", "1e-6"]), "leave out --absolute"),
+        (with(&["--max-step", "0.1"]), "leave out --max-step"),
+        (vec!["x", "1e-6", "--absolute", "0"], "such as 1e-6"),
+        (vec!["x", "1e-6", "--max-step", "-1"], "such as 0.01"),
+    ] {
+        let line = refused(folder.path(), &words, 2);
+        assert!(line.contains(says), "{words:?}: {line}");
+    }
+}
+
+#[test]
 fn wrong_usage_is_one_line_that_says_what_is_right() {
     let folder = tempfile::tempdir().unwrap();
     let simulate = [
@@ -55,8 +73,6 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
         (vec!["t", "0.01", "--springs-of", "-1"], "whole number"),
         (vec!["v", "0.01", "--scene", "simple"], "first order"),
         (vec!["t", "0.01", "--wire"], "--wireframe"),
-        (with(&["--absolute", "1e-6"]), "leave out --absolute"),
-        (vec!["x", "1e-6", "--absolute", "0"], "such as 1e-6"),
         (
             vec!["simulate", "t", "0.01", "--output", "x.json"],
             "--until",

@@ -31,8 +31,8 @@ const VISIBLE: f64 = 0.01;
 pub struct Unmet {
     /// Number of the constraint, counted from 0.
     pub number: usize,
-    /// The constraint.
-    pub constraint: Constraint,
+    /// Name of the constraint.
+    pub constraint: Name,
     /// Error over the length of a rod, over the radius of a circle or of a sphere, or over the
     /// radius of the scene.
     pub share: f64,
@@ -46,14 +46,21 @@ impl Unmet {
     }
 }
 
-impl fmt::Display for Constraint {
+/// Name of a constraint, by its kind and its particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Name {
+    kind: &'static str,
+    particle: usize,
+    /// Particle at the other end of a rod.
+    other: Option<usize>,
+}
+
+impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Point { particle, .. } => write!(f, "the point of particle {particle}"),
-            Self::Line { particle, .. } => write!(f, "the line of particle {particle}"),
-            Self::Circle { particle, .. } => write!(f, "the circle of particle {particle}"),
-            Self::Sphere { particle, .. } => write!(f, "the sphere of particle {particle}"),
-            Self::Rod { i, j, .. } => write!(f, "the rod between particles {i} and {j}"),
+        let Self { kind, particle, .. } = self;
+        match self.other {
+            None => write!(f, "the {kind} of particle {particle}"),
+            Some(other) => write!(f, "the {kind} between particles {particle} and {other}"),
         }
     }
 }
@@ -66,6 +73,22 @@ impl fmt::Display for Unmet {
 }
 
 impl Constraint {
+    /// Its name.
+    pub(crate) fn name(&self) -> Name {
+        let (kind, particle, other) = match *self {
+            Self::Point { particle, .. } => ("point", particle, None),
+            Self::Line { particle, .. } => ("line", particle, None),
+            Self::Circle { particle, .. } => ("circle", particle, None),
+            Self::Sphere { particle, .. } => ("sphere", particle, None),
+            Self::Rod { i, j, .. } => ("rod", i, Some(j)),
+        };
+        Name {
+            kind,
+            particle,
+            other,
+        }
+    }
+
     /// Its own length (m), if it has one.
     fn length(&self) -> Option<f64> {
         match *self {
@@ -90,7 +113,7 @@ impl Constraints {
             if worst.is_none_or(|worst| share > worst.share) {
                 worst = Some(Unmet {
                     number,
-                    constraint,
+                    constraint: constraint.name(),
                     share,
                 });
             }
@@ -133,8 +156,7 @@ impl Constraints {
         let mut scratch = Scratch::default();
         for _ in 0..MAX_ITERATIONS {
             let worst = self.worst(x, radius)?;
-            // Written so that NaN ends it.
-            if !(worst.share > MET) {
+            if worst.share <= MET || worst.share.is_nan() {
                 return None;
             }
             self.displace(inverse_masses, x, &mut scratch);

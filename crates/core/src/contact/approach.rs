@@ -19,6 +19,9 @@ const FINEST: f64 = 1e-7;
 /// Most intervals that are looked at: what is not decided by then counts as contact.
 const MOST_INTERVALS: usize = 10_000;
 
+/// Most times that an interval is halved.
+const MOST_HALVINGS: usize = 64;
+
 /// Steps of Newton's method from an interval to the contact in it.
 const NEWTON_STEPS: usize = 8;
 
@@ -103,19 +106,9 @@ impl<'a> Approach<'a> {
     /// Share of the step, from `from` on, at which the particle is first within the obstacle by
     /// `depth` (m), if it ever is.
     pub fn first(&self, from: f64, depth: f64) -> Option<f64> {
-        let mut intervals = vec![[from, 1.0]];
-        for _ in 0..MOST_INTERVALS {
-            let [a, b] = intervals.pop()?;
-            if self.least([a, b]) + depth > 0.0 {
-                continue;
-            }
-            if b - a < FINEST {
-                return Some(self.refine(a, depth));
-            }
-            let middle = 0.5 * (a + b);
-            intervals.extend([[middle, b], [a, middle]]);
-        }
-        intervals.last().map(|[a, _]| *a)
+        let may_touch = |interval| self.least(interval) + depth <= 0.0;
+        let found = earliest([from, 1.0], FINEST, may_touch)?;
+        Some(self.refine(found, depth))
     }
 
     /// Share of the step near another one at which the depth is reached.
@@ -136,6 +129,35 @@ impl<'a> Approach<'a> {
         }
         now
     }
+}
+
+/// Beginning of the first part, shorter than `finest`, of an interval in which something may happen:
+/// intervals in which it may are halved.
+pub(crate) fn earliest(
+    whole: [f64; 2],
+    finest: f64,
+    may_happen: impl Fn([f64; 2]) -> bool,
+) -> Option<f64> {
+    // Each halving leaves one more.
+    let mut left = [whole; MOST_HALVINGS];
+    let mut count = 1;
+    for _ in 0..MOST_INTERVALS {
+        if count == 0 {
+            return None;
+        }
+        count -= 1;
+        let [a, b] = left[count];
+        if !may_happen([a, b]) {
+            continue;
+        }
+        if b - a < finest || count + 2 > MOST_HALVINGS {
+            return Some(a);
+        }
+        let middle = 0.5 * (a + b);
+        (left[count], left[count + 1]) = ([middle, b], [a, middle]);
+        count += 2;
+    }
+    Some(left[count.max(1) - 1][0])
 }
 
 impl Course {
@@ -181,7 +203,7 @@ mod tests {
     fn no_contact_is_missed() {
         let mut random = SplitMix(5);
         let mut hits = 0;
-        for _ in 0..2000 {
+        for _ in 0..3000 {
             let thin = random.between(1e-3, 0.1);
             let shape = match (random.between(0.0, 3.0)) as u32 {
                 0 => Shape::Sphere { radius: thin },

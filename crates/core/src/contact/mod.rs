@@ -40,7 +40,7 @@ mod tests;
 
 pub use crate::geometry::{ClosedMesh, Closest, PairKind, Shape, Simplices, closest, weighted};
 pub use advance::time_of_impact;
-pub(crate) use approach::Approach;
+pub(crate) use approach::{Approach, earliest};
 pub use check::Crossed;
 pub use cut::Squeezed;
 pub use exact::{Crossing, crossings};

@@ -339,7 +339,7 @@ impl Simulation {
     pub fn worst_constraint(&self) -> Option<Unmet> {
         let (number, share) = self.state.balance.worst?;
         let constraints = self.model.network()?.constraints();
-        let constraint = *constraints.get(number)?;
+        let constraint = constraints.get(number)?.name();
         Some(Unmet {
             number,
             constraint,

@@ -8,7 +8,7 @@
 
 use nalgebra::Vector3;
 
-use crate::contact::{Approach, Course};
+use crate::contact::{Approach, Course, earliest};
 use crate::network::Network;
 use crate::system::Mechanics;
 
@@ -339,16 +339,8 @@ fn course<Y: AsRef<[f64]>>(ends: &[Y; 2], i: usize, h: f64, n: usize) -> Course 
 /// Share of a piece at which a vector is first longer than `longest` (m).
 fn first_longer(apart: &Course, longest: f64) -> Option<f64> {
     let [speed, _] = apart.bounds();
-    let mut intervals = vec![[0.0, 1.0]];
-    while let Some([a, b]) = intervals.pop() {
-        let middle = 0.5 * (a + b);
-        if apart.position(middle).norm() + speed * 0.5 * (b - a) < longest {
-            continue;
-        }
-        if b - a < FINEST {
-            return Some(a);
-        }
-        intervals.extend([[middle, b], [a, middle]]);
-    }
-    None
+    earliest([0.0, 1.0], FINEST, |[a, b]| {
+        let middle = apart.position(0.5 * (a + b));
+        middle.norm() + speed * 0.5 * (b - a) >= longest
+    })
 }

@@ -33,10 +33,11 @@ fn a_cloth_rests_on_a_thin_table_by_every_solver() {
             if method.check(scene.model.system()).is_err() {
                 continue;
             }
-            let value = match method.is_adaptive() {
-                true => 1e-3,
-                // Stable, and too long for the table.
-                false => 1.0 / 240.0,
+            // Steps that are stable, and too long for the table.
+            let value = if method.is_adaptive() {
+                1e-3
+            } else {
+                1.0 / 240.0
             };
             let mut run = Simulation::new(scene.clone(), method, method.control(value)).unwrap();
             run.advance_to(0.7).unwrap();

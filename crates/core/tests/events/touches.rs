@@ -32,7 +32,7 @@ const SLOPE: &str = "
 /// on.
 #[test]
 fn a_particle_falls_on_a_slope_and_slides() {
-    let end = Vector3::new(4.345823729, -2.5090625, 0.0);
+    let end = Vector3::new(4.345_823_729, -2.509_062_5, 0.0);
     let apart = |method, value| (after(SLOPE, method, value, 1.5).position(0) - end).norm();
     for method in adaptive().filter(|method| method.name != "bdf") {
         for tolerance in [1e-2, 1e-5, 1e-8] {

@@ -54,7 +54,7 @@ fn a_particle_rebounds_to_the_square_of_its_restitution() {
                 // The step in proportion to the time of the fall.
                 let control = match control {
                     Control::Step(h) => Control::Step(h * f64::sqrt(scale)),
-                    other => other,
+                    tolerance @ Control::Tolerance(_) => tolerance,
                 };
                 let scene = described(&dropped(scale));
                 if m.check(scene.model.system()).is_err() {

@@ -80,14 +80,14 @@ enum StageSolver {
     /// Solver for a linearised mechanical system.
     Mechanical(Box<Mechanical>),
     /// Solver for any other system, of a small dimension.
-    Dense(Dense),
+    Dense(Box<Dense>),
 }
 
 impl StageSolver {
     fn new(system: &dyn ParticleSystem) -> Self {
         match system.mechanics().and_then(Mechanics::linearized) {
             Some(linearized) => Self::Mechanical(Box::new(Mechanical::new(linearized))),
-            None => Self::Dense(Dense::new(system)),
+            None => Self::Dense(Box::new(Dense::new(system))),
         }
     }
 
