@@ -28,6 +28,9 @@ const LOST: f64 = 100.0;
 /// Error of a constraint over its length from which on a run is lost.
 const BROKEN: f64 = 0.1;
 
+/// Share of the energy of pins below which what is left of all is rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// Speed that nobody sees, in radii of the scene (1/s): rounding moves what is at rest more slowly.
 const UNSEEN: f64 = 1e-9;
 
@@ -383,9 +386,14 @@ pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
     let (_, v) = network.halves(y);
     let (n, masses) = (network.particles(), network.masses());
     let mut energy = network.energy_of(t, y);
+    let mut of_pins = 0.0;
     for (i, _) in network.pins() {
         let squared: f64 = (0..3).map(|axis| v[axis * n + i].powi(2)).sum();
-        energy.kinetic -= 0.5 * masses[i] * squared;
+        of_pins += 0.5 * masses[i] * squared;
+    }
+    energy.kinetic -= of_pins;
+    if energy.kinetic.abs() < ROUNDING * of_pins {
+        energy.kinetic = 0.0;
     }
     energy
 }

@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 
 use crate::contact::{Approach, Course, earliest};
 use crate::network::Network;
+use crate::scene::Model;
 use crate::system::Mechanics;
 
 /// Pieces in which a step is searched.
@@ -83,6 +84,17 @@ pub(super) struct Events {
 }
 
 impl Events {
+    /// Search with room for all particles and obstacles of a model.
+    pub fn new(model: &Model) -> Self {
+        let obstacles = model
+            .network()
+            .map_or(0, |network| network.obstacles().len());
+        Self {
+            pairs: Vec::with_capacity(model.particles() * obstacles),
+            ..Self::default()
+        }
+    }
+
     /// Finds the first event of a step, and the state there.
     pub fn first(&mut self, step: &Searched, state_at: StateAt) -> Option<Event> {
         self.list_pairs(step);

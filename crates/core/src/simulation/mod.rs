@@ -76,13 +76,14 @@ impl Simulation {
             apart.map_err(|e| Error::Invalid(format!("surfaces cannot begin crossed: {e}")))?;
         }
         let (middle, radius) = scene.extent();
+        let events = Events::new(&model);
         let mut run = Self {
             state: RunState::new(method, control, scene.state.clone()),
             scene,
             model,
             stepper,
             phases: Phases::new(dim),
-            events: Events::default(),
+            events,
             locates: false,
             blow_up: None,
             watch: Watch::default(),

@@ -32,7 +32,7 @@ const SETTLING: [(f64, u32, bool); 5] = [
 ];
 
 /// Most work of these rounds, in that of a [`Budget`].
-const MOST: f64 = 2.5e8;
+const MOST: f64 = 1e9;
 
 /// Next step over one in which the guard of surfaces acted, and over one in which it did not.
 const SHORTER: f64 = 0.25;

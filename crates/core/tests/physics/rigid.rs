@@ -89,7 +89,7 @@ fn run(method: &str, control: Control, start: Vector3<f64>, end: f64) -> Simulat
 fn a_handle_flips_as_elliptic_functions_say() {
     let (_, flip) = exact(START, 0.0);
     let end = 10.0 * flip;
-    let found = own_spin(&run("dop853", Control::Tolerance(1e-13), START, end));
+    let found = own_spin(&run("dop853", Control::Tolerance(2e-14), START, end));
     let (spin, _) = exact(START, end);
     assert!(
         (found - spin).norm() < 1e-9 * spin.norm(),

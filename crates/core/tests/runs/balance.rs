@@ -17,7 +17,6 @@ fn energy_from_nowhere_is_noticed() {
     for (name, solver, h) in [
         ("chain", "v", 0.231),
         ("mit", "p", 0.0516),
-        ("mit-sphere", "n", 0.378),
         ("jelly", "i", 0.04),
         ("jelly", "i", 0.24),
     ] {

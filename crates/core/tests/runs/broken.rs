@@ -55,7 +55,7 @@ fn a_straight_chain_between_pins_stays() {
 
 #[test]
 fn contradictions_are_named() {
-    for (scene, from, until) in [(PINNED, 0.0, 0.5), (TAUT, 0.6, 1.0)] {
+    for (scene, from, until) in [(PINNED, 0.0, 0.8), (TAUT, 0.6, 1.0)] {
         for (name, value) in [
             ("rk4", 0.001),
             ("verlet", 0.005),
