@@ -273,16 +273,13 @@ pub(super) fn rub(
     }
     let find = |candidate: &Candidate| {
         let law = surface.law(candidate.kind, &candidate.points);
-        if law.skin.friction == 0.0 {
+        let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
+        let x = std::array::from_fn(|k| x0[k] + moves[k]);
+        if law.skin.friction == 0.0 || surface.is_beside(candidate, &x) {
             return None;
         }
-        let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
-        let pair = Pair {
-            kind: candidate.kind,
-            law,
-            x: std::array::from_fn(|k| x0[k] + moves[k]),
-            v: candidate.of(&motion.v),
-        };
+        let (kind, v) = (candidate.kind, candidate.of(&motion.v));
+        let pair = Pair { kind, law, x, v };
         let (force, weights, normal) = pair.force()?;
         let contact = Contact::new(surface, candidate, weights, normal, motion);
         (contact.inverse_mass > 0.0).then_some((contact, law.skin.friction * force * h))

@@ -113,10 +113,14 @@ impl ContactLayer {
         };
         candidates.cover(&self.surface, &stretch);
         let find = |candidate: &Candidate| {
+            let x = candidate.of(places);
+            if self.surface.is_beside(candidate, &x) {
+                return None;
+            }
             let pair = Pair {
                 kind: candidate.kind,
                 law: self.surface.law(candidate.kind, &candidate.points),
-                x: candidate.of(places),
+                x,
                 v: candidate.of(speeds),
             };
             find(candidate, &pair)

@@ -18,6 +18,7 @@ mod candidates;
 mod check;
 mod cut;
 mod exact;
+mod flat;
 mod friction;
 mod guard;
 mod hits;

@@ -90,6 +90,9 @@ pub struct Surface {
     anchors: Vec<Vec<Vector3<f64>>>,
     pub(super) bodies: Items,
     pub(super) obstacles: Items,
+    /// Edges of rigid shapes between triangles in one plane, in order, and points within a face as
+    /// edges with equal ends.
+    flat: Vec<[u32; 2]>,
     /// Vertices that stand for floors.
     pub(super) floors: Vec<u32>,
     /// Whether bodies can touch bodies.
@@ -134,6 +137,10 @@ impl Surface {
                 if let Shape::Sphere { .. } = part.shape {
                     sides.push([first; 2]);
                 }
+                let flat = simplices.flat_edges();
+                surface
+                    .flat
+                    .extend(flat.iter().map(|e| e.map(|i| first + i)));
                 faces.extend(simplices.triangles.iter().map(|t| t.map(|i| first + i)));
                 sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
                 first += points;
@@ -162,10 +169,15 @@ impl Surface {
             if let Shape::Sphere { .. } = obstacle.shape {
                 sides.push([first; 2]);
             }
+            let flat = simplices.flat_edges();
+            surface
+                .flat
+                .extend(flat.iter().map(|e| e.map(|i| first + i)));
             faces.extend(simplices.triangles.iter().map(|t| t.map(|i| first + i)));
             sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
             surface.anchors.push(simplices.points);
         }
+        surface.flat.sort_unstable();
         surface.obstacles = Items::new(faces, sides, &surface.bodies);
         let touching = surface
             .bodies
@@ -236,6 +248,17 @@ impl Surface {
     pub(super) fn solid(&self, vertex: u32) -> Option<usize> {
         let solid = self.solids.get(vertex as usize).copied().unwrap_or(0);
         (solid > 0).then(|| solid as usize - 1)
+    }
+
+    /// Whether an edge of a rigid shape is between triangles in one plane, or a point, given as an
+    /// edge with equal ends, within a face.
+    pub(super) fn is_flat(&self, [a, b]: [u32; 2]) -> bool {
+        !self.flat.is_empty() && self.flat.binary_search(&[a.min(b), a.max(b)]).is_ok()
+    }
+
+    /// Whether a vertex is a corner of a rigid body that is not round.
+    pub(super) fn is_polyhedral(&self, vertex: u32) -> bool {
+        self.radius(vertex) == 0.0 && self.solid(vertex).is_some()
     }
 
     /// Whether two vertices belong to the same rigid body, whose parts do not touch one another.

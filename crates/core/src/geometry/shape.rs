@@ -1,5 +1,6 @@
 //! Shapes of obstacles.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
@@ -48,6 +49,45 @@ pub struct Simplices {
     pub triangles: Vec<[u32; 3]>,
     /// Radius (m).
     pub radius: f64,
+}
+
+/// Sine of the angle of two triangles up to which they are in one plane.
+const FLAT: f64 = 1e-9;
+
+impl Simplices {
+    /// Edges between triangles in one plane, as numbers of points, the lower one first; and points all
+    /// of whose edges are such, as edges with equal ends.
+    pub(crate) fn flat_edges(&self) -> Vec<[u32; 2]> {
+        let mut sides = BTreeMap::new();
+        let mut flat = vec![];
+        for &[a, b, c] in &self.triangles {
+            let [p, q, r] = [a, b, c].map(|i| self.points[i as usize]);
+            let normal = (q - p).cross(&(r - p)).normalize();
+            for [i, j] in [[a, b], [b, c], [c, a]] {
+                let edge = [i.min(j), i.max(j)];
+                let Some(other) = sides.insert(edge, normal) else {
+                    continue;
+                };
+                if normal.cross(&other).norm() < FLAT && normal.dot(&other) > 0.0 {
+                    flat.push(edge);
+                }
+            }
+        }
+        let mut sharp = vec![self.triangles.is_empty(); self.points.len()];
+        let mut is_flat: Vec<_> = flat.clone();
+        is_flat.sort_unstable();
+        for edge in sides
+            .keys()
+            .filter(|edge| is_flat.binary_search(edge).is_err())
+        {
+            for i in edge {
+                sharp[*i as usize] = true;
+            }
+        }
+        let inner = (0..).zip(sharp).filter(|(_, sharp)| !sharp);
+        flat.extend(inner.map(|(i, _)| [i; 2]));
+        flat
+    }
 }
 
 impl Shape {

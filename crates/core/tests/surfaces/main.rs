@@ -7,6 +7,7 @@ mod bounce;
 mod collisions;
 mod conserved;
 mod felt;
+mod flat;
 mod force;
 mod hands;
 mod impact;
