@@ -125,7 +125,9 @@ fn makes(words: &[String], session: &Session) -> bool {
 /// The run at its beginning, with the wind, the swing and the contact that it has now.
 fn beginning(run: &Simulation) -> Result<Simulation, a3_core::Error> {
     let mut begun = Simulation::new(run.scene().clone(), run.method(), run.control())?;
-    begun.set_wind(run.windy());
+    if run.windy() != begun.windy() {
+        begun.set_wind(run.windy());
+    }
     begun.set_swinging(run.swinging());
     begun.set_touching(run.touching())?;
     Ok(begun)

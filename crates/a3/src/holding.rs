@@ -71,8 +71,8 @@ pub fn shorter_step(run: &Simulation) -> Option<f64> {
 }
 
 /// The longest step (s) shorter than the run's own that was seen to hold until then (s), at least
-/// for ten seconds, from just below the limit of all motion at the start of the scene. It depends on
-/// the scene and the method alone: not on the state that was lost, nor on the step that was too
+/// for ten seconds, from just below the limit of all motion at the start of the scene. It depends
+/// on the scene and the method alone: not on the state that was lost, nor on the step that was too
 /// long. `None` where none was found, and for a run to a tolerance.
 pub fn would_hold(run: &Simulation, until: f64, modes: &[Mode]) -> Option<f64> {
     Trials::of_window(run, until.max(HOLDING)).longest(modes)

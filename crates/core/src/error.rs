@@ -4,7 +4,6 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use crate::constraints::Unmet;
 use crate::control::Control;
 
 /// Reason why something could not be built or stepped.
@@ -117,6 +116,55 @@ pub enum Cause {
     },
 }
 
+/// Share from which on an error is seen, and worth a warning.
+const VISIBLE: f64 = 0.01;
+
+/// Constraint that is not met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unmet {
+    /// Number of the constraint, counted from 0.
+    pub number: usize,
+    /// Name of the constraint.
+    pub constraint: ConstraintName,
+    /// Error over the length of a rod, over the radius of a circle or of a sphere, or over the
+    /// radius of the scene.
+    pub share: f64,
+}
+
+impl Unmet {
+    /// Whether the error is large enough to be seen: 1 % or more.
+    #[must_use]
+    pub fn is_visible(&self) -> bool {
+        self.share >= VISIBLE
+    }
+}
+
+/// Name of a constraint, by its kind and its particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ConstraintName {
+    pub(crate) kind: &'static str,
+    pub(crate) particle: usize,
+    /// Particle at the other end of a rod.
+    pub(crate) other: Option<usize>,
+}
+
+impl fmt::Display for ConstraintName {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { kind, particle, .. } = self;
+        match self.other {
+            None => write!(f, "the {kind} of particle {particle}"),
+            Some(other) => write!(f, "the {kind} between particles {particle} and {other}"),
+        }
+    }
+}
+
+impl fmt::Display for Unmet {
+    /// The number and the name of the constraint.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "constraint {}, {}", self.number, self.constraint)
+    }
+}
+
 /// Vertex of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vertex {
@@ -160,7 +208,11 @@ impl fmt::Display for BlowUp {
         write!(f, "blew up at step {step}, t = {time:.4} s: ")?;
         match cause {
             Cause::Away { particle, distance } => {
-                write!(f, "particle {particle} is {distance:.0} m away")
+                if *distance >= 10.0 {
+                    write!(f, "particle {particle} is {distance:.0} m away")
+                } else {
+                    write!(f, "particle {particle} is {distance:.1e} m away")
+                }
             }
             Cause::Gained {
                 energy,

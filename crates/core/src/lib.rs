@@ -82,12 +82,12 @@ mod testing;
 mod threads;
 mod work;
 
-pub use constraints::{Constraint, Unmet};
+pub use constraints::Constraint;
 pub use control::Control;
 pub use coupling::{AxialCoupling, BlockCoupling, Coupling, Diagonal, GeneralCoupling, Matrix};
 pub use elements::{Element, Sheet};
 pub use energy::Energy;
-pub use error::{BlowUp, Cause, Error, Vertex};
+pub use error::{BlowUp, Cause, ConstraintName, Error, Unmet, Vertex};
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;

@@ -278,8 +278,8 @@ impl Path {
         0.5 * std::f64::consts::PI / rate.abs()
     }
 
-    /// Bounds on the speed (m/s) and on the acceleration (m/s2) between two times (s). The latter is
-    /// infinite where the motion begins or ends between them.
+    /// Bounds on the speed (m/s) and on the acceleration (m/s2) between two times (s). The latter
+    /// is infinite where the motion begins or ends between them.
     pub(crate) fn bounds(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let uniform = |way: Vector3<f64>, start: f64, end: f64| {
             if from < end && to > start && end > start {

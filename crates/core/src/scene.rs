@@ -15,7 +15,8 @@ use crate::system::ParticleSystem;
 /// What an evaluation with its guard costs where surfaces touch, over one of springs alone.
 const TOUCHING: f64 = 100.0;
 
-/// What an evaluation of a fluid, each of whose particles has dozens of neighbours, costs over that.
+/// What an evaluation of a fluid, each of whose particles has dozens of neighbours, costs over
+/// that.
 const FLUID: f64 = 10.0;
 
 /// First-order system, shared among runs.

@@ -1,11 +1,11 @@
 //! How far constraints are from being met, and whether they can be met at all.
 
-use std::fmt;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
 
 use super::{Constraint, Constraints, Moved, Row, Scratch, vector};
+use crate::error::{ConstraintName, Unmet};
 use crate::random::SplitMix;
 
 /// Largest number of Newton's steps towards positions that meet all constraints.
@@ -23,58 +23,9 @@ const MAX_DISPLACEMENT: f64 = 0.3;
 /// on a straight line knows of no way out of it.
 const JITTER: f64 = 1e-2;
 
-/// Share from which on an error is seen, and worth a warning.
-const VISIBLE: f64 = 0.01;
-
-/// Constraint that is not met.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unmet {
-    /// Number of the constraint, counted from 0.
-    pub number: usize,
-    /// Name of the constraint.
-    pub constraint: Name,
-    /// Error over the length of a rod, over the radius of a circle or of a sphere, or over the
-    /// radius of the scene.
-    pub share: f64,
-}
-
-impl Unmet {
-    /// Whether the error is large enough to be seen: 1 % or more.
-    #[must_use]
-    pub fn is_visible(&self) -> bool {
-        self.share >= VISIBLE
-    }
-}
-
-/// Name of a constraint, by its kind and its particles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Name {
-    kind: &'static str,
-    particle: usize,
-    /// Particle at the other end of a rod.
-    other: Option<usize>,
-}
-
-impl fmt::Display for Name {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { kind, particle, .. } = self;
-        match self.other {
-            None => write!(f, "the {kind} of particle {particle}"),
-            Some(other) => write!(f, "the {kind} between particles {particle} and {other}"),
-        }
-    }
-}
-
-impl fmt::Display for Unmet {
-    /// The number and the name of the constraint.
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "constraint {}, {}", self.number, self.constraint)
-    }
-}
-
 impl Constraint {
     /// Its name.
-    pub(crate) fn name(&self) -> Name {
+    pub(crate) fn name(&self) -> ConstraintName {
         let (kind, particle, other) = match *self {
             Self::Point { particle, .. } => ("point", particle, None),
             Self::Line { particle, .. } => ("line", particle, None),
@@ -82,7 +33,7 @@ impl Constraint {
             Self::Sphere { particle, .. } => ("sphere", particle, None),
             Self::Rod { i, j, .. } => ("rod", i, Some(j)),
         };
-        Name {
+        ConstraintName {
             kind,
             particle,
             other,

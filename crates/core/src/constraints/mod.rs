@@ -3,9 +3,9 @@
 //! masses W and all other forces Q; that of a pin is the one of its path, apin. The multipliers
 //! solve C'' = J a + J' v = -ks C - kd C', which takes back what a step missed, or
 //! J W J^T lambda = -(J' v + J (W Q + apin) + ks C + kd C').
-//! Where J is so nearly singular that lambda would be huge, as for a chain stretched straight between
-//! two pins, J W J^T is made a little larger, and C'' is met as nearly as bounded forces allow.
-//! Andrew Witkin, *Physically Based Modeling: Constrained Dynamics*, SIGGRAPH course notes.
+//! Where J is so nearly singular that lambda would be huge, as for a chain stretched straight
+//! between two pins, J W J^T is made a little larger, and C'' is met as nearly as bounded forces
+//! allow. Andrew Witkin, *Physically Based Modeling: Constrained Dynamics*, SIGGRAPH course notes.
 //!
 //! Each row of C is a distance (m), and each row of J a unit vector, and its opposite at the other
 //! end of a rod. A force at a point of a rigid body moves and turns the body: W then has the body's
@@ -27,7 +27,7 @@ use crate::error::{Error, positive};
 use crate::threads::each;
 pub use constraint::Constraint;
 use direct::Pattern;
-pub use errors::Unmet;
+
 use pool::Pool;
 use row::Row;
 use solve::Scratch;

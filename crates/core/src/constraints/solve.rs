@@ -20,8 +20,8 @@ const MANY: usize = 12;
 const TOLERANCE: f64 = 1e-15;
 /// Largest number of iterations per row: one would be enough without rounding.
 const MOST: usize = 4;
-/// Largest b . lambda over b . b that is taken as it is: the least eigenvalue of A is then about the
-/// inverse of that, and what it stands for is hardly held, whatever the force.
+/// Largest b . lambda over b . b that is taken as it is: the least eigenvalue of A is then about
+/// the inverse of that, and what it stands for is hardly held, whatever the force.
 const NEARLY_SINGULAR: f64 = 1e5;
 /// Most of what is then added to the diagonal of A, when that number is ten times as large. A chain
 /// of two rods of 1 m, straight and level between two pins, sags by about a millimetre.

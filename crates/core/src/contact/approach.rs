@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 
 use super::obstacle::Obstacle;
 use super::rebound::Course;
-use crate::geometry::separation::Separation;
+use crate::geometry::nearest::Separation;
 
 /// Share of the step below which an interval is not halved.
 const FINEST: f64 = 1e-7;
@@ -131,8 +131,8 @@ impl<'a> Approach<'a> {
     }
 }
 
-/// Beginning of the first part, shorter than `finest`, of an interval in which something may happen:
-/// intervals in which it may are halved.
+/// Beginning of the first part, shorter than `finest`, of an interval in which something may
+/// happen: intervals in which it may are halved.
 pub(crate) fn earliest(
     whole: [f64; 2],
     finest: f64,

@@ -10,6 +10,7 @@
 use super::candidates::Candidates;
 use super::cut::Squeezed;
 use super::friction::{Contact, Masses, rub};
+use super::hits::find;
 use super::impulses::Impulses;
 use super::layer::{ContactLayer, Scratch};
 use super::listing::Candidate;
@@ -169,25 +170,6 @@ fn write_back(motion: &Motion, n: usize, y0: &[f64], y1: &mut [f64]) {
             v[k] = motion.v[i][axis];
         }
     }
-}
-
-/// The pairs that come too near, with the share of the step at which they do: all, or those of
-/// which a vertex has moved.
-pub(super) fn find(
-    surface: &Surface,
-    candidates: &Candidates,
-    motion: &Motion,
-    moved: Option<&[bool]>,
-) -> Vec<(Candidate, f64)> {
-    let has_moved =
-        |pair: &Candidate| moved.is_none_or(|moved| pair.points.iter().any(|i| moved[*i as usize]));
-    let hit = |pair: &Candidate| {
-        let time = has_moved(pair).then(|| motion.impact(surface, pair))?;
-        Some((*pair, time?))
-    };
-    let mut hits = vec![];
-    candidates.each(surface.nearest(), hit, |hit| hits.push(hit));
-    hits
 }
 
 /// Impulse of a pair that touches at that share of the step, or, if it parts there, when it touches

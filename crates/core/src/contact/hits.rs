@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::candidates::Candidates;
 use super::listing::Candidate;
 use super::motion::Motion;
 use super::surface::Surface;
@@ -56,4 +57,23 @@ pub(super) fn first_hits(
         }
     }
     first
+}
+
+/// The pairs that come too near, with the share of the step at which they do: all, or those of
+/// which a vertex has moved.
+pub(super) fn find(
+    surface: &Surface,
+    candidates: &Candidates,
+    motion: &Motion,
+    moved: Option<&[bool]>,
+) -> Vec<(Candidate, f64)> {
+    let has_moved =
+        |pair: &Candidate| moved.is_none_or(|moved| pair.points.iter().any(|i| moved[*i as usize]));
+    let hit = |pair: &Candidate| {
+        let time = has_moved(pair).then(|| motion.impact(surface, pair))?;
+        Some((*pair, time?))
+    };
+    let mut hits = vec![];
+    candidates.each(surface.nearest(), hit, |hit| hits.push(hit));
+    hits
 }

@@ -256,8 +256,8 @@ impl Met<'_> {
         })
     }
 
-    /// End of the slide of particle i, whose slip (m/s) at the end of the step friction takes, where
-    /// contact changed the velocity by that much along the normal `up` (m/s).
+    /// End of the slide of particle i, whose slip (m/s) at the end of the step friction takes,
+    /// where contact changed the velocity by that much along the normal `up` (m/s).
     fn stop(&self, i: usize, slip: Vector3<f64>, (up, change): (Vector3<f64>, f64)) -> Stop {
         let (Some(x0), Some(v0)) = (self.x0, self.v0) else {
             return Stop::default();

@@ -47,8 +47,8 @@ impl Contact {
         }
     }
 
-    /// Remembers the state that a step begins with, if particles may pass through an obstacle, or it
-    /// has friction or restitution, or, with `look_back`, if there is one at all.
+    /// Remembers the state that a step begins with, if particles may pass through an obstacle, or
+    /// it has friction or restitution, or, with `look_back`, if there is one at all.
     pub fn begin(&mut self, obstacles: &[Obstacle], y0: &[f64], look_back: bool) {
         self.y0.clear();
         let needs = |o: &Obstacle| {

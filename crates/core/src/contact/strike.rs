@@ -11,8 +11,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::candidates::Candidates;
-use super::guard::find;
-use super::hits::{first_hits, parties};
+use super::hits::{find, first_hits, parties};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::rebound::rebound_speed;

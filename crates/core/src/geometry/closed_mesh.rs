@@ -7,8 +7,7 @@ use nalgebra::Vector3;
 
 use super::bvh::{Aabb, Bvh};
 use super::closest::{PairKind, closest};
-use super::nearest::Nearest;
-use super::separation::Separation;
+use super::nearest::{Nearest, Separation};
 use crate::error::{Error, finite};
 
 /// Closed surface of triangles around a solid.

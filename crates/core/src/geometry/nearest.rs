@@ -8,6 +8,15 @@ pub(crate) struct Nearest {
     pub normal: Vector3<f64>,
 }
 
+/// Separation of a point from a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Separation {
+    /// Distance from the surface (m), below 0 inside.
+    pub distance: f64,
+    /// Direction in which the distance grows fastest: a unit vector.
+    pub normal: Vector3<f64>,
+}
+
 /// Nearest point of a sphere around the origin to a point d inside it; to the centre, that in the
 /// direction of `aside`.
 pub(crate) fn of_sphere(

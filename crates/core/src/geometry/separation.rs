@@ -2,16 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::nearest::Separation;
 use super::shape::Shape;
-
-/// Separation of a point from a shape.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Separation {
-    /// Distance from the surface (m), below 0 inside.
-    pub distance: f64,
-    /// Direction in which the distance grows fastest: a unit vector.
-    pub normal: Vector3<f64>,
-}
 
 impl Shape {
     /// Separation of a point d, seen from the shape's place.

@@ -55,8 +55,8 @@ pub struct Simplices {
 const FLAT: f64 = 1e-9;
 
 impl Simplices {
-    /// Edges between triangles in one plane, as numbers of points, the lower one first; and points all
-    /// of whose edges are such, as edges with equal ends.
+    /// Edges between triangles in one plane, as numbers of points, the lower one first; and points
+    /// all of whose edges are such, as edges with equal ends.
     pub(crate) fn flat_edges(&self) -> Vec<[u32; 2]> {
         let mut sides = BTreeMap::new();
         let mut flat = vec![];

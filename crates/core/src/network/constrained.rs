@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 
 use super::Network;
-use crate::constraints::{Constraint, Constraints, Turning, Unmet};
+use crate::constraints::{Constraint, Constraints, Turning};
 use crate::elements::{Attraction, Element};
-use crate::error::Error;
+use crate::error::{Error, Unmet};
 use crate::path::Path;
 use crate::rigid::Body;
 

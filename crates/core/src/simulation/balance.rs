@@ -1,18 +1,16 @@
 //! Balance of energy: what a run gains beyond the work that was done on it, and how far constraints
 //! are from being met.
 //!
-//! The forces take energy from a motion or leave it as it is, unless something [works](super::drive)
-//! on it: a pin or an obstacle that moves, wind, a hand. What a run has beyond that work was made by
-//! its method, by a step that is too long.
+//! The forces take energy from a motion or leave it as it is, unless something
+//! [works](super::drive) on it: a pin or an obstacle that moves, wind, a hand. What a run has
+//! beyond that work was made by its method, by a step that is too long.
 
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
-use super::drive::{Drive, End};
-use crate::constraints::Unmet;
+use super::drive::{Drive, End, energy_of};
 use crate::contact::{Obstacle, Statistics};
-use crate::energy::Energy;
-use crate::error::{Cause, Error};
+use crate::error::{Cause, Error, Unmet};
 use crate::network::Network;
 use crate::scene::Model;
 
@@ -27,9 +25,6 @@ const LOST: f64 = 100.0;
 
 /// Error of a constraint over its length from which on a run is lost.
 const BROKEN: f64 = 0.1;
-
-/// Share of the energy of pins below which what is left of all is rounding.
-const ROUNDING: f64 = 1e-12;
 
 /// Speed that nobody sees, in radii of the scene (1/s): rounding moves what is at rest more slowly.
 const UNSEEN: f64 = 1e-9;
@@ -293,10 +288,9 @@ impl Simulation {
     /// Balance at the end of the last step.
     fn balance_now(&self) -> (Balance, Option<Cause>) {
         let mut balance = self.state.balance;
-        let lost = self
-            .model
-            .network()
-            .and_then(|network| balance.look(network, self.last_end(), &mut vec![]));
+        // What was changed since the last look is no gain.
+        let network = self.model.network().filter(|_| !self.watch.disturbed);
+        let lost = network.and_then(|network| balance.look(network, self.last_end(), &mut vec![]));
         (balance, lost)
     }
 
@@ -378,22 +372,4 @@ fn fastest_particle(v: &[f64]) -> (usize, f64) {
     speeds
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .unwrap_or_default()
-}
-
-/// Energy of y at time t (s), without that of the motion of pins, which is given and may begin at
-/// once.
-pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
-    let (_, v) = network.halves(y);
-    let (n, masses) = (network.particles(), network.masses());
-    let mut energy = network.energy_of(t, y);
-    let mut of_pins = 0.0;
-    for (i, _) in network.pins() {
-        let squared: f64 = (0..3).map(|axis| v[axis * n + i].powi(2)).sum();
-        of_pins += 0.5 * masses[i] * squared;
-    }
-    energy.kinetic -= of_pins;
-    if energy.kinetic.abs() < ROUNDING * of_pins {
-        energy.kinetic = 0.0;
-    }
-    energy
 }

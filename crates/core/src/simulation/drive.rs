@@ -1,17 +1,17 @@
 //! Work on a scene: by pins that move, wind, constraints and obstacles.
 //!
-//! A pin works against the springs at its particle and against gravity. Its power is integrated over
-//! each step: by Simpson's rule, with the state in the middle from the Hermite polynomial, where the
-//! method has an order above 2, and by the trapezoidal rule elsewhere. The force F of wind changes
-//! slowly: its work is F . dx over short times, whatever particles do meanwhile. Where more than
-//! that works on a scene, the power of all together is the rate at which the energy of the exact
-//! motion grows, dE/dt = (E(t + e, y + e f) - E(t - e, y - e f)) / 2e.
+//! A pin works against the springs at its particle and against gravity. Its power is integrated
+//! over each step: by Simpson's rule, with the state in the middle from the Hermite polynomial,
+//! where the method has an order above 2, and by the trapezoidal rule elsewhere. The force F of
+//! wind changes slowly: its work is F . dx over short times, whatever particles do meanwhile. Where
+//! more than that works on a scene, the power of all together is the rate at which the energy of
+//! the exact motion grows, dE/dt = (E(t + e, y + e f) - E(t - e, y - e f)) / 2e.
 
 use nalgebra::Vector3;
 
-use super::balance::energy_of;
 use crate::contact::Obstacle;
 use crate::elements::Element;
+use crate::energy::Energy;
 use crate::network::Network;
 use crate::path::Path;
 use crate::spring::Spring;
@@ -29,6 +29,9 @@ const MOMENT: f64 = 1e-7;
 
 /// Order above which a method's steps are long, and Simpson's rule is needed.
 const LOW_ORDER: u32 = 2;
+
+/// Share of the energy of pins below which what is left of all is rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// End of a step.
 #[derive(Clone, Copy)]
@@ -339,4 +342,22 @@ fn write_middle(y0: &[f64], y1: &[f64], h: f64, out: &mut Vec<f64>) {
     out.clear();
     out.extend((0..half).map(|k| 0.5 * (x0[k] + x1[k]) + 0.125 * h * (v0[k] - v1[k])));
     out.extend((0..half).map(|k| 1.5 * (x1[k] - x0[k]) / h - 0.25 * (v0[k] + v1[k])));
+}
+
+/// Energy of y at time t (s), without that of the motion of pins, which is given and may begin at
+/// once.
+pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
+    let (_, v) = network.halves(y);
+    let (n, masses) = (network.particles(), network.masses());
+    let mut energy = network.energy_of(t, y);
+    let mut of_pins = 0.0;
+    for (i, _) in network.pins() {
+        let squared: f64 = (0..3).map(|axis| v[axis * n + i].powi(2)).sum();
+        of_pins += 0.5 * masses[i] * squared;
+    }
+    energy.kinetic -= of_pins;
+    if energy.kinetic.abs() < ROUNDING * of_pins {
+        energy.kinetic = 0.0;
+    }
+    energy
 }

@@ -18,7 +18,8 @@ mod within;
 pub use balance::{Balance, Gain};
 pub use checkpoint::Checkpoint;
 pub use state::{Grabbed, RunState};
-pub use stepper::{Progress, Span};
+pub use stepper::Progress;
+pub use within::Span;
 
 use nalgebra::Vector3;
 
@@ -126,10 +127,10 @@ impl Simulation {
         self.begin_watch();
     }
 
-    /// Lets fixed steps end at events, as adaptive ones do: where a prescribed motion begins or ends
-    /// and, in scenes of few particles, where one touches an obstacle or a spring breaks. A step
-    /// goes on from there by the rest of its length. So the order of the method is kept, at any
-    /// price: this is for references.
+    /// Lets fixed steps end at events, as adaptive ones do: where a prescribed motion begins or
+    /// ends and, in scenes of few particles, where one touches an obstacle or a spring breaks. A
+    /// step goes on from there by the rest of its length. So the order of the method is kept, at
+    /// any price: this is for references.
     pub fn locate_events(&mut self) {
         self.locates = true;
     }

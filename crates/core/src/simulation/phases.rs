@@ -91,8 +91,8 @@ impl Phases {
     }
 
     /// Settles a state that is shown, h (s) after the beginning of a step from t (s). A polynomial
-    /// knows of no surfaces. That of an adaptive step does not know of obstacles either, and that of
-    /// a fixed step leads to where they have been met.
+    /// knows of no surfaces. That of an adaptive step does not know of obstacles either, and that
+    /// of a fixed step leads to where they have been met.
     pub fn settle_shown(
         &self,
         network: &Network,

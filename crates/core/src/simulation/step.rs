@@ -7,9 +7,8 @@
 //! at the first event within it, and whether it is taken again, shorter ([`share_of_retry`]).
 
 use super::Simulation;
-use super::balance::energy_of;
 use super::blow_up::blow_up_by;
-use super::drive::End;
+use super::drive::{End, energy_of};
 use super::events::{Event, EventKind, Searched};
 use super::phases::Settled;
 use super::stepper::Kind;

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::within::Within;
+use super::within::{Span, Within};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Adaptive, AdaptiveState, Integrator, Method, Taken, Work};
@@ -31,15 +31,6 @@ pub struct Progress {
     pub method: Option<AdaptiveState>,
     /// Step that the time shown is within.
     pub within: Option<Span>,
-}
-
-/// Step that a time shown is within.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Span {
-    /// Times of its beginning and its end (s).
-    pub times: [f64; 2],
-    /// States at its beginning, which an adaptive method remembers by itself, and at its end.
-    pub ends: [Vec<f64>; 2],
 }
 
 impl Stepper {
@@ -74,8 +65,8 @@ impl Stepper {
         matches!(self.kind, Kind::Adaptive(_))
     }
 
-    /// Takes y from t (s) to the end of a step: of the fixed length, or of the method's choice and at
-    /// most `longest` (s).
+    /// Takes y from t (s) to the end of a step: of the fixed length, or of the method's choice and
+    /// at most `longest` (s).
     ///
     /// # Errors
     /// The step failed.
@@ -97,9 +88,9 @@ impl Stepper {
         }
     }
 
-    /// Writes the state at `since` (s) after the beginning of the last step, at y0 at time t (s), to
-    /// `out`: off an adaptive method's polynomial, or by a shorter fixed step, and `out` is not a
-    /// number where that fails. Returns the work.
+    /// Writes the state at `since` (s) after the beginning of the last step, at y0 at time t (s),
+    /// to `out`: off an adaptive method's polynomial, or by a shorter fixed step, and `out` is not
+    /// a number where that fails. Returns the work.
     pub fn state_at(
         &mut self,
         system: &dyn ParticleSystem,

@@ -50,20 +50,27 @@ impl Simulation {
 
     /// Takes steps up to `time` (s).
     fn go_on(&mut self, time: f64) -> Result<(), Error> {
-        while self.time() < time {
+        loop {
             let sliver = Self::SLIVER * self.step_size().unwrap_or(0.0);
-            let until = self.stepper.within.until();
-            if until.is_some_and(|end| time < end - sliver) {
-                self.show(time);
-                break;
+            if let Some(end) = self.stepper.within.until() {
+                if time <= self.time() {
+                    return Ok(());
+                }
+                if time < end - sliver {
+                    self.show(time);
+                    return Ok(());
+                }
+                self.arrive();
             }
-            self.arrive();
             let begin = self.state.end();
-            if begin >= time - sliver {
-                // The last step ends there, except for rounding.
-                self.state.shown = Some(time).filter(|time| *time != begin);
-                break;
+            if time <= begin + sliver {
+                if time >= begin - sliver {
+                    // The last step ends there, except for rounding.
+                    self.state.shown = Some(time).filter(|time| *time != begin);
+                }
+                return Ok(());
             }
+            self.state.shown = None;
             let ends_later = |h: f64| begin + h * (1.0 - Self::SLIVER) > time;
             if self.state.control.step().is_some_and(ends_later) {
                 self.stepper.within.begin(&self.state.y);
@@ -72,12 +79,10 @@ impl Simulation {
             let end = self.state.end();
             if ends_later(end - begin) {
                 self.stepper.within.enter([begin, end], &self.state.y);
-                self.show(time);
             } else {
                 self.tear();
             }
         }
-        Ok(())
     }
 
     /// Goes on to the end of the step that the time shown is within. Returns whether it was within

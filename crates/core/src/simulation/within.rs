@@ -8,14 +8,23 @@
 //! out, and a straight line takes its place.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
-use super::stepper::Span;
 use crate::error::Error;
 use crate::system::ParticleSystem;
 
 /// Largest part of the acceleration's own effect by which the change of a velocity may miss the
 /// mean of the accelerations at both ends.
 const EXPLAINED: f64 = 0.25;
+
+/// Step that a time shown is within.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Span {
+    /// Times of its beginning and its end (s).
+    pub times: [f64; 2],
+    /// States at its beginning, which an adaptive method remembers by itself, and at its end.
+    pub ends: [Vec<f64>; 2],
+}
 
 /// Step that the time shown is within, if it is within one.
 #[derive(Default)]
@@ -69,8 +78,8 @@ impl Within {
         self.times.take().map(|_| &mut self.ends[1])
     }
 
-    /// Writes the state at a time (s) within a fixed step to `out`: that of n particles first, which
-    /// have positions and velocities, then other numbers.
+    /// Writes the state at a time (s) within a fixed step to `out`: that of n particles first,
+    /// which have positions and velocities, then other numbers.
     pub fn interpolate(
         &mut self,
         (system, n): (&dyn ParticleSystem, usize),

@@ -12,7 +12,8 @@ fn height(toml: &str, name: &str, value: f64, until: f64) -> f64 {
 }
 
 /// After 20 s at rest, a pin moves by 0.1 m within 50 ms: the mass that hangs from it swings by
-/// (a / w T) (sin w (t - 20.05) - sin w (t - 20)) about the new place, by the response to two ramps.
+/// (a / w T) (sin w (t - 20.05) - sin w (t - 20)) about the new place, by the response to two
+/// ramps.
 #[test]
 fn a_rest_lets_no_pulse_pass() {
     let toml = "

@@ -1,4 +1,5 @@
-//! Work on a run is integrated over each step, whatever drives it and however often it is looked at.
+//! Work on a run is integrated over each step, whatever drives it and however often it is looked
+//! at.
 
 use a3_core::{Cause, Control, Error, Simulation};
 

@@ -26,7 +26,7 @@ pub(super) fn check(description: &Description, scene: &Scene) -> Result<(), Faul
         None => ("chain".into(), String::new()),
     };
     let why = format!(
-        "{number}{} is off by {:.3} % at the start, and a scene has to begin with its constraints met",
+        "{number}{}, is off by {:.3} % at the start, and a scene has to begin with its constraints met",
         unmet.constraint,
         100.0 * unmet.share
     );

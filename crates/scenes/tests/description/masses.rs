@@ -60,7 +60,8 @@ fn another_grid_weighs_as_much() {
         let scale = (lighter / mass).sqrt();
         assert!(scale < 0.6 && (defaults.step_scale - scale).abs() < 1e-12);
     }
-    // The same width in two rows: the area falls to a nineteenth, the number of particles to a tenth.
+    // The same width in two rows: the area falls to a nineteenth, the number of particles to a
+    // tenth.
     let flat = scene("cloth", Some([2, 20])).defaults.step_scale;
     assert!((flat - (10.0_f64 / 19.0).sqrt()).abs() < 1e-12, "{flat}");
     assert!(scene("mit", Some([40, 30])).defaults.step_scale == 1.0);
