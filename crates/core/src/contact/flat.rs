@@ -1,13 +1,13 @@
-//! Flat faces of rigid shapes: a face that consists of several triangles repels as one.
+//! Flat faces of rigid shapes: a face that consists of several triangles repels particles and round
+//! bodies as one.
 //!
 //! A vertex above a flat face is within reach of all its triangles that are near, but only that
 //! under it repels it: none from which it lies beyond an edge to a triangle in the same plane. So
 //! the force does not depend on the triangles, and is continuous where one follows another. The
-//! edge between them repels no other edge, and a corner within the face no triangle, as the face
-//! does that.
+//! edge between them repels no edge of a round body, as the face on either side does that.
 //!
-//! Corners and edges of boxes and meshes that are rigid bodies meet all, as before: what is under
-//! them holds them at several points.
+//! Corners and edges of cloth, boxes and meshes meet all triangles: what is under these surfaces
+//! holds them at many points.
 
 use nalgebra::Vector3;
 
@@ -27,20 +27,18 @@ impl Surface {
                     let normal = along.cross(&(x[r] - x[p]));
                     along.cross(&(x[0] - x[p])).dot(&normal) < 0.0
                 };
-                let in_face = self.is_flat([i; 2]) && !self.is_polyhedral(a);
-                in_face
-                    || !self.is_polyhedral(i)
-                        && [
-                            ([a, b], [1, 2, 3]),
-                            ([b, c], [2, 3, 1]),
-                            ([c, a], [3, 1, 2]),
-                        ]
-                        .into_iter()
-                        .any(|(edge, corners)| self.is_flat(edge) && beyond(corners))
+                self.is_single(i)
+                    && [
+                        ([a, b], [1, 2, 3]),
+                        ([b, c], [2, 3, 1]),
+                        ([c, a], [3, 1, 2]),
+                    ]
+                    .into_iter()
+                    .any(|(edge, corners)| self.is_flat(edge) && beyond(corners))
             }
             PairKind::EdgeEdge => {
-                self.is_flat([i, a]) && !self.is_polyhedral(b)
-                    || self.is_flat([b, c]) && !self.is_polyhedral(i)
+                self.is_flat([i, a]) && self.is_single(b)
+                    || self.is_flat([b, c]) && self.is_single(i)
             }
             PairKind::VertexFloor => false,
         }

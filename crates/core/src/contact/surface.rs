@@ -90,9 +90,10 @@ pub struct Surface {
     anchors: Vec<Vec<Vector3<f64>>>,
     pub(super) bodies: Items,
     pub(super) obstacles: Items,
-    /// Edges of rigid shapes between triangles in one plane, in order, and points within a face as
-    /// edges with equal ends.
+    /// Edges of rigid shapes between triangles in one plane, in order.
     flat: Vec<[u32; 2]>,
+    /// Whether each particle has no triangles and no edges, and belongs to no rigid body.
+    singles: Vec<bool>,
     /// Vertices that stand for floors.
     pub(super) floors: Vec<u32>,
     /// Whether bodies can touch bodies.
@@ -123,6 +124,15 @@ impl Surface {
         };
         if !bodies.is_empty() {
             surface.solids = vec![0; skins.len()];
+        }
+        surface.singles = vec![true; skins.len()];
+        let corners = triangles.iter().flatten();
+        let ends = edges.iter().filter(|[a, b]| a != b).flatten();
+        for i in corners.chain(ends) {
+            surface.singles[*i as usize] = false;
+        }
+        for i in bodies.iter().flat_map(Body::points) {
+            surface.singles[i] = false;
         }
         let (mut faces, mut sides) = (triangles.to_vec(), edges.to_vec());
         for (k, body) in bodies.iter().enumerate() {
@@ -250,15 +260,15 @@ impl Surface {
         (solid > 0).then(|| solid as usize - 1)
     }
 
-    /// Whether an edge of a rigid shape is between triangles in one plane, or a point, given as an
-    /// edge with equal ends, within a face.
+    /// Whether an edge of a rigid shape is between triangles in one plane.
     pub(super) fn is_flat(&self, [a, b]: [u32; 2]) -> bool {
         !self.flat.is_empty() && self.flat.binary_search(&[a.min(b), a.max(b)]).is_ok()
     }
 
-    /// Whether a vertex is a corner of a rigid body that is not round.
-    pub(super) fn is_polyhedral(&self, vertex: u32) -> bool {
-        self.radius(vertex) == 0.0 && self.solid(vertex).is_some()
+    /// Whether a vertex is a particle without triangles and edges, or a point of something round.
+    pub(super) fn is_single(&self, vertex: u32) -> bool {
+        let is_alone = || self.singles.get(vertex as usize).is_some_and(|is| *is);
+        self.radius(vertex) > 0.0 || is_alone()
     }
 
     /// Whether two vertices belong to the same rigid body, whose parts do not touch one another.

@@ -55,8 +55,7 @@ pub struct Simplices {
 const FLAT: f64 = 1e-9;
 
 impl Simplices {
-    /// Edges between triangles in one plane, as numbers of points, the lower one first; and points
-    /// all of whose edges are such, as edges with equal ends.
+    /// Edges between triangles in one plane, as numbers of points, the lower one first.
     pub(crate) fn flat_edges(&self) -> Vec<[u32; 2]> {
         let mut sides = BTreeMap::new();
         let mut flat = vec![];
@@ -73,19 +72,6 @@ impl Simplices {
                 }
             }
         }
-        let mut sharp = vec![self.triangles.is_empty(); self.points.len()];
-        let mut is_flat: Vec<_> = flat.clone();
-        is_flat.sort_unstable();
-        for edge in sides
-            .keys()
-            .filter(|edge| is_flat.binary_search(edge).is_err())
-        {
-            for i in edge {
-                sharp[*i as usize] = true;
-            }
-        }
-        let inner = (0..).zip(sharp).filter(|(_, sharp)| !sharp);
-        flat.extend(inner.map(|(i, _)| [i; 2]));
         flat
     }
 }

@@ -79,9 +79,10 @@ impl Simulation {
             let end = self.state.end();
             if ends_later(end - begin) {
                 self.stepper.within.enter([begin, end], &self.state.y);
-            } else {
-                self.tear();
+                self.show(time);
+                return Ok(());
             }
+            self.tear();
         }
     }
 

@@ -89,7 +89,7 @@ fn slab() -> Mesh {
     for y in [0.0, -1.0] {
         for i in 0..n {
             for j in 0..n {
-                let inside = |k: u32| if k % CELLS == 0 { 0.0 } else { 0.5 };
+                let inside = |k: u32| if k.is_multiple_of(CELLS) { 0.0 } else { 0.5 };
                 let cell = 4.0 / f64::from(CELLS);
                 let mut along =
                     |k| -2.0 + cell * (f64::from(k) + inside(k) * (random.unit() - 0.5));
@@ -137,12 +137,10 @@ fn build(text: &str) -> Scene {
 enum Thing {
     Particle,
     Ball,
-    Cloth,
-    Rope,
 }
 
 impl Thing {
-    const ALL: [Self; 4] = [Self::Particle, Self::Ball, Self::Cloth, Self::Rope];
+    const ALL: [Self; 2] = [Self::Particle, Self::Ball];
 
     /// The thing, whose lowest points are at that height (m).
     fn text(self, frame: Frame, [x, y, z]: [f64; 3], velocity: [f64; 3]) -> String {
@@ -164,23 +162,6 @@ impl Thing {
                 above(0.0)
             ),
             Self::Ball => body(format!("ball = {}", length(0.1)), 0.1),
-            _ => {
-                let [right, down] = [[1.0, 0.0, 0.3], [-0.3, 0.0, 1.0]].map(|v| frame.direction(v));
-                let (at, size) = (above(0.0), length(0.6));
-                if self == Self::Cloth {
-                    format!(
-                        "[[cloth]]\ngrid = [5, 6]\nwidth = {size}\ndensity = 1
-                        stiffness = [40, 20, 2]\nat = {at:?}\nright = {right:?}\ndown = {down:?}
-                        thickness = {d}\n"
-                    )
-                } else {
-                    let to: [f64; 3] = (Vector3::from(at) + Vector3::from(right) * size).into();
-                    format!(
-                        "[[chain]]\nparticles = 7\nfrom = {at:?}\nto = {to:?}\nmass = 1
-                        stiffness = 40\nthickness = {d}\n"
-                    )
-                }
-            }
         }
     }
 }
@@ -220,7 +201,7 @@ fn place(random: &mut Random) -> [f64; 3] {
     [x, THICKNESS * (0.05 + 0.9 * random.unit()), z]
 }
 
-/// Particles, balls, cloths and ropes are repelled as by a floor: those on a box and on a
+/// Particles and balls are repelled as by a floor: those on a box and on a
 /// mesh by as much, wherever they are, upright and turned, in metres, millimetres and kilometres.
 #[test]
 fn a_flat_face_repels_as_a_floor() {
