@@ -125,7 +125,7 @@ impl Simulation {
                 Some(Event {
                     kind: EventKind::Sunk,
                     share,
-                }) if taken.h > MIN_RETRY_STEP => {
+                }) if taken.h > MIN_RETRY_STEP && self.stepper.is_adaptive() => {
                     self.take_again(taken.h, MIN_RETRY_SHARE.max(0.9 * share));
                     continue;
                 }
