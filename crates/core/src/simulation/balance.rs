@@ -94,8 +94,7 @@ impl Balance {
         self.open = true;
     }
 
-    /// Whether the particles alone move with more energy than a run may gain. What flies through a
-    /// whole scene in a step meets all of it, and costs thousands of steps.
+    /// Whether the particles alone move with more energy than a run may gain.
     fn is_exceeded(&self, network: &Network, y: &[f64]) -> bool {
         let (_, v) = network.halves(y);
         let squared = |axis: usize| {
@@ -227,6 +226,22 @@ impl Watch {
         self.drive.forget();
     }
 
+    /// Why a run is lost whose particles alone move with more energy than it may gain, where surfaces
+    /// have not been guarded yet: what flies through a whole scene in a step meets all of it, and
+    /// costs thousands of steps.
+    pub fn look_before_guard(&self, model: &Model, balance: &Balance, end: End) -> Option<Cause> {
+        let network = model.network()?;
+        let mut balance = *balance;
+        if network.contact_layer().is_none()
+            || self.disturbed
+            || !balance.is_exceeded(network, end.y)
+        {
+            return None;
+        }
+        balance.add(self.drive.clone().work(network, end));
+        balance.look(network, (end.t, end.y), &mut vec![])
+    }
+
     /// Notes the end of a step in which obstacles were met, and after which a particle seems lost.
     /// Returns why the run is lost: what is far away because it fell or was thrown there has gained
     /// nothing, and is not.
@@ -264,8 +279,7 @@ impl Watch {
             balance.worst = Some((unmet.number, unmet.share));
         }
         let early = t - balance.time < INTERVAL && !away;
-        let exceeded = || network.contact_layer().is_some() && balance.is_exceeded(network, y);
-        let gained = if early && !exceeded() {
+        let gained = if early {
             None
         } else {
             balance.look(network, (t, y), &mut self.scratch)

@@ -45,7 +45,7 @@ pub(super) struct End<'a> {
 }
 
 /// All that works on a scene.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Drive {
     /// Whether the parts are those of the network and the state as they are.
     is_fresh: bool,
@@ -108,7 +108,7 @@ fn works_together(network: &Network) -> bool {
 }
 
 /// Work of moving pins on springs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Pins {
     /// The moving pins and their masses (kg): the first of the particles.
     paths: Vec<(Path, f64)>,
@@ -233,7 +233,7 @@ impl Pins {
 }
 
 /// Work of wind.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Breeze {
     /// Time (s), positions (m) and forces (N) at the last look.
     t: f64,
@@ -274,7 +274,7 @@ impl Breeze {
 }
 
 /// Work of all together.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct All {
     /// Time (s) and power (W) at the last look, and the state, where it is needed.
     t: f64,

@@ -138,6 +138,11 @@ impl Simulation {
                 }
                 _ => {}
             }
+            let (balance, order, t1) = (&self.state.balance, self.state.method.order, part.end);
+            let end = End { order, t: t1, y };
+            if let Some(cause) = self.watch.look_before_guard(&self.model, balance, end) {
+                return Ok(Err(cause));
+            }
             let settled = match self.phases.settle(&self.model, (t, part.h), y) {
                 Ok(settled) => settled,
                 Err(cause) => return Ok(Err(cause)),

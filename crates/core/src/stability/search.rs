@@ -29,8 +29,8 @@ const FEWEST: f64 = 100.0;
 const OTHER: f64 = 3.5;
 /// ... in a fluid, ...
 const FLUID: f64 = 10.0;
-/// ... and where surfaces touch, whose pairs are listed anew at each step of a violent motion.
-const TOUCHING: f64 = 200.0;
+/// ... and where surfaces touch, whose pairs are listed anew where they move fast.
+const TOUCHING: f64 = 50.0;
 /// Price of an impulse of the guard of surfaces, with the search for what it meets next.
 const IMPULSE: f64 = 50.0;
 
