@@ -71,7 +71,14 @@ pub(super) fn looked_at(
         (Some(step), None) => to_step(simulation, frames, frames.steps(step), go_on),
         (None, looks) => to_a_tolerance(simulation, frames, go_on, looks),
     };
-    match result {
+    let ended = result.and_then(|ended| {
+        // It may have been lost since the last look at its energy.
+        if ended {
+            simulation.conclude()?;
+        }
+        Ok(ended)
+    });
+    match ended {
         Ok(true) => Ok(Some(None)),
         Ok(false) => Ok(None),
         Err(Error::BlowUp(lost)) => Ok(Some(Some(lost))),

@@ -82,11 +82,13 @@ impl Met<'_> {
             })
         };
         let c = self.after.place.position;
+        // What is below a floor is inside.
+        let x0 = self.x0.filter(|_| self.obstacle.shape != Shape::Floor);
         for i in 0..n {
             let d = Vector3::new(x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
             let inside = surface(d);
             let at = vector(x, n, i);
-            let may_pass = self.may_pass(i, at);
+            let may_pass = x0.is_some_and(|x0| self.may_pass(vector(x0, n, i), at));
             if inside.is_none() && !may_pass || self.inverse_masses[i] == 0.0 {
                 continue;
             }
@@ -177,14 +179,10 @@ impl Met<'_> {
         }
     }
 
-    /// Whether particle i, at x at the end of the step, may have passed through the obstacle: it
+    /// Whether a particle that the step took from x0 to x may have passed through the obstacle: it
     /// moved past it by more than half of the greatest depth.
-    fn may_pass(&self, i: usize, x: Vector3<f64>) -> bool {
+    fn may_pass(&self, x0: Vector3<f64>, x: Vector3<f64>) -> bool {
         let shape = &self.obstacle.shape;
-        let (Some(x0), false) = (self.x0, *shape == Shape::Floor) else {
-            return false;
-        };
-        let x0 = vector(x0, self.inverse_masses.len(), i);
         let way = (x - self.carried(x0)).norm();
         let near = shape.reach() + way;
         way > 0.5 * shape.greatest_depth()

@@ -212,15 +212,14 @@ impl Events {
             let reach = body.shape.reach() + 0.5 * speed * step.h;
             let is_floor = reach.is_infinite();
             let begun = body.at(step.t);
+            let near_floor = place.y + 0.5 * speed * step.h;
             for particle in (0..inverse_masses.len()).filter(|i| inverse_masses[*i] > 0.0) {
+                if is_floor && lowest(step, particle, n) > near_floor {
+                    continue;
+                }
                 let course = course(&step.ends, particle, step.h, n);
                 let middle = 0.5 * (course.x[0] + course.x[1]) - place;
-                let room = course.reach();
-                let is_near = if is_floor {
-                    middle.y <= room + 0.5 * speed * step.h
-                } else {
-                    middle.norm_squared() <= (reach + room).powi(2)
-                };
+                let is_near = is_floor || middle.norm_squared() <= (reach + course.reach()).powi(2);
                 // What is not finite is reported elsewhere.
                 if is_near {
                     let seen = begun.inwards(course.x[0] - begun.place.position);
@@ -334,6 +333,14 @@ fn keep_first(first: &mut Option<Event>, share: f64, kind: EventKind) {
     if first.is_none_or(|event| share < event.share) {
         *first = Some(Event { share, kind });
     }
+}
+
+/// Height (m) below which particle i of n is at no time of the step, with room for a course that is
+/// not quite the cubic.
+fn lowest(step: &Searched, i: usize, n: usize) -> f64 {
+    let [[y0, v0], [y1, v1]] = step.ends.map(|y| [y[n + i], y[4 * n + i]]);
+    let bulge = 0.5 * ((v0.abs() + v1.abs()) * step.h + (y1 - y0).abs());
+    y0.min(y1) - bulge
 }
 
 /// Course of particle i between two states.

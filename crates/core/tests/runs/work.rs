@@ -1,6 +1,7 @@
 //! Work on a run is integrated over each step, whatever drives it and however often it is looked
 //! at.
 
+use a3_core::accuracy::{self, Frames};
 use a3_core::{Cause, Control, Error, Simulation};
 
 use super::common::{described, method};
@@ -229,4 +230,8 @@ fn a_run_shorter_than_a_look_is_looked_at() {
         "{lost}"
     );
     assert_eq!(run.conclude(), Err(lost.into()));
+    // A chart sees it too.
+    let mut run = Simulation::new(described(short), method("v"), Control::Step(0.0028)).unwrap();
+    let end = accuracy::run(&mut run, &Frames::new(0.06), &|| true, None);
+    assert!(end.unwrap().flatten().is_some());
 }
