@@ -160,10 +160,12 @@ impl Adaptive {
         self.trial.check(system)?;
         let mut work = Work::default();
         // What contact put right after the last step has another derivative.
-        if self.goes_on && is_same(system, self.trial.end(), y) {
+        if !self.goes_on {
+            work += self.trial.begin(system, t, y);
+        } else if is_same(system, self.trial.end(), y) {
             self.trial.go_on();
         } else {
-            work += self.trial.begin(system, t, y);
+            work += self.trial.begin_again(system, t, y);
         }
         self.goes_on = false;
         let mut norm = ErrorNorm {

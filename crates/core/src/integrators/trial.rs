@@ -35,6 +35,11 @@ pub(super) trait Trial: Send {
     /// Begins a step at y, of which nothing is known.
     fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work;
 
+    /// Begins a step at y, to which contact has changed the end of the last step.
+    fn begin_again(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
+        self.begin(system, t, y)
+    }
+
     /// Begins a step at the end of the last one, with what is known there.
     fn go_on(&mut self);
 

@@ -40,10 +40,10 @@ fn a_particle_falls_on_a_slope_and_slides() {
             assert!(apart < 1e-8, "{} {tolerance}: {apart}", method.name);
         }
     }
-    // Its steps after each contact are those of implicit Euler, whose error falls with the
-    // tolerance.
-    let bdf = [1e-4, 1e-6, 1e-8].map(|tolerance| apart(method("bdf"), tolerance));
-    assert!(bdf[0] < 0.05 && bdf[2] < 0.05 * bdf[0], "{bdf:?}");
+    for tolerance in [1e-3, 1e-5, 1e-7] {
+        let apart = apart(method("bdf"), tolerance);
+        assert!(apart < 3.0 * tolerance, "bdf {tolerance}: {apart}");
+    }
     for name in ["trapezoid", "rk4", "verlet", "pefrl", "implicit-midpoint"] {
         let apart = apart(method(name), 0.01);
         assert!(apart < 1e-8, "{name}: {apart}");

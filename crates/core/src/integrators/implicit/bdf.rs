@@ -10,7 +10,7 @@ use super::super::error_norm::ErrorNorm;
 use super::super::trial::{LastStep, Trial};
 use super::super::{Method, Work};
 use super::kept::{KeptSolver, Tangent};
-use super::tr_bdf2;
+use super::{differences, tr_bdf2};
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -33,7 +33,7 @@ pub(in super::super) const METHOD: Method = Method {
 };
 
 /// Highest order.
-const ORDERS: usize = 5;
+const ORDERS: usize = differences::MOST;
 /// Number of backward differences: two beyond the highest order, for the errors of the next.
 const DIFFERENCES: usize = ORDERS + 2;
 /// Coefficient kappa of each order: with it the error is smaller than without, and as much is
@@ -43,6 +43,9 @@ const KAPPA: [f64; ORDERS + 1] = [0.0, -0.185, -1.0 / 9.0, -0.0823, -0.0415, 0.0
 const SAFETY: f64 = 0.8;
 /// Least ratio of steps for which the differences are computed anew.
 const LONGER: f64 = 1.2;
+
+/// Time in which the derivative is seen to change, over the last step.
+const MOMENT: f64 = 1e-3;
 
 /// Sum g of the inverses of the numbers up to an order.
 fn harmonic(order: usize) -> f64 {
@@ -73,6 +76,8 @@ struct Bdf {
     orders: Orders,
     /// Whether no step has been taken since the beginning.
     first: bool,
+    /// Whether D is a parabola, of which it is not known yet whether it is of use.
+    is_parabola: bool,
     /// Ratio of the next step to the last.
     change: f64,
     predicted: Vec<f64>,
@@ -97,6 +102,7 @@ impl Bdf {
                 equal: 0,
             },
             first: true,
+            is_parabola: false,
             change: 1.0,
             predicted: zeros(),
             base: zeros(),
@@ -107,32 +113,7 @@ impl Bdf {
 
     /// Makes D the differences of states at a distance of h (s), on the same polynomial.
     fn rescale(&mut self, h: f64) {
-        let (ratio, order) = (h / self.step.h, self.orders.next);
-        // The polynomial through the ends is y0 + sum s (s + 1) ... (s + j - 1) / j! D_j: the new
-        // differences are sums of the old ones, by a product of two triangular matrices.
-        let of_ratio = |i: usize, j: usize, ratio: f64| -> f64 {
-            (1..=i)
-                .map(|m| (m as f64 - 1.0 - ratio * j as f64) / m as f64)
-                .product()
-        };
-        let mut old = [0.0; ORDERS];
-        let mut weights = [[0.0; ORDERS]; ORDERS];
-        for (i, row) in weights[..order].iter_mut().enumerate() {
-            for (j, weight) in row[..order].iter_mut().enumerate() {
-                *weight = (1..=order)
-                    .map(|m| of_ratio(j + 1, m, ratio) * of_ratio(m, i + 1, 1.0))
-                    .sum();
-            }
-        }
-        for k in 0..self.sum.len() {
-            for (old, d) in old.iter_mut().zip(&self.step.k) {
-                *old = d[k];
-            }
-            for (d, weights) in self.step.k.iter_mut().zip(&weights[..order]) {
-                let terms = weights[..order].iter().zip(&old);
-                d[k] = terms.map(|(weight, old)| weight * old).sum();
-            }
-        }
+        differences::rescale(&mut self.step.k[..self.orders.next], h / self.step.h);
         self.step.h = h;
         self.orders.equal = 0;
     }
@@ -167,6 +148,24 @@ impl Bdf {
             }
         }
         norm.of(&self.step.y0, &self.step.y1, &self.sum)
+    }
+
+    /// Goes back to order 1 where the curvature of a parabola, which takes the place of steps before
+    /// this one, is more than the slope: stiff motion, which the step damps out, bends it.
+    fn judge_parabola(&mut self, norm: &ErrorNorm) {
+        let [first, second, ..] = &mut self.step.k[..] else {
+            return;
+        };
+        let y0 = &self.step.y0;
+        let half = &mut self.sum;
+        half.iter_mut()
+            .zip(&*second)
+            .for_each(|(half, d)| *half = 0.5 * d);
+        super::super::scaled_sum(&mut self.predicted, half, 1.0, first);
+        if norm.of(y0, y0, half) > norm.of(y0, y0, &self.predicted) {
+            first.copy_from_slice(&self.predicted);
+            (self.orders.last, self.orders.next) = (1, 1);
+        }
     }
 
     /// Norm of the error of an order, from the difference above it.
@@ -257,6 +256,7 @@ impl Trial for Bdf {
         // The difference is f times the distance of the states.
         self.step.h = 1.0;
         self.first = true;
+        self.is_parabola = false;
         self.orders = Orders {
             last: 1,
             next: 1,
@@ -264,6 +264,27 @@ impl Trial for Bdf {
         };
         self.solver.forget(system);
         Work::of(1)
+    }
+
+    /// Begins with order 2: where contact changes the end of each step, no step has others before it,
+    /// and the parabola with the derivatives of y takes their place.
+    fn begin_again(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
+        let moment = MOMENT * self.step.h;
+        let mut work = self.begin(system, t, y);
+        let LastStep { y0, k, .. } = &mut self.step;
+        let [first, second, ..] = &mut k[..] else {
+            return work;
+        };
+        super::super::scaled_sum(&mut self.predicted, y0, moment, first);
+        system.eval_f(t + moment, &self.predicted, second);
+        for (first, second) in first.iter_mut().zip(second) {
+            *second = (*second - *first) / moment;
+            *first -= 0.5 * *second;
+        }
+        (self.orders.last, self.orders.next) = (2, 2);
+        self.is_parabola = true;
+        work += Work::of(1);
+        work
     }
 
     fn go_on(&mut self) {
@@ -286,6 +307,9 @@ impl Trial for Bdf {
     ) -> (Work, f64) {
         if h.to_bits() != self.step.h.to_bits() {
             self.rescale(h);
+        }
+        if std::mem::take(&mut self.is_parabola) {
+            self.judge_parabola(norm);
         }
         self.predict();
         let order = self.orders.next;

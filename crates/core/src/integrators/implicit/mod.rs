@@ -11,6 +11,7 @@
 mod bdf;
 mod changes;
 mod dense;
+mod differences;
 mod euler;
 mod kept;
 mod midpoint;
