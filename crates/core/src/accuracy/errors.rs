@@ -2,8 +2,10 @@
 
 use nalgebra::Vector3;
 
+use super::hermite::weights;
 use super::impact::Impact;
 use crate::elements::force::distance;
+use crate::integrators::add_scaled;
 use crate::network::Network;
 use crate::scene::Model;
 use crate::spring::SpringKind;
@@ -49,6 +51,19 @@ impl Snapshot {
                 ..Self::default()
             };
         };
+        let penetration = network.contact_layer();
+        let penetration =
+            penetration.map_or(0.0, |layer| layer.penetration(t, network.halves(y).0));
+        Self {
+            energy: network.energy_of(t, y).total(),
+            penetration,
+            impact: Impact::at_start(t),
+            ..Self::of_motion(network, y)
+        }
+    }
+
+    /// What follows from positions and velocities alone; the rest is 0.
+    fn of_motion(network: &Network, y: &[f64]) -> Self {
         let (positions, velocities) = network.halves(y);
         let inverse_masses = network.inverse_masses();
         let momentum = Vector3::from_fn(|axis, _| {
@@ -57,18 +72,67 @@ impl Snapshot {
             let free = column.zip(inverse_masses).filter(|(_, w)| **w > 0.0);
             free.map(|(v, w)| v / w).sum()
         });
-        let penetration = network.contact_layer();
-        let penetration = penetration.map_or(0.0, |layer| layer.penetration(t, positions));
         Self {
-            energy: network.energy_of(t, y).total(),
             momentum,
-            penetration,
-            impact: Impact::at_start(t),
             strains: structural(network)
                 .map(|s| distance(positions, s.i, s.j) / s.law.rest_length)
                 .collect(),
             positions: positions.to_vec(),
             velocities: velocities.to_vec(),
+            ..Self::default()
+        }
+    }
+
+    /// Quantities of the state y of a model at time t (s) that errors between frames are of: not
+    /// those of contact, nor the energy where that or a rotation has a part in it.
+    pub fn between_frames(model: &Model, t: f64, y: &[f64]) -> Self {
+        let Some(network) = model.network() else {
+            return Self::of(model, t, y);
+        };
+        let of_more = network.contact_layer().is_some() || !network.bodies().is_empty();
+        Self {
+            energy: if of_more {
+                f64::INFINITY
+            } else {
+                network.energy_of(t, y).total()
+            },
+            ..Self::of_motion(network, y)
+        }
+    }
+
+    /// Those quantities at time t (s), of a motion that is known at some times (s): positions by the
+    /// polynomial through positions and velocities, all else by that through the values.
+    pub fn interpolated(model: &Model, known: &[(f64, &Self)], t: f64) -> Self {
+        // Times in units of their distance, so that the weights are of ordinary size.
+        let (first, last) = (known[0].0, known[known.len() - 1].0);
+        let unit = (last - first) / (known.len() - 1) as f64;
+        let nodes: Vec<_> = known
+            .iter()
+            .map(|(time, _)| (time - first) / unit)
+            .collect();
+        let [of_values, of_both] = [1, 2].map(|count| weights(&nodes, count, (t - first) / unit));
+        let mut y = vec![0.0; known[0].1.positions.len() + known[0].1.velocities.len()];
+        let (x, v) = y.split_at_mut(known[0].1.positions.len());
+        let (mut energy, mut momentum) = (0.0, Vector3::zeros());
+        for (k, (_, node)) in known.iter().enumerate() {
+            add_scaled(x, of_both[2 * k], &node.positions);
+            add_scaled(x, of_both[2 * k + 1] * unit, &node.velocities);
+            add_scaled(v, of_values[k], &node.velocities);
+            energy += of_values[k] * node.energy;
+            momentum += of_values[k] * node.momentum;
+        }
+        let at = match model.network() {
+            Some(network) => Self::of_motion(network, &y),
+            None => Self {
+                positions: x.to_vec(),
+                velocities: v.to_vec(),
+                ..Self::default()
+            },
+        };
+        Self {
+            energy,
+            momentum,
+            ..at
         }
     }
 

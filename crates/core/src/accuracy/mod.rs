@@ -9,6 +9,7 @@ mod impact;
 mod ladder;
 mod reference;
 mod run;
+mod trajectory;
 
 use std::time::Duration;
 
@@ -24,8 +25,8 @@ pub use errors::{Errors, Metric, Scope};
 pub use horizon::{Horizon, horizon};
 pub use ladder::{coarser, ladder};
 pub use reference::{Precision, Reference};
+pub use run::{Look, Visit, run};
 use run::{Looks, looked_at};
-pub use run::{Visit, run};
 
 /// Function that is called between frames and returns whether to go on.
 pub type GoOn<'a> = &'a dyn Fn() -> bool;
@@ -118,10 +119,15 @@ pub fn measure_by(
     let mut simulation = Simulation::new(scene.clone(), method, control)?;
     let mut errors = Errors::default();
     let mut last = reference.start.clone();
-    let mut visit = |k: u64, run: &Simulation, state: &[f64]| {
-        last = last.next(run.model(), reference.frames.time(k), state);
+    let mut visit = |look: &Look| {
+        let (k, model) = (look.frame, look.run.model());
+        last = last.next(model, reference.frames.time(k), look.state);
         if reference.counts(k) {
-            errors = errors.max(reference.errors(k, &last));
+            let mut here = reference.errors(k, &last);
+            if let Some((t, y)) = look.end {
+                here = here.min(reference.errors_between(model, t, y));
+            }
+            errors = errors.max(here);
         }
     };
     let mut looks = Looks {

@@ -8,11 +8,12 @@
 //! tolerances of one method may share an error, two families do not.
 
 use super::errors::Snapshot;
-use super::{Errors, Frames, GoOn, Metric, Scope, run};
+use super::trajectory::Trajectory;
+use super::{Errors, Frames, GoOn, Look, Metric, Scope, run};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, Work, find};
-use crate::scene::Scene;
+use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
 use crate::stability::{LargestMode, Mode, largest_step, spectrum};
 use crate::system::{Mechanics, ParticleSystem};
@@ -76,32 +77,6 @@ pub struct Reference {
     pub(super) start: Snapshot,
     scope: Scope,
     trajectory: Trajectory,
-}
-
-/// States at each frame, which errors are taken from.
-struct Trajectory {
-    snapshots: Vec<Snapshot>,
-    /// Largest mean square speed in the scope (m2/s2).
-    square_speed: f64,
-}
-
-impl Trajectory {
-    fn new(snapshots: Vec<Snapshot>, scope: Scope) -> Self {
-        let speeds = snapshots.iter().map(|s| s.square_speed(scope));
-        Self {
-            square_speed: speeds.fold(f64::MIN_POSITIVE, f64::max),
-            snapshots,
-        }
-    }
-
-    /// Errors of a snapshot at frame k, counted from 1.
-    fn errors(&self, k: u64, other: &Snapshot, scope: Scope) -> Errors {
-        let errors = self.snapshots[k as usize - 1].errors_of(other, scope);
-        Errors {
-            phase: errors.phase / self.square_speed,
-            ..errors
-        }
-    }
 }
 
 impl Reference {
@@ -169,6 +144,13 @@ impl Reference {
         self.trajectory.errors(k, found, self.scope)
     }
 
+    /// Errors of the state y of a model at time t (s), which no frame is at.
+    pub(super) fn errors_between(&self, model: &Model, t: f64, y: &[f64]) -> Errors {
+        let start = (&self.start, self.frames);
+        self.trajectory
+            .errors_between(start, (model, t, y), self.scope)
+    }
+
     /// Whether errors at frame k, counted from 1, count.
     #[must_use]
     pub fn counts(&self, k: u64) -> bool {
@@ -208,9 +190,10 @@ impl Making<'_> {
         let frames = self.reference.frames;
         let start = &self.reference.start;
         let mut snapshots: Vec<Snapshot> = Vec::with_capacity(frames.count as usize);
-        let mut visit = |k: u64, run: &Simulation, state: &[f64]| {
+        let mut visit = |look: &Look| {
             let last = snapshots.last().unwrap_or(start);
-            snapshots.push(last.next(run.model(), frames.time(k), state));
+            let next = last.next(look.run.model(), frames.time(look.frame), look.state);
+            snapshots.push(next);
         };
         let end = run(&mut simulation, &frames, self.go_on, Some(&mut visit))?;
         self.work += simulation.work();

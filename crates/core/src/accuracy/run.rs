@@ -14,8 +14,22 @@ const NODES: u64 = 3;
 /// Most steps between two questions whether to go on, and most of their work.
 const PORTION: (u64, f64) = (1000, 4e5);
 
-/// Use of the state y at frame k, counted from 1, of a run.
-pub type Visit<'a> = &'a mut dyn FnMut(u64, &Simulation, &[f64]);
+/// Look at a run.
+#[derive(Clone, Copy)]
+pub struct Look<'a> {
+    /// Number of the frame, counted from 1.
+    pub frame: u64,
+    /// The run, which may be past the frame.
+    pub run: &'a Simulation,
+    /// State at the frame.
+    pub state: &'a [f64],
+    /// Time (s) and state at the nearest end of a step, where none ends at the frame, and the state
+    /// there is interpolated.
+    pub end: Option<(f64, &'a [f64])>,
+}
+
+/// Use of a look.
+pub type Visit<'a> = &'a mut dyn FnMut(&Look);
 
 /// Looks at a run, and the time that they take, which is not the run's.
 pub(super) struct Looks<'a> {
@@ -27,7 +41,7 @@ pub(super) struct Looks<'a> {
 
 impl Looks<'_> {
     /// Does what only a look needs.
-    fn look(&mut self, work: impl FnOnce(&mut dyn FnMut(u64, &Simulation, &[f64]))) {
+    fn look(&mut self, work: impl FnOnce(&mut dyn FnMut(&Look))) {
         let begun = (self.clock)();
         work(&mut *self.visit);
         self.spent += (self.clock)().saturating_sub(begun);
@@ -99,10 +113,20 @@ fn to_a_tolerance(
         }
         simulation.advance_to(frames.time(k))?;
         if let Some(looks) = &mut looks {
-            looks.look(|visit| visit(k, simulation, simulation.state()));
+            looks.look(|visit| visit(&at_end(simulation, k)));
         }
     }
     Ok(true)
+}
+
+/// Look at a run that is at a frame.
+fn at_end(run: &Simulation, frame: u64) -> Look<'_> {
+    Look {
+        frame,
+        run,
+        state: run.state(),
+        end: None,
+    }
 }
 
 /// Goes on to the end of step n, counted from the beginning. `false` if it was told to stop.
@@ -161,7 +185,7 @@ fn in_steps(
                 if !to_step(simulation, frames, n, go_on)? {
                     return Ok(false);
                 }
-                looks.look(|visit| visit(k, simulation, simulation.state()));
+                looks.look(|visit| visit(&at_end(simulation, k)));
                 continue;
             }
         }
@@ -188,7 +212,14 @@ fn in_steps(
         }
         looks.look(|visit| {
             interpolate(simulation, &ends, time, &mut state);
-            visit(k, simulation, &state);
+            let far = |end: &&End| (end.t - time).abs();
+            let nearest = ends.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+            visit(&Look {
+                frame: k,
+                run: simulation,
+                state: &state,
+                end: nearest.map(|end| (end.t, &end.y[..])),
+            });
         });
     }
     Ok(true)

@@ -269,7 +269,7 @@ fn check_dim(expected: usize, y: &[f64]) -> Result<(), Error> {
 }
 
 /// y += h k
-fn add_scaled(y: &mut [f64], h: f64, k: &[f64]) {
+pub(crate) fn add_scaled(y: &mut [f64], h: f64, k: &[f64]) {
     for (y, k) in y.iter_mut().zip(k) {
         *y += h * k;
     }

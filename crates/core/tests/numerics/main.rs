@@ -8,6 +8,7 @@ mod accuracy;
 mod adaptive;
 mod bdf;
 mod compliant;
+mod ends;
 mod foreign;
 mod implicit;
 mod limits;

@@ -1,0 +1,37 @@
+//! Errors of steps that are longer than the fastest motion.
+
+use crate::common::{described, method};
+use a3_core::accuracy::{Frames, Reference, measure};
+use a3_core::{Control, Simulation};
+
+/// The fastest motion takes a hundredth of a step, whose ends alone are the method's: between them,
+/// no polynomial knows what happens.
+#[test]
+fn errors_are_those_at_the_ends_of_steps() {
+    let stiff = described(
+        "gravity = [0, -9.81, 0]\ndrag = 0.05\n[[chain]]\nparticles = 5\nfrom = [0, 0, 0]\n\
+         to = [1.2, 0, 0]\nmass = 0.1\nstiffness = 1e6\npin = [{ at = [\"first\"] }]\n",
+    );
+    let go_on = &|| true;
+    let reference = Reference::finest(&stiff, Frames::new(1.0), go_on);
+    let reference = reference.unwrap().unwrap();
+    for (name, h) in [("implicit-midpoint", 1.0 / 28.0), ("tr-bdf2", 1.0 / 20.0)] {
+        let control = Control::Step(h);
+        let outcome = measure(&stiff, method(name), control, &reference, go_on);
+        let found = outcome.unwrap().unwrap().errors.position;
+        let mut run = Simulation::new(stiff.clone(), method(name), control).unwrap();
+        let accurate = Control::Tolerance(1e-10);
+        let mut exact = Simulation::new(stiff.clone(), method("dop853"), accurate).unwrap();
+        let mut worst: f64 = 0.0;
+        while run.time() < 1.0 - 0.5 * h {
+            run.take_steps(1).unwrap();
+            exact.advance_to(run.time()).unwrap();
+            let squared = (0..5).map(|i| (run.position(i) - exact.position(i)).norm_squared());
+            worst = worst.max((squared.sum::<f64>() / 5.0).sqrt());
+        }
+        assert!(
+            (found / worst - 1.0).abs() < 0.01,
+            "{name}: {found} {worst}"
+        );
+    }
+}
