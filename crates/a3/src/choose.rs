@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use a3_core::accuracy::{Candidate, Frames, Metric, Precision, Reference, choose, ladder, measure};
+use a3_core::accuracy::{
+    Candidate, Frames, Metric, Precision, Reference, SetBy, choose, ladder, measure,
+};
 use a3_core::stability::spectrum;
 use a3_core::{Control, Method, Scene};
 
@@ -10,7 +12,7 @@ use crate::chart::measure::{precision, reference, time, words};
 use crate::chart::{
     check_contact, check_motion, describe, look_ahead, methods, metric, scope, unit,
 };
-use crate::cli::{Choose, What};
+use crate::cli::{Choose, What, WorkMeasure};
 use crate::failure::Failure;
 use crate::progress::Bar;
 use crate::{interrupt, list, output, setup};
@@ -18,6 +20,8 @@ use crate::{interrupt, list, output, setup};
 /// Error that is asked for over the uncertainty of the reference: at least, and where the reference
 /// is fine enough.
 const MARGIN: (f64, f64) = (3.0, 100.0);
+/// Number of candidates that are shown.
+const SHOWN: usize = 3;
 /// Simulated time of a frame (s).
 const FRAME: f64 = 1.0 / 60.0;
 
@@ -76,13 +80,22 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
                 },
             );
             bar.clear();
-            let found = found.map_err(Failure::run)?.ok_or_else(stopped)?;
-            let found = found.into_iter().take(3).map(|candidate| {
+            let mut found = found.map_err(Failure::run)?.ok_or_else(stopped)?;
+            let by_time = options.work == WorkMeasure::Time;
+            if !by_time {
+                found.truncate(SHOWN);
+            }
+            let found = found.into_iter().map(|candidate| {
                 let cost = milliseconds(&scene, &candidate, &reference)?.ok_or_else(stopped)?;
                 Ok((candidate, cost))
             });
+            let mut found = found.collect::<Result<Vec<_>, Failure>>()?;
+            if by_time {
+                found.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+                found.truncate(SHOWN);
+            }
             (
-                found.collect::<Result<Vec<_>, Failure>>()?,
+                found,
                 format!("an error of {error:e} {unit} ({})", words(scope)),
             )
         }
@@ -93,27 +106,50 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         (None, None) => return Err(Failure::usage("give --error or --budget")),
     };
     let Some((best, _)) = found.first() else {
-        return Err(Failure::run(format!(
-            "no solver meets {goal} on {}: {}",
-            scene.name,
-            if options.error.is_some() {
-                "ask for a larger error"
-            } else {
-                "ask for a larger budget"
-            }
-        )));
+        let what = if options.error.is_some() {
+            format!(
+                "no solver meets {goal} on {}: ask for a larger error",
+                scene.name
+            )
+        } else {
+            format!(
+                "within {goal}, no solver's error on {} is smaller than the motion: ask for a larger budget",
+                scene.name
+            )
+        };
+        return Err(Failure::run(what));
     };
-    output::say(&report(
-        &options.what,
-        &scene,
-        until,
-        &goal,
-        (metric, &found),
-    ))?;
+    let floor = metric.of(&reference.floor);
+    let note = if options.error.is_some() {
+        set_by(best)
+    } else if metric.of(&best.outcome.errors) < MARGIN.1 * floor {
+        let unit = unit(metric);
+        format!(
+            "the reference, known to {floor:.0e} {unit}, is the limit, not the budget: finer runs were not tried\n"
+        )
+    } else {
+        String::new()
+    };
+    let table = report(&options.what, &scene, until, &goal, (metric, &found));
+    output::say(&(table + &note))?;
     output::say(&format!(
         "run it:  {}\n",
         command(&options.what, best.method, best.control, until)
     ))
+}
+
+/// Sentence on what keeps the best candidate's step or tolerance from being larger.
+fn set_by(best: &Candidate) -> String {
+    let what = if best.control.step().is_some() {
+        "step"
+    } else {
+        "tolerance"
+    };
+    match best.set_by {
+        SetBy::Accuracy => format!("accuracy sets the {what}: a larger one misses the error\n"),
+        SetBy::Stability => format!("stability sets the {what}: the run grows with a larger one\n"),
+        SetBy::Nothing => format!("nothing sets the {what}: no larger one was tried\n"),
+    }
 }
 
 /// Computing time of a frame (ms), averaged over the whole run. `None` if it was interrupted.
@@ -144,6 +180,12 @@ fn within(
     let mut found = vec![];
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     let error = |c: &Candidate| metric.of(&c.outcome.errors);
+    let conserved = matches!(metric, Metric::Energy | Metric::Momentum | Metric::Phase);
+    let most = if conserved {
+        f64::INFINITY
+    } else {
+        metric.of(&reference.still)
+    };
     bar.start();
     for method in methods(scene, &[])? {
         bar.say(format!("{:<10} ", method.name));
@@ -158,6 +200,7 @@ fn within(
                 method,
                 control,
                 outcome,
+                set_by: SetBy::Accuracy,
             };
             let Some(cost) = milliseconds(scene, &candidate, reference)? else {
                 return Ok(None);
@@ -165,7 +208,9 @@ fn within(
             if cost > budget {
                 break;
             }
+            // An error larger than the motion says nothing.
             if outcome.lost.is_none()
+                && error(&candidate) < most
                 && best
                     .as_ref()
                     .is_none_or(|(best, _)| error(&candidate) < error(best))
@@ -181,7 +226,7 @@ fn within(
     }
     bar.clear();
     found.sort_by(|(a, _), (b, _)| error(a).total_cmp(&error(b)));
-    found.truncate(3);
+    found.truncate(SHOWN);
     Ok(Some(found))
 }
 

@@ -140,7 +140,7 @@ fn precision_chart(methods: usize, panels: usize) -> WorkPrecision {
         still: None,
         title: (*title).to_owned(),
         curves: curves(methods, 1.0 + 0.7 * k as f64),
-        floor: [Some(8e-10), Some(3e-8), None][k % 3],
+        resolved: [Some(8e-9), Some(3e-7), None][k % 3],
     };
     WorkPrecision {
         title: "Speed against accuracy".to_owned(),

@@ -169,7 +169,7 @@ impl<'a> Study<'a> {
                 bar.advance(self.expected_of(method, control));
                 // Errors below that of the reference tell nothing. The work of linear algebra is
                 // known only after a run.
-                let enough = 10.0 * record.floor(self.metric).max(1e-13);
+                let enough = record.resolved(self.metric).max(1e-12);
                 let next = rungs
                     .get(i + 1)
                     .map_or(1.0, |next| control.value() / next.value());
@@ -282,14 +282,15 @@ pub fn compared(
         impact,
     } = errors;
     let (floor, still) = (reference.floor, reference.still);
+    let of = |error: f64| Some(error).filter(|_| lost.is_none());
     let record = Record {
-        error_position: position,
-        error_energy: energy,
-        error_strain: strain,
-        error_momentum: momentum,
-        error_phase: phase,
-        error_penetration: penetration,
-        error_impact: impact,
+        error_position: of(position),
+        error_energy: of(energy),
+        error_strain: of(strain),
+        error_momentum: of(momentum),
+        error_phase: of(phase),
+        error_penetration: of(penetration),
+        error_impact: of(impact),
         floor_position: floor.position,
         floor_energy: floor.energy,
         floor_strain: floor.strain,

@@ -33,7 +33,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     output::check(&path, &["svg", "png"])?;
     let metric = metric(options.error, &scene)?;
     let scope = scope(&options.scope, &scene)?;
-    let timed = options.work == WorkMeasure::Seconds;
+    let timed = options.work == WorkMeasure::Time;
     let mut data = Data::open(options.data.as_deref())?;
     let mut studies = vec![];
     let mut until = options.until;

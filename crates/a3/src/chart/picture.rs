@@ -61,7 +61,7 @@ pub fn chart(
 /// What the errors are, and which methods solve another model.
 pub fn foot(methods: &[&'static Method]) -> String {
     let errors = "Errors are true ones, against DOP853 at two tolerances and a method of order 4 \
-                  extrapolated, whose disagreement is the shaded floor.";
+                  extrapolated. Those below ten times their disagreement are shaded.";
     if methods.iter().any(|method| method.needs_springs) {
         format!(
             "{errors} Methods with a number of iterations stop before implicit Euler is solved: \
@@ -135,7 +135,7 @@ pub fn problem(
             runs: records.iter().map(run).collect(),
         }
     });
-    let floor = all.iter().map(|r| r.floor(metric)).reduce(f64::max);
+    let resolved = all.iter().map(|r| r.resolved(metric)).reduce(f64::max);
     let still = all
         .iter()
         .map(|r| r.still(metric))
@@ -143,7 +143,7 @@ pub fn problem(
     Problem {
         title: String::new(),
         curves: curves.collect(),
-        floor,
+        resolved,
         still: Some(still).filter(|still| still.is_finite()),
     }
 }

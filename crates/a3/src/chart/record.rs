@@ -26,20 +26,20 @@ pub struct Record {
     pub setting: f64,
     /// Particles and times that count, in words.
     pub scope: String,
-    /// Error of the positions over the frames that the run reached (m).
-    pub error_position: f64,
+    /// Error of the positions over all frames (m); none of a run that blew up.
+    pub error_position: Option<f64>,
     /// Error of the energy (J).
-    pub error_energy: f64,
+    pub error_energy: Option<f64>,
     /// Error of the springs' stretch.
-    pub error_strain: f64,
+    pub error_strain: Option<f64>,
     /// Error of the momentum (kg m/s).
-    pub error_momentum: f64,
+    pub error_momentum: Option<f64>,
     /// Error of the phase (s).
-    pub error_phase: f64,
+    pub error_phase: Option<f64>,
     /// Error of the penetration, as a share of the thickness.
-    pub error_penetration: f64,
+    pub error_penetration: Option<f64>,
     /// Error of the times of the first impact (s).
-    pub error_impact: f64,
+    pub error_impact: Option<f64>,
     /// Error of the reference itself: of the positions (m).
     pub floor_position: f64,
     /// Error of the reference itself: of the energy (J).
@@ -108,17 +108,23 @@ impl Record {
         self.guard_impulses + self.guard_cuts > 0
     }
 
-    /// The error of the run.
+    /// The error of the run; infinite if it blew up.
     pub fn error(&self, metric: Metric) -> f64 {
+        let or_lost = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
         metric.of(&Errors {
-            position: self.error_position,
-            energy: self.error_energy,
-            strain: self.error_strain,
-            momentum: self.error_momentum,
-            phase: self.error_phase,
-            penetration: self.error_penetration,
-            impact: self.error_impact,
+            position: or_lost(self.error_position),
+            energy: or_lost(self.error_energy),
+            strain: or_lost(self.error_strain),
+            momentum: or_lost(self.error_momentum),
+            phase: or_lost(self.error_phase),
+            penetration: or_lost(self.error_penetration),
+            impact: or_lost(self.error_impact),
         })
+    }
+
+    /// The least error that the reference can tell from 0: ten times its own.
+    pub fn resolved(&self, metric: Metric) -> f64 {
+        10.0 * self.floor(metric)
     }
 
     /// The error of the reference itself.

@@ -101,6 +101,7 @@ fn rows(
             .chain(ERRORS.map(heading))
             .collect::<Vec<_>>(),
     ];
+    let resolved = resolved(study, data, metric);
     for method in methods {
         let of = |r: &&Record| r.solver == method.name;
         let cell = |digits: i32| {
@@ -108,7 +109,8 @@ fn rows(
             let own = cheapest(study.records(data).filter(of), metric, timed, error);
             let all = cheapest(study.records(data), metric, timed, error);
             own.map_or("-".to_owned(), |own| {
-                let mark = if all.is_some_and(|all| std::ptr::eq(all, own)) {
+                let is_best = all.is_some_and(|all| std::ptr::eq(all, own));
+                let mark = if is_best && error >= resolved {
                     "*"
                 } else {
                     ""
@@ -126,6 +128,12 @@ fn rows(
     rows
 }
 
+/// The least error that the reference of a study can tell from 0.
+fn resolved(study: &Study, data: &Data, metric: Metric) -> f64 {
+    let of_runs = study.records(data).map(|r| r.resolved(metric));
+    of_runs.fold(0.0, f64::max)
+}
+
 /// The cheapest method for each error, a line each.
 fn winners(
     study: &Study,
@@ -135,10 +143,7 @@ fn winners(
     timed: bool,
     unit: &str,
 ) -> String {
-    let floor = study
-        .records(data)
-        .map(|r| r.floor(metric))
-        .fold(0.0, f64::max);
+    let resolved = resolved(study, data, metric);
     let still = study
         .records(data)
         .map(|r| r.still(metric))
@@ -156,8 +161,8 @@ fn winners(
     text.push_str("* cheapest:\n");
     for digits in ERRORS {
         let error = 10f64.powi(-digits);
-        let line = if error < 10.0 * floor {
-            format!("the reference itself is known to {floor:.0e} {unit} only")
+        let line = if error < resolved {
+            format!("the reference tells errors above {resolved:.0e} {unit} only")
         } else if error > still {
             format!("nothing moves further than {still:.0e} {unit}: such an error says nothing")
         } else {

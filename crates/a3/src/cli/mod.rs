@@ -224,7 +224,8 @@ pub struct ErrorScope {
 #[derive(Clone, Copy, ValueEnum, PartialEq)]
 pub enum WorkMeasure {
     /// Computing time on this machine
-    Seconds,
+    #[value(alias = "seconds")]
+    Time,
     /// Evaluations of the forces, the same on every machine
     Evaluations,
 }
@@ -245,7 +246,7 @@ pub struct Chart {
     #[command(flatten)]
     pub scope: ErrorScope,
     /// What counts as the cost
-    #[arg(long, default_value = "seconds")]
+    #[arg(long, default_value = "time")]
     pub work: WorkMeasure,
     /// Factors by which the stiffness of the springs is multiplied, such as 1,10,100; the chart
     /// has a panel for each
@@ -294,6 +295,9 @@ pub struct Choose {
     pub of: ErrorMeasure,
     #[command(flatten)]
     pub scope: ErrorScope,
+    /// What counts as the cost
+    #[arg(long, default_value = "time", conflicts_with = "budget")]
+    pub work: WorkMeasure,
     /// Computing time in ms for each frame of 1/60 s: the most accurate solver within it is chosen
     #[arg(long, value_name = "MS_PER_FRAME", value_parser = budget, allow_negative_numbers = true)]
     pub budget: Option<f64>,

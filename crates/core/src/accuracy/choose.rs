@@ -19,6 +19,26 @@ const AS_PREDICTED: (f64, f64) = (0.6, 1.5);
 /// Largest number of steps of a run.
 const MOST_STEPS: u64 = 1_000_000;
 
+/// Cost, over that of the second cheapest method so far, at which one is given up ...
+const DEAR: f64 = 2.0;
+/// ... and that of small scenes of less [work](crate::Model::work) than this, where what a method
+/// does besides evaluations takes most of the time.
+const DEAR_IF_SMALL: (f64, f64) = (5.0, 100.0);
+/// Error with a longer step, over the one that the order of the method predicts from a shorter
+/// step, above which the longer one is unstable.
+const STEEP: f64 = 10.0;
+
+/// Reason for which a longer step or a larger tolerance was not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SetBy {
+    /// Its error is too large.
+    Accuracy,
+    /// Its run grows.
+    Stability,
+    /// None was tried.
+    Nothing,
+}
+
 /// Method with its step or tolerance, and the outcome of its run.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
@@ -28,13 +48,15 @@ pub struct Candidate {
     pub control: Control,
     /// Errors and cost of the run.
     pub outcome: Outcome,
+    /// Reason for which the step or the tolerance is not larger.
+    pub set_by: SetBy,
 }
 
 /// Cheapest step or tolerance of each method that meets the error `error`, in the unit of the
 /// metric; the cheapest method comes first.
 ///
 /// The search gives up a method that would cost more than twice as much as the second cheapest so
-/// far. `begin` is called with each method before its runs. Returns `None` if `go_on` returned
+/// far, or five times as much in small scenes. `begin` is called with each method before its runs. Returns `None` if `go_on` returned
 /// false.
 ///
 /// # Errors
@@ -51,6 +73,8 @@ pub fn choose(
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     // What the reference does not know of the error is no longer there to be made.
     let error = error - metric.of(&reference.floor);
+    let is_small = scene.model.work() < DEAR_IF_SMALL.1;
+    let dear = if is_small { DEAR_IF_SMALL.0 } else { DEAR };
     // Methods of high order come first: their cost bounds the runs of those of low order.
     let mut methods: Vec<_> = METHODS.iter().collect();
     methods.sort_by_key(|method| std::cmp::Reverse(method.order));
@@ -59,10 +83,9 @@ pub fn choose(
             continue;
         }
         begin(method);
-        // Cost limit: twice that of the second cheapest candidate so far.
         let dearest = found
             .get(1)
-            .map_or(f64::INFINITY, |c| 2.0 * c.outcome.work.total());
+            .map_or(f64::INFINITY, |c| dear * c.outcome.work.total());
         let mut search = Search {
             scene,
             modes: &modes,
@@ -155,7 +178,7 @@ impl Search<'_> {
             let next = rungs[i + 1..].iter().position(|rung| rung.value() <= aim);
             i = next.map_or(rungs.len() - 1, |k| i + 1 + k).max(i + 1);
         };
-        let mut bad = fails.map(|(value, _)| value);
+        let mut bad = fails;
         // The limit of stability is that of the start, and may be longer in motion.
         while bad.is_none()
             && let Some(longer) = coarser(good, &frames)
@@ -163,27 +186,45 @@ impl Search<'_> {
             let Some(next) = self.measure(longer)? else {
                 return Ok(Found::Stopped);
             };
-            if self.ratio(&next) <= 1.0 {
+            let ratio = self.ratio(&next);
+            if ratio <= 1.0 {
                 (good, outcome) = (longer, next);
             } else {
-                bad = Some(longer.value());
+                bad = Some((longer.value(), ratio));
             }
         }
-        while let Some(middle) = bad.and_then(|bad| between(good, bad, frames.until)) {
+        while let Some(middle) = bad.and_then(|(bad, _)| between(good, bad, frames.until)) {
             let Some(next) = self.measure(middle)? else {
                 return Ok(Found::Stopped);
             };
-            if self.ratio(&next) <= 1.0 {
+            let ratio = self.ratio(&next);
+            if ratio <= 1.0 {
                 (good, outcome) = (middle, next);
             } else {
-                bad = Some(middle.value());
+                bad = Some((middle.value(), ratio));
             }
         }
         Ok(Found::Best(Box::new(Candidate {
             method: self.method,
             control: good,
             outcome,
+            set_by: self.set_by((good, self.ratio(&outcome)), bad),
         })))
+    }
+
+    /// Reason for which a step that is good, with its error over the one asked for, is not as long
+    /// as a bad one.
+    fn set_by(&self, (good, own): (Control, f64), bad: Option<(f64, f64)>) -> SetBy {
+        let Some((value, ratio)) = bad else {
+            return SetBy::Nothing;
+        };
+        let growth = (value / good.value()).powi(self.method.order as i32);
+        // An error far below the one asked for may grow much before it is too large.
+        if good.step().is_some() && ratio > STEEP * growth * own.max(1.0 / STEEP) {
+            SetBy::Stability
+        } else {
+            SetBy::Accuracy
+        }
     }
 
     /// Step or tolerance above which no run meets the error: what the order predicts, with a

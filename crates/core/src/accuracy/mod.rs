@@ -20,7 +20,7 @@ use crate::integrators::{Method, Work};
 use crate::scene::Scene;
 use crate::simulation::Simulation;
 
-pub use choose::{Candidate, choose};
+pub use choose::{Candidate, SetBy, choose};
 pub use errors::{Errors, Metric, Scope};
 pub use horizon::{Horizon, horizon};
 pub use ladder::{coarser, ladder};

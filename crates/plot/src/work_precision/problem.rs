@@ -35,8 +35,8 @@ pub struct Problem {
     pub title: String,
     /// The curves, one for each method.
     pub curves: Vec<Curve>,
-    /// The error of the reference itself. Errors below ten times this are shaded.
-    pub floor: Option<f64>,
+    /// The least error that the reference can tell from 0. Smaller ones are shaded.
+    pub resolved: Option<f64>,
     /// The error of a run in which nothing moves, beyond which errors say nothing: the front ends
     /// there.
     pub still: Option<f64>,
@@ -75,12 +75,10 @@ impl Curve {
 }
 
 impl Problem {
-    /// The least error that can be trusted: ten times that of the reference, or 0 if that is not
-    /// known.
+    /// The least error that can be trusted, or 0 if that is not known.
     pub(super) fn trusted(&self) -> f64 {
-        self.floor
-            .filter(|floor| floor.is_finite())
-            .map_or(0.0, |floor| 10.0 * floor)
+        let known = self.resolved.filter(|resolved| resolved.is_finite());
+        known.unwrap_or(0.0)
     }
 
     /// The runs on the Pareto front, as indices of curve and run, from the smallest error up: those
@@ -130,7 +128,7 @@ mod tests {
         };
         let problem = Problem {
             title: String::new(),
-            // The fourth run of the first is below ten times the floor, and its last was lost.
+            // The fourth run of the first is below what is resolved, and its last was lost.
             curves: vec![
                 curve(vec![
                     run(1e-2, 10.0, false),
@@ -146,7 +144,7 @@ mod tests {
                     run(f64::NAN, 1.0, false),
                 ]),
             ],
-            floor: Some(1e-9),
+            resolved: Some(1e-8),
             still: None,
         };
         assert_eq!(problem.front(), [[1, 2], [1, 1], [0, 0]]);
