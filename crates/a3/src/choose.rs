@@ -9,6 +9,7 @@ use a3_core::stability::spectrum;
 use a3_core::{Control, Method, Scene};
 
 use crate::chart::measure::{precision, reference, time, words};
+use crate::chart::table::fraction;
 use crate::chart::{
     check_contact, check_motion, describe, look_ahead, methods, metric, scope, unit,
 };
@@ -285,16 +286,8 @@ fn typed(control: Control, until: f64) -> String {
         if short.len() <= 6 {
             return short;
         }
-        // The least whole number of such seconds that holds a whole number of steps.
         let count = (until / step).round();
-        let parts = (1..=100).map(f64::from).find(|part| {
-            let steps = part / step;
-            *part <= until && (steps - steps.round()).abs() < 1e-9 * steps
-        });
-        return match parts {
-            Some(part) => format!("{part}/{}", (part / step).round()),
-            None => format!("{until}/{count}"),
-        };
+        return fraction(step, until).unwrap_or_else(|| format!("{until}/{count}"));
     }
     let power = 10f64.powi(3 - value.log10().floor() as i32);
     let rounded = (value * power * (1.0 + 1e-12)).floor() / power;

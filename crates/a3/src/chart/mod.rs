@@ -5,7 +5,7 @@ pub mod measure;
 pub mod picture;
 pub mod record;
 pub mod style;
-mod table;
+pub mod table;
 pub mod text;
 
 use std::path::Path;
@@ -84,7 +84,10 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
         ));
     }
     output::say(&table::text(&studies, &data, &methods, metric, timed))?;
-    let chart = picture::chart(&studies, &data, &methods, metric, timed, &options.what);
+    let mut chart = picture::chart(&studies, &data, &methods, metric, timed, &options.what);
+    if options.solvers.is_empty() {
+        picture::keep_best(&mut chart, &methods);
+    }
     let figure = chart
         .draw(f64::from(options.size.0), f64::from(options.size.1))
         .map_err(|why| {
@@ -114,16 +117,20 @@ pub fn write_picture(path: &Path, figure: &Figure) -> Result<(), Failure> {
     }
 }
 
-/// The methods that were asked for, or else all that can integrate the scene.
-pub fn methods(scene: &Scene, asked: &[&'static Method]) -> Result<Vec<&'static Method>, Failure> {
-    if asked.is_empty() {
+/// The methods that were asked for, or else all that can integrate the scene, as where one of those
+/// asked for is none in particular.
+pub fn methods(
+    scene: &Scene,
+    asked: &[Option<&'static Method>],
+) -> Result<Vec<&'static Method>, Failure> {
+    if asked.iter().all(Option::is_none) {
         let all = integrators::METHODS.iter();
         return Ok(all
             .filter(|m| m.check(scene.model.system()).is_ok())
             .collect());
     }
     let mut methods: Vec<&'static Method> = vec![];
-    for &method in asked {
+    for &method in asked.iter().flatten() {
         method
             .check(scene.model.system())
             .map_err(|e| Failure::usage(format!("scene {}: {e}", scene.name)))?;

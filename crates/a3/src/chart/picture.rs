@@ -58,6 +58,36 @@ pub fn chart(
     }
 }
 
+/// Solvers of the course, whose curves are always drawn.
+const COURSE: [char; 4] = ['e', 't', 'r', 'i'];
+
+/// Leaves out the curves of the methods that are cheapest for no error on any problem, but for
+/// those of the course.
+pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method]) {
+    let mut kept: Vec<_> = methods.iter().map(|m| COURSE.contains(&m.letter)).collect();
+    for problem in &chart.problems {
+        for [curve, _] in problem.front() {
+            kept[curve] = true;
+        }
+    }
+    let left_out = kept.iter().filter(|kept| !**kept).count();
+    if left_out == 0 {
+        return;
+    }
+    for problem in &mut chart.problems {
+        let mut kept = kept.iter();
+        problem
+            .curves
+            .retain(|_| kept.next().is_some_and(|kept| *kept));
+    }
+    let drawn = methods
+        .iter()
+        .zip(&kept)
+        .filter_map(|(m, kept)| kept.then_some(*m));
+    chart.foot = foot(&drawn.collect::<Vec<_>>());
+    chart.subtitle += &format!("; {left_out} more solvers, cheapest nowhere, are in the table");
+}
+
 /// What the errors are, and which methods solve another model.
 pub fn foot(methods: &[&'static Method]) -> String {
     let errors = "Errors are true ones, against DOP853 at two tolerances and a method of order 4 \

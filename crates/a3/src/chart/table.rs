@@ -13,6 +13,9 @@ use crate::list;
 /// Decimal digits of the errors in the table, from 1e-2 to 1e-8.
 const ERRORS: std::ops::RangeInclusive<i32> = 2..=8;
 
+/// Largest numerator of a step that is written as a fraction.
+const SHORT: f64 = 3.0;
+
 /// The cheapest run whose error is at most `error`.
 fn cheapest<'a>(
     records: impl Iterator<Item = &'a Record>,
@@ -47,11 +50,29 @@ fn short(cost: f64) -> String {
 
 /// A step with its unit, or a tolerance, in words.
 pub fn words(control: Control) -> String {
-    match control {
-        Control::Tolerance(tolerance) => format!("tolerance {tolerance:.0e}"),
-        Control::Step(step) if step < 1e-3 => format!("step {} µs", (1e9 * step).round() / 1e3),
-        Control::Step(step) => format!("step {} ms", (1e6 * step).round() / 1e3),
+    let step = match control {
+        Control::Tolerance(tolerance) => return format!("tolerance {tolerance:.0e}"),
+        Control::Step(step) => step,
+    };
+    let (unit, per_second) = if step < 1e-3 {
+        ("µs", 1e6)
+    } else {
+        ("ms", 1e3)
+    };
+    let rounded = (1e3 * per_second * step).round() / 1e3;
+    match fraction(step, SHORT) {
+        Some(fraction) if (10.0 * rounded).fract() != 0.0 => format!("step {fraction} s"),
+        _ => format!("step {rounded} {unit}"),
     }
+}
+
+/// A step as a fraction of seconds, such as 1/97, whose numerator is the least, and at most `most`.
+pub fn fraction(step: f64, most: f64) -> Option<String> {
+    let part = (1..=100).map(f64::from).find(|part| {
+        let steps = part / step;
+        *part <= most && (steps - steps.round()).abs() < 1e-9 * steps
+    })?;
+    Some(format!("{part}/{}", (part / step).round()))
 }
 
 /// The tables of all studies.

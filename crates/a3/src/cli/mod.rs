@@ -20,7 +20,7 @@ use clap_complete::Shell;
 use crate::failure::Failure;
 use crate::lessons;
 use crate::scene_file::Source;
-use names::{SCENE, SOLVER};
+use names::{SCENE, SOLVER, SOLVER_OR_ALL};
 use values::{
     absolute, budget, error, factor, grid, horizon, max_step, particle, pause, picture_size, rate,
     step, threads, until,
@@ -234,9 +234,10 @@ pub enum WorkMeasure {
 pub struct Chart {
     #[command(flatten)]
     pub what: What,
-    /// Solvers to compare, such as t,r,v; by default all that can run the scene
-    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER, hide_possible_values = true)]
-    pub solvers: Vec<&'static Method>,
+    /// Solvers to compare, such as t,r,v, or all; by default all that can run the scene, of which
+    /// those are drawn that are cheapest somewhere, and e, t, r and i
+    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER_OR_ALL, hide_possible_values = true)]
+    pub solvers: Vec<Option<&'static Method>>,
     /// Simulated seconds; by default, as long as errors are meaningful on this scene
     #[arg(long, value_name = "T", value_parser = horizon, allow_negative_numbers = true)]
     pub until: Option<f64>,
@@ -268,8 +269,8 @@ pub struct Stability {
     #[command(flatten)]
     pub what: What,
     /// Solvers to examine, such as t,r,v; by default all that can run the scene
-    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER, hide_possible_values = true)]
-    pub solvers: Vec<&'static Method>,
+    #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER_OR_ALL, hide_possible_values = true)]
+    pub solvers: Vec<Option<&'static Method>>,
     /// Step in seconds by which the picture multiplies the eigenvalues; by default the time in
     /// which the fastest motion turns by one radian
     #[arg(long, value_name = "STEP", value_parser = step, allow_negative_numbers = true)]

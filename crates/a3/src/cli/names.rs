@@ -43,6 +43,12 @@ pub const SOLVER: Names<&'static Method> = Names {
     all: solvers,
 };
 
+/// A solver, or all of them: none in particular.
+pub const SOLVER_OR_ALL: Names<Option<&'static Method>> = Names {
+    parse: solver_or_all,
+    all: || [vec![ALL], solvers()].concat(),
+};
+
 /// A solver where there can also be a command.
 #[cfg(feature = "window")]
 pub const SOLVER_OR_COMMAND: Names<&'static Method> = Names {
@@ -56,6 +62,9 @@ pub const SOLVER_AND_STEP: Names<(&'static Method, Option<f64>)> = Names {
     parse: solver_and_step,
     all: solvers,
 };
+
+/// Word for all solvers.
+const ALL: &str = "all";
 
 /// A scene, by its name or in a file.
 pub const SCENE: Names<Source> = Names {
@@ -81,6 +90,10 @@ fn solver(text: &str) -> Result<&'static Method, String> {
             letters_and_names()
         ),
     })
+}
+
+fn solver_or_all(text: &str) -> Result<Option<&'static Method>, String> {
+    (text != ALL).then(|| solver(text)).transpose()
 }
 
 #[cfg(feature = "window")]

@@ -84,7 +84,8 @@ impl Problem {
     /// The runs on the Pareto front, as indices of curve and run, from the smallest error up: those
     /// that no other run beats in both error and work. Runs with errors that the reference cannot
     /// tell from 0 are left out, but beat others.
-    pub(super) fn front(&self) -> Vec<[usize; 2]> {
+    #[must_use]
+    pub fn front(&self) -> Vec<[usize; 2]> {
         let mut runs: Vec<_> = (self.curves.iter().enumerate())
             .flat_map(|(c, curve)| {
                 curve
