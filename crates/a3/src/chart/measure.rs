@@ -43,10 +43,10 @@ pub struct Study<'a> {
     modes: Vec<Mode>,
     scope: Scope,
     /// Largest distance of the particles from their start, on average (m).
-    motion: f64,
+    pub motion: f64,
     /// A record of the scene, whose other fields are filled in for each run.
     blank: Record,
-    reference: Option<Reference>,
+    pub reference: Option<Reference>,
     methods: &'a [&'static Method],
     metric: Metric,
     timed: bool,
@@ -256,8 +256,7 @@ pub fn compared(
     method: &'static Method,
     reference: &Reference,
 ) -> Result<Option<(Record, Duration)>, Failure> {
-    let control = method.control(like.setting);
-    let begun = Instant::now();
+    let (control, begun) = (method.control(like.setting), Instant::now());
     let clock = || begun.elapsed();
     let go_on = &interrupt::go_on;
     let outcome = accuracy::measure_by(&clock, scene, method, control, reference, go_on)

@@ -84,6 +84,11 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
         ));
     }
     output::say(&table::text(&studies, &data, &methods, metric, timed))?;
+    if metric == Metric::Position {
+        for advice in studies.iter().filter_map(|study| table::advice(study)) {
+            output::say(&advice)?;
+        }
+    }
     let mut chart = picture::chart(&studies, &data, &methods, metric, timed, &options.what);
     if options.solvers.is_empty() {
         picture::keep_best(&mut chart, &methods);
@@ -255,7 +260,7 @@ pub fn look_ahead(
     } else if lyapunov.is_finite() {
         format!("errors grow by themselves e-fold every {lyapunov:.2} s (Lyapunov time)")
     } else {
-        "errors hardly grow by themselves".to_owned()
+        "small differences hardly grow by themselves".to_owned()
     };
     match asked {
         Some(asked) if asked > until * (1.0 + 1e-9) && lyapunov.is_finite() => bar.warn(&format!(

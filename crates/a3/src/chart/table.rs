@@ -13,6 +13,12 @@ use crate::list;
 /// Decimal digits of the errors in the table, from 1e-2 to 1e-8.
 const ERRORS: std::ops::RangeInclusive<i32> = 2..=8;
 
+/// Uncertainty of a reference over the motion, above which a chart tells little.
+const USEFUL: f64 = 1e-5;
+
+/// Shortest run that is advised, over the one that was made.
+const SHORTEST: f64 = 0.02;
+
 /// Largest numerator of a step that is written as a fraction.
 const SHORT: f64 = 3.0;
 
@@ -73,6 +79,21 @@ pub fn fraction(step: f64, most: f64) -> Option<String> {
         *part <= most && (steps - steps.round()).abs() < 1e-9 * steps
     })?;
     Some(format!("{part}/{}", (part / step).round()))
+}
+
+/// Sentence on when the reference of a study becomes much worse, and until when a chart would tell
+/// more; none if it tells enough, or was not made.
+pub fn advice(study: &Study) -> Option<String> {
+    let reference = study.reference.as_ref()?;
+    let whole = reference.floor.position;
+    let (time, floor) = reference.clear_until()?;
+    let until = (1e2 * time).floor() / 1e2;
+    (whole > USEFUL * study.motion && until >= SHORTEST * study.frames.until).then(|| {
+        format!(
+            "positions are known to {whole:.0e} m only, because of what happens after {time:.2} s, such as an \
+             impact: with --until {until} they are known to {floor:.0e} m\n"
+        )
+    })
 }
 
 /// The tables of all studies.

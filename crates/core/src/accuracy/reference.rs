@@ -35,6 +35,8 @@ const SURE: f64 = 0.3;
 const BLURRED: f64 = 2.0;
 /// Most times that the step is halved.
 const REFINEMENTS: usize = 12;
+/// Uncertainty of a reference until something happens, over that afterwards.
+const CLEAR: f64 = 1e-4;
 /// Most powers of the step that are extrapolated away.
 const POWERS: usize = 3;
 /// Disagreement after two refinements over that before them, above which it no longer falls.
@@ -77,6 +79,8 @@ pub struct Reference {
     pub(super) start: Snapshot,
     scope: Scope,
     trajectory: Trajectory,
+    /// Uncertainty of the positions at each frame (m).
+    uncertain: Vec<f64>,
 }
 
 impl Reference {
@@ -122,6 +126,7 @@ impl Reference {
                 start: Snapshot::of(&scene.model, 0.0, &scene.state),
                 scope,
                 trajectory: Trajectory::new(vec![], scope),
+                uncertain: vec![f64::INFINITY; frames.count as usize],
             },
         };
         let Some((own, sure)) = making.by_tolerances()? else {
@@ -151,10 +156,29 @@ impl Reference {
             .errors_between(start, (model, t, y), self.scope)
     }
 
+    /// Time (s) until which positions are known to less than a ten-thousandth of the
+    /// [`floor`](Self::floor), and their uncertainty (m) until then: something happens afterwards
+    /// that is known less well. `None` if that is so from the beginning.
+    #[must_use]
+    pub fn clear_until(&self) -> Option<(f64, f64)> {
+        let most = CLEAR * self.floor.position;
+        let count = self.uncertain.iter().take_while(|u| **u < most).count();
+        let worst = self.uncertain[..count].iter().copied().fold(0.0, f64::max);
+        (count > 0).then(|| (self.frames.time(count as u64), worst))
+    }
+
     /// Whether errors at frame k, counted from 1, count.
     #[must_use]
     pub fn counts(&self, k: u64) -> bool {
         !self.scope.at_end || k == self.frames.count
+    }
+
+    /// Notes the uncertainty at each frame by another trajectory.
+    fn note_uncertainty(&mut self, others: &[Snapshot]) {
+        for (k, (uncertain, other)) in (1..).zip(self.uncertain.iter_mut().zip(others)) {
+            let errors = self.trajectory.errors(k, other, self.scope);
+            *uncertain = uncertain.min(errors.position);
+        }
     }
 
     /// Largest errors of a trajectory over the frames that count.
@@ -295,6 +319,7 @@ impl Making<'_> {
                     row = extrapolate(row, snapshots);
                     for column in &row {
                         least = least.min(self.reference.disagreement(column));
+                        self.reference.note_uncertainty(column);
                     }
                     history.push(metric.of(&least));
                     sum += work;

@@ -1,4 +1,5 @@
-//! Errors of steps that are longer than the fastest motion.
+//! What errors are taken from: the ends of steps that are longer than the fastest motion, and a
+//! reference that is known until something is hit.
 
 use crate::common::{described, method};
 use a3_core::accuracy::{Frames, Reference, measure};
@@ -34,4 +35,23 @@ fn errors_are_those_at_the_ends_of_steps() {
             "{name}: {found} {worst}"
         );
     }
+}
+
+/// A jelly of more particles than those whose impacts are located within fixed steps falls 0.1 m.
+#[test]
+fn a_reference_says_until_when_it_is_clear() {
+    let fall = described(
+        "gravity = [0, -9.81, 0]\nfloor = 0\n[[jelly]]\ngrid = [4, 4, 4]\nsize = [0.3, 0.3, 0.3]\n\
+         at = [0, 0.25, 0]\nmass = 0.01\nstiffness = [40, 20, 10]\n",
+    );
+    let reference = Reference::finest(&fall, Frames::new(0.3), &|| true);
+    let reference = reference.unwrap().unwrap();
+    let (until, known) = reference.clear_until().unwrap();
+    let impact = f64::sqrt(2.0 * 0.1 / 9.81);
+    assert!((until - impact).abs() < 1.0 / 60.0, "{until} {impact}");
+    assert!(
+        known < 1e-11 && reference.floor.position > 1e-8,
+        "{known} {:?}",
+        reference.floor
+    );
 }
