@@ -91,7 +91,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     }
     let mut chart = picture::chart(&studies, &data, &methods, metric, timed, &options.what);
     if options.solvers.is_empty() {
-        picture::keep_best(&mut chart, &methods);
+        picture::keep_best(&mut chart, &methods, &scene);
     }
     let figure = chart
         .draw(f64::from(options.size.0), f64::from(options.size.1))

@@ -1,7 +1,7 @@
 //! The work-precision diagram of the runs.
 
-use a3_core::Method;
 use a3_core::accuracy::{Metric, Scope};
+use a3_core::{Method, Scene};
 use a3_plot::{Curve, Measurement, Problem, WorkPrecision};
 
 use super::data::Data;
@@ -53,7 +53,7 @@ pub fn chart(
         }
         .into(),
         problems,
-        foot: foot(methods),
+        foot: foot(methods) + turning(&studies[0].scene, methods),
         held: "held by impulses".into(),
     }
 }
@@ -61,9 +61,12 @@ pub fn chart(
 /// Solvers of the course, whose curves are always drawn.
 const COURSE: [char; 4] = ['e', 't', 'r', 'i'];
 
+/// Solvers whose steps turn rigid bodies by a composition of order 6.
+const TURNING: [char; 3] = ['s', 'v', 'p'];
+
 /// Leaves out the curves of the methods that are cheapest for no error on any problem, but for
 /// those of the course.
-pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method]) {
+pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
     let mut kept: Vec<_> = methods.iter().map(|m| COURSE.contains(&m.letter)).collect();
     for problem in &chart.problems {
         for [curve, _] in problem.front() {
@@ -80,11 +83,9 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method]) {
             .curves
             .retain(|_| kept.next().is_some_and(|kept| *kept));
     }
-    let drawn = methods
-        .iter()
-        .zip(&kept)
-        .filter_map(|(m, kept)| kept.then_some(*m));
-    chart.foot = foot(&drawn.collect::<Vec<_>>());
+    let drawn = methods.iter().zip(&kept);
+    let drawn: Vec<_> = drawn.filter_map(|(m, kept)| kept.then_some(*m)).collect();
+    chart.foot = foot(&drawn) + turning(scene, &drawn);
     chart.subtitle += &format!("; {left_out} more solvers, cheapest nowhere, are in the table");
 }
 
@@ -99,6 +100,24 @@ pub fn foot(methods: &[&'static Method]) -> String {
         )
     } else {
         errors.into()
+    }
+}
+
+/// Note on methods that turn rigid bodies more accurately than their order says.
+fn turning(scene: &Scene, methods: &[&'static Method]) -> &'static str {
+    let has_bodies = scene
+        .model
+        .network()
+        .is_some_and(|network| !network.bodies().is_empty());
+    if has_bodies
+        && methods
+            .iter()
+            .any(|method| TURNING.contains(&method.letter))
+    {
+        " Symplectic Euler, Verlet and PEFRL turn bodies by a composition of order 6, whatever \
+         their own order: in free flight their errors fall with it."
+    } else {
+        ""
     }
 }
 

@@ -186,13 +186,16 @@ impl Network {
         strains
     }
 
-    /// Length over rest length of the structural spring that is stretched most; 1 if there is none.
+    /// Length over rest length of the structural spring that is stretched most, or the largest
+    /// principal stretch of a solid, if there is any.
     #[must_use]
-    pub fn largest_stretch(&self, x: &[f64]) -> f64 {
-        self.springs()
-            .filter(|s| s.kind == SpringKind::Structural && s.law.rest_length > 0.0)
-            .map(|s| distance(x, s.i, s.j) / s.law.rest_length)
-            .reduce(f64::max)
-            .unwrap_or(1.0)
+    pub fn largest_stretch(&self, x: &[f64]) -> Option<f64> {
+        let structural = |s: &Spring| s.kind == SpringKind::Structural && s.law.rest_length > 0.0;
+        let of_springs = self.springs().filter(structural);
+        let of_springs = of_springs.map(|s| distance(x, s.i, s.j) / s.law.rest_length);
+        let solids = self.elements.iter().filter_map(Element::solid);
+        let of_solids = solids.flat_map(|solid| solid.stretches(x));
+        let of_solids = of_solids.map(|(_, stretches)| stretches.max());
+        of_springs.chain(of_solids).reduce(f64::max)
     }
 }

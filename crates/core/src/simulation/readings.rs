@@ -150,13 +150,12 @@ impl Simulation {
         self.positions().column(1).min()
     }
 
-    /// Length over rest length of the most stretched structural spring, if there are springs.
+    /// Length over rest length of the most stretched structural spring, or the largest principal
+    /// stretch of a solid, if there is any.
     #[must_use]
     pub fn largest_stretch(&self) -> Option<f64> {
         let x = &self.state.y[..3 * self.particles()];
-        self.model
-            .network()
-            .map(|network| network.largest_stretch(x))
+        self.model.network()?.largest_stretch(x)
     }
 
     /// Number of springs that have broken.

@@ -121,11 +121,17 @@ impl Solid {
     /// Corners of each tetrahedron, and its strain at x: the most by which a principal stretch
     /// differs from 1.
     pub(crate) fn strains(&self, x: &[f64]) -> impl Iterator<Item = ([u32; 4], f64)> {
+        self.stretches(x).map(|(corners, stretches)| {
+            let strain = stretches.iter().map(|stretch| (stretch - 1.0).abs());
+            (corners, strain.fold(0.0, f64::max))
+        })
+    }
+
+    /// Corners of each tetrahedron, and its principal stretches at x.
+    pub(crate) fn stretches(&self, x: &[f64]) -> impl Iterator<Item = ([u32; 4], Vector3<f64>)> {
         self.deformed(x).map(|tetrahedron| {
             let f = Matrix3::from_fn(|row, column| tetrahedron.deformation[row][column]);
-            let stretches = f.singular_values();
-            let strain = stretches.iter().map(|stretch| (stretch - 1.0).abs());
-            (tetrahedron.corners, strain.fold(0.0, f64::max))
+            (tetrahedron.corners, f.singular_values())
         })
     }
 
