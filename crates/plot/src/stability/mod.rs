@@ -24,6 +24,9 @@ pub struct StabilityRegions {
     pub regions: Vec<Region>,
 }
 
+/// Largest part of a number that panels show, whatever the regions are.
+const LARGEST: f64 = 8.0;
+
 /// The explanation below the panels.
 const FOOT: &str = "h in s, λ in 1/s, so h λ has no unit. Real parts are growth or decay, \
     imaginary parts oscillation; what lies in the region does not grow.";
@@ -38,51 +41,27 @@ impl StabilityRegions {
         if self.regions.is_empty() {
             return Err(Error::Empty("no method to draw"));
         }
-        let extents = self.extents();
+        let extent = self.extent();
         layout::fit([width, height], |figure, level| {
-            self.try_draw(figure, level, &extents)
+            self.try_draw(figure, level, extent)
         })
     }
 
-    /// The extent of each panel, and whether it is the one that most panels share. Panels share an
-    /// extent if each needs between two fifths of it and all of it.
-    fn extents(&self) -> Vec<(Extent, bool)> {
-        let own: Vec<_> = self.regions.iter().map(Region::extent).collect();
-        let mut sorted = own.clone();
-        sorted.sort_by(|a, b| b.size().total_cmp(&a.size()));
-        let mut groups: Vec<(Extent, f64, usize)> = vec![];
-        for extent in sorted {
-            match groups.last_mut() {
-                Some((all, largest, count)) if extent.size() >= 0.4 * *largest => {
-                    *all = all.with_all(extent);
-                    *count += 1;
-                }
-                _ => groups.push((extent, extent.size(), 1)),
-            }
-        }
-        let most = groups.iter().map(|group| group.2).max();
-        let group = |own: &Extent| {
-            let mut fitting = groups.iter().rev();
-            let found = fitting.find(|(_, largest, _)| own.size() <= *largest);
-            found.map_or((*own, false), |(all, _, count)| {
-                (*all, Some(*count) == most)
-            })
-        };
-        own.iter().map(group).collect()
+    /// The extent of all panels: that of the largest region, as far as small ones can still be seen
+    /// beside it.
+    fn extent(&self) -> Extent {
+        let own = self.regions.iter().map(Region::extent);
+        let all = own.reduce(Extent::with_all).unwrap_or_default();
+        all.within(LARGEST)
     }
 
     /// The chart at this level, or `None` if its panels would be too small.
-    fn try_draw(
-        &self,
-        mut figure: Figure,
-        level: Level,
-        extents: &[(Extent, bool)],
-    ) -> Option<Figure> {
+    fn try_draw(&self, mut figure: Figure, level: Level, extent: Extent) -> Option<Figure> {
         let size = level.size;
         let foot = format!("{FOOT} {}", self.note);
         let foot = foot.trim_end();
         let mut left = layout::headings(&mut figure, [&self.title, &self.subtitle, foot], level);
-        layout::legend(&mut figure, &mut left, &self.entries(size, extents), size);
+        layout::legend(&mut figure, &mut left, &self.entries(size, extent), size);
         let inner = Rect::new(left.x0 + 1.6 * size, left.y0, left.x1, left.y1 - 1.5 * size);
         let (below, beside) = (
             Rect {
@@ -100,8 +79,7 @@ impl StabilityRegions {
         let room = |[w, h]: Point| [w - 2.4 * small, h - 4.6 * size];
         let merit = |cell: Point| {
             let [w, h] = room(cell);
-            let unit = |(extent, _): &(Extent, bool)| extent.unit(w, h);
-            extents.iter().map(unit).fold(f64::INFINITY, f64::min)
+            extent.unit(w, h)
         };
         let (rooms, _) = layout::grid(self.regions.len(), inner, 1.2 * size, merit);
         let width = rooms[0].width();
@@ -125,7 +103,6 @@ impl StabilityRegions {
         let depth = [0, 1].map(|k| depth(k).unwrap_or(0) as f64);
         let above = 1.2 * size * depth[0] + 1.2 * small * depth[1] + 0.3 * size;
         for (k, (region, cell)) in self.regions.iter().zip(rooms).enumerate() {
-            let (extent, is_common) = extents[k];
             let [title, subtitle] = &words[k];
             let mut y = cell.y0;
             for line in title {
@@ -149,19 +126,12 @@ impl StabilityRegions {
                 return None;
             }
             region.draw(&mut figure, area, extent, small);
-            if !is_common {
-                let label = Label::new("own scale", small).colour(GREY);
-                let at = [area.x0 + 0.4 * small, area.y0 + small];
-                if area.holds(label.room(at)) {
-                    figure.text(at, label);
-                }
-            }
         }
         Some(figure)
     }
 
     /// The entries of the legend.
-    fn entries(&self, size: f64, extents: &[(Extent, bool)]) -> Vec<(String, Sign<'_>)> {
+    fn entries(&self, size: f64, extent: Extent) -> Vec<(String, Sign<'_>)> {
         let sample: Sign = Box::new(move |figure, [x, y]| {
             let room = Rect::new(
                 x - 1.2 * size,
@@ -179,13 +149,8 @@ impl StabilityRegions {
             ("the same, growing slowly".to_owned(), mark(Fate::Slow)),
             ("the same, growing fast".to_owned(), mark(Fate::Lost)),
         ];
-        let is_beyond = |(region, (extent, _)): (&Region, &(Extent, bool))| {
-            region
-                .eigenvalues
-                .iter()
-                .any(|z| extent.with(*z) != *extent)
-        };
-        if self.regions.iter().zip(extents).any(is_beyond) {
+        let mut all = self.regions.iter().flat_map(|region| &region.eigenvalues);
+        if all.any(|z| extent.with(*z) != extent) {
             let wedge: Sign = Box::new(move |figure, [x, y]| {
                 beyond(figure, [x, y], [x - 1.0, y], 0.3 * size, GREY);
             });

@@ -58,7 +58,7 @@ pub struct Region {
 }
 
 /// The part of the plane that a panel shows at least. It is symmetric about the real axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extent {
     /// The ends on the real axis.
     real: [f64; 2],
@@ -86,6 +86,14 @@ impl Extent {
     pub fn unit(self, width: f64, height: f64) -> f64 {
         let [low, high] = self.real;
         (width / (high - low)).min(height / (2.0 * self.imaginary)) / 1.12
+    }
+
+    /// What of it is within the square around 0 with that half side.
+    pub fn within(self, largest: f64) -> Self {
+        Self {
+            real: self.real.map(|end| end.clamp(-largest, largest)),
+            imaginary: self.imaginary.min(largest),
+        }
     }
 
     /// The longer side.
