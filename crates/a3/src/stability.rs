@@ -3,6 +3,7 @@
 
 use std::fmt::Write;
 
+use a3_core::integrators::bdf_growth;
 use a3_core::stability::{
     Budget, Edge, GROWTH, Growth, Limit, Mode, Motion, Observation, RestState, largest_step,
     observe_at_rest, rest, spectrum, tenfold_time,
@@ -326,8 +327,14 @@ fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> Stabil
 /// The stability region of a method.
 fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
     let method = row.method;
+    let is_bdf = method.name == "bdf";
     let subtitle = format!(
-        "bounded {}\u{a0}ms, accurate {}\u{a0}ms",
+        "{}bounded {}\u{a0}ms, accurate {}\u{a0}ms",
+        if is_bdf {
+            "region of all orders; fixed steps: "
+        } else {
+            ""
+        },
         observation(row.bounded),
         row.accurate.map_or("-".into(), step)
     );
@@ -338,6 +345,10 @@ fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
         .first()
         .map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300));
     let radius = move |re: f64, im: f64| {
+        // Its fixed steps are those of TR-BDF2, but its own are not.
+        if is_bdf {
+            return bdf_growth(re, im);
+        }
         let mode = Mode::of_eigenvalue(re, im);
         let mode = Mode {
             drag: (1.0 - share) * mode.drag,

@@ -37,6 +37,7 @@ use trial::Trial;
 pub use crate::work::Work;
 pub use adaptive::{Adaptive, AdaptiveState, Taken};
 pub use error_norm::Tolerance;
+pub use implicit::bdf_growth;
 
 /// Integrator of a system: a method with its scratch.
 pub trait Integrator: Send {

@@ -9,6 +9,7 @@
 use super::super::error_norm::ErrorNorm;
 use super::super::trial::{LastStep, Trial};
 use super::super::{Method, Work};
+use super::formulas::{KAPPA, error_factor, harmonic};
 use super::kept::{KeptSolver, Tangent};
 use super::{differences, tr_bdf2};
 use crate::control::Control;
@@ -36,9 +37,6 @@ pub(in super::super) const METHOD: Method = Method {
 const ORDERS: usize = differences::MOST;
 /// Number of backward differences: two beyond the highest order, for the errors of the next.
 const DIFFERENCES: usize = ORDERS + 2;
-/// Coefficient kappa of each order: with it the error is smaller than without, and as much is
-/// stable.
-const KAPPA: [f64; ORDERS + 1] = [0.0, -0.185, -1.0 / 9.0, -0.0823, -0.0415, 0.0];
 /// Share of the tolerated error that the next step aims at, at most so many times as long.
 const SAFETY: f64 = 0.8;
 /// Least ratio of steps for which the differences are computed anew.
@@ -46,16 +44,6 @@ const LONGER: f64 = 1.2;
 
 /// Time in which the derivative is seen to change, over the last step.
 const MOMENT: f64 = 1e-3;
-
-/// Sum g of the inverses of the numbers up to an order.
-fn harmonic(order: usize) -> f64 {
-    (1..=order).map(|j| 1.0 / j as f64).sum()
-}
-
-/// Factor of `D_(k+1)` in the error of a step of order k.
-fn error_factor(order: usize) -> f64 {
-    KAPPA[order] * harmonic(order) + 1.0 / (order + 1) as f64
-}
 
 /// The method's own numbers beside the vectors of a step.
 #[derive(Clone, Copy)]

@@ -13,6 +13,7 @@ mod changes;
 mod dense;
 mod differences;
 mod euler;
+mod formulas;
 mod kept;
 mod midpoint;
 mod secants;
@@ -27,6 +28,7 @@ use secants::Secants;
 
 pub(super) use bdf::METHOD as BDF;
 pub(super) use euler::METHOD as EULER;
+pub use formulas::bdf_growth;
 pub(super) use midpoint::METHOD as MIDPOINT;
 pub(super) use tr_bdf2::METHOD as TR_BDF2;
 
