@@ -62,6 +62,13 @@ pub fn steps(simulation: &Simulation) -> Option<String> {
 /// where it grows fast.
 pub fn limit(pane: &Pane) -> Option<(String, Mark)> {
     let limit = pane.limit.limit()?;
+    // With constraints or rigid bodies, what limits the step is in the motion, not in the modes:
+    // these tell which steps are too long, and no more.
+    let network = pane.simulation.model().network();
+    let rests = network.is_none_or(|n| n.constraints().is_empty() && n.bodies().is_empty());
+    if !rests && pane.simulation.step_size()? <= limit.step {
+        return None;
+    }
     if limit.step.is_infinite() {
         return Some(("none: every step is stable".into(), SAFE));
     }
@@ -269,6 +276,20 @@ mod tests {
         let (words, guarded) = said(200);
         let held = format!("contact\n{} impulses\n", guarded.impulses);
         assert!(guarded.impulses > 1 && words.contains(&held), "{words}");
+    }
+
+    #[test]
+    fn no_step_is_called_safe_where_modes_do_not_tell() {
+        for (scene, value, is_said) in [
+            ("double-pendulum", 0.1, false),
+            ("double-pendulum", 0.3, true),
+        ] {
+            let mut pane = pane(scene, "t", value);
+            pane.simulation.take_steps(1).unwrap();
+            pane.read_state();
+            let found = limit(&pane);
+            assert_eq!(found.map(|(_, mark)| mark), is_said.then_some(ALARM));
+        }
     }
 
     #[test]
