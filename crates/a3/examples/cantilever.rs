@@ -189,7 +189,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         problems: vec![Problem {
             title: String::new(),
             curves,
-            floor: None,
+            resolved: None,
             still: None,
         }],
         foot: String::new(),

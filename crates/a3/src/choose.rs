@@ -51,55 +51,11 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
     let reference = reference(&scene, Frames::new(until), scope, precision)?.ok_or_else(stopped)?;
     check_contact(metric, metric.of(&reference.still), until)?;
     let (found, goal) = match (options.error, options.budget) {
-        (Some(error), _) => {
-            let (floor, still) = (metric.of(&reference.floor), metric.of(&reference.still));
-            let unit = unit(metric);
-            if error < MARGIN.0 * floor {
-                return Err(Failure::usage(format!(
-                    "the reference of this scene over {until} s is itself known to {floor:.0e} {unit} only: ask for \
-                     an error of at least {:.0e}",
-                    MARGIN.0 * floor
-                )));
-            }
-            if metric == Metric::Position && error > still {
-                bar.warn(&format!(
-                    "warning: nothing moves further than {still:.0e} m in {until} s: an error of {error:e} m says nothing"
-                ));
-            }
-            bar.start();
-            let mut begun = 0;
-            let found = choose(
-                &scene,
-                &reference,
-                metric,
-                error,
-                &interrupt::go_on,
-                |method| {
-                    bar.say(format!("{:<10} ", method.name));
-                    bar.advance(f64::from(u8::from(begun > 0)));
-                    begun += 1;
-                },
-            );
-            bar.clear();
-            let mut found = found.map_err(Failure::run)?.ok_or_else(stopped)?;
-            let by_time = options.work == WorkMeasure::Time;
-            if !by_time {
-                found.truncate(SHOWN);
-            }
-            let found = found.into_iter().map(|candidate| {
-                let cost = milliseconds(&scene, &candidate, &reference)?.ok_or_else(stopped)?;
-                Ok((candidate, cost))
-            });
-            let mut found = found.collect::<Result<Vec<_>, Failure>>()?;
-            if by_time {
-                found.sort_by(|(_, a), (_, b)| a.total_cmp(b));
-                found.truncate(SHOWN);
-            }
-            (
-                found,
-                format!("an error of {error:e} {unit} ({})", words(scope)),
-            )
-        }
+        (Some(error), _) => (
+            cheapest(&scene, &reference, (metric, error), options.work, &bar)?
+                .ok_or_else(stopped)?,
+            format!("an error of {error:e} {} ({})", unit(metric), words(scope)),
+        ),
         (None, Some(budget)) => (
             within(&scene, &reference, metric, budget, &bar)?.ok_or_else(stopped)?,
             format!("{budget} ms per frame"),
@@ -137,6 +93,57 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         "run it:  {}\n",
         command(&options.what, best.method, best.control, until)
     ))
+}
+
+/// The cheapest methods for an error, with the computing times of their frames (ms). `None` if it
+/// was interrupted.
+fn cheapest(
+    scene: &Scene,
+    reference: &Reference,
+    (metric, error): (Metric, f64),
+    work: WorkMeasure,
+    bar: &Bar,
+) -> Result<Option<Vec<(Candidate, f64)>>, Failure> {
+    let (floor, still) = (metric.of(&reference.floor), metric.of(&reference.still));
+    let (unit, until) = (unit(metric), reference.frames.until);
+    if error < MARGIN.0 * floor {
+        return Err(Failure::usage(format!(
+            "the reference of this scene over {until} s is itself known to {floor:.0e} {unit} only: ask for an error \
+             of at least {:.0e}",
+            MARGIN.0 * floor
+        )));
+    }
+    if metric == Metric::Position && error > still {
+        bar.warn(&format!(
+            "warning: nothing moves further than {still:.0e} m in {until} s: an error of {error:e} m says nothing"
+        ));
+    }
+    bar.start();
+    let mut begun = 0;
+    let begin = |method: &'static Method| {
+        bar.say(format!("{:<10} ", method.name));
+        bar.advance(f64::from(u8::from(begun > 0)));
+        begun += 1;
+    };
+    let found = choose(scene, reference, metric, error, &interrupt::go_on, begin);
+    bar.clear();
+    let Some(mut found) = found.map_err(Failure::run)? else {
+        return Ok(None);
+    };
+    let by_time = work == WorkMeasure::Time;
+    if !by_time {
+        found.truncate(SHOWN);
+    }
+    let timed = found.into_iter().map(|candidate| {
+        let cost = milliseconds(scene, &candidate, reference)?;
+        Ok(cost.map(|cost| (candidate, cost)))
+    });
+    let mut timed = timed.collect::<Result<Option<Vec<_>>, Failure>>()?;
+    if let Some(timed) = timed.as_mut().filter(|_| by_time) {
+        timed.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+        timed.truncate(SHOWN);
+    }
+    Ok(timed)
 }
 
 /// Sentence on what keeps the best candidate's step or tolerance from being larger.

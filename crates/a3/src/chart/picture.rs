@@ -1,5 +1,7 @@
 //! The work-precision diagram of the runs.
 
+use std::fmt::Write;
+
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene};
 use a3_plot::{Curve, Measurement, Problem, WorkPrecision};
@@ -86,7 +88,10 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: 
     let drawn = methods.iter().zip(&kept);
     let drawn: Vec<_> = drawn.filter_map(|(m, kept)| kept.then_some(*m)).collect();
     chart.foot = foot(&drawn) + turning(scene, &drawn);
-    chart.subtitle += &format!("; {left_out} more solvers, cheapest nowhere, are in the table");
+    let _ = write!(
+        chart.subtitle,
+        "; {left_out} more solvers, cheapest nowhere, are in the table"
+    );
 }
 
 /// What the errors are, and which methods solve another model.

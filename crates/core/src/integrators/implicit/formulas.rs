@@ -25,8 +25,8 @@ pub(super) fn error_factor(order: usize) -> f64 {
 /// Growth in one of equal steps, at the order that grows most, of a solution of y' = l y with
 /// z = h l = re + i im.
 ///
-/// A solution y_n = r^n has backward differences w^j y_n with w = 1 - 1/r, so w is a root of
-/// sum(w^j / j, j = 1..k) - kappa_k g_k w^(k+1) = z.
+/// A solution `y_n = r^n` has backward differences `w^j y_n` with w = 1 - 1/r, so w is a root of
+/// `sum(w^j / j, j = 1..k) - kappa_k g_k w^(k+1) = z`.
 #[must_use]
 pub fn bdf_growth(re: f64, im: f64) -> f64 {
     let of_order = |order: usize| {
