@@ -25,7 +25,7 @@ pub use errors::{Errors, Metric, Scope};
 pub use horizon::{Horizon, horizon};
 pub use ladder::{coarser, ladder};
 pub use reference::{Precision, Reference};
-pub use run::{Look, Visit, run};
+pub use run::{Between, Look, Visit, run};
 use run::{Looks, looked_at};
 
 /// Function that is called between frames and returns whether to go on.
@@ -124,8 +124,8 @@ pub fn measure_by(
         last = last.next(model, reference.frames.time(k), look.state);
         if reference.counts(k) {
             let mut here = reference.errors(k, &last);
-            if let Some((t, y)) = look.end {
-                here = here.min(reference.errors_between(model, t, y));
+            if let Some(step) = &look.within {
+                here = here.min(reference.errors_between(model, k, step));
             }
             errors = errors.max(here);
         }

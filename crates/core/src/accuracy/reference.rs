@@ -9,7 +9,7 @@
 
 use super::errors::Snapshot;
 use super::trajectory::Trajectory;
-use super::{Errors, Frames, GoOn, Look, Metric, Scope, run};
+use super::{Between, Errors, Frames, GoOn, Look, Metric, Scope, run};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, Work, find};
@@ -149,11 +149,11 @@ impl Reference {
         self.trajectory.errors(k, found, self.scope)
     }
 
-    /// Errors of the state y of a model at time t (s), which no frame is at.
-    pub(super) fn errors_between(&self, model: &Model, t: f64, y: &[f64]) -> Errors {
+    /// Errors at the nearest end of a step of a model that frame k, counted from 1, is within.
+    pub(super) fn errors_between(&self, model: &Model, k: u64, step: &Between) -> Errors {
         let start = (&self.start, self.frames);
         self.trajectory
-            .errors_between(start, (model, t, y), self.scope)
+            .errors_between(start, (model, k, step), self.scope)
     }
 
     /// Time (s) until which positions are known to less than a ten-thousandth of the

@@ -23,9 +23,18 @@ pub struct Look<'a> {
     pub run: &'a Simulation,
     /// State at the frame.
     pub state: &'a [f64],
-    /// Time (s) and state at the nearest end of a step, where none ends at the frame, and the state
-    /// there is interpolated.
-    pub end: Option<(f64, &'a [f64])>,
+    /// Step that the frame is within, where none ends at the frame, and the state there is
+    /// interpolated.
+    pub within: Option<Between<'a>>,
+}
+
+/// Step between two frames or around one.
+#[derive(Clone, Copy)]
+pub struct Between<'a> {
+    /// Times at its beginning and its end (s).
+    pub times: [f64; 2],
+    /// Time (s) and state at the nearest end of a step.
+    pub nearest: (f64, &'a [f64]),
 }
 
 /// Use of a look.
@@ -125,7 +134,7 @@ fn at_end(run: &Simulation, frame: u64) -> Look<'_> {
         frame,
         run,
         state: run.state(),
-        end: None,
+        within: None,
     }
 }
 
@@ -218,7 +227,10 @@ fn in_steps(
                 frame: k,
                 run: simulation,
                 state: &state,
-                end: nearest.map(|end| (end.t, &end.y[..])),
+                within: nearest.map(|end| Between {
+                    times: [begun, begun + 1].map(|n| (n as f64 * step).min(frames.until)),
+                    nearest: (end.t, &end.y[..]),
+                }),
             });
         });
     }

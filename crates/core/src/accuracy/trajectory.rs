@@ -1,7 +1,7 @@
 //! States of a reference at the frames and between them, which errors are taken from.
 
-use super::Frames;
 use super::errors::{Errors, Scope, Snapshot};
+use super::{Between, Frames};
 use crate::scene::Model;
 
 /// Number of frames through which a state between them is interpolated.
@@ -28,31 +28,47 @@ impl Trajectory {
         self.errors_of(&self.snapshots[k as usize - 1], other, scope)
     }
 
-    /// Errors of the state y of a model at time t (s) between frames: those of contact are
-    /// infinite, since they are not known there.
+    /// Errors at the nearest end of a step of a model that frame k, counted from 1, is within: those
+    /// of contact are infinite, since they are not known there. That of the positions is at least
+    /// what exact states at both ends of the step would not tell of the frame.
     pub fn errors_between(
         &self,
         (start, frames): (&Snapshot, Frames),
-        (model, t, y): (&Model, f64, &[f64]),
+        (model, k, step): (&Model, u64, &Between),
         scope: Scope,
     ) -> Errors {
-        let before = (t / frames.spacing()) as u64;
-        let first = before
-            .saturating_sub(1)
-            .min((frames.count + 1).saturating_sub(NODES));
-        let known: Vec<_> = (first..=frames.count)
-            .take(NODES as usize)
-            .map(|k| match k {
-                0 => (0.0, start),
-                k => (frames.time(k), &self.snapshots[k as usize - 1]),
-            })
-            .collect();
-        let exact = Snapshot::interpolated(model, &known, t);
+        let at = |t: f64| Snapshot::interpolated(model, &self.around((start, frames), t), t);
+        let (t, y) = step.nearest;
+        let errors = self.errors_of(&at(t), &Snapshot::between_frames(model, t, y), scope);
+        let mut position = errors.position;
+        if step.times[1] - step.times[0] > frames.spacing() {
+            let [begin, end] = step.times.map(|t| (t, at(t)));
+            let told = [(begin.0, &begin.1), (end.0, &end.1)];
+            let told = Snapshot::interpolated(model, &told, frames.time(k));
+            position = position.max(self.errors(k, &told, scope).position);
+        }
         Errors {
+            position,
             penetration: f64::INFINITY,
             impact: f64::INFINITY,
-            ..self.errors_of(&exact, &Snapshot::between_frames(model, t, y), scope)
+            ..errors
         }
+    }
+
+    /// Times (s) and snapshots of the frames nearest to a time t (s).
+    fn around<'a>(
+        &'a self,
+        (start, frames): (&'a Snapshot, Frames),
+        t: f64,
+    ) -> Vec<(f64, &'a Snapshot)> {
+        let before = (t / frames.spacing()) as u64;
+        let last = (frames.count + 1).saturating_sub(NODES);
+        let nearest = before.saturating_sub(1).min(last)..=frames.count;
+        let known = nearest.take(NODES as usize).map(|k| match k {
+            0 => (0.0, start),
+            k => (frames.time(k), &self.snapshots[k as usize - 1]),
+        });
+        known.collect()
     }
 
     fn errors_of(&self, exact: &Snapshot, other: &Snapshot, scope: Scope) -> Errors {

@@ -37,6 +37,31 @@ fn errors_are_those_at_the_ends_of_steps() {
     }
 }
 
+/// All of the motion is over at the end of the first step, where its error is small: but what
+/// happens meanwhile is not known.
+#[test]
+fn steps_that_skip_the_motion_are_not_accurate() {
+    let damped = described(
+        "gravity = [0, -9.81, 0]\ndrag = 2\n[[chain]]\nparticles = 4\nfrom = [0, 0, 0]\n\
+         to = [0.9, 0, 0]\nmass = 0.1\nstiffness = 100\npin = [{ at = [\"first\"] }]\n",
+    );
+    let frames = Frames::new(20.0);
+    let reference = Reference::finest(&damped, frames, &|| true);
+    let reference = reference.unwrap().unwrap();
+    let error = |h: f64| {
+        let outcome = measure(
+            &damped,
+            method("tr-bdf2"),
+            Control::Step(h),
+            &reference,
+            &|| true,
+        );
+        outcome.unwrap().unwrap().errors.position
+    };
+    assert!(error(10.0) > 0.05 * reference.still.position);
+    assert!(error(0.05) < 0.01 * reference.still.position);
+}
+
 /// A jelly of more particles than those whose impacts are located within fixed steps falls 0.1 m.
 #[test]
 fn a_reference_says_until_when_it_is_clear() {
