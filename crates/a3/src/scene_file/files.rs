@@ -3,6 +3,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use a3_scenes::unmarked;
+
 use super::read::read;
 
 /// The longest scene file (bytes).
@@ -10,14 +12,16 @@ const LONGEST: u64 = 16 << 20;
 /// The longest line of a scene file (bytes): a longer one was not written by hand.
 const LONGEST_LINE: usize = 8 << 20;
 
-/// The text of a scene file.
+/// The text of a scene file, without a byte order mark; lines that end in CR alone end in LF.
 pub fn read_text(path: &Path) -> Result<String, String> {
-    let text = String::from_utf8(read(path, LONGEST)?).map_err(|e| {
-        format!(
-            "it is not UTF-8 text: see byte {}",
-            e.utf8_error().valid_up_to()
-        )
-    })?;
+    let bytes = read(path, LONGEST)?;
+    let text = str::from_utf8(unmarked(&bytes)?)
+        .map_err(|e| format!("it is not UTF-8 text: see byte {}", e.valid_up_to()))?;
+    let text = if text.contains('\n') {
+        text.to_owned()
+    } else {
+        text.replace('\r', "\n")
+    };
     match text.lines().position(|line| line.len() > LONGEST_LINE) {
         Some(k) => Err(format!(
             "line {} is longer than {} MiB",

@@ -11,6 +11,7 @@ use super::accessor::{Accessor, Buffers, View};
 use super::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use crate::budget;
 use crate::fault::Fault;
+use crate::text::unmarked;
 use serde::Deserialize;
 
 /// The parts of a document that say where triangles are.
@@ -141,7 +142,7 @@ pub(super) fn read(
 /// The JSON text of a file, and its binary part if it has one.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     if !bytes.starts_with(b"glTF") {
-        return Ok((bytes, None));
+        return Ok((unmarked(bytes)?, None));
     }
     let word = |at: usize| {
         let word = bytes.get(at..at + 4)?.try_into().ok()?;
