@@ -1,7 +1,6 @@
 //! Meshes of triangles, with tetrahedra within them or without, and the springs of a cloth that has
 //! their shape.
 
-mod accessor;
 mod gltf;
 mod gmsh;
 mod obj;

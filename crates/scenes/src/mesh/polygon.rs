@@ -70,9 +70,9 @@ impl Cutter {
         for k in 1..face.len() - 1 {
             let side = |k: usize| [0, 1, 2].map(|axis| at(k)[axis] - origin[axis]);
             let (a, b) = (side(k), side(k + 1));
-            for axis in 0..3 {
+            for (axis, sum) in normal.iter_mut().enumerate() {
                 let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-                normal[axis] += a[u] * b[v] - a[v] * b[u];
+                *sum += a[u] * b[v] - a[v] * b[u];
             }
         }
         let larger = |k: usize, other: usize| {

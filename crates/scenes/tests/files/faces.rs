@@ -161,10 +161,10 @@ fn random_faces_are_covered_once() {
     };
     for round in 0..400 {
         let count = 4 + round % 37;
-        let turn = std::f64::consts::TAU / count as f64;
+        let turn = std::f64::consts::TAU / f64::from(count);
         let corners: Vec<_> = (0..count)
             .map(|k| {
-                let (angle, r) = (turn * (k as f64 + 0.4 * random()), 0.2 + 2.0 * random());
+                let (angle, r) = (turn * (f64::from(k) + 0.4 * random()), 0.2 + 2.0 * random());
                 [r * angle.cos(), r * angle.sin()]
             })
             .collect();

@@ -2,6 +2,7 @@
 //! read.
 
 mod faces;
+mod gltf;
 mod texts;
 
 use a3_scenes::Mesh;

@@ -56,7 +56,7 @@ fn marks_and_comments_are_in_all_texts() {
     assert_eq!((mesh.positions.len(), mesh.triangles.len()), (4, 4));
     assert_eq!(mesh.numbers, [1, 2, 3, 4]);
     let marked = [&node, &ele].map(|text| format!("\u{feff}{}", text.replace('\n', "\r")));
-    let [node, ele] = marked.each_ref().map(|text| text.as_bytes());
+    let [node, ele] = marked.each_ref().map(std::string::String::as_bytes);
     assert_eq!(Mesh::from_tetgen(node, ele).unwrap(), mesh);
 }
 
