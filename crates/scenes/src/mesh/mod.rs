@@ -4,7 +4,9 @@
 mod gltf;
 mod gmsh;
 mod obj;
+mod ply;
 mod polygon;
+mod stl;
 mod tetgen;
 mod tetrahedra;
 mod weld;
@@ -24,6 +26,9 @@ const MAX_POINTS: usize = 1 << 20;
 const MAX_TRIANGLES: usize = 2 * MAX_POINTS;
 /// Largest number of tetrahedra in a file.
 const MAX_TETRAHEDRA: usize = MAX_POINTS;
+
+/// Height of a triangle over its longest side, as a share of that, from which it is no sliver.
+const SLIVER: f64 = 1e-3;
 
 /// Mesh of triangles, or of tetrahedra with the triangles around them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -61,6 +66,22 @@ impl Mesh {
         file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Self, String> {
         gltf::read(bytes, file)?.checked(0)
+    }
+
+    /// The triangles of an STL file, binary or text.
+    ///
+    /// # Errors
+    /// A triangle is wrong, there is none, or there are too many.
+    pub fn from_stl(bytes: &[u8]) -> Result<Self, String> {
+        stl::read(bytes)?.checked(0)
+    }
+
+    /// The triangles of the faces in a PLY file, text or binary.
+    ///
+    /// # Errors
+    /// The head or an element is wrong, there is no face, or there are too many.
+    pub fn from_ply(bytes: &[u8]) -> Result<Self, String> {
+        ply::read(unmarked(bytes)?)?.checked(0)
     }
 
     /// The tetrahedra in a text file of Gmsh, version 2.2 or 4.1.
@@ -137,13 +158,15 @@ impl Mesh {
         }
     }
 
-    /// Least height of a triangle over a point or beside it, for each point (m).
+    /// Least height of a triangle over a point or beside it, for each point (m). Slivers count as
+    /// higher than they are, lest a surface without thickness is infinitely stiff.
     pub(crate) fn heights(&self) -> Vec<f64> {
         let mut heights = vec![f64::INFINITY; self.positions.len()];
         for t in &self.triangles {
             let [a, b, c] = t.map(|i| Vector3::from(self.positions[i as usize]));
             let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
             let height = (b - a).cross(&(c - a)).norm() / longest;
+            let height = height.max(SLIVER * longest);
             for i in t {
                 heights[*i as usize] = heights[*i as usize].min(height);
             }

@@ -3,6 +3,7 @@
 
 mod faces;
 mod gltf;
+mod solids;
 mod texts;
 
 use a3_scenes::Mesh;
