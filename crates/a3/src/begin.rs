@@ -11,7 +11,7 @@ use crate::show::{self, Quantity};
 /// The session of a window on one run.
 pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     let what = &options.what;
-    if options.watch && what.scene.path.is_none() {
+    if options.watch && (what.scene.path.is_none() || what.scene.is_input()) {
         return Err(Failure::usage(
             "--watch needs a scene file, as in `--scene flag.toml --watch`",
         ));

@@ -6,13 +6,17 @@ use crate::painter::Painter;
 use crate::show::{self, Show};
 use crate::{begin, film, output, progress, setup, verdict};
 
+/// Endings of pictures and films.
+const ENDINGS: &[&str] = &["png", "gif", "mp4"];
+
 /// Runs the simulation and writes its picture or its film.
 pub fn run(options: &Render) -> Result<(), Failure> {
+    let (path, size) = (&options.output, options.size);
+    output::check_ending(path, ENDINGS)?;
     let (mut simulation, presentation) = setup::simulation(&options.run)?;
     begin::check_particle(&simulation, options.springs_of)?;
     begin::check_drawing(&simulation, options.manner, false)?;
-    let (path, size) = (&options.output, options.size);
-    output::check(path, &["png", "gif", "mp4"])?;
+    output::check(path, ENDINGS)?;
     // There may be no ffmpeg, and the device may not support pictures of this size: both are
     // checked before the work begins.
     let film = film::begin(options)?;

@@ -1,5 +1,8 @@
 //! Numbers as one would type them.
 
+/// Digits of numbers that sums and products have, in which their roundings are not seen.
+pub const DIGITS: usize = 15;
+
 /// A value rounded to so many digits.
 pub fn short(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)

@@ -13,6 +13,9 @@ use crate::failure::Failure;
 use crate::output;
 use crate::session::{Ending, FILM_OF, SPAN};
 
+/// Size of the largest file (bytes).
+#[cfg(not(target_arch = "wasm32"))]
+const LARGEST: u64 = 1 << 20;
 /// The most files that are remembered.
 const MOST: usize = 12;
 /// Factors of the size of text and panel.
@@ -114,11 +117,20 @@ impl Settings {
 /// The text of a file, if there is one.
 #[cfg(not(target_arch = "wasm32"))]
 fn text_of(path: &Path) -> Result<Option<String>, String> {
-    match fs::read_to_string(path) {
-        Ok(text) => Ok(Some(text)),
-        Err(why) if why.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(why) => Err(format!("{}: {why}", path.display())),
+    let place = path.display();
+    match fs::metadata(path) {
+        Ok(there) if there.is_file() && there.len() <= LARGEST => {}
+        Ok(_) => {
+            return Err(format!(
+                "{place}: it is no ordinary file of at most 1 MiB: the settings are neither read nor kept"
+            ));
+        }
+        Err(why) if why.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(why) => return Err(format!("{place}: {}", output::reason(&why))),
     }
+    let text = fs::read_to_string(path);
+    text.map(Some)
+        .map_err(|why| format!("{place}: {}", output::reason(&why)))
 }
 
 /// Writes a file, in a folder that is made if it is not there.
@@ -201,6 +213,28 @@ mod tests {
         assert_eq!(names, ["/c.toml", "/b.toml", "/a.toml"]);
         assert!(settings.write_to(&path).is_ok());
         assert_eq!(Settings::read_from(&path), Ok(settings));
+    }
+
+    /// What is no file for settings is not waited for, and no more of it is read than a file has.
+    #[test]
+    fn what_is_no_ordinary_file_is_passed_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.toml");
+        let refused = |path: &Path| {
+            let why = Settings::read_from(path).unwrap_err();
+            assert!(why.contains("no ordinary file of at most 1 MiB"), "{why}");
+        };
+        refused(folder.path());
+        fs::write(&path, vec![b'#'; (1 << 20) + 1]).unwrap();
+        refused(&path);
+        #[cfg(unix)]
+        {
+            refused(Path::new("/dev/zero"));
+            fs::remove_file(&path).unwrap();
+            let made = std::process::Command::new("mkfifo").arg(&path).status();
+            assert!(made.unwrap().success());
+            refused(&path);
+        }
     }
 
     #[test]

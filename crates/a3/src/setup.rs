@@ -95,7 +95,11 @@ pub fn simulate(
     }
     simulation.set_swinging(what.swing);
     if what.self_collision {
-        simulation.set_touching(true).map_err(Failure::usage)?;
+        simulation.set_touching(true).map_err(|why| {
+            Failure::usage(format!(
+                "--self-collision: {why}; leave the option out, or begin with surfaces that are apart"
+            ))
+        })?;
     }
     Ok(simulation)
 }

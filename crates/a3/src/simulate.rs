@@ -16,6 +16,7 @@ use crate::{export, interrupt, output, setup, verdict};
 /// Runs the simulation and writes its files.
 pub fn run(options: &Simulate) -> Result<(), Failure> {
     let begun = Instant::now();
+    export::check_ending(&options.output)?;
     let (mut simulation, presentation) = setup::simulation(&options.run)?;
     let stdout = Path::new("-");
     if let Some(path) = options.summary.as_deref() {

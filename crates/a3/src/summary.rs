@@ -47,6 +47,24 @@ impl Extremes {
     }
 }
 
+impl Extremes {
+    /// All its numbers.
+    pub fn numbers(&self) -> impl Iterator<Item = f64> {
+        let energy = self.energy.into_iter();
+        let energies = energy.flat_map(|e| [e.begin, e.end, e.largest_drift]);
+        energies.chain(self.stretch)
+    }
+
+    /// The same without a number for the stretch.
+    #[cfg(test)]
+    pub fn spoiled(self) -> Self {
+        Self {
+            stretch: Some(f64::NAN),
+            ..self
+        }
+    }
+}
+
 /// Summary of a run.
 #[derive(Serialize)]
 struct Summary {

@@ -15,6 +15,7 @@ mod reader;
 mod setup;
 mod snapshot;
 mod surface;
+mod text;
 mod wording;
 
 pub use build::LAYERS as TANK_LAYERS;
@@ -26,3 +27,4 @@ pub use mesh::Mesh;
 pub use reader::read;
 pub use setup::{Defaults, Presentation, Setup, Viewpoint};
 pub use surface::Surface;
+pub use text::unmarked;

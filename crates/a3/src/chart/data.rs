@@ -81,7 +81,7 @@ impl Data {
         let Some(path) = self.path.clone().filter(|_| !self.records.is_empty()) else {
             return Ok(());
         };
-        let _alone = output::lock(&path);
+        let _alone = output::lock(&path)?;
         self.look(&path).map_err(Failure::run)?;
         let json = output::ends_in(&path, "json");
         let text = text::write(&self.records, json).map_err(Failure::run)?;

@@ -13,6 +13,7 @@ use std::path::Path;
 use a3_core::{Checkpoint, Grid, Simulation, StepLimits};
 use serde::{Deserialize, Serialize};
 
+use crate::bounds;
 use crate::failure::Failure;
 use crate::output;
 use crate::scene_file::Source;
@@ -102,8 +103,22 @@ impl Kept {
                 String::from_utf8_lossy(version)
             ));
         }
-        postcard::from_bytes(&run[1..])
-            .map_err(|_| "this checkpoint is damaged: a run is not what it holds".into())
+        let kept: Self = postcard::from_bytes(&run[1..])
+            .map_err(|_| "this checkpoint is damaged: a run is not what it holds")?;
+        let control = kept.checkpoint.run.control;
+        let range = bounds::of(control);
+        if !range.contains(&control.value()) {
+            let (value, low, high) = (control.value(), range.start(), range.end());
+            return Err(format!(
+                "this checkpoint is damaged: its step or tolerance is {value:e}, not from {low:e} to {high}"
+            ));
+        }
+        let tuned = kept.tuned.iter().map(|(_, value)| *value);
+        let extremes = kept.extremes.iter().flat_map(Extremes::numbers);
+        if !extremes.chain(tuned).all(f64::is_finite) {
+            return Err("this checkpoint is damaged: one of its numbers is not finite".into());
+        }
+        Ok(kept)
     }
 
     /// `Ok` if the file at `path` is of the scene of a run.
@@ -182,6 +197,32 @@ mod tests {
             assert!(why.contains("damaged") || k < TITLE.len(), "{k}: {why}");
             assert!(Kept::parse(&bytes[..k]).is_err());
         }
+    }
+
+    /// A file whose checksum is right, but whose numbers no run has.
+    #[test]
+    fn what_no_run_holds_is_refused() {
+        let refused = |change: &dyn Fn(&mut Kept)| {
+            let mut kept = kept();
+            change(&mut kept);
+            let why = Kept::parse(&kept.bytes().ok().unwrap()).err().unwrap();
+            assert!(why.starts_with("this checkpoint is damaged: "), "{why}");
+        };
+        for control in [
+            a3_core::Control::Step(5e-324),
+            a3_core::Control::Tolerance(f64::NAN),
+        ] {
+            refused(&|kept| kept.checkpoint.run.control = control);
+        }
+        let mut extremes = Extremes::default();
+        extremes.look(&{
+            let setup = Source::find("pendulum").unwrap().build(None).unwrap();
+            let method = a3_core::integrators::find("v").unwrap();
+            Simulation::new(setup.scene, method, method.default_control).unwrap()
+        });
+        assert!(extremes.numbers().count() == 4);
+        refused(&|kept| kept.extremes = Some(extremes.spoiled()));
+        refused(&|kept| kept.tuned.push(("gravity".into(), f64::INFINITY)));
     }
 
     #[test]

@@ -80,8 +80,17 @@ fn mistake(error: &clap::Error) -> String {
             format!("{} is missing; --help explains it", missing.join(" and "))
         }
         ErrorKind::ArgumentConflict => conflict(error, &arg),
+        ErrorKind::InvalidUtf8 => not_utf_8(),
         _ => "the command line cannot be understood; --help explains it".into(),
     }
+}
+
+/// What is said of a name that is not UTF-8, which is the first such argument of the process.
+fn not_utf_8() -> String {
+    let mut all = std::env::args_os();
+    let name = all.find(|arg| arg.to_str().is_none()).unwrap_or_default();
+    let name = quoted(&name.to_string_lossy());
+    format!("{name} is not UTF-8: give the file a name in UTF-8")
 }
 
 /// What is said of an argument that there is not.

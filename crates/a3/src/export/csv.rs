@@ -7,6 +7,7 @@ use a3_core::Simulation;
 use super::{Export, velocities};
 use crate::failure::Failure;
 use crate::output::Draft;
+use crate::rounding::{DIGITS, short};
 
 /// Approximate size of a row (bytes).
 pub const ROW: f64 = 150.0;
@@ -43,9 +44,10 @@ impl Export for Csv {
             simulation.state(),
             velocities(simulation)?,
         );
+        let time = short(simulation.time(), DIGITS);
         for i in 0..n {
             let of = |column: &[f64]| (column[i], column[n + i], column[2 * n + i]);
-            self.row((self.next, simulation.time(), i, of(x), of(&v)))?;
+            self.row((self.next, time, i, of(x), of(&v)))?;
         }
         self.next += 1;
         Ok(())

@@ -1,6 +1,7 @@
 //! The geometry of a scene for other programs: a surface with normals, and lines and points of
 //! particles without one.
 
+use std::collections::BTreeSet;
 use std::io;
 
 use a3_core::{Network, Simulation};
@@ -50,14 +51,23 @@ impl Geometry {
         }
     }
 
-    /// The number of a vertex among those with a normal in a file: particles with a surface, and
-    /// points of rigid bodies.
-    pub fn normal_of(&self, vertex: u32) -> u32 {
-        if (vertex as usize) < self.covered {
-            vertex
-        } else {
-            vertex - (self.particles - self.covered) as u32
+    /// Whether a vertex has a normal in a file: that of a particle with a surface, or a point of a
+    /// rigid body.
+    pub fn has_normal(&self, vertex: u32) -> bool {
+        let vertex = vertex as usize;
+        vertex < self.covered || vertex >= self.particles
+    }
+
+    /// The vertices that triangles or lines use, in order, or the points if there are neither: those
+    /// that programs keep when they read a file.
+    pub fn in_use(&self) -> Vec<u32> {
+        let corners = self.triangles.iter().flatten();
+        let ends = self.lines.iter().flatten();
+        let used: BTreeSet<u32> = corners.chain(ends).copied().collect();
+        if used.is_empty() {
+            return self.points.clone();
         }
+        used.into_iter().collect()
     }
 
     /// The unit normal at each vertex: the direction of the sum, over its triangles, of the cross

@@ -9,6 +9,7 @@ use serde::{Serialize, Serializer};
 use super::{Export, velocities};
 use crate::failure::Failure;
 use crate::output::{self, Draft};
+use crate::rounding::{DIGITS, short};
 
 /// Approximate size of a particle (bytes).
 pub const ROW: f64 = 130.0;
@@ -113,7 +114,7 @@ fn state<'a>(simulation: &'a Simulation, velocities: &'a [f64]) -> StateRecord<'
         solver: simulation.method().name,
         step: simulation.control().step(),
         tolerance: simulation.control().tolerance(),
-        time: simulation.time(),
+        time: short(simulation.time(), DIGITS),
         steps: simulation.steps(),
         evaluations: simulation.work().evaluations,
         energy: simulation.energy().map(|energy| energy.total()),

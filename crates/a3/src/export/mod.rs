@@ -25,6 +25,17 @@ const RATE: f64 = 30.0;
 /// Sizes of the largest files (GiB): in general, and in the format whose lengths have 32 bits.
 const LARGEST: (f64, f64) = (16.0, 4.0);
 
+/// Endings of files of all formats.
+const ENDINGS: &[&str] = &["json", "csv", "obj", "pc2", "glb"];
+
+/// `Ok` if the output is standard output or ends as a format does.
+pub fn check_ending(path: &Path) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        return Ok(());
+    }
+    output::check_ending(path, ENDINGS)
+}
+
 /// An export in the making.
 pub trait Export {
     /// Adds the current state as a frame.
@@ -56,7 +67,7 @@ pub fn begin(
         }
         return Ok((last, Box::new(json::Json::to_stdout())));
     }
-    output::check(path, &["json", "csv", "obj", "pc2", "glb"])?;
+    output::check(path, ENDINGS)?;
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     let sequence = Sequence::of(path);
     let is_obj = ending == "obj" && sequence.is_none();
@@ -84,12 +95,7 @@ pub fn begin(
             let frames = check(pc2::size(simulation, several), LARGEST.0)?;
             (
                 frames,
-                Box::new(pc2::Pc2::new(
-                    path,
-                    presentation.clone(),
-                    simulation,
-                    frames,
-                )?),
+                Box::new(pc2::Pc2::new(path, surface, simulation, frames)?),
             )
         }
         (Some("glb"), _) => {

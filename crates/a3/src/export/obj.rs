@@ -13,6 +13,7 @@ use super::geometry::{Geometry, positions};
 use crate::failure::Failure;
 use crate::frames::Sequence;
 use crate::output;
+use crate::rounding::{DIGITS, short};
 use crate::surfaces::Liquid;
 
 /// OBJ files in the making.
@@ -66,30 +67,10 @@ pub fn size(surface: &Surface, simulation: &Simulation) -> f64 {
 /// Writes the current state: `v` of all vertices, `vn` and `f` of surfaces as far as they are not
 /// torn, and `l` and `p` of particles without a surface. The surface of a fluid is an object of its
 /// own, with vertices after all others.
-pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io::Result<()> {
+fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io::Result<()> {
     let geometry = Geometry::of(surface, simulation);
-    let positions = positions(simulation)?;
-    writeln!(file, "# a3: t = {} s, in m, y is up", simulation.time())?;
-    let name = simulation.scene().name.replace(char::is_control, " ");
-    writeln!(file, "o {name}")?;
-    for [x, y, z] in &positions {
-        writeln!(file, "v {x} {y} {z}")?;
-    }
-    let normals = geometry.normals(&positions);
-    let rigid = &normals[geometry.particles..];
-    for [x, y, z] in normals[..geometry.covered].iter().chain(rigid) {
-        writeln!(file, "vn {x} {y} {z}")?;
-    }
-    for triangle in &geometry.triangles {
-        let [[a, m], [b, n], [c, o]] = triangle.map(|i| [i + 1, geometry.normal_of(i) + 1]);
-        writeln!(file, "f {a}//{m} {b}//{n} {c}//{o}")?;
-    }
-    for [a, b] in &geometry.lines {
-        writeln!(file, "l {} {}", a + 1, b + 1)?;
-    }
-    for i in &geometry.points {
-        writeln!(file, "p {}", i + 1)?;
-    }
+    let all: Vec<_> = (0..geometry.vertices as u32).collect();
+    write_vertices(file, &geometry, &all, simulation)?;
     let liquid = Liquid::of(simulation, |_| None);
     if liquid.triangles.is_empty() {
         return Ok(());
@@ -101,16 +82,56 @@ pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -
     for [x, y, z] in liquid.corners.iter().map(|corner| corner.normal) {
         writeln!(file, "vn {x} {y} {z}")?;
     }
+    let normals = all.iter().filter(|i| geometry.has_normal(**i)).count();
     for triangle in &liquid.triangles {
         let [a, b, c] = triangle.map(|i| {
             let i = i as usize + 1;
-            format!(
-                "{}//{}",
-                positions.len() + i,
-                geometry.covered + rigid.len() + i
-            )
+            format!("{}//{}", all.len() + i, normals + i)
         });
         writeln!(file, "f {a} {b} {c}")?;
+    }
+    Ok(())
+}
+
+/// Writes these vertices of the current state, in order, and what is between them.
+pub fn write_vertices(
+    file: &mut dyn Write,
+    geometry: &Geometry,
+    kept: &[u32],
+    simulation: &Simulation,
+) -> io::Result<()> {
+    let positions = positions(simulation)?;
+    let time = short(simulation.time(), DIGITS);
+    writeln!(file, "# a3: t = {time} s, in m, y is up")?;
+    let name = simulation.scene().name.replace(char::is_control, " ");
+    writeln!(file, "o {name}")?;
+    for i in kept {
+        let [x, y, z] = positions[*i as usize];
+        writeln!(file, "v {x} {y} {z}")?;
+    }
+    // The numbers of vertices and of their normals in the file, from 1 on; 0 of those left out.
+    let mut numbers = vec![[0; 2]; geometry.vertices];
+    let (normals, mut next) = (geometry.normals(&positions), 0);
+    for (k, i) in kept.iter().enumerate() {
+        numbers[*i as usize][0] = k + 1;
+        if geometry.has_normal(*i) {
+            next += 1;
+            numbers[*i as usize][1] = next;
+            let [x, y, z] = normals[*i as usize];
+            writeln!(file, "vn {x} {y} {z}")?;
+        }
+    }
+    for triangle in &geometry.triangles {
+        let [[a, m], [b, n], [c, o]] = triangle.map(|i| numbers[i as usize]);
+        writeln!(file, "f {a}//{m} {b}//{n} {c}//{o}")?;
+    }
+    for line in &geometry.lines {
+        let [[a, _], [b, _]] = line.map(|i| numbers[i as usize]);
+        writeln!(file, "l {a} {b}")?;
+    }
+    let points = geometry.points.iter().map(|i| numbers[*i as usize][0]);
+    for number in points.filter(|number| *number > 0) {
+        writeln!(file, "p {number}")?;
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! `PointCache2`: the positions of every particle in every frame. Blender, 3ds Max and Maya apply
 //! them to a mesh with as many points. That mesh is written beside the file, as OBJ, and stays
-//! whole when something tears.
+//! whole when something tears. Vertices that are in no face and no line are in neither, because
+//! such programs leave them out of the mesh.
 //!
 //! The header has 32 bytes, all little endian: "POINTCACHE2\0", version 1 (i32), points (i32),
 //! first frame (f32), frames a sample (f32), samples (i32). Then follow x, y and z (f32) of every
@@ -8,13 +9,12 @@
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use a3_core::Simulation;
-use a3_scenes::Presentation;
+use a3_scenes::Surface;
 
 use super::Export;
-use super::geometry::{positions, vertices};
+use super::geometry::{Geometry, positions, vertices};
 use super::{obj, rows};
 use crate::failure::Failure;
 use crate::frames::FrameTimes;
@@ -24,14 +24,16 @@ use crate::output::{self, Draft};
 pub struct Pc2 {
     draft: Draft,
     mesh: Draft,
-    presentation: Arc<Presentation>,
+    geometry: Geometry,
+    /// The vertices that are written.
+    kept: Vec<u32>,
     /// Whether the mesh is still to be written.
     first: bool,
     /// The names of the file and of its mesh.
     names: (PathBuf, PathBuf),
 }
 
-/// Size of the file (bytes).
+/// Size of the file at most (bytes).
 pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
     32.0 + 12.0 * vertices(simulation) as f64 * frames.count as f64
 }
@@ -40,18 +42,21 @@ impl Pc2 {
     /// A file for these frames of the simulation.
     pub fn new(
         path: &Path,
-        presentation: Arc<Presentation>,
+        surface: &Surface,
         simulation: &Simulation,
         frames: FrameTimes,
     ) -> Result<Self, Failure> {
         let mesh = path.with_extension("obj");
         output::check(&mesh, &["obj"])?;
         let mut draft = Draft::new(path)?;
-        header(&mut draft, vertices(simulation), frames.count).map_err(|e| draft.failure(&e))?;
+        let geometry = Geometry::of(surface, simulation);
+        let kept = geometry.in_use();
+        header(&mut draft, kept.len(), frames.count).map_err(|e| draft.failure(&e))?;
         Ok(Self {
             draft,
             mesh: Draft::new(&mesh)?,
-            presentation,
+            geometry,
+            kept,
             first: true,
             names: (path.into(), mesh),
         })
@@ -71,10 +76,14 @@ fn header(file: &mut dyn Write, points: usize, samples: usize) -> io::Result<()>
 impl Export for Pc2 {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         if std::mem::take(&mut self.first) {
-            let surface = &self.presentation.surface;
-            obj::write(&mut self.mesh, surface, simulation).map_err(|e| self.mesh.failure(&e))?;
+            let (geometry, kept) = (&self.geometry, &self.kept);
+            let written = obj::write_vertices(&mut self.mesh, geometry, kept, simulation);
+            written.map_err(|e| self.mesh.failure(&e))?;
         }
-        let written = positions(simulation).and_then(|x| rows(&mut self.draft, &x));
+        let written = positions(simulation).and_then(|all| {
+            let kept = self.kept.iter().map(|i| all[*i as usize]);
+            rows(&mut self.draft, &kept.collect::<Vec<_>>())
+        });
         written.map_err(|e| self.draft.failure(&e))
     }
 

@@ -16,7 +16,7 @@ use crate::failure::Failure;
 pub use apart::{files_read, is_read, refuse_read};
 pub use draft::{Draft, Scratch};
 pub use place::{lock, not_written, reason};
-pub use terminal::{said, say, send, warn};
+pub use terminal::{said, say, send, visible, warn};
 
 /// Most numbered names of one scene.
 const MOST_NAMES: usize = 9999;
@@ -25,6 +25,19 @@ const MOST_NAMES: usize = 9999;
 /// it is not protected, and the command neither reads it nor writes it for another purpose.
 /// Commands check each output once, before they work.
 pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
+    check_ending(path, extensions)?;
+    if path.is_dir() {
+        return Err(Failure::run(format!(
+            "{}: this is a folder, not a file",
+            path.display()
+        )));
+    }
+    place::check(path)?;
+    apart::claim(path)
+}
+
+/// `Ok` if the path has one of the extensions, which is looked at before anything is built.
+pub fn check_ending(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     if !extensions.iter().any(|extension| ends_in(path, extension)) {
         let (last, others) = extensions.split_last().unwrap_or((&"", &[]));
         let others = match others {
@@ -36,14 +49,7 @@ pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
             path.display(),
         )));
     }
-    if path.is_dir() {
-        return Err(Failure::run(format!(
-            "{}: this is a folder, not a file",
-            path.display()
-        )));
-    }
-    place::check(path)?;
-    apart::claim(path)
+    Ok(())
 }
 
 /// Whether the path has this extension, in lower or upper case.

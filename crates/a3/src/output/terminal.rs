@@ -53,12 +53,17 @@ pub fn warn(message: &str) {
 
 /// A message in one line of limited length, in which every character can be seen.
 fn one_line(message: &str) -> String {
-    let shown = printable(message).replace('\n', "\\n").replace('\t', "\\t");
+    let shown = visible(message);
     let words: Vec<_> = shown
         .split(' ')
         .map(|word| shortened(word, LONGEST_WORD))
         .collect();
     shortened(&words.join(" "), LONGEST)
+}
+
+/// The text with all that is no letter, sign or space as escapes.
+pub fn visible(text: &str) -> String {
+    printable(text).replace('\n', "\\n").replace('\t', "\\t")
 }
 
 /// The text, of which the middle is left out if it has more than `most` characters.

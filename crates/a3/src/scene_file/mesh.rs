@@ -44,20 +44,38 @@ impl Reader {
     }
 }
 
+/// Endings of files that are read as meshes.
+pub const ENDINGS: [&str; 7] = ["obj", "gltf", "glb", "stl", "ply", "msh", "ele"];
+
+/// What is said of a file with an ending that is not read.
+pub fn not_read(extension: Option<&str>) -> String {
+    let all = "a3 reads meshes from files that end in .obj, .gltf, .glb, .stl, .ply, .msh or .ele";
+    match extension {
+        Some(ending) => format!(".{ending} files are not read: {all}"),
+        None => format!("it has no ending: {all}"),
+    }
+}
+
 /// The triangles or tetrahedra of all objects in a file.
 pub fn load(path: &Path, reader: &mut Reader) -> Result<Mesh, String> {
-    let extension = path.extension().and_then(|e| e.to_str());
-    let extension = extension.map(str::to_lowercase);
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let mesh = match extension.as_deref() {
         Some("obj") => reader.bytes(path).and_then(|bytes| Mesh::from_obj(&bytes)),
         Some("gltf" | "glb") => reader.bytes(path).and_then(|bytes| {
             Mesh::from_gltf(&bytes, &mut |uri| reader.bytes(&beside(Some(path), uri)?))
         }),
+        Some("stl") => reader.bytes(path).and_then(|bytes| Mesh::from_stl(&bytes)),
+        Some("ply") => reader.bytes(path).and_then(|bytes| Mesh::from_ply(&bytes)),
         Some("msh") => reader.bytes(path).and_then(|bytes| Mesh::from_gmsh(&bytes)),
-        Some("ele") => reader
-            .bytes(path)
-            .and_then(|ele| Mesh::from_tetgen(&reader.bytes(&path.with_extension("node"))?, &ele)),
-        _ => Err("a mesh is a file that ends in .obj, .gltf, .glb, .msh or .ele".into()),
+        Some("ele") => reader.bytes(path).and_then(|ele| {
+            let node = path.with_extension("node");
+            let name = node.file_name().and_then(|name| name.to_str());
+            let name = name.ok_or("its name is not UTF-8, so the .node file is not found")?;
+            let points = reader.bytes(&beside(Some(path), name)?);
+            let points = points.map_err(|why| format!("its points, {name}: {why}"))?;
+            Mesh::from_tetgen(&points, &ele)
+        }),
+        other => Err(not_read(other)),
     };
     mesh.map_err(|why| format!("{}: {why}", path.display()))
 }

@@ -1,6 +1,7 @@
 //! Scenes by name, or from files: TOML, the JSON of particles and springs, or a mesh alone.
 
 mod files;
+mod hanging;
 mod hash;
 mod hung;
 mod mesh;

@@ -8,10 +8,13 @@ use a3_core::{Grid, Method, Scene, integrators};
 use a3_scenes::{Description, Fault, Setup};
 use serde_json::Value;
 
-use super::files::{beside, read_text};
+use super::files::{beside, read_input, read_text};
 use super::hash::Hash;
 use super::hung;
 use super::mesh;
+
+/// What stands for standard input in place of a file.
+const INPUT: &str = "-";
 
 /// A scene, by name or in a file.
 #[derive(Clone)]
@@ -47,9 +50,17 @@ impl Source {
             .map(str::to_lowercase);
         let read = || read_text(path).map_err(|why| format!("{typed}: {why}"));
         let (text, json) = match extension.as_deref() {
+            None if typed == INPUT => {
+                let text = read_input().map_err(|why| format!("standard input: {why}"))?;
+                let json = text.trim_start().starts_with('{');
+                (text, json)
+            }
             Some("toml") => (read()?, false),
             Some("json") => (read()?, true),
             Some(extension) if hung::is_mesh(extension) => (hung::scene(path)?, false),
+            Some(extension) if path.is_file() => {
+                return Err(format!("{typed}: {}", mesh::not_read(Some(extension))));
+            }
             _ => return Err(unknown(typed)),
         };
         let parsed = if json {
@@ -59,10 +70,9 @@ impl Source {
         };
         let mut description = parsed.map_err(|fault| place(typed, &fault.to_string()))?;
         if description.name.is_none() {
-            let stem = path
-                .file_stem()
-                .map(|stem| stem.to_string_lossy().into_owned());
-            description.name = stem;
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            let is_input = typed == INPUT;
+            description.name = Some(if is_input { "input" } else { &*stem }.into());
         }
         Ok(Self {
             typed: typed.into(),
@@ -79,7 +89,8 @@ impl Source {
         change: impl FnOnce(&mut Value) -> Result<(), String>,
     ) -> Result<Self, String> {
         let extension = self.path.as_deref().and_then(Path::extension);
-        let json = extension.is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        let json = extension.is_some_and(|e| e.eq_ignore_ascii_case("json"))
+            || self.is_input() && self.text.trim_start().starts_with('{');
         let mut table: Value = if json {
             serde_json::from_str(&self.text).map_err(|e| e.to_string())?
         } else {
@@ -108,6 +119,11 @@ impl Source {
             meshes: Arc::default(),
             ..self.clone()
         })
+    }
+
+    /// Whether the scene came by standard input, which is no file to read again.
+    pub fn is_input(&self) -> bool {
+        self.typed == INPUT
     }
 
     /// Builds the scene, with this grid of its cloth or with its own.

@@ -27,10 +27,9 @@ impl Session {
 
     /// The files that were asked for or opened, the last one first.
     pub fn files(&self) -> impl Iterator<Item = PathBuf> {
-        let paths = self
-            .asked
-            .iter()
-            .filter_map(|origin| origin.source.path.as_ref());
+        let sources = self.asked.iter().map(|origin| &origin.source);
+        let files = sources.filter(|source| !source.is_input());
+        let paths = files.filter_map(|source| source.path.as_ref());
         paths.filter_map(|path| std::path::absolute(path).ok())
     }
 

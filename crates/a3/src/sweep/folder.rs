@@ -49,7 +49,8 @@ impl Folder {
     pub fn read(&self, run: &Run) -> Result<Option<Record>, Failure> {
         let path = self.file(run.id);
         let fault = |why: String| Failure::run(format!("{}: {why}", path.display()));
-        let length = match fs::metadata(&path) {
+        // A link is not followed, lest what it leads to is replaced.
+        let length = match fs::symlink_metadata(&path) {
             Ok(there) if there.is_file() => there.len(),
             Ok(_) => return Err(fault("it is no ordinary file: take it away".into())),
             Err(why) if why.kind() == std::io::ErrorKind::NotFound => return Ok(None),

@@ -74,13 +74,14 @@ fn lines(sweep: &Sweep, plan: &Plan) -> String {
     let mut text = String::new();
     for run in &plan.runs {
         let variant = &plan.variants[run.variant];
-        let (scene, method) = (&variant.name, run.method.name);
+        let (scene, method) = (output::visible(&variant.name), run.method.name);
         let _ = write!(
             text,
             "{}\t{scene}\t{method}\t{}\t{}",
             run.id, run.setting, variant.until
         );
         for (name, value) in sweep.names().iter().zip(&variant.values) {
+            let value = output::visible(&value.to_string());
             let _ = write!(text, "\t{name}={value}");
         }
         text.push('\n');

@@ -26,6 +26,8 @@ mod scene_files;
 mod signals;
 mod states;
 mod sweeps;
+#[cfg(unix)]
+mod untouched;
 mod usage;
 mod watch;
 mod words;

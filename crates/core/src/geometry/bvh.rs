@@ -135,6 +135,11 @@ impl Bvh {
         self.add(boxes, second);
     }
 
+    /// Box around all items, if there are any.
+    pub fn bounds(&self) -> Option<Aabb> {
+        self.nodes.first().map(|root| root.bounds)
+    }
+
     /// Changes the box of an item. [`refit`](Self::refit) follows.
     pub fn set(&mut self, item: usize, bounds: Aabb) {
         self.nodes[self.places[item] as usize].bounds = bounds;

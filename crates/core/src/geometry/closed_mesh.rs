@@ -8,9 +8,11 @@ use nalgebra::Vector3;
 use super::bvh::{Aabb, Bvh};
 use super::closest::{PairKind, closest};
 use super::nearest::{Nearest, Separation};
+use super::parts::split;
 use crate::error::{Error, finite};
 
-/// Closed surface of triangles around a solid.
+/// Closed surface of triangles around a solid, or around several, which may overlap: what is in one
+/// of them is inside.
 #[derive(Clone, Debug)]
 pub struct ClosedMesh {
     points: Vec<Vector3<f64>>,
@@ -21,9 +23,21 @@ pub struct ClosedMesh {
     /// Outward normals of the triangles, and those of the sides opposite to their corners, of any
     /// length.
     faces: Vec<Face>,
-    tree: Bvh,
+    /// All triangles.
+    whole: Tree,
+    /// Triangles of each solid, if there are several.
+    solids: Vec<Tree>,
+    /// Boxes around the solids.
+    places: Bvh,
     /// Greatest distance of a point from the origin (m).
     reach: f64,
+}
+
+/// Some triangles, and boxes around them.
+#[derive(Clone, Debug)]
+struct Tree {
+    triangles: Vec<u32>,
+    boxes: Bvh,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -43,13 +57,15 @@ impl ClosedMesh {
     /// Largest number of triangles.
     pub const MAX_TRIANGLES: usize = 200_000;
 
-    /// Surface with these points (m) and triangles, whose corners are numbers of points. The
-    /// triangles are all turned around if they wind clockwise as seen from outside.
+    /// Surface with these points (m) and triangles, whose corners are numbers of points. Each
+    /// connected part decides by itself what is inside: its triangles are turned around if they wind
+    /// clockwise as seen from outside, unless it lies within another part, in which it is a hole
+    /// then. Points and edges that parts have in common become one for each.
     ///
     /// # Errors
     /// There are no triangles or more than [`MAX_TRIANGLES`](Self::MAX_TRIANGLES); a corner does
-    /// not exist; a number is not finite; an edge has other than two triangles, or its two do not
-    /// wind alike; or nothing is enclosed.
+    /// not exist; a number is not finite; the triangles at an edge are no pairs that wind alike; or
+    /// nothing is enclosed.
     pub fn new(points: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Result<Self, Error> {
         let invalid = |why: String| Err(Error::Invalid(why));
         let (count, most) = (triangles.len(), Self::MAX_TRIANGLES);
@@ -67,28 +83,102 @@ impl ClosedMesh {
         {
             return invalid(format!("a triangle of a closed mesh has no corner {i}"));
         }
-        let at = |i: u32| points[i as usize];
-        let volume = |[a, b, c]: &[u32; 3]| at(*a).cross(&at(*b)).dot(&at(*c)) / 6.0;
-        let volume: f64 = triangles.iter().map(volume).sum();
-        let triangles: Vec<_> = if volume < 0.0 {
-            triangles.iter().map(|&[a, b, c]| [a, c, b]).collect()
-        } else {
-            triangles
-        };
-        let edges = edges(&points, &triangles)?;
+        let volume: f64 = triangles.iter().map(|t| volume(&points, t)).sum();
         if volume == 0.0 {
+            // An open surface is named first.
+            split(points, &triangles)?;
             return invalid("a closed mesh must enclose a volume".into());
         }
+        let turned = |t: [u32; 3]| if volume < 0.0 { reversed(t) } else { t };
+        let triangles: Vec<_> = triangles.into_iter().map(turned).collect();
+        let parts = split(points, &triangles)?;
+        let mesh = Self::of_parts(parts.points, parts.triangles, &parts.part_of, parts.count);
+        Ok(if parts.count > 1 {
+            mesh.sorted_out(parts.part_of, parts.count)
+        } else {
+            mesh
+        })
+    }
+
+    /// Surface of so many parts, each of which bounds a solid.
+    fn of_parts(
+        points: Vec<Vector3<f64>>,
+        triangles: Vec<[u32; 3]>,
+        part_of: &[u32],
+        count: usize,
+    ) -> Self {
         let (normals, faces) = normals(&points, &triangles);
-        Ok(Self {
+        let sides = triangles
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let mut edges: Vec<_> = sides.filter(|[a, b]| a < b).collect();
+        edges.sort_unstable();
+        let all: Vec<_> = (0..triangles.len() as u32).collect();
+        let whole = Tree::new(&points, &triangles, all);
+        let mut solids = vec![];
+        if count > 1 {
+            let mut own = vec![vec![]; count];
+            for (k, part) in part_of.iter().enumerate() {
+                own[*part as usize].push(k as u32);
+            }
+            own.retain(|triangles| !triangles.is_empty());
+            solids.extend(
+                own.into_iter()
+                    .map(|own| Tree::new(&points, &triangles, own)),
+            );
+        }
+        let boxes: Vec<_> = solids
+            .iter()
+            .filter_map(|solid| solid.boxes.bounds())
+            .collect();
+        Self {
             normals,
             faces,
-            tree: tree(&points, &triangles),
+            whole,
+            places: Bvh::new(&boxes),
+            solids,
             reach: points.iter().map(Vector3::norm).fold(0.0, f64::max),
             points,
             triangles,
             edges,
-        })
+        }
+    }
+
+    /// The surface with parts that wind the other way round turned around, but for those within
+    /// another part, which bound a hole of it.
+    fn sorted_out(self, mut part_of: Vec<u32>, count: usize) -> Self {
+        let mut volumes = vec![0.0; count];
+        for (t, part) in self.triangles.iter().zip(&part_of) {
+            volumes[*part as usize] += volume(&self.points, t);
+        }
+        // For each part the one that it belongs to, or none if it is to be turned around.
+        let mut owners: Vec<_> = (0..count).map(Some).collect();
+        for part in (0..count).filter(|part| volumes[*part] < 0.0) {
+            let own = self.solids[part].triangles.iter();
+            let corners: Vec<_> = own.flat_map(|k| self.triangles[*k as usize]).collect();
+            let is_within = |other: &usize| {
+                let mut points = corners.iter().map(|i| self.points[*i as usize]);
+                points.all(|d| self.is_inside(&self.solids[*other], d))
+            };
+            let others = (0..count)
+                .filter(|other| volumes[*other] > 0.0)
+                .filter(is_within);
+            owners[part] = others.min_by(|a, b| volumes[*a].total_cmp(&volumes[*b]));
+        }
+        let mut triangles = self.triangles;
+        for (t, part) in triangles.iter_mut().zip(&mut part_of) {
+            match owners[*part as usize] {
+                Some(owner) => *part = owner as u32,
+                None => *t = reversed(*t),
+            }
+        }
+        Self::of_parts(self.points, triangles, &part_of, count)
+    }
+
+    /// Whether a point d is in a solid.
+    fn is_inside(&self, solid: &Tree, d: Vector3<f64>) -> bool {
+        self.offset_from(solid, d)
+            .is_some_and(|(offset, normal)| normal.dot(&offset) < 0.0)
     }
 
     /// Points (m).
@@ -116,13 +206,48 @@ impl ClosedMesh {
         &self.edges
     }
 
-    /// Nearest point of the surface to a point d inside.
+    /// Nearest point of the surface to a point d inside; where solids overlap, the one by which d
+    /// is led out of all of them, one after another.
     pub(crate) fn nearest(&self, d: Vector3<f64>) -> Option<Nearest> {
-        let (offset, normal) = self.offset(d)?;
-        (normal.dot(&offset) < 0.0).then(|| Nearest {
-            point: d - offset,
+        let mut left = vec![];
+        let (mut point, mut last) = (d, None);
+        while let Some((solid, offset, normal)) = self.deepest(point, &left) {
+            (point, last) = (point - offset, Some(normal));
+            left.push(solid);
+        }
+        last.map(|normal| Nearest {
+            point,
             normal: normal.normalize(),
         })
+    }
+
+    /// Of the solids that a point d is in, but for some, the one from whose surface it is farthest,
+    /// with the vector from there and the normal there.
+    fn deepest(&self, d: Vector3<f64>, but: &[u32]) -> Option<(u32, Vector3<f64>, Vector3<f64>)> {
+        let mut deepest: Option<(u32, Vector3<f64>, Vector3<f64>)> = None;
+        let mut look = |k: u32, solid: &Tree| {
+            let Some((offset, normal)) = self.offset_from(solid, d) else {
+                return;
+            };
+            let is_deeper = |(_, other, _): &(u32, Vector3<f64>, Vector3<f64>)| {
+                offset.norm_squared() > other.norm_squared()
+            };
+            if normal.dot(&offset) < 0.0 && deepest.as_ref().is_none_or(is_deeper) {
+                deepest = Some((k, offset, normal));
+            }
+        };
+        if self.solids.is_empty() {
+            if but.is_empty() {
+                look(0, &self.whole);
+            }
+        } else {
+            self.places.meeting(&Aabb::around([d]), |k| {
+                if !but.contains(&k) {
+                    look(k, &self.solids[k as usize]);
+                }
+            });
+        }
+        deepest
     }
 
     /// Separation of a point d.
@@ -143,14 +268,27 @@ impl ClosedMesh {
     }
 
     /// Vector to a point d from the nearest point of the surface, and the outward normal there, of
-    /// any length.
+    /// any length: of the solid that d is in, if it is in one.
     fn offset(&self, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
-        let (k, nearest) = self.tree.nearest(&d, |k| {
-            let [a, b, c] = self.triangles[k as usize].map(|i| self.points[i as usize]);
+        let inside = (!self.solids.is_empty())
+            .then(|| self.deepest(d, &[]))
+            .flatten();
+        match inside {
+            Some((_, offset, normal)) => Some((offset, normal)),
+            None => self.offset_from(&self.whole, d),
+        }
+    }
+
+    /// The same, from the nearest of the triangles in a tree.
+    fn offset_from(&self, tree: &Tree, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let (k, nearest) = tree.boxes.nearest(&d, |k| {
+            let t = self.triangles[tree.triangles[k as usize] as usize];
+            let [a, b, c] = t.map(|i| self.points[i as usize]);
             let closest = closest(PairKind::VertexTriangle, &[d, a, b, c]);
             (closest.offset.norm_squared(), closest)
         })?;
-        Some((nearest.offset, self.normal(k as usize, &nearest.weights)))
+        let k = tree.triangles[k as usize] as usize;
+        Some((nearest.offset, self.normal(k, &nearest.weights)))
     }
 
     /// Normal at the point of triangle k with these weights, of which the last three are those of
@@ -165,35 +303,6 @@ impl ClosedMesh {
             (None, None) => self.faces[k].normal,
         }
     }
-}
-
-/// Edges of a closed surface in order, the lower number of their ends first.
-fn edges(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Result<Vec<[u32; 2]>, Error> {
-    // The number of triangles that pass an edge upwards, and that of those that pass it downwards.
-    let mut passed: BTreeMap<[u32; 2], [usize; 2]> = BTreeMap::new();
-    for &[a, b, c] in triangles {
-        for [from, to] in [[a, b], [b, c], [c, a]] {
-            let edge = [from.min(to), from.max(to)];
-            passed.entry(edge).or_default()[usize::from(from > to)] += 1;
-        }
-    }
-    let Some((&[a, b], [up, down])) = passed.iter().find(|(_, ways)| **ways != [1, 1]) else {
-        return Ok(passed.into_keys().collect());
-    };
-    let place = |i: u32| {
-        let [x, y, z]: [f64; 3] = points[i as usize].into();
-        format!("point {i} at ({x}, {y}, {z})")
-    };
-    let why = match up + down {
-        2 => "whose normals point to different sides".into(),
-        1 => "not 1".into(),
-        count => format!("not {count}"),
-    };
-    Err(Error::Invalid(format!(
-        "a closed mesh has two triangles at each edge, but at that from {} to {} {why}",
-        place(a),
-        place(b),
-    )))
 }
 
 /// Normals of the points, and those of the triangles and their sides.
@@ -227,8 +336,24 @@ fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>
     (corners, faces.collect())
 }
 
-/// Tree of boxes around the triangles.
-fn tree(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Bvh {
-    let around = |t: &[u32; 3]| Aabb::around(t.map(|i| points[i as usize]));
-    Bvh::new(&triangles.iter().map(around).collect::<Vec<_>>())
+/// The triangle the other way round.
+fn reversed([a, b, c]: [u32; 3]) -> [u32; 3] {
+    [a, c, b]
+}
+
+/// Volume between a triangle and the origin (m3), below 0 where it winds clockwise as seen from
+/// outside.
+fn volume(points: &[Vector3<f64>], triangle: &[u32; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|i| points[i as usize]);
+    a.cross(&b).dot(&c) / 6.0
+}
+
+impl Tree {
+    fn new(points: &[Vector3<f64>], triangles: &[[u32; 3]], own: Vec<u32>) -> Self {
+        let around = |k: &u32| Aabb::around(triangles[*k as usize].map(|i| points[i as usize]));
+        Self {
+            boxes: Bvh::new(&own.iter().map(around).collect::<Vec<_>>()),
+            triangles: own,
+        }
+    }
 }

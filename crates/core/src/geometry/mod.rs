@@ -5,8 +5,11 @@ pub(crate) mod bvh;
 pub(crate) mod closed_mesh;
 pub(crate) mod closest;
 pub(crate) mod nearest;
+mod parts;
 pub(crate) mod separation;
 pub(crate) mod shape;
+#[cfg(test)]
+mod tests;
 
 pub use closed_mesh::ClosedMesh;
 pub use closest::{Closest, PairKind, closest, weighted};

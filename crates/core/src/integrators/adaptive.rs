@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::Work;
 use super::error_norm::{BLOCK, ErrorNorm, Tolerance};
 use super::trial::{LastStep, Trial};
-use crate::error::Error;
+use crate::error::{Error, at_least};
 use crate::sums::{OnBlock, add_up};
 use crate::system::ParticleSystem;
 use crate::threads::{Columns, copy, threads};
@@ -117,8 +117,10 @@ impl Adaptive {
     /// Goes on from what the same method remembered.
     ///
     /// # Errors
-    /// The state is of another method or of another system; nothing changes then.
+    /// The state is of another method or of another system, or its step is no step; nothing
+    /// changes then.
     pub fn resume(&mut self, state: &AdaptiveState) -> Result<(), Error> {
+        at_least(0.0, "the next step", state.next)?;
         if let Some(step) = &state.step {
             self.trial.resume(step)?;
         }

@@ -46,9 +46,10 @@ impl Body for LoadedMesh<'_> {
             .map(|area| area * cloth.density)
             .collect();
         if let Some(bad) = masses.iter().position(|m| !m.is_finite() || *m <= 0.0) {
+            let (number, [x, y, z]) = (mesh.number(bad), mesh.positions[bad]);
             return Err(Fault::new(
                 "file",
-                format!("the triangles around point {bad} have no area"),
+                format!("the triangles around point {number} at ({x}, {y}, {z}) have no area"),
             ));
         }
         let mean = masses.iter().sum::<f64>() / masses.len() as f64;

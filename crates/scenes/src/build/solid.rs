@@ -1,7 +1,7 @@
 //! Elastic solids: boxes, or the tetrahedra of a file.
 
-use a3_core::Vector3;
-use a3_core::elements::{Hyperelastic, Material};
+use a3_core::elements::{Hyperelastic, Material, Solid as Elastic};
+use a3_core::{Error, Vector3};
 use nalgebra::Rotation3;
 
 use super::assembly::{Assembly, Body, Counts};
@@ -94,6 +94,28 @@ impl LoadedSolid<'_> {
     }
 }
 
+impl LoadedSolid<'_> {
+    /// An error of a tetrahedron with the numbers that the file gives to it and its corners.
+    fn in_file(
+        &self,
+        why: Error,
+        tetrahedra: &[[u32; 4]],
+        positions: &[Vector3<f64>],
+        material: Material,
+    ) -> Error {
+        let is_wrong = |t: &[u32; 4]| Elastic::new(0, &[*t], positions, material).is_err();
+        let found = tetrahedra.iter().position(is_wrong).zip(self.mesh.as_ref());
+        let numbered = found.and_then(|(k, mesh)| {
+            let number = mesh.tetrahedron_numbers.get(k)?;
+            let [a, b, c, d] = tetrahedra[k].map(|i| mesh.number(i as usize));
+            Some(format!(
+                "{why}; in the file it is number {number}, with the points {a}, {b}, {c} and {d}"
+            ))
+        });
+        numbered.map_or(why, Error::Invalid)
+    }
+}
+
 impl Body for LoadedSolid<'_> {
     fn counts(&self) -> Result<Counts, Fault> {
         let (particles, tetrahedra) = match (self.lattice()?, &self.mesh) {
@@ -136,7 +158,8 @@ impl Body for LoadedSolid<'_> {
             boundary,
         } = self.shape()?;
         let first = assembly.masses.len();
-        let solid = a3_core::elements::Solid::new(first, &tetrahedra, &positions, material);
+        let solid = Elastic::new(first, &tetrahedra, &positions, material);
+        let solid = solid.map_err(|why| self.in_file(why, &tetrahedra, &positions, material));
         let solid = at(source, solid)?;
         let mut masses = vec![0.0; positions.len()];
         let mut spacings = vec![f64::INFINITY; positions.len()];
@@ -146,10 +169,6 @@ impl Body for LoadedSolid<'_> {
                 masses[i] += 0.25 * self.solid.density * volume;
                 spacings[i] = spacings[i].min(height);
             }
-        }
-        if let Some(i) = masses.iter().position(|m| *m == 0.0) {
-            let why = format!("point {i}, counted from 0, is in no tetrahedron");
-            return Err(Fault::new(source, why));
         }
         let mean = spacings.iter().sum::<f64>() / spacings.len() as f64;
         let skin = SkinSpec {

@@ -120,7 +120,7 @@ pub struct Jelly {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshCloth {
-    /// A .obj, .gltf or .glb file in the scene file's folder or in one below it.
+    /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it.
     pub file: String,
     /// Unit of length of the file (m); 1 if not given.
     pub scale: Option<f64>,

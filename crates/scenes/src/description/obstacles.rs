@@ -98,7 +98,7 @@ pub struct CapsuleSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
-    /// A .obj, .gltf or .glb file in the scene file's folder or in one below it. Each edge has two
+    /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it. Each edge has two
     /// triangles, which wind alike.
     pub file: String,
     /// Unit of length of the file (m); 1 if not given.

@@ -4,8 +4,11 @@
 use super::Mesh;
 use super::tetrahedra::{Numbered, lines, position, whole};
 
-/// Number of the element that is a tetrahedron of four corners.
-const TETRAHEDRON: u64 = 4;
+/// Kinds of elements that are tetrahedra: of 4, 10, 20, 35 and 56 points, of which the first four
+/// are the corners.
+const TETRAHEDRA: [u64; 5] = [4, 11, 29, 30, 31];
+/// Kinds of other solid elements: hexahedra, prisms and pyramids.
+const OTHER_SOLIDS: [u64; 9] = [5, 6, 7, 12, 13, 14, 17, 18, 19];
 
 /// Lines with their numbers, of which the last that was read is known.
 struct Reader<I> {
@@ -46,7 +49,7 @@ impl<'a, I: Iterator<Item = (usize, Vec<&'a str>)>> Reader<I> {
 /// The mesh in a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
     let mut reader = Reader {
-        lines: lines(bytes, b'\r'),
+        lines: lines(bytes),
         line: 0,
     };
     let mut numbered = Numbered::default();
@@ -110,12 +113,17 @@ fn elements_2<'a>(
     let count = reader.numbers("$Elements", 1)?[0];
     for _ in 0..count {
         let numbers = reader.numbers("$Elements", 3)?;
-        if numbers[1] == TETRAHEDRON {
+        if is_tetrahedron(numbers[1]).map_err(|why| reader.wrong(&why))? {
             let first = numbers[2].saturating_add(3);
             let corners = usize::try_from(first)
                 .ok()
                 .and_then(|first| numbers.get(first..));
-            add(reader.line, corners.unwrap_or_default(), numbered)?;
+            add(
+                reader.line,
+                numbers[0],
+                corners.unwrap_or_default(),
+                numbered,
+            )?;
         }
     }
     Ok(())
@@ -149,20 +157,32 @@ fn elements_4<'a>(
     let blocks = reader.numbers("$Elements", 2)?[0];
     for _ in 0..blocks {
         let head = reader.numbers("$Elements", 4)?;
+        let is_tetrahedron = is_tetrahedron(head[2]).map_err(|why| reader.wrong(&why))?;
         for _ in 0..head[3] {
             let numbers = reader.numbers("$Elements", 1)?;
-            if head[2] == TETRAHEDRON {
-                add(reader.line, &numbers[1..], numbered)?;
+            if is_tetrahedron {
+                add(reader.line, numbers[0], &numbers[1..], numbered)?;
             }
         }
     }
     Ok(())
 }
 
-/// Adds the tetrahedron of a line.
-fn add(line: usize, corners: &[u64], numbered: &mut Numbered) -> Result<(), String> {
-    let added = match *corners {
-        [a, b, c, d] => numbered.add_tetrahedron([a, b, c, d], line),
+/// Whether elements of this kind are tetrahedra. Other solid ones are refused, lest a body has
+/// holes where they were.
+fn is_tetrahedron(kind: u64) -> Result<bool, String> {
+    if OTHER_SOLIDS.contains(&kind) {
+        return Err(format!(
+            "an element of type {kind} is a hexahedron, a prism or a pyramid: of solid elements only tetrahedra are read"
+        ));
+    }
+    Ok(TETRAHEDRA.contains(&kind))
+}
+
+/// Adds the tetrahedron of a line, which has that number.
+fn add(line: usize, number: u64, points: &[u64], numbered: &mut Numbered) -> Result<(), String> {
+    let added = match *points {
+        [a, b, c, d, ..] => numbered.add_tetrahedron(number, [a, b, c, d], line),
         _ => Err("a tetrahedron has four corners".into()),
     };
     added.map_err(|why| format!("line {line}: {why}"))

@@ -1,12 +1,15 @@
 //! Meshes of triangles, with tetrahedra within them or without, and the springs of a cloth that has
 //! their shape.
 
-mod accessor;
 mod gltf;
 mod gmsh;
 mod obj;
+mod ply;
+mod polygon;
+mod stl;
 mod tetgen;
 mod tetrahedra;
+mod weld;
 
 use std::collections::BTreeMap;
 
@@ -14,6 +17,7 @@ use a3_core::{Error, Spring, SpringKind, SpringLaw, Vector3};
 
 use crate::check::{BOUNDS, within};
 use crate::description::Triple;
+use crate::text::unmarked;
 pub(crate) use tetrahedra::boundary;
 
 /// Largest number of points in a file.
@@ -22,6 +26,9 @@ const MAX_POINTS: usize = 1 << 20;
 const MAX_TRIANGLES: usize = 2 * MAX_POINTS;
 /// Largest number of tetrahedra in a file.
 const MAX_TETRAHEDRA: usize = MAX_POINTS;
+
+/// Height of a triangle over its longest side, as a share of that, from which it is no sliver.
+const SLIVER: f64 = 1e-3;
 
 /// Mesh of triangles, or of tetrahedra with the triangles around them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,6 +40,10 @@ pub struct Mesh {
     /// Corners of the tetrahedra within, if the file has any: each with a positive volume, unless
     /// it differs from others.
     pub tetrahedra: Vec<[u32; 4]>,
+    /// Numbers of the points in the file, if it does not count them from 0.
+    pub numbers: Vec<u64>,
+    /// Numbers of the tetrahedra in the file.
+    pub tetrahedron_numbers: Vec<u64>,
 }
 
 impl Mesh {
@@ -41,7 +52,7 @@ impl Mesh {
     /// # Errors
     /// A point or a face is wrong, there is no triangle, or there are too many.
     pub fn from_obj(bytes: &[u8]) -> Result<Self, String> {
-        obj::read(bytes)?.checked()
+        obj::read(unmarked(bytes)?)?.checked(1)
     }
 
     /// The triangles of the first scene of a glTF file, or of the scene that it names; `file` reads
@@ -54,7 +65,23 @@ impl Mesh {
         bytes: &[u8],
         file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Result<Self, String> {
-        gltf::read(bytes, file)?.checked()
+        gltf::read(bytes, file)?.checked(0)
+    }
+
+    /// The triangles of an STL file, binary or text.
+    ///
+    /// # Errors
+    /// A triangle is wrong, there is none, or there are too many.
+    pub fn from_stl(bytes: &[u8]) -> Result<Self, String> {
+        stl::read(bytes)?.checked(0)
+    }
+
+    /// The triangles of the faces in a PLY file, text or binary.
+    ///
+    /// # Errors
+    /// The head or an element is wrong, there is no face, or there are too many.
+    pub fn from_ply(bytes: &[u8]) -> Result<Self, String> {
+        ply::read(unmarked(bytes)?)?.checked(0)
     }
 
     /// The tetrahedra in a text file of Gmsh, version 2.2 or 4.1.
@@ -62,7 +89,7 @@ impl Mesh {
     /// # Errors
     /// A point or an element is wrong, there is no tetrahedron, or there are too many.
     pub fn from_gmsh(bytes: &[u8]) -> Result<Self, String> {
-        gmsh::read(bytes)?.checked()
+        gmsh::read(unmarked(bytes)?)?.checked(0)
     }
 
     /// The tetrahedra in a pair of `TetGen`'s files, `.node` and `.ele`.
@@ -70,42 +97,53 @@ impl Mesh {
     /// # Errors
     /// A point or an element is wrong, there is no tetrahedron, or there are too many.
     pub fn from_tetgen(node: &[u8], ele: &[u8]) -> Result<Self, String> {
-        tetgen::read(node, ele)?.checked()
+        tetgen::read(unmarked(node)?, unmarked(ele)?)?.checked(0)
     }
 
-    /// The mesh, if it has triangles, and its points are where they can be.
-    fn checked(self) -> Result<Self, String> {
-        let far = |p: &Triple| p.iter().any(|x| !within(*x));
-        if let Some(i) = self.positions.iter().position(far) {
-            let [x, y, z] = self.positions[i];
-            return Err(format!("point {i} is at ({x:e}, {y:e}, {z:e}): {BOUNDS}"));
-        }
+    /// The mesh without points that are in nothing, if it has triangles, and its points are where
+    /// they can be. The file numbers points from `first` on, if it does not say their numbers.
+    fn checked(self, first: u64) -> Result<Self, String> {
         if self.triangles.is_empty() {
             return Err("the file has no triangles".into());
         }
-        Ok(self)
+        let mesh = self.in_use(first);
+        let far = |p: &Triple| p.iter().any(|x| !within(*x));
+        if let Some(i) = mesh.positions.iter().position(far) {
+            let [x, y, z] = mesh.positions[i];
+            let number = mesh.number(i);
+            return Err(format!(
+                "point {number} is at ({x:e}, {y:e}, {z:e}): {BOUNDS}"
+            ));
+        }
+        Ok(mesh)
     }
 
-    /// The mesh with points at equal positions made one, since files have such points where normals
-    /// or textures change. Triangles with two equal corners and points without triangles are left
-    /// out.
-    #[must_use]
-    pub fn welded(&self) -> Self {
-        let key = |p: &Triple| p.map(|x| (x + 0.0).to_bits());
-        let mut first = BTreeMap::new();
-        let mut mesh = Self::default();
-        let mut corner = |i: u32| {
-            let p = self.positions[i as usize];
-            *first.entry(key(&p)).or_insert_with(|| {
-                mesh.positions.push(p);
-                mesh.positions.len() as u32 - 1
-            })
-        };
-        let corners = self.triangles.iter().map(|t| t.map(&mut corner));
-        mesh.triangles = corners
-            .filter(|[a, b, c]| a != b && b != c && c != a)
-            .collect();
-        mesh
+    /// The mesh without points that are in nothing, with the numbers of the others.
+    fn in_use(self, first: u64) -> Self {
+        let mut is_used = vec![false; self.positions.len()];
+        let corners = self.triangles.iter().flatten();
+        for i in corners.chain(self.tetrahedra.iter().flatten()) {
+            is_used[*i as usize] = true;
+        }
+        let kept = || (0..self.positions.len()).filter(|i| is_used[*i]);
+        let mut place = vec![0; self.positions.len()];
+        for (k, i) in kept().enumerate() {
+            place[i] = k as u32;
+        }
+        let number = |i: usize| self.numbers.get(i).copied().unwrap_or(first + i as u64);
+        let at = |i: u32| place[i as usize];
+        Self {
+            positions: kept().map(|i| self.positions[i]).collect(),
+            triangles: self.triangles.iter().map(|t| t.map(at)).collect(),
+            tetrahedra: self.tetrahedra.iter().map(|t| t.map(at)).collect(),
+            numbers: kept().map(number).collect(),
+            tetrahedron_numbers: self.tetrahedron_numbers,
+        }
+    }
+
+    /// Number of a point in its file.
+    pub(crate) fn number(&self, i: usize) -> u64 {
+        self.numbers.get(i).copied().unwrap_or(i as u64)
     }
 
     /// The mesh magnified by that factor.
@@ -115,16 +153,20 @@ impl Mesh {
             positions: positions.collect(),
             triangles: self.triangles.clone(),
             tetrahedra: self.tetrahedra.clone(),
+            numbers: self.numbers.clone(),
+            tetrahedron_numbers: self.tetrahedron_numbers.clone(),
         }
     }
 
-    /// Least height of a triangle over a point or beside it, for each point (m).
+    /// Least height of a triangle over a point or beside it, for each point (m). Slivers count as
+    /// higher than they are, lest a surface without thickness is infinitely stiff.
     pub(crate) fn heights(&self) -> Vec<f64> {
         let mut heights = vec![f64::INFINITY; self.positions.len()];
         for t in &self.triangles {
             let [a, b, c] = t.map(|i| Vector3::from(self.positions[i as usize]));
             let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
             let height = (b - a).cross(&(c - a)).norm() / longest;
+            let height = height.max(SLIVER * longest);
             for i in t {
                 heights[*i as usize] = heights[*i as usize].min(height);
             }

@@ -1,80 +1,119 @@
 //! Meshes from Wavefront OBJ files: points (`v`) and faces (`f`). All else is passed over.
 
+use super::polygon::Cutter;
 use super::{MAX_POINTS, MAX_TRIANGLES, Mesh};
+use crate::text::{Lines, words};
 
-/// The mesh in an OBJ file. A face of more than three corners is a fan of triangles around its
-/// first corner.
-pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
+/// Faces of a file, as numbers of points.
+#[derive(Default)]
+struct Faces {
+    corners: Vec<u32>,
+    /// Where the corners of each face end, and its line.
+    ends: Vec<(u32, u32)>,
+    /// Number of triangles that the faces make.
+    triangles: usize,
+    /// The largest corner, and its line.
+    last: (u32, usize),
+}
+
+/// The mesh in an OBJ file.
+pub(super) fn read(text: &[u8]) -> Result<Mesh, String> {
     let mut mesh = Mesh::default();
-    // The largest corner that is named, counted from 0, and its line.
-    let mut last = (0, 0);
-    for (k, line) in bytes.split(|b| *b == b'\n').enumerate() {
-        let mut words = line
-            .split(u8::is_ascii_whitespace)
-            .filter(|w| !w.is_empty());
-        let wrong = |why: String| format!("line {}: {why}", k + 1);
+    let mut faces = Faces::default();
+    let mut lines = Lines::new(text);
+    // A folder or a material may end in a backslash.
+    let is_read = |line: &[u8]| matches!(words(line).next(), Some(b"v" | b"f"));
+    while let Some((line, statement)) = lines.statement(is_read) {
+        let wrong = |why: String| format!("line {line}: {why}");
+        let mut words = words(statement);
         match words.next() {
             Some(b"v") => {
                 if mesh.positions.len() == MAX_POINTS {
                     return Err(wrong(format!("there are more than {MAX_POINTS} points")));
                 }
-                let mut coordinate = || text(words.next()?)?.parse::<f32>().ok();
+                let mut coordinate = || str::from_utf8(words.next()?).ok()?.parse::<f32>().ok();
                 let point = [coordinate(), coordinate(), coordinate()];
                 let [Some(x), Some(y), Some(z)] = point.map(|x| x.filter(|x| x.is_finite())) else {
                     return Err(wrong("a point has three numbers, as in `v 0 0.5 1`".into()));
                 };
                 mesh.positions.push([x, y, z].map(f64::from));
             }
-            Some(b"f") => {
-                let count = mesh.positions.len();
-                let mut corners = words.map(|word| {
-                    let corner = corner(word, count).ok_or_else(|| {
-                        wrong(format!(
-                            "`{}` is no corner: a corner is the number of a point, counted from 1, or from -1 \
-                             backwards, among the {count} points before it",
-                            String::from_utf8_lossy(&word[..word.len().min(40)])
-                        ))
-                    })?;
-                    last = last.max((corner, k + 1));
-                    Ok::<u32, String>(corner)
-                });
-                let (Some(a), Some(b)) = (corners.next(), corners.next()) else {
-                    continue;
-                };
-                let (a, mut b) = (a?, b?);
-                for c in corners {
-                    let c = c?;
-                    if mesh.triangles.len() == MAX_TRIANGLES {
-                        return Err(wrong(format!(
-                            "there are more than {MAX_TRIANGLES} triangles"
-                        )));
-                    }
-                    mesh.triangles.push([a, b, c]);
-                    b = c;
-                }
-            }
+            Some(b"f") => faces
+                .add(words, mesh.positions.len(), line)
+                .map_err(wrong)?,
             _ => {}
         }
     }
-    let (corner, line) = last;
-    if line > 0 && corner as usize >= mesh.positions.len() {
-        return Err(format!(
-            "line {line}: a face has corner {}, but there are {} points",
-            u64::from(corner) + 1,
-            mesh.positions.len()
-        ));
-    }
+    faces.cut(&mut mesh)?;
     Ok(mesh)
+}
+
+impl Faces {
+    /// Adds the face of a line that has these corners, after `count` points.
+    fn add<'a>(
+        &mut self,
+        words: impl Iterator<Item = &'a [u8]>,
+        count: usize,
+        line: usize,
+    ) -> Result<(), String> {
+        let first = self.corners.len();
+        for word in words {
+            let corner = corner(word, count).ok_or_else(|| {
+                format!(
+                    "`{}` is no corner: a corner is the number of a point, counted from 1, or from -1 \
+                     backwards, among the {count} points before it",
+                    String::from_utf8_lossy(&word[..word.len().min(40)])
+                )
+            })?;
+            self.last = self.last.max((corner, line));
+            self.corners.push(corner);
+            if self.corners.len() - first > 2 {
+                self.triangles += 1;
+            }
+            if self.triangles > MAX_TRIANGLES {
+                return Err(format!("there are more than {MAX_TRIANGLES} triangles"));
+            }
+        }
+        if self.corners.len() - first < 3 {
+            self.corners.truncate(first);
+        } else {
+            self.ends.push((self.corners.len() as u32, line as u32));
+        }
+        Ok(())
+    }
+
+    /// Cuts all faces into the triangles of the mesh.
+    fn cut(self, mesh: &mut Mesh) -> Result<(), String> {
+        let (corner, line) = self.last;
+        let count = mesh.positions.len();
+        if line > 0 && corner as usize >= count {
+            let corner = u64::from(corner) + 1;
+            return Err(format!(
+                "line {line}: a face has corner {corner}, but there are {count} points"
+            ));
+        }
+        let (mut cutter, mut first) = (Cutter::default(), 0);
+        mesh.triangles.reserve_exact(self.triangles);
+        for (end, line) in self.ends {
+            let face = &self.corners[first..end as usize];
+            let cut = cutter.cut(face, &mesh.positions, &mut mesh.triangles);
+            cut.ok_or_else(|| {
+                let count = face.len();
+                format!(
+                    "line {line}: a face that is not convex has too many corners, {count}: split it"
+                )
+            })?;
+            first = end as usize;
+        }
+        Ok(())
+    }
 }
 
 /// The point of a corner such as `3`, `3/1`, `3//2` or `-1/2/3`, counted from 0. A negative number
 /// counts back from the last of `count` points.
 fn corner(word: &[u8], count: usize) -> Option<u32> {
-    let number: i64 = text(word.split(|b| *b == b'/').next()?)?.parse().ok()?;
+    let number = word.split(|b| *b == b'/').next()?;
+    let number: i64 = str::from_utf8(number).ok()?.parse().ok()?;
     let from = if number < 0 { count as i64 } else { -1 };
     u32::try_from(from.checked_add(number)?).ok()
-}
-
-fn text(word: &[u8]) -> Option<&str> {
-    std::str::from_utf8(word).ok()
 }

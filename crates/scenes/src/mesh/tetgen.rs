@@ -15,7 +15,7 @@ pub(super) fn read(node: &[u8], ele: &[u8]) -> Result<Mesh, String> {
     each(ele, ".ele", head, 4, |line, number, words| {
         let corners = words.get(..4).map(whole).transpose();
         let added = match corners.as_ref().map(Option::as_deref) {
-            Ok(Some(&[a, b, c, d])) => numbered.add_tetrahedron([a, b, c, d], line),
+            Ok(Some(&[a, b, c, d])) => numbered.add_tetrahedron(number, [a, b, c, d], line),
             Ok(_) => Err(format!("tetrahedron {number} has four corners")),
             Err(why) => Err(why.clone()),
         };
@@ -33,7 +33,7 @@ fn each(
     kind: u64,
     mut visit: impl FnMut(usize, u64, &[&str]) -> Result<(), String>,
 ) -> Result<(), String> {
-    let mut lines = lines(bytes, b'#');
+    let mut lines = lines(bytes);
     let first = lines.next().map(|(_, words)| words);
     let counts = first.and_then(|words| whole(words.get(..2)?).ok());
     let is_kind = |found: u64| found == kind || kind == 4 && found == 10;

@@ -4,6 +4,7 @@ use a3_core::Vector3;
 
 use super::{MAX_POINTS, MAX_TETRAHEDRA, Mesh};
 use crate::description::Triple;
+use crate::text::Lines;
 
 /// Faces of a tetrahedron, counterclockwise as seen from outside.
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
@@ -32,13 +33,20 @@ pub(crate) fn boundary(tetrahedra: &[[u32; 4]]) -> Vec<[u32; 3]> {
     outer.into_iter().map(|(_, face)| face).collect()
 }
 
+/// Tetrahedron of a file.
+pub(super) struct Tetrahedron {
+    number: u64,
+    /// Numbers of its corners.
+    corners: [u64; 4],
+    line: usize,
+}
+
 /// Points and tetrahedra as a file numbers them.
 #[derive(Default)]
 pub(super) struct Numbered {
     /// Number of each point, and its position.
     pub points: Vec<(u64, Triple)>,
-    /// Numbers of the corners of each tetrahedron, and its line.
-    pub tetrahedra: Vec<([u64; 4], usize)>,
+    pub tetrahedra: Vec<Tetrahedron>,
 }
 
 impl Numbered {
@@ -52,11 +60,20 @@ impl Numbered {
     }
 
     /// Adds the tetrahedron of a line.
-    pub fn add_tetrahedron(&mut self, corners: [u64; 4], line: usize) -> Result<(), String> {
+    pub fn add_tetrahedron(
+        &mut self,
+        number: u64,
+        corners: [u64; 4],
+        line: usize,
+    ) -> Result<(), String> {
         if self.tetrahedra.len() == MAX_TETRAHEDRA {
             return Err(format!("there are more than {MAX_TETRAHEDRA} tetrahedra"));
         }
-        self.tetrahedra.push((corners, line));
+        self.tetrahedra.push(Tetrahedron {
+            number,
+            corners,
+            line,
+        });
         Ok(())
     }
 
@@ -74,17 +91,13 @@ impl Numbered {
             let none = |_| format!("line {line}: there is no point {number}");
             place.map(|place| place as u32).map_err(none)
         };
-        let corners = self.tetrahedra.iter().map(|([a, b, c, d], line)| {
-            Ok([
-                find(*a, *line)?,
-                find(*b, *line)?,
-                find(*c, *line)?,
-                find(*d, *line)?,
-            ])
-        });
-        let mut tetrahedra = corners.collect::<Result<Vec<_>, String>>()?;
+        let mut tetrahedra = Vec::with_capacity(self.tetrahedra.len());
+        for Tetrahedron { corners, line, .. } in &self.tetrahedra {
+            let [a, b, c, d] = corners.map(|corner| find(corner, *line));
+            tetrahedra.push([a?, b?, c?, d?]);
+        }
         if tetrahedra.is_empty() {
-            return Err("the file has no tetrahedra of four corners".into());
+            return Err("the file has no tetrahedra".into());
         }
         let positions: Vec<_> = self.points.iter().map(|(_, position)| *position).collect();
         let is_turned = |t: &[u32; 4]| {
@@ -100,22 +113,18 @@ impl Numbered {
             triangles: boundary(&tetrahedra),
             positions,
             tetrahedra,
+            numbers: self.points.iter().map(|(number, _)| *number).collect(),
+            tetrahedron_numbers: self.tetrahedra.iter().map(|t| t.number).collect(),
         })
     }
 }
 
-/// Lines of a file that have words, with their numbers from 1; what begins with `comment` is passed
-/// over.
-pub(super) fn lines(bytes: &[u8], comment: u8) -> impl Iterator<Item = (usize, Vec<&str>)> {
-    let each = bytes.split(|b| *b == b'\n').enumerate();
-    each.filter_map(move |(k, line)| {
-        let end = line
-            .iter()
-            .position(|b| *b == comment)
-            .unwrap_or(line.len());
-        let text = std::str::from_utf8(&line[..end]).unwrap_or("?");
+/// Lines of a file that have words, with their numbers from 1, without their comments.
+pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = (usize, Vec<&str>)> {
+    Lines::new(text).filter_map(|(number, line)| {
+        let text = std::str::from_utf8(line).unwrap_or("?");
         let words: Vec<_> = text.split_ascii_whitespace().take(MOST_WORDS).collect();
-        (!words.is_empty()).then_some((k + 1, words))
+        (!words.is_empty()).then_some((number, words))
     })
 }
 

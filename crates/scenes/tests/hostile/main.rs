@@ -124,6 +124,14 @@ fn obj_files_are_taken_or_refused() {
 }
 
 #[test]
+fn stl_and_ply_files_are_taken_or_refused() {
+    let taken = feed(&seeds("stl"), |bytes| is_mesh(Mesh::from_stl(bytes)));
+    assert!(taken > INPUTS / 25, "{taken}");
+    let taken = feed(&seeds("ply"), |bytes| is_mesh(Mesh::from_ply(bytes)));
+    assert!(taken > INPUTS / 25, "{taken}");
+}
+
+#[test]
 fn gltf_files_are_taken_or_refused() {
     let buffer = vec![0; 60];
     let taken = feed(&seeds("gltf"), |bytes| {
@@ -224,6 +232,20 @@ fn what_is_too_much_is_refused() {
         (String::new(), "no Gmsh file"),
     ] {
         refused(expected, || Mesh::from_gmsh(text.as_bytes()).map(|_| ()));
+    }
+    for (text, expected) in [
+        (
+            format!(
+                "ply\nformat ascii 1.0\nelement face {many}\nproperty int a\nend_header\n1 2 3"
+            ),
+            "ends within it",
+        ),
+        (
+            format!("ply\nformat ascii 1.0\nelement none {many}\nend_header\n"),
+            "no triangles",
+        ),
+    ] {
+        refused(expected, || Mesh::from_ply(text.as_bytes()).map(|_| ()));
     }
     let long = format!("{many} 3 0 0\n0 1 2 3\n");
     refused("ends before all", || {

@@ -157,3 +157,90 @@ fn pc2_has_the_positions_of_all_frames() {
         });
     }
 }
+
+/// Vertices as Blender has them after it read an OBJ: those in faces or lines, or all if there are
+/// no such.
+fn kept(obj: &str) -> Vec<[f32; 3]> {
+    let all: Vec<[f32; 3]> = lines(obj, "v")
+        .map(|words| [1, 2, 3].map(|k| words[k].parse().unwrap()))
+        .collect();
+    let corners = lines(obj, "f").chain(lines(obj, "l")).flat_map(|words| {
+        let numbers = words[1..].iter();
+        let numbers = numbers.map(|word| word.split('/').next().unwrap().parse::<usize>().unwrap());
+        numbers.collect::<Vec<_>>()
+    });
+    let used: std::collections::BTreeSet<_> = corners.collect();
+    if used.is_empty() {
+        return all;
+    }
+    used.into_iter().map(|k| all[k - 1]).collect()
+}
+
+/// A point cache has as many points as the mesh beside it has in Blender, at the same places, in
+/// every built-in scene.
+#[test]
+fn pc2_moves_the_mesh_that_programs_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut fewer = 0;
+    for entry in a3_scenes::SCENES {
+        let words = [
+            "simulate", "--scene", entry.name, "--until", "0.01", "--output", "x.pc2",
+        ];
+        let output = a3(folder.path(), &words);
+        assert!(
+            output.status.success(),
+            "{}: {}",
+            entry.name,
+            text(&output.stderr)
+        );
+        let obj = fs::read_to_string(folder.path().join("x.obj")).unwrap();
+        let bytes = fs::read(folder.path().join("x.pc2")).unwrap();
+        let numbers: Vec<_> = bytes[12..]
+            .chunks_exact(4)
+            .map(|b| b.try_into().unwrap())
+            .collect();
+        let (mesh, count) = (kept(&obj), u32::from_le_bytes(numbers[1]) as usize);
+        assert!(!mesh.is_empty() && mesh.len() == count, "{}", entry.name);
+        for (i, point) in mesh.iter().enumerate() {
+            let at = [0, 1, 2].map(|k| f32::from_le_bytes(numbers[5 + 3 * i + k]));
+            assert_eq!(at, *point, "{}", entry.name);
+        }
+        let setup = entry.build(None).unwrap();
+        fewer += usize::from(count < setup.scene.model.particles());
+        for words in lines(&obj, "f").chain(lines(&obj, "l")) {
+            let number = |word: &&str| word.split('/').all(|n| n.is_empty() || n != "0");
+            assert!(words[1..].iter().all(number), "{}: {words:?}", entry.name);
+        }
+    }
+    assert!(fewer > 2, "{fewer}");
+}
+
+/// Times have no digits that only roundings have.
+#[test]
+fn times_are_short() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = [
+        "simulate", "r", "0.001", "--scene", "simple", "--until", "0.006",
+    ];
+    for (name, expected) in [
+        ("x.obj", "t = 0.006 s"),
+        ("x.json", "\"time\":0.006,"),
+        ("x.csv", ",0.006,"),
+    ] {
+        let fps: &[&str] = if name == "x.csv" {
+            &["--fps", "500"]
+        } else {
+            &[]
+        };
+        let output = a3(
+            folder.path(),
+            &[&run[..], &["--output", name], fps].concat(),
+        );
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let file = fs::read_to_string(folder.path().join(name)).unwrap();
+        assert!(
+            file.contains(expected) && !file.contains("99999999"),
+            "{file}"
+        );
+    }
+}

@@ -5,13 +5,15 @@ use std::borrow::Cow;
 use serde::Deserialize;
 
 // The codes of glTF for types of numbers.
+const I8: u32 = 5120;
 const U8: u32 = 5121;
+const I16: u32 = 5122;
 const U16: u32 = 5123;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
 
 /// Accessor of `count` elements.
-#[derive(Deserialize)]
+#[derive(Clone, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Accessor {
     buffer_view: Option<usize>,
@@ -22,10 +24,23 @@ pub(super) struct Accessor {
     #[serde(rename = "type")]
     kind: String,
     sparse: Option<Sparse>,
+    /// Whether whole numbers are shares of the largest one.
+    #[serde(default)]
+    normalized: bool,
+}
+
+impl Accessor {
+    /// The first elements of it, of which there are enough.
+    pub fn first(&self, count: usize) -> Self {
+        Self {
+            count,
+            ..self.clone()
+        }
+    }
 }
 
 /// Elements that are replaced.
-#[derive(Deserialize)]
+#[derive(Clone, Deserialize)]
 struct Sparse {
     count: usize,
     indices: Part,
@@ -33,7 +48,7 @@ struct Sparse {
 }
 
 /// Part of a view; the component type is that of indices.
-#[derive(Deserialize)]
+#[derive(Clone, Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Part {
     buffer_view: usize,
@@ -60,15 +75,32 @@ pub(super) struct Buffers<'a> {
 }
 
 impl Buffers<'_> {
-    /// Vectors of three numbers.
-    pub fn vectors(&self, accessor: &Accessor) -> Result<Vec<[f32; 3]>, String> {
-        if (accessor.kind.as_str(), accessor.component_type) != ("VEC3", F32) {
-            return Err("positions are vectors of three floats".into());
+    /// Vectors of three or four numbers, or matrices of sixteen.
+    pub fn vectors<const N: usize>(&self, accessor: &Accessor) -> Result<Vec<[f32; N]>, String> {
+        let kind = match N {
+            3 => "VEC3",
+            4 => "VEC4",
+            _ => "MAT4",
+        };
+        if accessor.kind != kind {
+            return Err(format!("its type is {}, not {kind}", accessor.kind));
         }
-        let bytes = self.bytes(accessor, 12)?;
-        let (numbers, _) = bytes.as_chunks::<4>();
-        let (rows, _) = numbers.as_chunks::<3>();
-        Ok(rows.iter().map(|row| row.map(f32::from_le_bytes)).collect())
+        let Number {
+            size,
+            largest,
+            read,
+        } = number(accessor.component_type)?;
+        let bytes = self.bytes(accessor, N * size)?;
+        let share = |number: f32| {
+            if accessor.normalized && largest > 0.0 {
+                (number / largest).max(-1.0)
+            } else {
+                number
+            }
+        };
+        let rows = bytes.chunks_exact(N * size);
+        let row = |row: &[u8]| std::array::from_fn(|k| share(read(&row[k * size..][..size])));
+        Ok(rows.map(row).collect())
     }
 
     /// Numbers of points.
@@ -93,6 +125,9 @@ impl Buffers<'_> {
             values,
         }) = &accessor.sparse
         {
+            if *some > count {
+                return Err(format!("it replaces {some} elements of {count}"));
+            }
             let wide = self::size(indices.component_type.unwrap_or(0))?;
             let places = self.packed(indices.buffer_view, indices.byte_offset, *some, wide)?;
             let values = self.packed(values.buffer_view, values.byte_offset, *some, size)?;
@@ -143,6 +178,41 @@ impl Buffers<'_> {
         let rows = bytes.chunks(stride).take(count);
         Ok(rows.flat_map(|row| &row[..size]).copied().collect())
     }
+}
+
+/// How numbers of a type are written.
+struct Number {
+    /// Size (bytes).
+    size: usize,
+    /// The largest one, which stands for 1 where numbers are normalized; 0 if they never are.
+    largest: f32,
+    read: fn(&[u8]) -> f32,
+}
+
+fn number(component_type: u32) -> Result<Number, String> {
+    let (size, largest, read): (_, _, fn(&[u8]) -> f32) = match component_type {
+        I8 => (1, 127.0, |bytes| f32::from(bytes[0].cast_signed())),
+        U8 => (1, 255.0, |bytes| f32::from(bytes[0])),
+        I16 => (2, 32767.0, |bytes| {
+            f32::from(i16::from_le_bytes([bytes[0], bytes[1]]))
+        }),
+        U16 => (2, 65535.0, |bytes| {
+            f32::from(u16::from_le_bytes([bytes[0], bytes[1]]))
+        }),
+        F32 => (4, 0.0, |bytes| {
+            f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
+        }),
+        other => {
+            return Err(format!(
+                "its numbers have the type {other}, which those of points have not"
+            ));
+        }
+    };
+    Ok(Number {
+        size,
+        largest,
+        read,
+    })
 }
 
 /// Size of a whole number of that type (bytes).

@@ -1,0 +1,150 @@
+//! Meshes from glTF 2.0 files, as JSON or binary (Khronos, *glTF 2.0 Specification*): the triangles
+//! of the nodes of a scene. Every count is compared with the bytes that are there before anything
+//! is reserved.
+
+mod accessor;
+mod container;
+mod document;
+mod primitive;
+mod skin;
+
+use super::Mesh;
+use crate::budget;
+use crate::fault::Fault;
+use accessor::Buffers;
+use container::{decoded, parts, unescaped};
+use document::{Document, Head, Text, item};
+use skin::Skins;
+
+/// Beginnings of the names of extensions that do not touch geometry, and of one that is read.
+const HARMLESS: [&str; 10] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "KHR_xmp",
+    "KHR_animation_pointer",
+    "KHR_mesh_quantization",
+    "EXT_texture_",
+    "EXT_lights_",
+    "EXT_materials_",
+    "MSFT_texture_",
+];
+
+/// The mesh in a glTF file. `file` reads a file that it names.
+pub(super) fn read(
+    bytes: &[u8],
+    file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<Mesh, String> {
+    let (json, binary) = parts(bytes)?;
+    budget::check_text(json)?;
+    let document = document(json)?;
+    let is_harmless = |name: &&String| HARMLESS.iter().any(|known| name.starts_with(known));
+    let mut needed = document.extensions_required.iter();
+    if let Some(extension) = needed.find(|name| !is_harmless(name)) {
+        let advice = if extension.contains("compression") {
+            ": save it without compression"
+        } else {
+            ""
+        };
+        return Err(format!(
+            "it needs the extension {extension}, which is not read{advice}"
+        ));
+    }
+    let mut buffers = Buffers {
+        buffers: vec![],
+        views: &document.buffer_views,
+    };
+    for buffer in &document.buffers {
+        let Some(Text(uri)) = &buffer.uri else {
+            let inside = binary.ok_or("its binary part is missing")?;
+            buffers.buffers.push(inside.into());
+            continue;
+        };
+        let bytes = match uri.strip_prefix("data:") {
+            Some(data) => decoded(data)?,
+            None => named(uri, file)?,
+        };
+        buffers.buffers.push(bytes.into());
+    }
+    let scene = match document.scene {
+        Some(k) => Some(item(&document.scenes, k, "scene")?),
+        None => document.scenes.first(),
+    };
+    let roots = scene.map_or(&[][..], |scene| &scene.nodes);
+    let mut reader = Reader {
+        document: &document,
+        skins: Skins::new(&document),
+        buffers,
+        mesh: Mesh::default(),
+        primitives: 0,
+        shifts: 0,
+    };
+    reader.add(roots)?;
+    Ok(reader.mesh)
+}
+
+/// The bytes of the file that a URI names. Some programs write names as they are, without escapes.
+fn named(
+    uri: &str,
+    file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<Vec<u8>, String> {
+    let name = unescaped(uri);
+    let bytes = file(&name).or_else(|why| {
+        if name == uri {
+            Err(why)
+        } else {
+            file(uri).map_err(|_| why)
+        }
+    });
+    bytes.map_err(|why| format!("{name}: {why}"))
+}
+
+/// The document in a text.
+fn document(json: &[u8]) -> Result<Document<'_>, String> {
+    let only = |version: &str| format!("it is glTF {version}: convert it to glTF 2.0");
+    match serde_json::from_slice::<Document>(json) {
+        Ok(document) if document.asset.version.0.starts_with("2.") => Ok(document),
+        Ok(document) => Err(only(&document.asset.version.0)),
+        Err(error) => {
+            // Version 1.0 has other lists.
+            if let Ok(Head { asset }) = serde_json::from_slice(json)
+                && asset.version.0.starts_with('1')
+            {
+                return Err(only(&asset.version.0));
+            }
+            let fault = Fault::of_json(&String::from_utf8_lossy(json), &error);
+            Err(format!("it is no glTF 2.0 file: {fault}"))
+        }
+    }
+}
+
+/// The mesh so far.
+struct Reader<'a> {
+    document: &'a Document<'a>,
+    buffers: Buffers<'a>,
+    mesh: Mesh,
+    skins: Skins<'a>,
+    /// Number of primitives that were looked at.
+    primitives: usize,
+    /// Number of points that targets were added to.
+    shifts: usize,
+}
+
+impl Reader<'_> {
+    /// Adds the triangles of nodes and of those below them, in the order of the file.
+    fn add(&mut self, roots: &[usize]) -> Result<(), String> {
+        let document = self.document;
+        for (k, matrix) in document.placed(roots)? {
+            let node = &document.nodes[k];
+            let Some(mesh) = node.mesh else {
+                continue;
+            };
+            let shapes = item(&document.meshes, mesh, "mesh")?;
+            let weights = node.weights.as_ref().unwrap_or(&shapes.weights);
+            for primitive in &shapes.primitives {
+                self.add_primitive(primitive, weights, node.skin, matrix)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,138 @@
+//! Primitives: triangles of a mesh, with the targets that move their points.
+
+use nalgebra::{Matrix4, Point3};
+
+use super::Reader;
+use super::document::{Primitive, Target, item};
+use super::skin::Carrier;
+use crate::mesh::{MAX_POINTS, MAX_TRIANGLES};
+
+/// How many times targets move points, at most.
+const MOST_SHIFTS: usize = 16 * MAX_POINTS;
+
+impl Reader<'_> {
+    /// Adds the triangles of a primitive; points and lines have none.
+    pub(super) fn add_primitive(
+        &mut self,
+        primitive: &Primitive,
+        weights: &[f32],
+        skin: Option<usize>,
+        matrix: Matrix4<f64>,
+    ) -> Result<(), String> {
+        let too_many =
+            || format!("there are more than {MAX_POINTS} points or {MAX_TRIANGLES} triangles");
+        self.primitives += 1;
+        if self.primitives > MAX_POINTS {
+            return Err(too_many());
+        }
+        let mode = primitive.mode.unwrap_or(4);
+        if mode < 4 {
+            return Ok(());
+        }
+        let accessor = |k: usize| item(&self.document.accessors, k, "accessor");
+        let position = primitive.attributes.get("POSITION");
+        let position = *position.ok_or("a mesh has no positions")?;
+        let first = self.mesh.positions.len();
+        if accessor(position)?.count > MAX_POINTS - first {
+            return Err(too_many());
+        }
+        let named = |k: usize| move |why: String| format!("accessor {k}: {why}");
+        let points = self.points(position, &primitive.targets, weights)?;
+        let count = points.len() as u32;
+        let corners = match primitive.indices {
+            None => (0..count).collect(),
+            Some(k) => {
+                let indices = accessor(k)?;
+                if indices.count > 3 * MAX_TRIANGLES {
+                    return Err(too_many());
+                }
+                self.buffers.indices(indices).map_err(named(k))?
+            }
+        };
+        if let Some(corner) = corners.iter().find(|corner| **corner >= count) {
+            return Err(format!("a triangle has corner {corner} of {count} points"));
+        }
+        let triangles: Vec<[u32; 3]> = match mode {
+            4 => corners
+                .chunks_exact(3)
+                .map(|t| [t[0], t[1], t[2]])
+                .collect(),
+            5 => {
+                let strip = corners.windows(3).enumerate();
+                strip
+                    .map(|(k, t)| [t[0], t[1 + k % 2], t[2 - k % 2]])
+                    .collect()
+            }
+            6 => {
+                let fan = corners.windows(2).skip(1);
+                fan.map(|side| [corners[0], side[0], side[1]]).collect()
+            }
+            _ => return Err(format!("there is no mode {mode} of primitives")),
+        };
+        if triangles.len() > MAX_TRIANGLES - self.mesh.triangles.len() {
+            return Err(too_many());
+        }
+        let carrier = match skin {
+            Some(skin) => {
+                let attributes = &primitive.attributes;
+                let count = points.len();
+                self.skins.carrier(skin, attributes, count, &self.buffers)?
+            }
+            None => Carrier::Node(matrix),
+        };
+        let place = |(i, p): (usize, [f64; 3])| {
+            let p = carrier.matrix(i).transform_point(&Point3::from(p));
+            [p.x, p.y, p.z]
+        };
+        let points = points.into_iter().enumerate();
+        self.mesh.positions.extend(points.map(place));
+        // What is mirrored winds the other way.
+        let wound = triangles.into_iter().map(|[a, b, c]| {
+            let turn = carrier
+                .matrix(a as usize)
+                .fixed_view::<3, 3>(0, 0)
+                .determinant();
+            let t = if turn < 0.0 { [a, c, b] } else { [a, b, c] };
+            t.map(|i| i + first as u32)
+        });
+        self.mesh.triangles.extend(wound);
+        Ok(())
+    }
+
+    /// Points of an accessor, moved by targets as far as their weights say.
+    fn points(
+        &mut self,
+        position: usize,
+        targets: &[Target],
+        weights: &[f32],
+    ) -> Result<Vec<[f64; 3]>, String> {
+        let read = |k: usize| {
+            let accessor = item(&self.document.accessors, k, "accessor")?;
+            let read = self.buffers.vectors::<3>(accessor);
+            read.map_err(|why| format!("accessor {k}: {why}"))
+        };
+        let points = read(position)?.into_iter();
+        let mut points: Vec<_> = points.map(|p| p.map(f64::from)).collect();
+        for (target, weight) in targets.iter().zip(weights) {
+            let Some(k) = target.position.filter(|_| *weight != 0.0) else {
+                continue;
+            };
+            let count = item(&self.document.accessors, k, "accessor")?.count;
+            if count != points.len() {
+                return Err(format!(
+                    "accessor {k}: it has not one vector for each point"
+                ));
+            }
+            self.shifts += count;
+            if self.shifts > MOST_SHIFTS {
+                return Err(format!("targets move points more than {MOST_SHIFTS} times"));
+            }
+            for (point, shift) in points.iter_mut().zip(read(k)?) {
+                for axis in 0..3 {
+                    point[axis] += f64::from(*weight) * f64::from(shift[axis]);
+                }
+            }
+        }
+        Ok(points)
+    }
+}

@@ -1,0 +1,246 @@
+//! Triangles of faces with many corners, by ear clipping (Meisters, *Polygons have ears*, 1975).
+//! Every corner keeps its place, also one on a straight side, so that the faces beside it still
+//! meet it. Sides that coincide, as those of a bridge to a hole, are no crossing.
+
+use robust::{Coord, orient2d};
+
+use crate::description::Triple;
+
+/// Largest number of tests in the faces of a file: of a corner in an ear, and of an ear.
+const MOST_TESTS: usize = 100_000_000;
+
+/// How little is asked of an ear, from an ear of a simple polygon to any corner of one that crosses
+/// itself.
+#[derive(Clone, Copy, PartialEq)]
+enum Asked {
+    /// No corner is in it or on its sides.
+    Clear,
+    /// No corner is within it.
+    Empty,
+    /// It is not turned the other way.
+    Any,
+    Nothing,
+}
+
+/// Cutter of faces into triangles.
+#[derive(Default)]
+pub(super) struct Cutter {
+    /// Tests in all faces so far.
+    tests: usize,
+    /// Corners of the face in its plane, in which it is anticlockwise.
+    corners: Vec<Coord<f64>>,
+    /// Corners beside each one, of those that are left.
+    beside: Vec<[u32; 2]>,
+    /// Corners where the face is not convex.
+    reflex: Vec<u32>,
+    /// Whether a corner was found to be no ear.
+    blocked: Vec<bool>,
+}
+
+impl Cutter {
+    /// Adds the triangles of a face with these corners, which are numbers of points; `None` if
+    /// that takes too many tests.
+    pub fn cut(
+        &mut self,
+        face: &[u32],
+        positions: &[Triple],
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> Option<()> {
+        let fan = |triangles: &mut Vec<[u32; 3]>| {
+            let sides = face[1..].windows(2);
+            triangles.extend(sides.map(|side| [face[0], side[0], side[1]]));
+            Some(())
+        };
+        if face.len() < 4 || !self.flatten(face, positions) {
+            return fan(triangles);
+        }
+        let count = face.len();
+        if (2..count).all(|k| self.turn([0, k - 1, k]) > 0.0) {
+            return fan(triangles);
+        }
+        self.begin();
+        self.clip(|ear| triangles.push(ear.map(|k| face[k])))
+    }
+
+    /// Finds the corners in the plane of the axes across which the face is largest. Returns whether
+    /// it has an area.
+    fn flatten(&mut self, face: &[u32], positions: &[Triple]) -> bool {
+        let at = |k: usize| positions[face[k] as usize];
+        let (origin, mut normal) = (at(0), [0.0; 3]);
+        for k in 1..face.len() - 1 {
+            let side = |k: usize| [0, 1, 2].map(|axis| at(k)[axis] - origin[axis]);
+            let (a, b) = (side(k), side(k + 1));
+            for (axis, sum) in normal.iter_mut().enumerate() {
+                let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+                *sum += a[u] * b[v] - a[v] * b[u];
+            }
+        }
+        let larger = |k: usize, other: usize| {
+            if normal[other].abs() > normal[k].abs() {
+                other
+            } else {
+                k
+            }
+        };
+        let axis = (1..3).fold(0, larger);
+        let (u, v) = match normal[axis] {
+            area if area > 0.0 => ((axis + 1) % 3, (axis + 2) % 3),
+            area if area < 0.0 => ((axis + 2) % 3, (axis + 1) % 3),
+            _ => return false,
+        };
+        self.corners.clear();
+        let flat = |k| Coord {
+            x: at(k)[u],
+            y: at(k)[v],
+        };
+        self.corners.extend((0..face.len()).map(flat));
+        true
+    }
+
+    /// Twice the area of a triangle of corners, or a number of the same sign.
+    fn turn(&self, [a, b, c]: [usize; 3]) -> f64 {
+        let [a, b, c] = [a, b, c].map(|k| self.corners[k]);
+        orient2d(a, b, c)
+    }
+
+    fn begin(&mut self) {
+        let count = self.corners.len();
+        let beside = |k: usize| [((k + count - 1) % count) as u32, ((k + 1) % count) as u32];
+        self.beside.clear();
+        self.beside.extend((0..count).map(beside));
+        self.blocked.clear();
+        self.blocked.resize(count, false);
+        self.reflex.clear();
+        for k in 0..count {
+            if self.turn(self.ear(k)) <= 0.0 {
+                self.reflex.push(k as u32);
+            }
+        }
+    }
+
+    /// The triangle that a corner makes with those beside it.
+    fn ear(&self, k: usize) -> [usize; 3] {
+        let [before, after] = self.beside[k];
+        [before as usize, k, after as usize]
+    }
+
+    /// Cuts off ears until none is left, each of which `add` takes.
+    fn clip(&mut self, mut add: impl FnMut([usize; 3])) -> Option<()> {
+        let (mut left, mut k) = (self.corners.len(), 0);
+        let (mut asked, mut looked, mut is_stale) = (Asked::Clear, 0, false);
+        while left >= 3 {
+            let ear @ [before, _, after] = self.ear(k);
+            let is_nothing = self.is_nothing(ear);
+            if !is_nothing && !self.is_ear(ear, asked)? {
+                (k, looked) = (after, looked + 1);
+                if looked > left {
+                    // What was in the way of an ear may be cut off since.
+                    if !is_stale {
+                        asked = asked.less();
+                    }
+                    (looked, is_stale) = (0, false);
+                    self.blocked.fill(false);
+                    self.tests += self.blocked.len();
+                }
+                continue;
+            }
+            if !is_nothing {
+                add(ear);
+            }
+            self.beside[before][1] = after as u32;
+            self.beside[after][0] = before as u32;
+            self.reflex.retain(|other| *other != k as u32);
+            self.tests += self.reflex.len();
+            for other in [before, after] {
+                self.blocked[other] = false;
+                let is_reflex = self.turn(self.ear(other)) <= 0.0;
+                let place = self.reflex.iter().position(|r| *r == other as u32);
+                match place {
+                    Some(place) if !is_reflex => drop(self.reflex.swap_remove(place)),
+                    None if is_reflex => self.reflex.push(other as u32),
+                    _ => {}
+                }
+            }
+            // Two ears beside one another make thin triangles.
+            k = if is_nothing {
+                after
+            } else {
+                self.ear(after)[2]
+            };
+            (left, looked, is_stale) = (left - 1, 0, true);
+            if asked != Asked::Clear {
+                asked = Asked::Clear;
+                self.blocked.fill(false);
+                self.tests += self.blocked.len();
+            }
+        }
+        Some(())
+    }
+
+    /// Whether a corner is where one beside it is, or the end of a line there and back.
+    fn is_nothing(&self, [a, b, c]: [usize; 3]) -> bool {
+        let [a, b, c] = [a, b, c].map(|k| self.corners[k]);
+        a == b || b == c || a == c
+    }
+
+    /// Whether an ear is one; `None` after too many tests.
+    fn is_ear(&mut self, ear: [usize; 3], asked: Asked) -> Option<bool> {
+        self.tests += 1;
+        if self.blocked[ear[1]] {
+            return Some(false);
+        }
+        self.tests += self.reflex.len();
+        if self.tests > MOST_TESTS {
+            return None;
+        }
+        let area = self.turn(ear);
+        let is = match asked {
+            Asked::Nothing => true,
+            Asked::Any => area >= 0.0,
+            _ => {
+                let is_in_way = |k: &u32| self.is_in_way(*k as usize, ear, asked == Asked::Clear);
+                area > 0.0 && !self.reflex.iter().any(is_in_way)
+            }
+        };
+        self.blocked[ear[1]] = !is;
+        Some(is)
+    }
+
+    /// Whether a corner is in an ear, or on its sides if these count.
+    fn is_in_way(&self, k: usize, ear: [usize; 3], sides_count: bool) -> bool {
+        if ear.contains(&k) {
+            return false;
+        }
+        let (at, corners) = (self.corners[k], ear.map(|k| self.corners[k]));
+        let beyond = |low: fn(&Coord<f64>) -> f64| {
+            let [a, b, c] = corners.map(|corner| low(&corner));
+            low(&at) < a.min(b).min(c) || low(&at) > a.max(b).max(c)
+        };
+        if beyond(|at| at.x) || beyond(|at| at.y) {
+            return false;
+        }
+        let turns = |to: Coord<f64>| {
+            [0, 1, 2].map(|side| orient2d(corners[side], corners[(side + 1) % 3], to))
+        };
+        if let Some(corner) = corners.iter().position(|corner| *corner == at) {
+            // Of two corners at one place, the sides of the other may lead into the ear.
+            let leads_in = |to: &u32| {
+                let turns = turns(self.corners[*to as usize]);
+                turns[corner] > 0.0 && turns[(corner + 2) % 3] > 0.0
+            };
+            return sides_count && self.beside[k].iter().any(leads_in);
+        }
+        let least = turns(at).into_iter().fold(f64::INFINITY, f64::min);
+        least > 0.0 || sides_count && least == 0.0
+    }
+}
+
+impl Asked {
+    fn less(self) -> Self {
+        match self {
+            Self::Clear => Self::Empty,
+            Self::Empty => Self::Any,
+            Self::Any | Self::Nothing => Self::Nothing,
+        }
+    }
+}

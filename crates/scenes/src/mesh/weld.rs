@@ -1,0 +1,85 @@
+//! Points that are at the same place, since files have several there where normals, textures or
+//! nodes change: one for all of them.
+
+use super::Mesh;
+use crate::description::Triple;
+
+/// Distance of points that are at the same place, as a share of the mesh's longest side: what the
+/// roundings of a few single-precision numbers add up to.
+const SAME: f64 = 1e-6;
+
+/// Sides of the cells in which points are sorted, in that distance: a point is near to few.
+const CELL: f64 = 4.0;
+
+impl Mesh {
+    /// The mesh with points at the same place made one. Triangles with two equal corners and points
+    /// without triangles are left out.
+    #[must_use]
+    pub fn welded(&self) -> Self {
+        let same = places(&self.positions);
+        let mut new = vec![u32::MAX; self.positions.len()];
+        let mut mesh = Self::default();
+        let mut corner = |i: u32| {
+            let place = &mut new[same[i as usize] as usize];
+            if *place == u32::MAX {
+                *place = mesh.positions.len() as u32;
+                mesh.positions.push(self.positions[i as usize]);
+                mesh.numbers.push(self.number(i as usize));
+            }
+            *place
+        };
+        let corners = self.triangles.iter().map(|t| t.map(&mut corner));
+        mesh.triangles = corners
+            .filter(|[a, b, c]| a != b && b != c && c != a)
+            .collect();
+        mesh
+    }
+}
+
+/// For each point the first one that is at the same place.
+fn places(positions: &[Triple]) -> Vec<u32> {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for p in positions {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(p[axis]);
+            high[axis] = high[axis].max(p[axis]);
+        }
+    }
+    let size = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+    let near = SAME * size.into_iter().fold(f64::MIN_POSITIVE / SAME, f64::max);
+    // Where a point is among the cells: of sides 1, from 0 on.
+    let scaled = |i: usize| [0, 1, 2].map(|axis| (positions[i][axis] - low[axis]) / (CELL * near));
+    let cell = |i: usize| scaled(i).map(|x| x.floor() as u32);
+    let mut sorted: Vec<_> = (0..positions.len()).map(|i| (cell(i), i as u32)).collect();
+    sorted.sort_unstable();
+    let is_near = |i: usize, k: usize| {
+        let apart = [0, 1, 2].map(|axis| positions[i][axis] - positions[k][axis]);
+        apart.iter().map(|x| x * x).sum::<f64>() <= near * near
+    };
+    let mut same: Vec<_> = (0..positions.len() as u32).collect();
+    for i in 0..positions.len() {
+        // The cells within reach: one or two along each axis.
+        let at = scaled(i);
+        let span = at.map(|x| {
+            let [from, to] = [x - 1.0 / CELL, x + 1.0 / CELL].map(|x| x.max(0.0) as u32);
+            from..=to
+        });
+        let [xs, ys, zs] = span;
+        let cells = xs.flat_map(|x| {
+            let (ys, zs) = (ys.clone(), zs.clone());
+            ys.flat_map(move |y| zs.clone().map(move |z| [x, y, z]))
+        });
+        let first = cells.filter_map(|cell| {
+            let from = sorted.partition_point(|(other, _)| *other < cell);
+            let there = sorted[from..]
+                .iter()
+                .take_while(|(other, _)| *other == cell);
+            let mut there = there.map(|(_, k)| *k).take_while(|k| (*k as usize) < i);
+            there.find(|k| same[*k as usize] == *k && is_near(i, *k as usize))
+        });
+        if let Some(first) = first.min() {
+            same[i] = first;
+        }
+    }
+    same
+}

@@ -1,0 +1,194 @@
+//! Faces of many corners.
+
+use std::fmt::Write;
+
+use crate::{area, data, obj, vector_area};
+
+/// A face with these corners in a plane, turned and stretched into space by a fixed matrix, and its
+/// area.
+fn face(corners: &[[f64; 2]]) -> (String, f64) {
+    let mut text = String::new();
+    for [x, y] in corners {
+        writeln!(text, "v {x} {y} 0").unwrap();
+    }
+    text += "f";
+    for k in 1..=corners.len() {
+        write!(text, " {k}").unwrap();
+    }
+    let count = corners.len();
+    let cross = |k: usize| {
+        let ([a, b], [c, d]) = (corners[k], corners[(k + 1) % count]);
+        a * d - b * c
+    };
+    (text + "\n", 0.5 * (0..count).map(cross).sum::<f64>())
+}
+
+/// Whether the triangles cover the face, and no place twice.
+fn is_covered(corners: &[[f64; 2]]) {
+    let (text, expected) = face(corners);
+    let mesh = obj(&text);
+    let (sum, whole) = (area(&mesh), vector_area(&mesh)[2]);
+    assert!(
+        (sum - expected.abs()).abs() < 1e-5 * expected.abs(),
+        "{sum} {expected}\n{text}"
+    );
+    assert!(
+        (whole - expected).abs() < 1e-5 * expected.abs(),
+        "{whole} {expected}\n{text}"
+    );
+}
+
+#[test]
+fn concave_faces_keep_their_notches() {
+    let mesh = obj(data("concave.obj"));
+    assert_eq!((mesh.triangles.len(), area(&mesh)), (6, 7.0));
+    // An arrow, from each of its corners on and both ways round.
+    let mut arrow = vec![[0.0, 0.0], [2.0, 1.0], [0.0, 2.0], [0.5, 1.0]];
+    for _ in 0..2 {
+        for _ in 0..4 {
+            is_covered(&arrow);
+            arrow.rotate_left(1);
+        }
+        arrow.reverse();
+    }
+    // A comb with teeth of two lengths.
+    let mut comb = vec![];
+    for k in 0..40 {
+        let (x, top) = (f64::from(k), if k % 2 == 0 { 5.0 } else { 6.0 });
+        comb.extend([[x, top], [x + 0.3, 1.0]]);
+    }
+    comb.extend([[40.0, 0.0], [0.0, 0.0]]);
+    is_covered(&comb);
+    // A spiral of two turns, whose plane area no fan covers.
+    let arm = |r: f64| {
+        (0..60).map(move |k| {
+            let (angle, r) = (f64::from(k) * 0.21, r + f64::from(k) * 0.1);
+            [r * angle.cos(), r * angle.sin()]
+        })
+    };
+    let spiral: Vec<_> = arm(1.0)
+        .chain(arm(1.4).collect::<Vec<_>>().into_iter().rev())
+        .collect();
+    is_covered(&spiral);
+}
+
+/// Corners on straight sides stay corners, so that the faces beside them still meet them, and
+/// corners that are there twice do no harm.
+#[test]
+fn corners_on_sides_stay() {
+    let tee = [
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [2.0, 0.0],
+        [2.0, 2.0],
+        [1.0, 2.0],
+        [0.0, 2.0],
+        [0.0, 1.0],
+    ];
+    is_covered(&tee);
+    let mesh = obj(face(&tee).0);
+    let mut sides: Vec<_> = mesh
+        .triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+        .collect();
+    sides.retain(|[a, b]| {
+        !mesh
+            .triangles
+            .iter()
+            .any(|&[i, j, k]| [[j, i], [k, j], [i, k]].contains(&[*a, *b]))
+    });
+    sides.sort_unstable();
+    assert_eq!(
+        sides,
+        [[0, 1], [1, 2], [2, 3], [3, 4], [4, 5], [5, 6], [6, 0]]
+    );
+    is_covered(&[
+        [0.0, 0.0],
+        [0.0, 0.0],
+        [3.0, 0.0],
+        [3.0, 3.0],
+        [3.0, 3.0],
+        [1.5, 1.0],
+        [0.0, 3.0],
+    ]);
+}
+
+/// Holes, to which a bridge leads there and back.
+#[test]
+fn bridges_lead_to_holes() {
+    let frame = |hole: [[f64; 2]; 4]| {
+        let mut corners = vec![[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [0.0, 0.0]];
+        corners.extend(hole);
+        corners.push(hole[0]);
+        corners
+    };
+    let hole = [[1.0, 1.0], [1.0, 3.0], [3.0, 3.0], [3.0, 1.0]];
+    let mut corners = frame(hole);
+    for _ in 0..corners.len() {
+        is_covered(&corners);
+        corners.rotate_left(1);
+    }
+    // Two holes, each with a bridge from the same corner.
+    let small = |x: f64, y: f64| {
+        [
+            [x, y],
+            [x, y + 1.0],
+            [x + 1.0, y + 1.0],
+            [x + 1.0, y],
+            [x, y],
+        ]
+    };
+    let mut two = vec![[0.0, 0.0], [5.0, 0.0], [5.0, 4.0], [0.0, 4.0], [0.0, 0.0]];
+    two.extend(small(1.0, 2.0));
+    two.push([0.0, 0.0]);
+    two.extend(small(3.0, 1.0));
+    for _ in 0..two.len() {
+        is_covered(&two);
+        two.rotate_left(1);
+    }
+}
+
+/// Random polygons without crossings, in random planes of space: triangles cover each once.
+#[test]
+fn random_faces_are_covered_once() {
+    let mut seed = 7u64;
+    let mut random = || {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    for round in 0..400 {
+        let count = 4 + round % 37;
+        let turn = std::f64::consts::TAU / f64::from(count);
+        let corners: Vec<_> = (0..count)
+            .map(|k| {
+                let (angle, r) = (turn * (f64::from(k) + 0.4 * random()), 0.2 + 2.0 * random());
+                [r * angle.cos(), r * angle.sin()]
+            })
+            .collect();
+        is_covered(&corners);
+    }
+}
+
+/// A face that crosses itself is cut in some way, and one that would take for ever is refused.
+#[test]
+fn crossing_faces_come_to_an_end() {
+    let star = |count: usize| {
+        let corner = |k: usize| {
+            let angle = k as f64 * 2.399_963;
+            [1000.0 * angle.cos(), 1000.0 * angle.sin()]
+        };
+        face(&(0..count).map(corner).collect::<Vec<_>>()).0
+    };
+    assert_eq!(obj(star(5)).triangles.len(), 3);
+    assert_eq!(obj(star(300)).triangles.len(), 298);
+    let begun = std::time::Instant::now();
+    let why = a3_scenes::Mesh::from_obj(star(20_000).as_bytes()).unwrap_err();
+    assert!(
+        why.starts_with("line 20001: a face that is not convex has too many corners, 20000"),
+        "{why}"
+    );
+    assert!(begun.elapsed().as_secs() < 5);
+}
