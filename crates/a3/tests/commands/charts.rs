@@ -33,7 +33,7 @@ fn a_chart_of_evaluations_has_the_same_bits_every_time() {
     assert!(a == b);
     assert!(drawn_a == drawn_b);
     for said in [
-        "errors",
+        "small differences",
         "1e-2 m",
         "1e-8 m",
         "* cheapest:",
