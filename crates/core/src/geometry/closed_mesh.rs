@@ -58,8 +58,8 @@ impl ClosedMesh {
     pub const MAX_TRIANGLES: usize = 200_000;
 
     /// Surface with these points (m) and triangles, whose corners are numbers of points. Each
-    /// connected part decides by itself what is inside: its triangles are turned around if they wind
-    /// clockwise as seen from outside, unless it lies within another part, in which it is a hole
+    /// connected part decides by itself what is inside: its triangles are turned around if they
+    /// wind clockwise as seen from outside, unless it lies within another part, in which it is a hole
     /// then. Points and edges that parts have in common become one for each.
     ///
     /// # Errors
