@@ -8,6 +8,7 @@ use a3_scenes::{Presentation, Setup};
 use crate::bounds;
 use crate::cli::{RunOptions, What};
 use crate::failure::Failure;
+use crate::output;
 
 /// The simulation of a run without a window, and what of it is shown.
 pub fn simulation(options: &RunOptions) -> Result<(Simulation, Arc<Presentation>), Failure> {
@@ -48,7 +49,17 @@ pub fn build(what: &What) -> Result<Setup, Failure> {
         let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
         let _ = threads.build_global();
     }
-    what.scene.build(what.grid).map_err(Failure::usage)
+    let setup = what.scene.build(what.grid).map_err(Failure::usage)?;
+    if let Some(network) = setup.scene.model.network() {
+        let count = network.particles();
+        if count > 1 && network.pins().count() == count {
+            output::warn(&format!(
+                "note: all {count} particles of the scene {} are pinned",
+                setup.scene.name
+            ));
+        }
+    }
+    Ok(setup)
 }
 
 /// A simulation by this solver, with its own step or tolerance unless one is given.

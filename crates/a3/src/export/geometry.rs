@@ -58,8 +58,8 @@ impl Geometry {
         vertex < self.covered || vertex >= self.particles
     }
 
-    /// The vertices that triangles or lines use, in order, or the points if there are neither: those
-    /// that programs keep when they read a file.
+    /// The vertices that triangles or lines use, in order, or the points if there are neither:
+    /// those that programs keep when they read a file.
     pub fn in_use(&self) -> Vec<u32> {
         let corners = self.triangles.iter().flatten();
         let ends = self.lines.iter().flatten();

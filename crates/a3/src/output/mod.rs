@@ -4,6 +4,7 @@ mod apart;
 mod draft;
 mod fault;
 mod leftovers;
+mod lock;
 mod place;
 mod terminal;
 
@@ -15,7 +16,8 @@ use crate::failure::Failure;
 
 pub use apart::{files_read, is_read, refuse_read};
 pub use draft::{Draft, Scratch};
-pub use place::{lock, not_written, reason};
+pub use lock::lock;
+pub use place::{not_written, reason};
 pub use terminal::{said, say, send, visible, warn};
 
 /// Most numbered names of one scene.

@@ -1,13 +1,9 @@
 //! Where a file is written: the end of all links, in a folder that is there, unless protected.
 
-use std::fs::{self, File, Metadata, TryLockError};
+use std::fs::{self, Metadata};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use web_time::Instant;
-
-use super::terminal::warn;
 use crate::failure::Failure;
 
 /// Most links, one leading to the next, that are followed. Systems follow as many.
@@ -44,40 +40,6 @@ pub fn there(place: &Path) -> io::Result<Option<Metadata>> {
     match fs::metadata(place) {
         Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
         there => there.map(Some),
-    }
-}
-
-/// How long another process is waited for, and after which time a line says so.
-const PATIENCE: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
-
-/// Lock on the folder of a file, for as long as the value exists: what is read there can be
-/// replaced before another process that locks it too reads it. `None` where the system has no such
-/// locks; a failure if another process holds it for 10 s.
-pub fn lock(path: &Path) -> Result<Option<File>, Failure> {
-    let folder = resolve(path).and_then(|place| File::open(folder(&place)));
-    let Ok(folder) = folder else {
-        return Ok(None);
-    };
-    let (begun, mut is_said) = (Instant::now(), false);
-    loop {
-        match folder.try_lock() {
-            Ok(()) => return Ok(Some(folder)),
-            Err(TryLockError::Error(_)) => return Ok(None),
-            Err(TryLockError::WouldBlock) => {}
-        }
-        let (waited, place) = (begun.elapsed(), path.display());
-        if waited > PATIENCE[1] {
-            return Err(Failure::run(format!(
-                "{place}: another process has locked its folder for 10 s: end it, or give another name"
-            )));
-        }
-        if waited > PATIENCE[0] && !is_said {
-            is_said = true;
-            warn(&format!(
-                "{place}: waits for another process that has locked its folder"
-            ));
-        }
-        std::thread::sleep(Duration::from_millis(20));
     }
 }
 

@@ -65,7 +65,9 @@ pub fn hang(mesh: &Mesh) -> Hanging {
         if is_level {
             fall = fall.max(width[0].hypot(width[1]) - (height - lowest));
         }
-        own.iter().for_each(|i| is_pinned[*i] = true);
+        for i in &own {
+            is_pinned[*i] = true;
+        }
         pins.extend(own);
     }
     Hanging {
@@ -86,7 +88,8 @@ impl Part {
         })
     }
 
-    /// The points by which it hangs, and whether it is level: its highest ones, or those of an edge.
+    /// The points by which it hangs, and whether it is level: its highest ones, or those of an
+    /// edge.
     fn held(&self, mesh: &Mesh) -> (Vec<usize>, bool) {
         let size = [0, 1, 2]
             .map(|axis| self.extent(mesh, axis))
@@ -195,6 +198,8 @@ fn necks(mesh: &Mesh, parts: &[Part], is_pinned: &[bool]) -> Vec<Neck> {
         neck.length += dot(along, along).sqrt();
     }
     necks.retain(|neck| neck.edges > 0.0);
-    necks.iter_mut().for_each(|neck| neck.length /= neck.edges);
+    for neck in &mut necks {
+        neck.length /= neck.edges;
+    }
     necks
 }

@@ -96,7 +96,8 @@ pub fn scene(path: &Path) -> Result<String, String> {
     ))
 }
 
-/// Stiffness of structural springs (N/m), by which what hangs by few pins is not drawn into threads.
+/// Stiffness of structural springs (N/m), by which what hangs by few pins is not drawn into
+/// threads.
 fn stiffness(hanging: &Hanging, scale: f64) -> f64 {
     let needed = |neck: &Neck| {
         let weight = DENSITIES[0] * GRAVITY * neck.size * scale.powi(2);

@@ -302,3 +302,25 @@ fn documented_scenes_are_scenes() {
         }
     }
 }
+
+/// A level mesh that is pinned by its top is pinned all over, which a line says.
+#[test]
+fn a_scene_that_is_pinned_all_over_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\n";
+    fs::write(folder.path().join("square.obj"), square).unwrap();
+    fs::write(
+        folder.path().join("level.toml"),
+        format!("{SQUARE}pin = [{{ at = [\"top\"] }}]\n"),
+    )
+    .unwrap();
+    let words = ["simulate", "r", "0.01", "--scene", "level.toml"];
+    let words = [&words[..], &["--until", "0.1", "--output", "-"]].concat();
+    let output = a3(folder.path(), &words);
+    assert!(output.status.success());
+    let said = text(&output.stderr);
+    assert_eq!(
+        said,
+        "note: all 4 particles of the scene level are pinned\n"
+    );
+}

@@ -58,9 +58,9 @@ impl ClosedMesh {
     pub const MAX_TRIANGLES: usize = 200_000;
 
     /// Surface with these points (m) and triangles, whose corners are numbers of points. Each
-    /// connected part decides by itself what is inside: its triangles are turned around if they wind
-    /// clockwise as seen from outside, unless it lies within another part, in which it is a hole
-    /// then. Points and edges that parts have in common become one for each.
+    /// connected part decides by itself what is inside: its triangles are turned around if they
+    /// wind clockwise as seen from outside, unless it lies within another part, in which it is a
+    /// hole then. Points and edges that parts have in common become one for each.
     ///
     /// # Errors
     /// There are no triangles or more than [`MAX_TRIANGLES`](Self::MAX_TRIANGLES); a corner does
@@ -156,14 +156,21 @@ impl ClosedMesh {
         for part in (0..count).filter(|part| volumes[*part] < 0.0) {
             let own = self.solids[part].triangles.iter();
             let corners: Vec<_> = own.flat_map(|k| self.triangles[*k as usize]).collect();
+            let Some(first) = corners.first().map(|i| self.points[*i as usize]) else {
+                continue;
+            };
             let is_within = |other: &usize| {
                 let mut points = corners.iter().map(|i| self.points[*i as usize]);
                 points.all(|d| self.is_inside(&self.solids[*other], d))
             };
-            let others = (0..count)
-                .filter(|other| volumes[*other] > 0.0)
-                .filter(is_within);
-            owners[part] = others.min_by(|a, b| volumes[*a].total_cmp(&volumes[*b]));
+            let mut around = vec![];
+            let place = Aabb::around([first]);
+            self.places.meeting(&place, |k| around.push(k as usize));
+            around.sort_unstable();
+            around.retain(|other| volumes[*other] > 0.0 && is_within(other));
+            owners[part] = around
+                .into_iter()
+                .min_by(|a, b| volumes[*a].total_cmp(&volumes[*b]));
         }
         let mut triangles = self.triangles;
         for (t, part) in triangles.iter_mut().zip(&mut part_of) {

@@ -132,8 +132,8 @@ fn sides(triangles: &[[u32; 3]]) -> Vec<([u32; 2], Side)> {
 }
 
 /// Sorts the triangles at an edge by their angle around it, as seen against its direction; `third`
-/// is the corner of each that is not on it. Of those at one angle, the ones behind which their solid
-/// is come first.
+/// is the corner of each that is not on it. Of those at one angle, the ones behind which their
+/// solid is come first.
 fn sort(sides: &mut Vec<Side>, [a, b]: [Vector3<f64>; 2], third: impl Fn(&Side) -> Vector3<f64>) {
     let along = (b - a).try_normalize(0.0).unwrap_or_default();
     let from_edge = |side: &Side| {

@@ -56,8 +56,8 @@ fn random_point(random: &mut SplitMix) -> Vector3<f64> {
     Vector3::from_fn(|_, _| random.between(0.01, 3.99))
 }
 
-/// What is in one of the boxes is inside, however they overlap, touch or wind, and is led out of all
-/// of them.
+/// What is in one of the boxes is inside, however they overlap, touch or wind, and is led out of
+/// all of them.
 #[test]
 fn parts_decide_by_themselves_what_is_inside() {
     let corner = ([0.0; 3], [4.0; 3]);

@@ -98,8 +98,8 @@ pub struct CapsuleSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObstacleSpec {
-    /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it. Each edge has two
-    /// triangles, which wind alike.
+    /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it. The
+    /// triangles at each edge are pairs that wind alike.
     pub file: String,
     /// Unit of length of the file (m); 1 if not given.
     #[serde(default)]

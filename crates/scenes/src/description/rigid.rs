@@ -54,8 +54,8 @@ pub struct PartSpec {
     pub ball: Option<f64>,
     /// Length of the axis of a capsule, along y, and its radius (m).
     pub capsule: Option<[f64; 2]>,
-    /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it. Each edge has two
-    /// triangles, which wind alike.
+    /// A file (.obj, .gltf, .glb, .stl, .ply) in the scene's folder or in one below it. The
+    /// triangles at each edge are pairs that wind alike.
     pub file: Option<String>,
     /// Unit of length of the file (m); 1 if not given.
     pub scale: Option<f64>,

@@ -126,7 +126,7 @@ struct Reader<'a> {
     skins: Skins<'a>,
     /// Number of primitives that were looked at.
     primitives: usize,
-    /// Number of points that targets were added to.
+    /// Number of points that were read, or moved by targets.
     shifts: usize,
 }
 

@@ -7,7 +7,7 @@ use super::document::{Primitive, Target, item};
 use super::skin::Carrier;
 use crate::mesh::{MAX_POINTS, MAX_TRIANGLES};
 
-/// How many times targets move points, at most.
+/// How many times points are read and moved by targets, at most.
 const MOST_SHIFTS: usize = 16 * MAX_POINTS;
 
 impl Reader<'_> {
@@ -32,9 +32,16 @@ impl Reader<'_> {
         let accessor = |k: usize| item(&self.document.accessors, k, "accessor");
         let position = primitive.attributes.get("POSITION");
         let position = *position.ok_or("a mesh has no positions")?;
-        let first = self.mesh.positions.len();
-        if accessor(position)?.count > MAX_POINTS - first {
+        let count = accessor(position)?.count;
+        if count > MAX_POINTS {
             return Err(too_many());
+        }
+        // Many primitives may share the points of one accessor.
+        self.shifts += count;
+        if self.shifts > MOST_SHIFTS {
+            return Err(format!(
+                "its primitives read points more than {MOST_SHIFTS} times"
+            ));
         }
         let named = |k: usize| move |why: String| format!("accessor {k}: {why}");
         let points = self.points(position, &primitive.targets, weights)?;
@@ -80,22 +87,27 @@ impl Reader<'_> {
             }
             None => Carrier::Node(matrix),
         };
-        let place = |(i, p): (usize, [f64; 3])| {
-            let p = carrier.matrix(i).transform_point(&Point3::from(p));
-            [p.x, p.y, p.z]
-        };
-        let points = points.into_iter().enumerate();
-        self.mesh.positions.extend(points.map(place));
-        // What is mirrored winds the other way.
-        let wound = triangles.into_iter().map(|[a, b, c]| {
-            let turn = carrier
-                .matrix(a as usize)
-                .fixed_view::<3, 3>(0, 0)
-                .determinant();
-            let t = if turn < 0.0 { [a, c, b] } else { [a, b, c] };
-            t.map(|i| i + first as u32)
-        });
-        self.mesh.triangles.extend(wound);
+        // Of the points, those of triangles are added.
+        let mut places = vec![u32::MAX; points.len()];
+        for t in triangles {
+            for i in t.map(|i| i as usize) {
+                if places[i] != u32::MAX {
+                    continue;
+                }
+                if self.mesh.positions.len() == MAX_POINTS {
+                    return Err(too_many());
+                }
+                places[i] = self.mesh.positions.len() as u32;
+                let p = carrier.matrix(i).transform_point(&Point3::from(points[i]));
+                self.mesh.positions.push([p.x, p.y, p.z]);
+            }
+            // What is mirrored winds the other way.
+            let matrix = carrier.matrix(t[0] as usize);
+            let [a, b, c] = t.map(|i| places[i as usize]);
+            let is_mirrored = matrix.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
+            let t = if is_mirrored { [a, c, b] } else { [a, b, c] };
+            self.mesh.triangles.push(t);
+        }
         Ok(())
     }
 
