@@ -56,8 +56,8 @@ pub struct Candidate {
 /// metric; the cheapest method comes first.
 ///
 /// The search gives up a method that would cost more than twice as much as the second cheapest so
-/// far, or five times as much in small scenes. `begin` is called with each method before its runs. Returns `None` if `go_on` returned
-/// false.
+/// far, or five times as much in small scenes. `begin` is called with each method before its runs.
+/// Returns `None` if `go_on` returned false.
 ///
 /// # Errors
 /// The scene cannot be run.

@@ -100,8 +100,8 @@ impl Snapshot {
         }
     }
 
-    /// Those quantities at time t (s), of a motion that is known at some times (s): positions by the
-    /// polynomial through positions and velocities, all else by that through the values.
+    /// Those quantities at time t (s), of a motion that is known at some times (s): positions by
+    /// the polynomial through positions and velocities, all else by that through the values.
     pub fn interpolated(model: &Model, known: &[(f64, &Self)], t: f64) -> Self {
         // Times in units of their distance, so that the weights are of ordinary size.
         let (first, last) = (known[0].0, known[known.len() - 1].0);

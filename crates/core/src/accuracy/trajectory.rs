@@ -28,9 +28,9 @@ impl Trajectory {
         self.errors_of(&self.snapshots[k as usize - 1], other, scope)
     }
 
-    /// Errors at the nearest end of a step of a model that frame k, counted from 1, is within: those
-    /// of contact are infinite, since they are not known there. That of the positions is at least
-    /// what exact states at both ends of the step would not tell of the frame.
+    /// Errors at the nearest end of a step of a model that frame k, counted from 1, is within:
+    /// those of contact are infinite, since they are not known there. That of the positions is at
+    /// least what exact states at both ends of the step would not tell of the frame.
     pub fn errors_between(
         &self,
         (start, frames): (&Snapshot, Frames),

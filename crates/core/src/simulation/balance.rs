@@ -226,9 +226,9 @@ impl Watch {
         self.drive.forget();
     }
 
-    /// Why a run is lost whose particles alone move with more energy than it may gain, where surfaces
-    /// have not been guarded yet: what flies through a whole scene in a step meets all of it, and
-    /// costs thousands of steps.
+    /// Why a run is lost whose particles alone move with more energy than it may gain, where
+    /// surfaces have not been guarded yet: what flies through a whole scene in a step meets all of
+    /// it, and costs thousands of steps.
     pub fn look_before_guard(&self, model: &Model, balance: &Balance, end: End) -> Option<Cause> {
         let network = model.network()?;
         let mut balance = *balance;

@@ -138,8 +138,8 @@ impl Bdf {
         norm.of(&self.step.y0, &self.step.y1, &self.sum)
     }
 
-    /// Goes back to order 1 where the curvature of a parabola, which takes the place of steps before
-    /// this one, is more than the slope: stiff motion, which the step damps out, bends it.
+    /// Goes back to order 1 where the curvature of a parabola, which takes the place of steps
+    /// before this one, is more than the slope: stiff motion, which the step damps out, bends it.
     fn judge_parabola(&mut self, norm: &ErrorNorm) {
         let [first, second, ..] = &mut self.step.k[..] else {
             return;
@@ -254,8 +254,8 @@ impl Trial for Bdf {
         Work::of(1)
     }
 
-    /// Begins with order 2: where contact changes the end of each step, no step has others before it,
-    /// and the parabola with the derivatives of y takes their place.
+    /// Begins with order 2: where contact changes the end of each step, no step has others before
+    /// it, and the parabola with the derivatives of y takes their place.
     fn begin_again(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
         let moment = MOMENT * self.step.h;
         let mut work = self.begin(system, t, y);
