@@ -5,8 +5,8 @@ use std::fmt::Write;
 
 use a3_core::integrators::bdf_growth;
 use a3_core::stability::{
-    Budget, Edge, GROWTH, Growth, Limit, Mode, Motion, Observation, RestState, largest_step,
-    observe_at_rest, rest, spectrum, tenfold_time,
+    Budget, Edge, GROWTH, Growth, Limit, Mode, Motion, Observation, RestState, observe_at_rest,
+    rest, spectrum, tenfold_time,
 };
 use a3_core::{Error, Method, Scene};
 use a3_plot::{Region, StabilityRegions};
@@ -87,7 +87,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
         bar.advance(1.0);
         let limits = each(&measured, MOST_WORK[1], |method, budget| {
             say(method, "at rest");
-            let by_modes = |rest: &RestState| largest_step(method, &rest.modes);
+            let by_modes = |rest: &RestState| rest.largest_step(method);
             let limit = hanging.as_ref().map(by_modes).transpose()?.flatten();
             let seen = match &hanging {
                 Some(rest) => {

@@ -12,14 +12,17 @@ const INTERVAL: Duration = Duration::from_millis(250);
 /// The least time from one estimate to the next, over the time that the estimate took: estimates
 /// take two percent of the time at most.
 const IDLE: u32 = 50;
-/// Largest state of a system without masses, or with rigid bodies, that is watched as it moves:
-/// an estimate takes as many evaluations as there are numbers, twice.
+/// Largest state of which all modes are found as it moves: an estimate takes as many evaluations as
+/// there are numbers, twice.
 const MOST_NUMBERS: usize = 300;
+/// Rate at which a mode grows by itself, over its frequency, twice: less is that of rounding.
+const GROWS: f64 = 0.01;
+
 /// The largest stable step for the fastest motion of a run, estimated every now and then.
 #[derive(Default)]
 pub struct LimitWatch {
     fastest: LargestMode,
-    mode: Option<Mode>,
+    modes: Vec<Mode>,
     limit: Option<Limit>,
     next: Option<Instant>,
     would_hold: Option<f64>,
@@ -54,25 +57,41 @@ impl LimitWatch {
             // The state of a lost run is crumpled: the limits that count are those of the scene.
             let scene = run.scene();
             let modes = spectrum(scene.model.system(), 0.0, &scene.state);
-            self.mode = modes.first().copied();
+            self.modes.clone_from(&modes);
             self.ask(run.method());
             self.would_hold = would_hold(run, lost.time, &modes);
             self.tried = true;
             return;
         }
-        let y = run.state();
-        let system = run.model().system();
-        self.mode = match system.mechanics().and_then(Mechanics::linearized) {
-            Some(linearized) => {
-                let (x, _) = y.split_at(y.len() / 2);
-                self.fastest.estimate(linearized, run.time(), x)
-            }
-            None if y.len() <= MOST_NUMBERS => spectrum(system, run.time(), y).first().copied(),
-            None => None,
-        };
+        self.modes = self.modes_of(run);
         self.ask(run.method());
         let after = Instant::now();
         self.next = Some(after + INTERVAL.max(IDLE * after.duration_since(begun)));
+    }
+
+    /// The modes that set the limit: the fastest, or all of them where damping mixes modes, and
+    /// where rods, wires or rigid bodies are. There are none where these are too many to tell, or
+    /// where the motion of such a scene grows by itself, of which modes know no bound.
+    fn modes_of(&mut self, run: &Simulation) -> Vec<Mode> {
+        let (system, y) = (run.model().system(), run.state());
+        let small = y.len() <= MOST_NUMBERS;
+        let all = || spectrum(system, run.time(), y);
+        let linearized = system.mechanics().and_then(Mechanics::linearized);
+        let Some(free) = linearized.filter(|m| m.baumgarte_frequency().is_none()) else {
+            let modes = if small { all() } else { vec![] };
+            let grows = |mode: &Mode| mode.drag < -GROWS * mode.frequency();
+            return if modes.iter().any(grows) {
+                vec![]
+            } else {
+                modes
+            };
+        };
+        let fastest = self.fastest.estimate(free, run.time(), &y[..y.len() / 2]);
+        if small && self.fastest.mixes() {
+            all()
+        } else {
+            fastest.into_iter().collect()
+        }
     }
 
     /// Makes the next look estimate again: the forces have changed.
@@ -82,9 +101,8 @@ impl LimitWatch {
 
     /// Finds the limit of another method, for the motion that was seen last.
     pub fn ask(&mut self, method: &Method) {
-        let modes = self.mode.as_slice();
         // Fails for a method that does not serve damped springs, on a mode that they damp.
-        self.limit = largest_step(method, modes).ok().flatten();
+        self.limit = largest_step(method, &self.modes).ok().flatten();
         (self.would_hold, self.tried) = (None, false);
     }
 }

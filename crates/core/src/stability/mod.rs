@@ -7,8 +7,11 @@
 //! written down here for either: the method takes a step on the mode, and the spectral radius of
 //! the matrix of that step is the growth.
 
+mod eigenvalues;
 mod limit;
+mod linearised;
 mod motion;
+mod pencil;
 mod rest;
 mod search;
 mod spectrum;

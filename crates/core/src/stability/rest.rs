@@ -1,9 +1,11 @@
 //! Scenes at rest: the state of rest, and the largest step with which a small
 //! disturbance around it does not grow.
 
+use super::linearised::AtRest;
+use super::pencil::Pencil;
 use super::search::{Budget, bisect, cost, step_and_look, steps};
-use super::spectrum::shapes;
-use super::{Edge, GROWTH, Limit, Mode, Observation};
+use super::spectrum::{Mixing, Undamped, of_drag, shapes};
+use super::{Edge, GROWTH, Limit, Mode, Observation, largest_step};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, find};
@@ -34,6 +36,10 @@ const SETTLING: [(f64, u32, bool); 5] = [
 /// Most work of these rounds, in that of a [`Budget`].
 const MOST: f64 = 1e9;
 
+/// Most free numbers in x of a scene whose modes are found together where damping mixes them: a
+/// matrix of twice that dimension has its eigenvalues in a second or two.
+const DENSE: usize = 200;
+
 /// Next step over one in which the guard of surfaces acted, and over one in which it did not.
 const SHORTER: f64 = 0.25;
 const LONGER: f64 = 1.5;
@@ -46,8 +52,103 @@ pub struct RestState {
     /// Modes around the state of rest, fastest first: all of them, if x has fewer than about 1200
     /// numbers.
     pub modes: Vec<Mode>,
-    /// Shape of each mode: the displacements times the roots of the masses, of length 1.
-    shapes: Vec<Vec<f64>>,
+    shapes: RestShapes,
+}
+
+/// What the shapes of modes are found from: the displacements times the roots of the masses, of
+/// length 1.
+#[derive(Clone)]
+enum RestShapes {
+    /// Shape of each mode.
+    Known(Vec<Vec<f64>>),
+    /// The shapes without damping, which damping mixes in a scene with too many of them.
+    Approximate(Vec<Vec<f64>>),
+    /// All motion of a scene where damping mixes shapes.
+    Mixed(Pencil),
+}
+
+impl RestState {
+    /// Scene that rests in its state, at the beginning of which its velocities are zero.
+    fn new(scene: Scene, network: &Network) -> Self {
+        let x = &scene.state[..scene.state.len() / 2];
+        let Undamped {
+            mut modes,
+            mut shapes,
+            mixing,
+        } = shapes(network, 0.0, x);
+        let mixes = mixing > Mixing::None;
+        let pencil = mixes.then(|| Pencil::of(network, 0.0, x, DENSE)).flatten();
+        let mixed = pencil.and_then(|pencil| Some((pencil.modes(&modes)?, pencil)));
+        if let Some((modes, pencil)) = mixed {
+            return Self {
+                scene,
+                modes,
+                shapes: RestShapes::Mixed(pencil),
+            };
+        }
+        if mixing < Mixing::Strong {
+            return Self {
+                scene,
+                modes,
+                shapes: RestShapes::Known(shapes),
+            };
+        }
+        if let Some(mode) = of_drag(network) {
+            modes.push(mode);
+            shapes.push(vec![0.0; x.len()]);
+        }
+        Self {
+            scene,
+            modes,
+            shapes: RestShapes::Approximate(shapes),
+        }
+    }
+
+    /// Largest steps of a method on the scene at rest, as by [`largest_step`] on its modes. Where
+    /// damping mixes shapes, those of a splitting method come from its steps on all motion at once,
+    /// and so do those of all explicit methods in a large scene.
+    ///
+    /// # Errors
+    /// The method does not support the scene.
+    pub fn largest_step(&self, method: &Method) -> Result<Option<Limit>, Error> {
+        let by_modes = largest_step(method, &self.modes)?;
+        let by_steps = match self.shapes {
+            RestShapes::Known(_) => false,
+            RestShapes::Mixed(_) => method.needs_mechanics,
+            RestShapes::Approximate(_) => by_modes.is_some_and(|limit| limit.is_sharp()),
+        };
+        let explicit = !method.implicit && !method.needs_springs;
+        let (Some(limit), Some(network), true) =
+            (by_modes, self.scene.model.network(), by_steps && explicit)
+        else {
+            return Ok(by_modes);
+        };
+        let fastest = self.modes.first().map_or(1.0, Mode::frequency);
+        let guess = if limit.step.is_finite() {
+            limit.step
+        } else {
+            1.0 / fastest
+        };
+        let half = self.scene.state.len() / 2;
+        let step =
+            AtRest::new(network, &self.scene.state[..half]).largest_step(method, guess, fastest)?;
+        let found = step.map(|step| Limit {
+            bounded: step,
+            step,
+            ..limit
+        });
+        Ok(found.or(by_modes))
+    }
+
+    /// Shape of the mode of this index.
+    fn shape(&self, mode: usize) -> Option<Vec<f64>> {
+        match &self.shapes {
+            RestShapes::Known(shapes) | RestShapes::Approximate(shapes) => {
+                Some(shapes[mode].clone())
+            }
+            RestShapes::Mixed(pencil) => pencil.shape(&self.modes[mode]),
+        }
+    }
 }
 
 /// State in which the scene comes to rest without wind and swing and without tearing, computed by
@@ -128,13 +229,8 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     if speed > 1e-4 || !rests {
         return Ok(None);
     }
-    let (modes, shapes) = shapes(network, 0.0, &y[..half]).into_iter().unzip();
     scene.state = y;
-    Ok(Some(RestState {
-        scene,
-        modes,
-        shapes,
-    }))
+    Ok(Some(RestState::new(scene, network)))
 }
 
 /// Number of times that the guard of surfaces has acted in a run.
@@ -170,7 +266,8 @@ pub fn observe_at_rest(
     let mut random = SplitMix(5);
     let others: Vec<_> = (0..half).map(|_| random.between(-1.0, 1.0)).collect();
     let length = norm(&others);
-    for (k, (z, other)) in rest.shapes[limit.mode].iter().zip(&others).enumerate() {
+    let shape = rest.shape(limit.mode).unwrap_or_else(|| vec![0.0; half]);
+    for (k, (z, other)) in shape.iter().zip(&others).enumerate() {
         let particle = k % network.particles();
         if !network.is_pinned(particle) {
             let z = z + OTHERS * other / length;

@@ -1,9 +1,11 @@
 //! Modes of a scene around a state, from products with the force differential alone: Lanczos's
 //! method with full reorthogonalisation, and power iteration.
 
-use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
+use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::Mode;
+use super::eigenvalues::{ITERATIONS, PRECISIONS, eigenvalues};
+use super::pencil::Pencil;
 use crate::random::SplitMix;
 use crate::system::{Linearized, Mechanics, ParticleSystem};
 
@@ -14,27 +16,40 @@ const PRODUCTS: usize = 64;
 const MULTIPLICATIONS: f64 = 2e9;
 /// Largest dimension of a first-order system whose Jacobian is computed.
 const DENSE: usize = 300;
-/// Most iterations of the QR algorithm for an eigenvalue; two or three are usual.
-const ITERATIONS: usize = 20;
-/// Precisions to which that decides what is zero: rounding alone, and, where that is never reached,
-/// what central differences leave of it.
-const PRECISIONS: [f64; 2] = [f64::EPSILON, 1e-8];
+/// Length of the part of a shape's damping in other shapes, over that in its own, from which
+/// damping is said to mix shapes, and over the frequency, from which it changes the frequency by
+/// about a percent.
+const MIXED: f64 = 0.02;
+const STRONG: f64 = 0.1;
 
 /// Modes around the state y at time t (s), fastest first.
 ///
 /// For a linearised mechanical system they come from Lanczos's method on the mass-normalised
-/// stiffness, each with the damping of its own shape. Constraints add the mode in which their
-/// errors decay. For a small first-order system the modes come from the eigenvalues of its
-/// Jacobian, by what f reads: not by what rigid bodies carry. For any other system there are none,
-/// and where the eigenvalues are not found in a limited number of iterations. A mode of negative
-/// stiffness buckles.
+/// stiffness, each with the damping of its own shape. Where damping mixes these shapes, the modes
+/// of a small system come from all of its eigenvalues; a large one has one more, that of the
+/// particle with most drag over mass. For a small first-order system, and one with constraints, the
+/// modes come from the eigenvalues of its Jacobian, by what f reads: not by what rigid bodies
+/// carry. In a large system constraints only add the mode in which their errors decay. For any
+/// other system there are none, and where the eigenvalues are not found in a limited number of
+/// iterations. A mode of negative stiffness buckles.
 #[must_use]
 pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
-    let mut modes = match system.mechanics().and_then(Mechanics::linearized) {
+    let linearized = system.mechanics().and_then(Mechanics::linearized);
+    let is_constrained = |m: &&dyn Linearized| m.baumgarte_frequency().is_some();
+    let small = y.len() <= DENSE;
+    let mut modes = match linearized.filter(|m| !(small && is_constrained(m))) {
         Some(mechanics) => {
             let (x, _) = y.split_at(y.len() / 2);
-            let mut modes = vec![];
-            of_mechanics(mechanics, t, x, PRODUCTS, &mut |mode, _| modes.push(mode));
+            let Undamped {
+                mut modes, mixing, ..
+            } = of_mechanics(mechanics, t, x, PRODUCTS);
+            if mixing > Mixing::None {
+                let pencil = Pencil::of(mechanics, t, x, DENSE / 2);
+                match pencil.and_then(|pencil| pencil.modes(&modes)) {
+                    Some(mixed) => modes = mixed,
+                    None => modes.extend(of_drag(mechanics)),
+                }
+            }
             modes.extend(of_constraints(mechanics));
             modes
         }
@@ -44,22 +59,36 @@ pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     modes
 }
 
-/// Modes around the positions x (m), all of them or as many as a few seconds allow, fastest first,
-/// each with its shape: the displacements times the roots of the masses, of length 1.
-pub(super) fn shapes(mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Vec<(Mode, Vec<f64>)> {
+/// Modes around a state without damping, fastest first, each with its damping.
+pub(super) struct Undamped {
+    pub modes: Vec<Mode>,
+    /// Shape of each mode: the displacements times the roots of the masses, of length 1.
+    pub shapes: Vec<Vec<f64>>,
+    /// How much damping mixes these shapes.
+    pub mixing: Mixing,
+}
+
+/// How much damping turns a shape of the undamped motion into others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+pub(super) enum Mixing {
+    /// Each has its own damping.
+    #[default]
+    None,
+    /// Its damping is not that of the shape alone.
+    Weak,
+    /// Its frequency is not, either.
+    Strong,
+}
+
+/// Modes around the positions x (m), all of them or as many as a few seconds allow.
+pub(super) fn shapes(mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Undamped {
     let products = (MULTIPLICATIONS / x.len() as f64).sqrt() as usize;
-    let mut modes = vec![];
-    let products = products.max(PRODUCTS);
-    of_mechanics(mechanics, t, x, products, &mut |mode, shape| {
-        modes.push((mode, shape.to_vec()));
-    });
-    modes.sort_by(|(a, _), (b, _)| b.stiffness.total_cmp(&a.stiffness));
-    modes
+    of_mechanics(mechanics, t, x, products.max(PRODUCTS))
 }
 
 /// Mass-normalised stiffness M^-1/2 K M^-1/2 and damping M^-1/2 D M^-1/2 at the positions x, as
 /// operators. The modes are those at zero velocity.
-struct Normalised<'a> {
+pub(super) struct Normalised<'a> {
     mechanics: &'a dyn Linearized,
     t: f64,
     x: &'a [f64],
@@ -68,7 +97,7 @@ struct Normalised<'a> {
 }
 
 impl<'a> Normalised<'a> {
-    fn new(mechanics: &'a dyn Linearized, t: f64, x: &'a [f64]) -> Self {
+    pub fn new(mechanics: &'a dyn Linearized, t: f64, x: &'a [f64]) -> Self {
         Self {
             mechanics,
             t,
@@ -89,7 +118,7 @@ impl<'a> Normalised<'a> {
     }
 
     /// out = K z, or D z if `damping` is set, both mass-normalised.
-    fn product(&mut self, z: &[f64], damping: bool, out: &mut [f64]) {
+    pub fn product(&mut self, z: &[f64], damping: bool, out: &mut [f64]) {
         let mut scaled = std::mem::take(&mut self.scaled);
         scaled.copy_from_slice(z);
         self.scale(&mut scaled);
@@ -117,17 +146,28 @@ impl<'a> Normalised<'a> {
         self.mechanics.drag_coefficient() * share
     }
 
-    /// Mode with the shape z and this stiffness over mass (1/s2).
-    fn mode(&mut self, stiffness: f64, z: &[f64], scratch: &mut [f64]) -> Mode {
+    /// Mode with the shape z and this stiffness over mass (1/s2), and how much damping turns z into
+    /// other shapes.
+    fn mode(&mut self, stiffness: f64, z: &[f64], scratch: &mut [f64]) -> (Mode, Mixing) {
         self.product(z, true, scratch);
         let drag = self.drag(z);
+        let all = dot(z, scratch);
+        let turned = (dot(scratch, scratch) - all * all).max(0.0).sqrt();
         // Without damped springs both terms are equal up to rounding.
-        let damping = dot(z, scratch) - drag;
-        Mode {
+        let damping = all - drag;
+        let mode = Mode {
             stiffness,
             drag,
             damping: if damping > 1e-9 * drag { damping } else { 0.0 },
-        }
+        };
+        let mixing = if turned > STRONG * stiffness.abs().sqrt() && turned > MIXED * all.abs() {
+            Mixing::Strong
+        } else if turned > MIXED * all.abs() {
+            Mixing::Weak
+        } else {
+            Mixing::None
+        };
+        (mode, mixing)
     }
 
     /// Random shape of length 1, which contains a share of every mode.
@@ -160,19 +200,17 @@ fn normalise(z: &mut [f64]) -> f64 {
     length
 }
 
-/// Calls `visit` with each mode around x and its shape, by Lanczos's method with at most `products`
-/// products.
-fn of_mechanics(
-    mechanics: &dyn Linearized,
-    t: f64,
-    x: &[f64],
-    products: usize,
-    visit: &mut dyn FnMut(Mode, &[f64]),
-) {
+/// Modes around x by Lanczos's method with at most `products` products.
+fn of_mechanics(mechanics: &dyn Linearized, t: f64, x: &[f64], products: usize) -> Undamped {
+    let mut found = Undamped {
+        modes: vec![],
+        shapes: vec![],
+        mixing: Mixing::None,
+    };
     let mut stiffness = Normalised::new(mechanics, t, x);
     let mut basis = vec![stiffness.any_shape()];
     if dot(&basis[0], &basis[0]) == 0.0 {
-        return;
+        return found;
     }
     let (mut alpha, mut beta) = (vec![], vec![]);
     let mut next = vec![0.0; x.len()];
@@ -210,21 +248,41 @@ fn of_mechanics(
     let most = ITERATIONS * m;
     let find = |precision| SymmetricEigen::try_new(tridiagonal.clone(), precision, most);
     let Some(eigen) = PRECISIONS.into_iter().find_map(find) else {
-        return;
+        return found;
     };
-    let mut shape = vec![0.0; x.len()];
-    for (k, weights) in eigen.eigenvectors.column_iter().enumerate() {
-        shape.fill(0.0);
-        for (weight, z) in weights.iter().zip(&basis) {
+    let mut order: Vec<_> = (0..m).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    for k in order {
+        let mut shape = vec![0.0; x.len()];
+        for (weight, z) in eigen.eigenvectors.column(k).iter().zip(&basis) {
             for (shape, z) in shape.iter_mut().zip(z) {
                 *shape += weight * z;
             }
         }
-        visit(
-            stiffness.mode(eigen.eigenvalues[k], &shape, &mut next),
-            &shape,
-        );
+        let (mode, mixing) = stiffness.mode(eigen.eigenvalues[k], &shape, &mut next);
+        found.modes.push(mode);
+        found.shapes.push(shape);
+        if mixing > found.mixing {
+            found.mixing = mixing;
+        }
     }
+    found
+}
+
+/// Mode of the particle with most drag over mass, as if no spring held it; `None` where all have
+/// the same.
+pub(super) fn of_drag(mechanics: &dyn Linearized) -> Option<Mode> {
+    let free = || mechanics.inverse_masses().iter().filter(|w| **w > 0.0);
+    let lightest = free().fold(0.0, |m: f64, w| m.max(*w));
+    let heaviest = free().fold(f64::INFINITY, |m: f64, w| m.min(*w));
+    let drag = mechanics.drag_coefficient() * lightest;
+    let differs = drag > 0.0 && lightest > (1.0 + MIXED) * heaviest;
+    differs.then(|| Mode {
+        // So that it returns.
+        stiffness: (1e-3 * drag).powi(2),
+        drag,
+        damping: 0.0,
+    })
 }
 
 /// Critically damped mode in which Baumgarte stabilisation reduces the errors of all constraints;
@@ -271,30 +329,11 @@ fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
         .collect()
 }
 
-/// Eigenvalues of a matrix; none where the QR algorithm does not find them in a limited number of
-/// iterations.
-///
-/// A rotation of the axes into one another is a fixed point of the algorithm: what a random
-/// reflection makes of the matrix is none, and has the same eigenvalues. Where many eigenvalues are
-/// zero, rounding keeps entries from becoming small beside their neighbours: larger ones count as
-/// zero then.
-fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
-    let n = matrix.nrows();
-    let mut random = SplitMix(1);
-    let u = DVector::from_fn(n, |_, _| random.between(-1.0, 1.0)).normalize();
-    let reflection = DMatrix::identity(n, n) - 2.0 * &u * u.transpose();
-    let reflected = || &reflection * matrix * &reflection;
-    let schur = |matrix, precision| Schur::try_new(matrix, precision, ITERATIONS * n);
-    schur(matrix.clone(), PRECISIONS[0])
-        .or_else(|| schur(reflected(), PRECISIONS[1]))
-        .map(|schur| schur.complex_eigenvalues().iter().copied().collect())
-        .unwrap_or_default()
-}
-
 /// Fastest mode of a run in progress, by power iteration from the shape at the last estimate.
 #[derive(Clone, Debug, Default)]
 pub struct LargestMode {
     shape: Vec<f64>,
+    mixes: bool,
 }
 
 impl LargestMode {
@@ -303,6 +342,13 @@ impl LargestMode {
     #[must_use]
     pub fn shape(&self) -> &[f64] {
         &self.shape
+    }
+
+    /// Whether damping mixed this shape with others at the last estimate, or differs so much from
+    /// place to place that another mode may limit the step.
+    #[must_use]
+    pub fn mixes(&self) -> bool {
+        self.mixes
     }
 
     /// Fastest mode around the positions x (m) at time t (s), or that of the constraints if it is
@@ -336,38 +382,10 @@ impl LargestMode {
             }
             std::mem::swap(&mut self.shape, &mut next);
         }
-        let mode = stiffness.mode(largest, &self.shape, &mut next);
+        let (mode, mixing) = stiffness.mode(largest, &self.shape, &mut next);
+        let dragged = of_drag(mechanics).is_some_and(|most| most.drag > (1.0 + MIXED) * mode.drag);
+        self.mixes = mixing > Mixing::None || dragged;
         let faster = of_constraints(mechanics).filter(|other| other.stiffness > mode.stiffness);
         faster.or(Some(mode))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Eigenvalues, sorted by their real and imaginary parts.
-    fn sorted(matrix: &DMatrix<f64>) -> Vec<[f64; 2]> {
-        let mut all: Vec<_> = eigenvalues(matrix).iter().map(|l| [l.re, l.im]).collect();
-        all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-        all
-    }
-
-    /// Which takes each axis to the next one: steps of the QR algorithm leave it as it is.
-    #[test]
-    fn a_rotation_of_axes_has_the_roots_of_one() {
-        let n = 5;
-        let matrix = DMatrix::from_fn(n, n, |i, j| f64::from(u8::from(i == (j + 1) % n)));
-        let all = sorted(&matrix);
-        assert_eq!(all.len(), n);
-        for [re, im] in all {
-            let power = Complex::new(re, im).powu(n as u32);
-            assert!((power - 1.0).norm() < 1e-10, "{re} {im}");
-        }
-    }
-
-    #[test]
-    fn what_is_not_finite_has_no_eigenvalues() {
-        assert!(sorted(&DMatrix::from_element(4, 4, f64::NAN)).is_empty());
     }
 }

@@ -12,6 +12,7 @@ mod ends;
 mod foreign;
 mod implicit;
 mod limits;
+mod mixed;
 mod nystrom;
 mod observed;
 mod order;
