@@ -11,6 +11,7 @@ mod eigenvalues;
 mod limit;
 mod linearised;
 mod motion;
+mod normalised;
 mod pencil;
 mod rest;
 mod search;

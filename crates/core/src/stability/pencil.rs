@@ -7,7 +7,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::Mode;
 use super::eigenvalues::eigenvalues;
-use super::spectrum::Normalised;
+use super::normalised::Normalised;
 use crate::random::SplitMix;
 use crate::system::Linearized;
 

@@ -2,9 +2,10 @@
 //! disturbance around it does not grow.
 
 use super::linearised::AtRest;
+use super::normalised::Mixing;
 use super::pencil::Pencil;
 use super::search::{Budget, bisect, cost, step_and_look, steps};
-use super::spectrum::{Mixing, Undamped, of_drag, shapes};
+use super::spectrum::{Undamped, of_drag, shapes};
 use super::{Edge, GROWTH, Limit, Mode, Observation, largest_step};
 use crate::control::Control;
 use crate::error::Error;
