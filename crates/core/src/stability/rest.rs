@@ -41,6 +41,10 @@ const MOST: f64 = 1e9;
 /// matrix of twice that dimension has its eigenvalues in a second or two.
 const DENSE: usize = 200;
 
+/// Most numbers in the state of a scene whose limits are confirmed by steps on all motion where it
+/// has too many modes to be found together: more would take minutes.
+const STEPPED: usize = 1200;
+
 /// Next step over one in which the guard of surfaces acted, and over one in which it did not.
 const SHORTER: f64 = 0.25;
 const LONGER: f64 = 1.5;
@@ -116,7 +120,10 @@ impl RestState {
         let by_steps = match self.shapes {
             RestShapes::Known(_) => false,
             RestShapes::Mixed(_) => method.needs_mechanics,
-            RestShapes::Approximate(_) => by_modes.is_some_and(|limit| limit.is_sharp()),
+            RestShapes::Approximate(_) => {
+                let small = self.scene.state.len() <= STEPPED;
+                small && by_modes.is_some_and(|limit| limit.is_sharp())
+            }
         };
         let explicit = !method.implicit && !method.needs_springs;
         let (Some(limit), Some(network), true) =
