@@ -66,8 +66,8 @@ const COURSE: [char; 4] = ['e', 't', 'r', 'i'];
 /// Solvers whose steps turn rigid bodies by a composition of order 6.
 const TURNING: [char; 3] = ['s', 'v', 'p'];
 
-/// Leaves out the curves of the methods that are cheapest for no error on any problem, but for
-/// those of the course.
+/// Keeps the curves of the methods that are cheapest for some error on some problem, and those of
+/// the course.
 pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
     let mut kept: Vec<_> = methods.iter().map(|m| COURSE.contains(&m.letter)).collect();
     for problem in &chart.problems {

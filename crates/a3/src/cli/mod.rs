@@ -234,8 +234,8 @@ pub enum WorkMeasure {
 pub struct Chart {
     #[command(flatten)]
     pub what: What,
-    /// Solvers to compare, such as t,r,v, or all; by default all that can run the scene, of which
-    /// those are drawn that are cheapest somewhere, and e, t, r and i
+    /// Solvers to measure and draw, such as t,r,v, or all; by default all that can run the scene
+    /// are measured, and those that are cheapest for some error, and e, t, r and i, are drawn
     #[arg(long, value_name = "SOLVERS", value_delimiter = ',', value_parser = SOLVER_OR_ALL, hide_possible_values = true)]
     pub solvers: Vec<Option<&'static Method>>,
     /// Simulated seconds; by default, as long as errors are meaningful on this scene

@@ -93,7 +93,8 @@ fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io
     Ok(())
 }
 
-/// Writes these vertices of the current state, in order, and what is between them.
+/// Writes these vertices of the current state, in order, and then the faces and lines that join
+/// them.
 pub fn write_vertices(
     file: &mut dyn Write,
     geometry: &Geometry,

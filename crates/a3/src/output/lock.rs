@@ -13,8 +13,8 @@ use crate::failure::Failure;
 /// How long another process is waited for, and after which time a line says so.
 const PATIENCE: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(10)];
 
-/// Lock on the folder of a file, for as long as the value exists: what is read there can be
-/// replaced before another process that locks it too reads it. `None` where the system has no such
+/// Locks the folder of a file until the returned value is dropped, so that no other process that
+/// locks it reads or replaces the file meanwhile. `None` where the system has no such
 /// locks; a failure if another process holds it for 10 s.
 pub fn lock(path: &Path) -> Result<Option<File>, Failure> {
     let folder = resolve(path).and_then(|place| File::open(folder(&place)));

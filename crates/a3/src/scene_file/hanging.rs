@@ -9,8 +9,9 @@ use a3_scenes::Mesh;
 const LEVEL: f64 = 0.02;
 /// Points as high as the highest one, or as far out at an edge, as a share of the part.
 const NEAR: f64 = 0.01;
-/// Most points that are pinned, and parts of which more than one is.
+/// Largest number of points that are pinned.
 const MOST_PINS: usize = 20_000;
+/// Number of connected parts beyond which each is pinned at one point only.
 const MOST_WIDE: usize = 1000;
 
 /// What holds a mesh.

@@ -12,8 +12,8 @@ const INTERVAL: Duration = Duration::from_millis(250);
 /// The least time from one estimate to the next, over the time that the estimate took: estimates
 /// take two percent of the time at most.
 const IDLE: u32 = 50;
-/// Largest state of which all modes are found as it moves: an estimate takes as many evaluations as
-/// there are numbers, twice.
+/// Most numbers in a state for all of its modes to be computed while it runs: that takes two
+/// evaluations for each number.
 const MOST_NUMBERS: usize = 300;
 /// Rate at which a mode grows by itself, over its frequency, twice: less is that of rounding.
 const GROWS: f64 = 0.01;
@@ -70,8 +70,8 @@ impl LimitWatch {
     }
 
     /// The modes that set the limit: the fastest, or all of them where damping mixes modes, and
-    /// where rods, wires or rigid bodies are. There are none where these are too many to tell, or
-    /// where the motion of such a scene grows by itself, of which modes know no bound.
+    /// where rods, wires or rigid bodies are. Such a scene has none if its state is too large for
+    /// that, or if a mode grows by itself: then the modes set no limit.
     fn modes_of(&mut self, run: &Simulation) -> Vec<Mode> {
         let (system, y) = (run.model().system(), run.state());
         let small = y.len() <= MOST_NUMBERS;

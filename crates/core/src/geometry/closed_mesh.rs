@@ -11,8 +11,8 @@ use super::nearest::{Nearest, Separation};
 use super::parts::split;
 use crate::error::{Error, finite};
 
-/// Closed surface of triangles around a solid, or around several, which may overlap: what is in one
-/// of them is inside.
+/// Closed surfaces of triangles, each around a solid. Solids may overlap: a point in any of them is
+/// inside.
 #[derive(Clone, Debug)]
 pub struct ClosedMesh {
     points: Vec<Vector3<f64>>,
