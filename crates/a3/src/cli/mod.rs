@@ -278,6 +278,9 @@ pub struct Stability {
     /// Picture to write, ending in .svg or .png; by default a3-stability-SCENE.svg
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// File for all limits in seconds, ending in .json
+    #[arg(long, value_name = "FILE")]
+    pub data: Option<PathBuf>,
     /// Width and height of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1400x1000", value_parser = picture_size, allow_hyphen_values = true)]
     pub size: (u32, u32),

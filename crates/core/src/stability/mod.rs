@@ -12,6 +12,7 @@ mod limit;
 mod linearised;
 mod motion;
 mod normalised;
+mod observation;
 mod pencil;
 mod rest;
 mod search;
@@ -30,8 +31,9 @@ use crate::system::{Compliant, Linearized, Mechanics, Splitting, place_pins};
 
 pub use limit::{GROWTH, HORIZON, Limit, STEPS, largest_step, tenfold_time};
 pub use motion::Motion;
+pub use observation::Observation;
 pub use rest::{RestState, observe_at_rest, rest};
-pub use search::{Budget, Edge, Observation};
+pub use search::Budget;
 pub use spectrum::{LargestMode, spectrum};
 
 /// Rate of growth, over the frequency, that differences of forces may show of a mode that does not

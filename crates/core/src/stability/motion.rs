@@ -6,8 +6,8 @@
 //! however long the run, and never grows: this multiple is known (`Growth::swing`) and allowed.
 //! A run is *accurate* while its error is below a hundredth of the motion.
 
-use super::search::{Budget, MOST, bisect, step_and_look, steps};
-use super::{Edge, GROWTH, Growth, HORIZON, Mode, Observation, largest_step, spectrum};
+use super::search::{Budget, MOST, bisect, sharpen, step_and_look, steps};
+use super::{GROWTH, Growth, HORIZON, Mode, Observation, largest_step, spectrum};
 use std::cell::RefCell;
 
 use crate::control::Control;
@@ -47,8 +47,6 @@ const TRUE: f64 = 5e7;
 const LONG: f64 = 5e6;
 /// Length of the runs that tell whether a limit is sharp, as a multiple of that of the others.
 const LONGER: u64 = 10;
-/// Distance from the limit, as a factor, at which they are taken.
-const NEAR: f64 = 1.1;
 
 /// True motion of a scene from its start, by an accurate run of [`HORIZON`].
 #[derive(Clone)]
@@ -156,11 +154,10 @@ impl Motion {
     /// Largest step with which a method's runs from the start stay bounded.
     ///
     /// Runs take [`HORIZON`] and [`STEPS`](super::STEPS) steps at least. The search begins at the
-    /// limit by the modes. The limit that is seen is sharp if that one is, if a run ten times as
-    /// long holds with a step a tenth shorter, and if one fails with a step a tenth longer. If the
-    /// former fails, the limit is that of runs of this length. It is blurred where the budget
-    /// limits the runs. `None` if the runs would take too long, and soon after `go_on` returns
-    /// false.
+    /// limit by the modes. Runs ten times as long, with steps a tenth shorter and a tenth longer,
+    /// tell whether the limit is sharp. If they do not, or if that by the modes is not sharp, runs
+    /// from half the limit to twice it show in which interval some hold and some fail. `None` if the
+    /// runs would take too long, and soon after `go_on` returns false.
     ///
     /// # Errors
     /// The method does not support the scene.
@@ -204,19 +201,11 @@ impl Motion {
         };
         let mut seen = bisect(expected, work, PRECISION, false, |h| holds(h, 1))?;
         let sharp = limit.is_none_or(|limit| limit.is_sharp());
-        if let Some(Observation { step, edge, .. }) = &mut seen
-            && *edge == Edge::Sharp
+        if let Some(seen) = seen
+            .as_mut()
+            .filter(|seen| !seen.is_open() && !budget.limits())
         {
-            if !sharp || holds(*step * NEAR, LONGER)? != Some(false) || budget.limits() {
-                *edge = Edge::Blurred;
-            } else if holds(*step / NEAR, LONGER)? != Some(true) {
-                // The energy grows slowly at shorter steps: the long runs tell which of them hold.
-                let long = |h| holds(h, LONGER);
-                seen = bisect(*step / NEAR, work, PRECISION, false, long)?;
-                if let Some(seen) = &mut seen {
-                    seen.edge = Edge::Blurred;
-                }
-            }
+            *seen = sharpen(*seen, sharp, PRECISION, |h| holds(h, LONGER))?;
         }
         Ok(seen.filter(|_| go_on()))
     }

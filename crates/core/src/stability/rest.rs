@@ -6,7 +6,7 @@ use super::normalised::Mixing;
 use super::pencil::Pencil;
 use super::search::{Budget, bisect, cost, step_and_look, steps};
 use super::spectrum::{Undamped, of_drag, shapes};
-use super::{Edge, GROWTH, Limit, Mode, Observation, largest_step};
+use super::{GROWTH, Limit, Mode, Observation, largest_step};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, find};
@@ -251,7 +251,8 @@ fn acts(run: &Simulation) -> usize {
 /// times in [`HORIZON`](super::HORIZON).
 ///
 /// The disturbance is a velocity in the mode that limits the method, with a small random part.
-/// Bisection begins at the predicted limit. The limit is blurred where the budget limits the runs.
+/// Bisection begins at the predicted limit. Where that is not sharp, growth is slower down to its
+/// `bounded` step, which counts as the shortest that fails.
 /// `None` if no limit is given, if the runs would take too long, and soon after `go_on` returns
 /// false.
 ///
@@ -303,11 +304,12 @@ pub fn observe_at_rest(
         }))
     };
     let mut seen = bisect(guess, still.model.work(), PRECISION, true, holds)?;
+    // Shorter steps grow too, more slowly, where the limit by the modes is not sharp.
     if let Some(seen) = seen
         .as_mut()
-        .filter(|s| s.edge == Edge::Sharp && (budget.limits() || !limit.is_sharp()))
+        .filter(|seen| !seen.is_open() && !limit.is_sharp())
     {
-        seen.edge = Edge::Blurred;
+        seen.failed = limit.bounded.min(seen.failed);
     }
     Ok(seen.filter(|_| go_on()))
 }

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::{HORIZON, STEPS};
+use super::{HORIZON, Observation, STEPS};
 use crate::elements::Element;
 use crate::error::Error;
 use crate::integrators::Method;
@@ -31,6 +31,10 @@ const OTHER: f64 = 3.5;
 const FLUID: f64 = 10.0;
 /// ... and where surfaces touch, whose pairs are listed anew where they move fast.
 const TOUCHING: f64 = 50.0;
+/// Distance from a limit, as a factor, at which longer runs tell whether it is sharp.
+const NEAR: f64 = 1.1;
+/// Shortest step that is tried below a limit, as a share of it.
+const LEAST: f64 = 1.0 / 16.0;
 /// Price of an impulse of the guard of surfaces, with the search for what it meets next.
 const IMPULSE: f64 = 50.0;
 
@@ -133,29 +137,6 @@ pub(super) fn cost(run: &Simulation) -> f64 {
     run.work().total() * price(run.model()) + IMPULSE * run.guarded().impulses as f64
 }
 
-/// Nature of a limit that was observed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Edge {
-    /// Runs hold at all shorter steps, however long they are, and fail soon at longer ones.
-    Sharp,
-    /// Some longer runs fail at shorter steps too, or some runs hold at longer steps; or it was not
-    /// found out whether they do.
-    Blurred,
-    /// No run failed: the step is the longest that was tried.
-    Open,
-}
-
-/// Largest step with which runs were seen to hold.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Observation {
-    /// Largest step that held (s).
-    pub step: f64,
-    /// Nature of the limit.
-    pub edge: Edge,
-    /// Number of runs that the search took.
-    pub runs: u32,
-}
-
 /// Number of steps of h (s) in a run: those that fill [`HORIZON`], and [`STEPS`] at least, or a
 /// twentieth of these where no limit is expected.
 pub(super) fn steps(h: f64, expected: f64) -> u64 {
@@ -193,33 +174,35 @@ enum Stop {
 struct Trials<F> {
     holds: F,
     runs: u32,
-    /// Longest step that held, and shortest that did not.
-    held: Option<f64>,
-    failed: Option<f64>,
+    /// Steps, and whether they held.
+    tried: Vec<(f64, bool)>,
 }
 
 impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
+    fn new(holds: F) -> Self {
+        Self {
+            holds,
+            runs: 0,
+            tried: vec![],
+        }
+    }
+
     fn hold(&mut self, h: f64) -> Result<bool, Stop> {
         self.runs += 1;
         let holds = (self.holds)(h).map_err(Stop::Failed)?.ok_or(Stop::Open)?;
-        let known = if holds {
-            &mut self.held
-        } else {
-            &mut self.failed
-        };
-        *known = Some(h);
+        self.tried.push((h, holds));
         Ok(holds)
     }
 
-    /// Brackets the limit, from an expected one (s), and bisects it. Returns its nature; `None` if
-    /// no step of at least `shortest` (s) holds.
+    /// Brackets the limit, from an expected one (s), and bisects it, unless the longest step holds or
+    /// no step of at least `shortest` (s) does.
     fn search(
         &mut self,
         guess: f64,
         [shortest, longest]: [f64; 2],
         precision: f64,
         near: bool,
-    ) -> Result<Option<Edge>, Stop> {
+    ) -> Result<(), Stop> {
         let (mut low, mut high);
         if self.hold(guess)? {
             (low, high) = (guess, (guess * 1.05).min(longest));
@@ -230,7 +213,7 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
                 (low, high) = (high, (high * 1.4).min(longest));
             }
             if low == longest {
-                return Ok(Some(Edge::Open));
+                return Ok(());
             }
         } else {
             (low, high) = (guess / 1.05, guess);
@@ -241,7 +224,7 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
                 while !self.hold(low)? {
                     (low, high) = (low / 1.4, low);
                     if low < shortest {
-                        return Ok(None);
+                        return Ok(());
                     }
                 }
             }
@@ -254,8 +237,65 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
                 high = middle;
             }
         }
-        self.held = Some(low);
-        Ok(Some(Edge::Sharp))
+        Ok(())
+    }
+
+    /// Tries steps around a limit (s) that is not known to be sharp: from half of it to twice it,
+    /// and shorter ones as long as these fail. Then bisects both ends of the interval in which some
+    /// hold and some fail.
+    fn spread(&mut self, limit: f64, precision: f64) -> Result<(), Stop> {
+        for quarters in (-4..=4).filter(|quarters| *quarters != 0) {
+            self.hold(limit * 2f64.powf(0.25 * f64::from(quarters)))?;
+        }
+        let mut lowest = 0.5 * limit;
+        while lowest > LEAST * limit && self.longest_that_held(lowest).is_none() {
+            lowest *= 0.5;
+            self.hold(lowest)?;
+        }
+        while let Some((low, high)) = self.lower_end().filter(|(l, h)| h / l > 1.0 + precision) {
+            self.hold((low * high).sqrt())?;
+        }
+        while let Some((low, high)) = self.upper_end().filter(|(l, h)| h / l > 1.0 + precision) {
+            self.hold((low * high).sqrt())?;
+        }
+        Ok(())
+    }
+
+    /// Longest step up to a limit (s) that held.
+    fn longest_that_held(&self, limit: f64) -> Option<f64> {
+        let held = self.tried.iter().filter(|(h, holds)| *holds && *h <= limit);
+        held.map(|(h, _)| *h).max_by(f64::total_cmp)
+    }
+
+    /// Shortest step of at least a limit (s) that failed.
+    fn shortest_that_failed(&self, limit: f64) -> Option<f64> {
+        let failed = self
+            .tried
+            .iter()
+            .filter(|(h, holds)| !*holds && *h >= limit);
+        failed.map(|(h, _)| *h).min_by(f64::total_cmp)
+    }
+
+    /// The shortest step that failed, after the longest shorter one that held (s).
+    fn lower_end(&self) -> Option<(f64, f64)> {
+        let failed = self.shortest_that_failed(0.0)?;
+        Some((self.longest_that_held(failed)?, failed))
+    }
+
+    /// The longest step that held, before the shortest longer one that failed (s).
+    fn upper_end(&self) -> Option<(f64, f64)> {
+        let held = self.longest_that_held(f64::INFINITY)?;
+        Some((held, self.shortest_that_failed(held)?))
+    }
+
+    /// What the trials have shown, if any step held.
+    fn observation(&self) -> Option<Observation> {
+        self.longest_that_held(f64::INFINITY)
+            .map(|held| Observation {
+                held,
+                failed: self.shortest_that_failed(0.0).unwrap_or(f64::INFINITY),
+                runs: self.runs,
+            })
     }
 }
 
@@ -266,9 +306,7 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
 /// With `near`, the step next to the limit is tried before the others: two runs are enough where
 /// the limit is as expected, if steps shorter than one that holds hold too.
 ///
-/// The limit is open or sharp: whoever calls this finds out whether it is blurred. Where `holds`
-/// returns `None`, the search ends with what it knows: the longest step that held, if one did,
-/// which is blurred if a longer one failed.
+/// Where `holds` returns `None`, the search ends with what it knows.
 pub(super) fn bisect(
     expected: f64,
     work: f64,
@@ -283,23 +321,56 @@ pub(super) fn bisect(
     if guess < shortest {
         return Ok(None);
     }
-    let mut trials = Trials {
-        holds,
-        runs: 0,
-        held: None,
-        failed: None,
+    let mut trials = Trials::new(holds);
+    match trials.search(guess, [shortest, longest], precision, near) {
+        Err(Stop::Failed(error)) => Err(error),
+        Ok(()) | Err(Stop::Open) => Ok(trials.observation()),
+    }
+}
+
+/// What longer runs show of a limit that shorter ones have shown: a sharp limit or, if they fail at
+/// shorter steps or hold at longer ones, the interval of both. `sharp` tells whether one is
+/// expected: then two runs close to it are enough where they agree.
+pub(super) fn sharpen(
+    seen: Observation,
+    sharp: bool,
+    precision: f64,
+    holds: impl Fn(f64) -> Result<Option<bool>, Error>,
+) -> Result<Observation, Error> {
+    let limit = seen.held;
+    let mut trials = Trials::new(holds);
+    trials.runs = seen.runs;
+    let mut look = || {
+        let is_above = trials.hold(limit * NEAR)?;
+        let is_below = trials.hold(limit / NEAR)?;
+        if sharp && is_below && !is_above {
+            return Ok(true);
+        }
+        trials.spread(limit, precision).map(|()| false)
     };
-    let edge = match trials.search(guess, [shortest, longest], precision, near) {
-        Ok(edge) => edge,
-        Err(Stop::Open) if trials.failed.is_some() => Some(Edge::Blurred),
-        Err(Stop::Open) => Some(Edge::Open),
+    match look() {
         Err(Stop::Failed(error)) => return Err(error),
+        Ok(true) => {
+            return Ok(Observation {
+                runs: trials.runs,
+                ..seen
+            });
+        }
+        Ok(false) | Err(Stop::Open) => {}
+    }
+    let failed = trials.shortest_that_failed(0.0).unwrap_or(seen.failed);
+    let long = trials.longest_that_held(f64::INFINITY).unwrap_or(0.0);
+    // Where longer runs fail at steps with which shorter ones held, both set the interval.
+    let held = if failed * NEAR > limit {
+        long
+    } else {
+        long.max(limit)
     };
-    Ok(edge.zip(trials.held).map(|(edge, step)| Observation {
-        step,
-        edge,
+    Ok(Observation {
+        held,
+        failed,
         runs: trials.runs,
-    }))
+    })
 }
 
 /// Step next to one end of an interval that is bisected to a relative precision.

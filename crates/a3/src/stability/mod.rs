@@ -1,22 +1,21 @@
 //! `a3 stability`: the largest stable step of each solver, predicted and observed, and a chart of
 //! the stability regions that explain it.
 
-use std::fmt::Write;
+mod data;
+mod picture;
+mod table;
 
-use a3_core::integrators::bdf_growth;
 use a3_core::stability::{
-    Budget, Edge, GROWTH, Growth, Limit, Mode, Motion, Observation, RestState, observe_at_rest,
-    rest, spectrum, tenfold_time,
+    Budget, Limit, Mode, Motion, Observation, RestState, observe_at_rest, rest, spectrum,
 };
-use a3_core::{Error, Method, Scene};
-use a3_plot::{Region, StabilityRegions};
+use a3_core::{Error, Method};
 use rayon::prelude::*;
 
-use crate::chart::{describe, methods, style, write_picture};
+use crate::chart::{describe, methods, write_picture};
 use crate::cli::Stability;
 use crate::failure::Failure;
 use crate::progress::Bar;
-use crate::{interrupt, list, output, setup};
+use crate::{interrupt, output, setup};
 
 /// Work of all searches in motion, and of those at rest, in that of a [`Budget`].
 const MOST_WORK: [f64; 2] = [1.5e9, 8e8];
@@ -49,6 +48,9 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
         None => format!("a3-stability-{}.svg", output::part_of_name(&scene.name)).into(),
     };
     output::check(&path, &["svg", "png"])?;
+    if let Some(data) = &options.data {
+        output::check(data, &["json"])?;
+    }
     let nothing = || Failure::Interrupted("interrupted before anything was measured".into());
     // The fixed steps of two adaptive solvers may be the same: they are measured once.
     let first = |method: &Method| methods.iter().position(|m| m.shares_integrator(method));
@@ -74,7 +76,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
             bar.advance(0.5);
             say(method, "its errors");
             budget.allow(1.0);
-            let longest = bounded.map_or(f64::INFINITY, |seen| seen.step);
+            let longest = bounded.map_or(f64::INFINITY, |seen| seen.held);
             let accurate = motion.accurate(method, longest, budget, interrupt::go_on)?;
             bar.advance(0.5);
             let found = (bounded, accurate, budget.limits());
@@ -117,18 +119,30 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     if rows.is_empty() {
         return Err(nothing());
     }
-    output::say(&text(&scene, &rows, &motion, &at_start, hanging.as_ref()))?;
+    output::say(&table::text(
+        &scene,
+        &rows,
+        &motion,
+        &at_start,
+        hanging.as_ref(),
+    ))?;
     let title = format!("Where solvers fail: {}", describe(&options.what, &scene));
     // By default a step is one radian of the fastest motion.
     let fastest = at_start.first().map_or(1.0, Mode::frequency);
     let h = options
         .step
         .unwrap_or_else(|| format!("{:.1e}", 1.0 / fastest).parse().unwrap_or(1.0));
-    let figure = chart(title, &rows, &at_start, h)
+    if let Some(data) = &options.data {
+        output::write(data, data::json(&rows)?.as_bytes())?;
+    }
+    let figure = picture::chart(title, &rows, &at_start, h)
         .draw(f64::from(options.size.0), f64::from(options.size.1))
         .map_err(Failure::usage)?;
     write_picture(&path, &figure)?;
     output::say(&format!("chart: {}\n", path.display()))?;
+    if let Some(data) = &options.data {
+        output::say(&format!("data: {}\n", data.display()))?;
+    }
     if interrupt::go_on() {
         Ok(())
     } else {
@@ -176,10 +190,9 @@ fn limits(
 ) -> MethodLimits {
     // What fails at rest at a shorter step may not blow up from the start, but it never rests.
     if let (Some(seen), Some(limit)) = (&mut bounded, rest)
-        && seen.edge == Edge::Sharp
-        && seen.step > 1.1 * limit.step
+        && seen.held > 1.1 * limit.step
     {
-        seen.edge = Edge::Blurred;
+        seen.failed = seen.failed.min(limit.step);
     }
     MethodLimits {
         method,
@@ -188,186 +201,5 @@ fn limits(
         bounded,
         accurate,
         is_short: short_at_rest || short_in_motion,
-    }
-}
-
-/// A step in words, to three digits (ms).
-fn step(seconds: f64) -> String {
-    let ms = 1e3 * seconds;
-    match ms {
-        _ if ms.is_infinite() => "any".into(),
-        _ if ms < 0.999_5 => format!("{ms:.3}"),
-        _ if ms < 9.995 => format!("{ms:.2}"),
-        _ if ms < 99.95 => format!("{ms:.1}"),
-        _ => format!("{ms:.0}"),
-    }
-}
-
-/// The step up to which no mode grows, in words (ms).
-fn bounded(limit: Option<Limit>) -> String {
-    match limit {
-        None => "-".into(),
-        Some(limit) if limit.bounded == 0.0 => "none".into(),
-        Some(limit) => step(limit.bounded),
-    }
-}
-
-/// An observed limit in words (ms), with a mark if it is not sharp.
-fn observation(seen: Option<Observation>) -> String {
-    seen.map_or("-".into(), |seen| match seen.edge {
-        Edge::Sharp => step(seen.step),
-        Edge::Blurred => step(seen.step) + "~",
-        Edge::Open => format!(">{}", step(seen.step)),
-    })
-}
-
-/// The table of all limits, with the fastest motion above it.
-fn text(
-    scene: &Scene,
-    rows: &[MethodLimits],
-    motion: &Motion,
-    start: &[Mode],
-    rest: Option<&RestState>,
-) -> String {
-    let heading = [
-        "solver",
-        " at rest: bounded",
-        " tenfold",
-        " observed",
-        " moving: bounded",
-        " accurate",
-    ];
-    let mut cells = vec![heading.map(String::from).to_vec()];
-    for row in rows {
-        cells.push(vec![
-            row.method.name.to_owned(),
-            bounded(row.rest),
-            row.rest.map_or("-".into(), |limit| step(limit.step)),
-            observation(row.seen_at_rest),
-            observation(row.bounded),
-            row.accurate.map_or("-".into(), step),
-        ]);
-    }
-    let frequency = |modes: &[Mode]| {
-        let returning = modes.first().filter(|mode| mode.frequency() > 0.0);
-        let none = if modes.is_empty() {
-            "none that could be computed"
-        } else {
-            "none that returns"
-        };
-        returning.map_or(none.to_owned(), |mode| {
-            let damping = 0.5 * (mode.drag + mode.damping) / mode.frequency();
-            format!("{:.1} rad/s, damping ratio {damping:.3}", mode.frequency())
-        })
-    };
-    let mut text = format!(
-        "{}: fastest motion {} at the start",
-        scene.name,
-        frequency(start)
-    );
-    if let Some(rest) = rest {
-        let _ = write!(text, ", {} at rest", frequency(&rest.modes));
-    }
-    let _ = write!(
-        text,
-        "\n\nlargest step (ms), that of the fixed step for adaptive solvers\n{}\
-         bounded   nothing grows without end: at rest by all modes, moving as runs show\n\
-         tenfold   a disturbance at rest grows tenfold in 10 s, or in 1000 steps if that is longer\n\
-         accurate  errors stay below a hundredth of the motion in the first {:.2} s\n",
-        list::table(&cells),
-        motion.predictable,
-    );
-    let marked = |edge| {
-        rows.iter()
-            .any(|row| is_marked(row.seen_at_rest, edge) || is_marked(row.bounded, edge))
-    };
-    if marked(Edge::Blurred) {
-        let _ = writeln!(text, "~         {BLURRED}");
-    }
-    if marked(Edge::Open) {
-        text += ">         no longer step was tried\n";
-    }
-    let short: Vec<_> = rows.iter().filter(|row| row.is_short).collect();
-    if !short.is_empty() {
-        let names: Vec<_> = short.iter().map(|row| row.method.name).collect();
-        let _ = writeln!(
-            text,
-            "short     the runs were shorter than 10 s, or too few to tell more, because they take long: {}",
-            names.join(", ")
-        );
-    }
-    text
-}
-
-/// What the mark of a limit that is not sharp means.
-const BLURRED: &str = "not sharp: shorter steps grow too, more slowly, or some longer steps hold";
-
-/// Whether a limit was observed to be of this nature.
-fn is_marked(seen: Option<Observation>, edge: Edge) -> bool {
-    seen.is_some_and(|seen| seen.edge == edge)
-}
-
-/// The chart of stability regions, with the eigenvalues of the modes times the step h (s).
-fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> StabilityRegions {
-    StabilityRegions {
-        title,
-        subtitle: format!(
-            "Where the eigenvalues of the scene as it starts, times a step of {}\u{a0}ms, lie in each solver's stable region",
-            step(h)
-        ),
-        note: if rows.iter().any(|row| is_marked(row.bounded, Edge::Blurred)) {
-            format!("~\u{a0}{BLURRED}")
-        } else {
-            String::new()
-        },
-        regions: rows.iter().map(|row| region(row, modes, h)).collect(),
-    }
-}
-
-/// The stability region of a method.
-fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
-    let method = row.method;
-    let is_bdf = method.name == "bdf";
-    let subtitle = format!(
-        "{}bounded {}\u{a0}ms, accurate {}\u{a0}ms",
-        if is_bdf {
-            "region of all orders; fixed steps: "
-        } else {
-            ""
-        },
-        observation(row.bounded),
-        row.accurate.map_or("-".into(), step)
-    );
-    // The growth of a Runge-Kutta step depends on the eigenvalues only. That of a splitting method
-    // also depends on how the damping is divided between drag and springs, which is taken from the
-    // fastest mode.
-    let share = modes
-        .first()
-        .map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300));
-    let radius = move |re: f64, im: f64| {
-        // Its fixed steps are those of TR-BDF2, but its own are not.
-        if is_bdf {
-            return bdf_growth(re, im);
-        }
-        let mode = Mode::of_eigenvalue(re, im);
-        let mode = Mode {
-            drag: (1.0 - share) * mode.drag,
-            damping: share * mode.drag,
-            ..mode
-        };
-        Growth::new(method, mode).map_or(f64::INFINITY, |mut growth| growth.of_step(1.0))
-    };
-    Region {
-        style: style::of(method.letter),
-        title: method.title.to_owned(),
-        subtitle,
-        radius: Box::new(radius),
-        slow: GROWTH.powf(h / tenfold_time(h)),
-        eigenvalues: modes
-            .iter()
-            .filter(|mode| mode.returns())
-            .flat_map(Mode::eigenvalues)
-            .map(|[re, im]| [h * re, h * im])
-            .collect(),
     }
 }
