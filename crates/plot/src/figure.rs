@@ -1,11 +1,11 @@
-//! Figures: sheets that remember where their labels are, as SVG and PNG.
+//! Figures: sheets that remember where their labels are, as SVG, PDF and PNG.
 
 use crate::error::Error;
 use crate::geometry::{Point, Rect};
 use crate::label::{GREY, Label};
 use crate::paint::{Paint, Pen};
 use crate::shape::Shape;
-use crate::{raster, svg};
+use crate::{pdf, raster, svg};
 
 /// A drawing on a sheet, whose units are the pixels of an SVG.
 #[derive(Debug)]
@@ -104,6 +104,12 @@ impl Figure {
     #[must_use]
     pub fn svg(&self) -> String {
         svg::file(self.size, &self.shapes)
+    }
+
+    /// The figure as a PDF file with one page, whose size is that of the sheet at 96 units an inch.
+    #[must_use]
+    pub fn pdf(&self) -> Vec<u8> {
+        pdf::file(self.size, &self.shapes)
     }
 
     /// The figure as a PNG file, with `scale` pixels for each unit of the sheet.

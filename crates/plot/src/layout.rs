@@ -211,8 +211,13 @@ pub fn label_below(figure: &mut Figure, room: Rect, label: &str, better: &str, s
 /// empty.
 pub fn label_left(figure: &mut Figure, room: Rect, label: &str, better: &str, size: f64) {
     let x = room.x0 + 0.8 * size;
+    let arrow = 3.9 * size + width(better, size);
+    // An explanation after a comma goes first where there is no room, and then the arrow.
+    let short = label.split(", ").next().unwrap_or(label);
+    let fits = |label: &str, left: f64| width(label, size) <= room.height() - left;
+    let label = if fits(label, arrow) { label } else { short };
     let mut y1 = room.y1;
-    if !better.is_empty() {
+    if !better.is_empty() && (fits(label, arrow) || !fits(label, 0.0)) {
         figure.arrow(
             [x - 0.28 * size, y1 - 2.0 * size],
             [x - 0.28 * size, y1],
@@ -226,7 +231,8 @@ pub fn label_left(figure: &mut Figure, room: Rect, label: &str, better: &str, si
             .y0
             - 1.5 * size;
     }
-    let label = elide(label, size, y1 - room.y0);
+    let longest = y1 - room.y0;
+    let label = elide(label, size, longest);
     let half = width(&label, size) / 2.0;
     let y = room.centre()[1].clamp(room.y0 + half, (y1 - half).max(room.y0 + half));
     figure.text(

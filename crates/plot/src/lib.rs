@@ -10,6 +10,7 @@ mod glyphs;
 mod label;
 mod layout;
 mod paint;
+mod pdf;
 mod raster;
 mod shape;
 mod stability;

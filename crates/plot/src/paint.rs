@@ -114,3 +114,20 @@ impl fmt::Display for Paint {
         }
     }
 }
+
+/// The red, green and blue of `#` and six hexadecimal digits; black if it is something else.
+pub fn rgb(code: &str) -> [u8; 3] {
+    let number = code.strip_prefix('#').filter(|digits| digits.len() == 6);
+    let number = number.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+    let [_, r, g, b] = number.unwrap_or(0).to_be_bytes();
+    [r, g, b]
+}
+
+/// Dashes and gaps, of which SVG repeats an odd number of lengths.
+pub fn dashes(lengths: &[f64]) -> Vec<f32> {
+    let mut lengths: Vec<_> = lengths.iter().map(|d| *d as f32).collect();
+    if lengths.len() % 2 == 1 {
+        lengths.extend_from_within(..);
+    }
+    lengths
+}

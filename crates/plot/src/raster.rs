@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::geometry::{Point, Rect};
 use crate::glyphs;
 use crate::label::Label;
-use crate::paint::{Paint, Pen};
+use crate::paint::{Paint, Pen, dashes, rgb};
 use crate::shape::Shape;
 
 /// A sheet of this size with shapes, as a PNG file with `scale` pixels for each unit of the sheet.
@@ -117,7 +117,7 @@ impl Canvas {
             } else {
                 LineCap::Butt
             },
-            dash: dash(&pen.dash),
+            dash: StrokeDash::new(dashes(&pen.dash), 0.0),
             ..Stroke::default()
         };
         let colour = colour(pen.colour, 1.0);
@@ -145,21 +145,10 @@ fn path(lines: &[impl AsRef<[Point]>], closed: bool) -> Option<Path> {
     path.finish()
 }
 
-/// The colour of `#` and six hexadecimal digits; black if it is something else.
+/// The paint of a colour.
 fn colour(code: &str, opacity: f64) -> tiny_skia::Paint<'static> {
-    let number = code.strip_prefix('#').filter(|digits| digits.len() == 6);
-    let number = number.and_then(|digits| u32::from_str_radix(digits, 16).ok());
-    let [_, r, g, b] = number.unwrap_or(0).to_be_bytes();
+    let [r, g, b] = rgb(code);
     let mut paint = tiny_skia::Paint::default();
     paint.set_color_rgba8(r, g, b, (255.0 * opacity).round() as u8);
     paint
-}
-
-/// Dashes and gaps, of which SVG repeats an odd number of lengths.
-fn dash(lengths: &[f64]) -> Option<StrokeDash> {
-    let mut lengths: Vec<_> = lengths.iter().map(|d| *d as f32).collect();
-    if lengths.len() % 2 == 1 {
-        lengths.extend_from_within(..);
-    }
-    StrokeDash::new(lengths, 0.0)
 }

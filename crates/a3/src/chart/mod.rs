@@ -7,6 +7,7 @@ pub mod record;
 pub mod style;
 pub mod table;
 pub mod text;
+mod vision;
 
 use std::path::Path;
 
@@ -30,7 +31,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
         Some(path) => path.clone(),
         None => format!("a3-chart-{}.svg", output::part_of_name(&scene.name)).into(),
     };
-    output::check(&path, &["svg", "png"])?;
+    output::check(&path, PICTURES)?;
     let metric = metric(options.error, &scene)?;
     let scope = scope(&options.scope, &scene)?;
     let timed = options.work == WorkMeasure::Time;
@@ -113,10 +114,15 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     }
 }
 
-/// Writes a figure as SVG or PNG, by the extension of the path.
+/// Extensions of the formats of charts.
+pub const PICTURES: &[&str] = &["svg", "pdf", "png"];
+
+/// Writes a figure as SVG, PDF or PNG, by the extension of the path.
 pub fn write_picture(path: &Path, figure: &Figure) -> Result<(), Failure> {
     if output::ends_in(path, "png") {
         output::write(path, &figure.png(1.0).map_err(Failure::run)?)
+    } else if output::ends_in(path, "pdf") {
+        output::write(path, &figure.pdf())
     } else {
         output::write(path, figure.svg().as_bytes())
     }

@@ -60,16 +60,16 @@ pub fn chart(
     }
 }
 
-/// Solvers of the course, whose curves are always drawn.
-const COURSE: [char; 4] = ['e', 't', 'r', 'i'];
-
 /// Solvers whose steps turn rigid bodies by a composition of order 6.
 const TURNING: [char; 3] = ['s', 'v', 'p'];
 
 /// Keeps the curves of the methods that are cheapest for some error on some problem, and those of
 /// the course.
 pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
-    let mut kept: Vec<_> = methods.iter().map(|m| COURSE.contains(&m.letter)).collect();
+    let mut kept: Vec<_> = methods
+        .iter()
+        .map(|m| style::COURSE.contains(&m.letter))
+        .collect();
     for problem in &chart.problems {
         for [curve, _] in problem.front() {
             kept[curve] = true;
@@ -87,6 +87,12 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: 
     }
     let drawn = methods.iter().zip(&kept);
     let drawn: Vec<_> = drawn.filter_map(|(m, kept)| kept.then_some(*m)).collect();
+    let styles = style::together(&drawn);
+    for problem in &mut chart.problems {
+        for (curve, style) in problem.curves.iter_mut().zip(&styles) {
+            curve.style = *style;
+        }
+    }
     chart.foot = foot(&drawn) + turning(scene, &drawn);
     let _ = write!(
         chart.subtitle,
@@ -154,7 +160,8 @@ pub fn problem(
     metric: Metric,
     timed: bool,
 ) -> Problem {
-    let curves = methods.iter().map(|method| {
+    let styles = style::together(methods);
+    let curves = methods.iter().zip(styles).map(|(method, style)| {
         let mut records: Vec<_> = all
             .iter()
             .copied()
@@ -184,7 +191,7 @@ pub fn problem(
             }
         };
         Curve {
-            style: style::of(method.letter),
+            style,
             name: method.title.to_owned(),
             runs: records.iter().map(run).collect(),
         }

@@ -1,8 +1,12 @@
 //! The style of each method, on every chart. The family of a method shows three times: in the hue,
-//! the dash and the kind of marker. The colours, after Okabe and Ito and after Tol, are told apart
-//! with any kind of colour vision.
+//! the dash and the kind of marker. The colours are after Okabe and Ito and after Tol. A method
+//! whose colour looks like that of another on the chart, to any kind of colour vision, has another
+//! one there.
 
+use a3_core::Method;
 use a3_plot::{CurveStyle, Marker};
+
+use super::vision::difference;
 
 const EXPLICIT: &[f64] = &[];
 const EXPLICIT_2: &[f64] = &[4.0, 4.0];
@@ -11,6 +15,47 @@ const ADAPTIVE: &[f64] = &[1.5, 1.8];
 const IMPLICIT: &[f64] = &[7.0, 2.0, 1.5, 2.0];
 /// Methods that solve spring by spring and stop before they have solved.
 const UNSOLVED: &[f64] = &[3.5, 3.5];
+
+/// Solvers of the course, whose curves are always drawn.
+pub const COURSE: [char; 4] = ['e', 't', 'r', 'i'];
+
+/// Least [difference] of two colours on a chart, where there are enough colours.
+const APART: f64 = 8.0;
+/// Colours for methods whose own look like others, the best to see first.
+const SPARE: [&str; 18] = [
+    "#0072b2", "#009e73", "#cc79a7", "#332288", "#56b4e9", "#117733", "#000000", "#777777",
+    "#5c3317", "#aa4499", "#0000cc", "#004d40", "#8bc34a", "#cc6677", "#999933", "#bb99ff",
+    "#d55e00", "#e69f00",
+];
+
+/// The styles of methods that are drawn together, in their order. Those of the course keep their
+/// colours.
+pub fn together(methods: &[&Method]) -> Vec<CurveStyle> {
+    let mut styles: Vec<_> = methods.iter().map(|method| of(method.letter)).collect();
+    let mut places: Vec<_> = (0..methods.len()).collect();
+    places.sort_by_key(|k| !COURSE.contains(&methods[*k].letter));
+    let own_colours: Vec<_> = styles.iter().map(|style| style.colour).collect();
+    let mut taken: Vec<&str> = vec![];
+    for k in places {
+        let nearest = |colour: &str| {
+            let distances = taken.iter().map(|other| difference(colour, other));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        let own = styles[k].colour;
+        if nearest(own) < APART {
+            let spare = || {
+                SPARE
+                    .into_iter()
+                    .filter(|spare| !own_colours.contains(spare))
+            };
+            let farthest = || spare().max_by(|a, b| nearest(a).total_cmp(&nearest(b)));
+            let apart = spare().find(|spare| nearest(spare) >= APART);
+            styles[k].colour = apart.or_else(farthest).unwrap_or(own);
+        }
+        taken.push(styles[k].colour);
+    }
+    styles
+}
 
 /// The style of a method by its letter; grey for one without a style of its own.
 pub fn of(letter: char) -> CurveStyle {
@@ -31,7 +76,7 @@ pub fn of(letter: char) -> CurveStyle {
         'k' => ("#6699cc", SYMPLECTIC, Polygon(5, 0.5)),
         'd' => ("#ee6677", ADAPTIVE, Star(3, 0.35)),
         'g' => ("#997700", ADAPTIVE, Star(8, 0.5)),
-        'i' => ("#8bc34a", IMPLICIT, Cross(0.0)),
+        'i' => ("#44aa99", IMPLICIT, Cross(0.0)),
         'b' => ("#009e73", IMPLICIT, Cross(0.125)),
         'n' => ("#117733", IMPLICIT, Polygon(6, 0.0)),
         'o' => ("#5a7f1e", IMPLICIT, Star(3, 0.4)),
@@ -44,5 +89,40 @@ pub fn of(letter: char) -> CurveStyle {
         colour,
         dash,
         marker,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use a3_core::integrators::METHODS;
+
+    /// The course's four and any four others, as they are drawn by default.
+    #[test]
+    fn no_two_colours_on_a_chart_look_alike() {
+        let (course, others): (Vec<_>, Vec<_>) = METHODS
+            .iter()
+            .partition(|method| COURSE.contains(&method.letter));
+        let mut count = 0;
+        for choice in (0..1_u32 << others.len()).filter(|set| set.count_ones() == 4) {
+            count += 1;
+            if count % 16 != 0 {
+                continue;
+            }
+            let chosen = (0..others.len()).filter(|k| choice >> k & 1 == 1);
+            let shown: Vec<_> = course
+                .iter()
+                .copied()
+                .chain(chosen.map(|k| others[k]))
+                .collect();
+            let styles = together(&shown);
+            for (k, style) in styles.iter().enumerate() {
+                assert!(k > 3 || style.colour == of(shown[k].letter).colour);
+                for other in &styles[..k] {
+                    let apart = difference(style.colour, other.colour);
+                    assert!(apart >= APART, "{} {} {apart}", style.colour, other.colour);
+                }
+            }
+        }
     }
 }

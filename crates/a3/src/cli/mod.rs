@@ -253,13 +253,14 @@ pub struct Chart {
     /// has a panel for each
     #[arg(long, value_name = "FACTORS", value_delimiter = ',', default_value = "1", value_parser = factor, allow_negative_numbers = true)]
     pub stiffness: Vec<f64>,
-    /// Picture to write, ending in .svg or .png; by default a3-chart-SCENE.svg
+    /// Picture to write, ending in .svg, .pdf or .png; by default a3-chart-SCENE.svg
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// File that keeps all runs, ending in .csv or .json; if it exists, the chart continues from it
     #[arg(long, value_name = "FILE")]
     pub data: Option<PathBuf>,
-    /// Width and height of the picture in pixels
+    /// Width and height of the picture in pixels, 96 to the inch, or `column`, 340x360, for a
+    /// column of a paper
     #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = picture_size, allow_hyphen_values = true)]
     pub size: (u32, u32),
 }
@@ -275,13 +276,14 @@ pub struct Stability {
     /// which the fastest motion turns by one radian
     #[arg(long, value_name = "STEP", value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
-    /// Picture to write, ending in .svg or .png; by default a3-stability-SCENE.svg
+    /// Picture to write, ending in .svg, .pdf or .png; by default a3-stability-SCENE.svg
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// File for all limits in seconds, ending in .json
     #[arg(long, value_name = "FILE")]
     pub data: Option<PathBuf>,
-    /// Width and height of the picture in pixels
+    /// Width and height of the picture in pixels, 96 to the inch, or `column`, 340x360, for a
+    /// column of a paper
     #[arg(long, value_name = "WxH", default_value = "1400x1000", value_parser = picture_size, allow_hyphen_values = true)]
     pub size: (u32, u32),
 }

@@ -151,12 +151,18 @@ pub fn budget(text: &str) -> Result<f64, String> {
     )
 }
 
+/// Size of a chart for a column of a paper, 90 mm wide (px).
+const COLUMN: (u32, u32) = (340, 360);
+
 /// Width and height of a chart (px).
 pub fn picture_size(text: &str) -> Result<(u32, u32), String> {
+    if text == "column" {
+        return Ok(COLUMN);
+    }
     match pair(text) {
         Some((w, h)) if (320..=8000).contains(&w) && (240..=8000).contains(&h) => Ok((w, h)),
         _ => Err(
-            "a picture's size is WIDTHxHEIGHT, from 320x240 to 8000x8000, such as 1200x800".into(),
+            "a picture's size is WIDTHxHEIGHT, from 320x240 to 8000x8000, such as 1200x800, or column".into(),
         ),
     }
 }

@@ -11,7 +11,7 @@ use a3_core::stability::{
 use a3_core::{Error, Method};
 use rayon::prelude::*;
 
-use crate::chart::{describe, methods, write_picture};
+use crate::chart::{PICTURES, describe, methods, write_picture};
 use crate::cli::Stability;
 use crate::failure::Failure;
 use crate::progress::Bar;
@@ -47,7 +47,7 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
         Some(path) => path.clone(),
         None => format!("a3-stability-{}.svg", output::part_of_name(&scene.name)).into(),
     };
-    output::check(&path, &["svg", "png"])?;
+    output::check(&path, PICTURES)?;
     if let Some(data) = &options.data {
         output::check(data, &["json"])?;
     }

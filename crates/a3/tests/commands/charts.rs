@@ -288,7 +288,7 @@ fn wrong_usage_is_one_line() {
             2,
         ),
         (vec!["chart", "--work", "joules"], "evaluations", 2),
-        (vec!["chart", "--output", "x.gif"], ".svg or .png", 2),
+        (vec!["chart", "--output", "x.gif"], ".svg, .pdf or .png", 2),
         (vec!["chart", "--data", "x.txt"], ".csv or .json", 2),
         (
             vec!["chart", "--data", "bad.csv"],
@@ -312,7 +312,11 @@ fn wrong_usage_is_one_line() {
             2,
         ),
         (vec!["stability", "--step", "0"], "such as 0.01", 2),
-        (vec!["stability", "--output", "s.pdf"], ".svg or .png", 2),
+        (
+            vec!["stability", "--output", "s.eps"],
+            ".svg, .pdf or .png",
+            2,
+        ),
         (vec!["stability", "--data", "s.csv"], ".json", 2),
         (vec!["choose"], "--error", 2),
         (vec!["choose", "--error", "0"], "such as 1e-3", 2),

@@ -13,6 +13,8 @@ pub(super) const RUNG: f64 = 1.5;
 const PAST: f64 = 1.4;
 /// Least number of steps of a run.
 pub(super) const FEWEST: u64 = 4;
+/// Least multiple of the smallest number of steps of 1/n s to which numbers of steps are rounded.
+const FEW_UNITS: f64 = 3.0;
 /// Exponents of the largest and the smallest tolerance of adaptive methods, in half powers of ten:
 /// from 10^-1 to 10^-12, and to 10^-8 for implicit methods, whose orders are low.
 const TOLERANCES: (i32, [i32; 2]) = (-2, [-24, -16]);
@@ -42,19 +44,31 @@ pub fn ladder(
             .collect());
     }
     let limit = largest_step(method, modes)?.map_or(f64::INFINITY, |limit| limit.step);
-    let mut count = ((frames.until / (PAST * limit)).ceil() as u64).max(FEWEST);
+    let until = frames.until;
+    let mut count = round((until / (PAST * limit)).ceil().max(FEWEST as f64), until);
     let mut steps = vec![];
     while count <= most {
-        steps.push(Control::Step(frames.until / count as f64));
-        count = ((count as f64 * RUNG) as u64).max(count + 1);
+        steps.push(Control::Step(until / count as f64));
+        count = round((count as f64 * RUNG).floor(), until).max(count + 1);
     }
     Ok(steps)
+}
+
+/// Number of steps near to `count` that makes steps of 1/n s in a time (s) with few decimals;
+/// `count` itself where it is too small to be rounded.
+fn round(count: f64, until: f64) -> u64 {
+    let is_whole = |steps: &f64| *steps > 0.5 && (steps - steps.round()).abs() < 1e-9;
+    let unit = (1..=20).map(|n| f64::from(n) * until).find(is_whole);
+    match unit.map(f64::round) {
+        Some(unit) if count >= FEW_UNITS * unit => ((count / unit).round() * unit) as u64,
+        _ => count as u64,
+    }
 }
 
 /// Steps of the frames' time longer by one rung than those of a ladder; `None` past the longest.
 #[must_use]
 pub fn coarser(control: Control, frames: &Frames) -> Option<Control> {
     let count = (frames.until / control.step()?).round();
-    let fewer = ((count / RUNG) as u64).max(FEWEST);
+    let fewer = round((count / RUNG).floor().max(FEWEST as f64), frames.until);
     ((fewer as f64) < count).then(|| Control::Step(frames.until / fewer as f64))
 }
