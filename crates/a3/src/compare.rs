@@ -36,12 +36,17 @@ pub fn table(session: &Session) -> String {
     let head =
         "  solver        setting   time [s]    error [m]   evaluations/s   computing [ms/s]\n";
     let lines = session.panes.iter().map(line);
-    let why = session.readings.no_error;
-    let why = why.map(|why| format!("no errors: {why}\n"));
+    let readings = &session.readings;
+    let why = readings.no_error.map(|why| format!("no errors: {why}\n"));
+    let past = |until: &f64| session.first().time() > *until;
+    let chaos = readings.predictable.filter(past).map(|until| {
+        format!("errors past {until} s say little: small differences have grown 10,000 times\n")
+    });
     [head.to_owned()]
         .into_iter()
         .chain(lines)
         .chain(why)
+        .chain(chaos)
         .collect()
 }
 

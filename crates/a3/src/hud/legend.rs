@@ -24,18 +24,31 @@ pub fn legend(ui: &mut Ui, show: &Show) {
         let (rect, _) = ui.allocate_exact_size(vec2(width, BAR[1] + 17.0), Sense::hover());
         let bar = Rect::from_min_size(rect.min, vec2(width, BAR[1]));
         draw(ui, bar, show.dark);
-        let end = digits(colouring.scale.end());
-        let fixed = if colouring.scale.fixed.is_some() {
-            ", fixed"
-        } else {
-            ""
+        let scale = &colouring.scale;
+        let power = |end: f64| {
+            if end < 1e-3 {
+                format!("{end:.0e}")
+            } else {
+                format!("{end}")
+            }
         };
+        let (start, end, kind) = if scale.logarithmic {
+            let least = scale.end() / 10f64.powi(show::DECADES);
+            (
+                format!("\u{2264} {}", power(least)),
+                power(scale.end()),
+                ", log.",
+            )
+        } else {
+            ("0".into(), digits(scale.end()), "")
+        };
+        let fixed = if scale.fixed.is_some() { ", fixed" } else { "" };
         let write = |at: Pos2, align, words: String| {
             let font = FontId::proportional(12.5);
             ui.painter().text(at, align, words, font, FAINT);
         };
-        write(rect.left_bottom(), Align2::LEFT_BOTTOM, "0".into());
-        let name = format!("{}{fixed}", quantity.name());
+        write(rect.left_bottom(), Align2::LEFT_BOTTOM, start);
+        let name = format!("{}{kind}{fixed}", quantity.name());
         write(rect.center_bottom(), Align2::CENTER_BOTTOM, name);
         let end = format!("{end}{}", quantity.unit());
         write(rect.right_bottom(), Align2::RIGHT_BOTTOM, end);

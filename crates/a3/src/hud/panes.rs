@@ -174,8 +174,13 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, low: bool) {
 
 /// The distance from the reference, or the reason why it is not known.
 fn error(pane: &Pane, readings: &Readings) -> String {
+    let time = pane.simulation.time();
+    let past = readings.predictable.filter(|until| time > *until);
     match (pane.error, readings.no_error) {
-        (Some(error), _) => format!("{} m", digits(error)),
+        (Some(error), _) => {
+            let past = past.map(|until| format!("  (past {until} s it says little)"));
+            format!("{} m{}", digits(error), past.unwrap_or_default())
+        }
         (None, Some(why)) => format!("-  ({why})"),
         (None, None) => "-".into(),
     }
@@ -275,6 +280,21 @@ mod tests {
                     assert!(words.contains(said), "{said} in {words}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn an_error_past_the_horizon_is_said_to_say_little() {
+        let mut panes = panes(2);
+        let until = panes[0].simulation.time();
+        let later = &mut panes[1].simulation;
+        later.advance_to(until + 0.1).unwrap();
+        let readings = Readings {
+            predictable: Some(until),
+            ..Readings::default()
+        };
+        for words in check(&panes, &readings) {
+            assert_eq!(words.matches("it says little").count(), 1, "{words}");
         }
     }
 

@@ -63,6 +63,7 @@ impl Session {
         if let Some(reference) = &mut self.reference {
             reference.follow(&mut self.panes, reference_budget);
             self.readings.no_error = reference.stopped();
+            self.readings.predictable = reference.predictable();
         }
         self.meter.count_steps(self.clock - start, begun.elapsed());
         for pane in &mut self.panes {
@@ -96,6 +97,7 @@ impl Session {
         if let Some(reference) = &mut self.reference {
             reference.run_to(time, &mut self.panes);
             self.readings.no_error = reference.stopped();
+            self.readings.predictable = reference.predictable();
         }
         self.settle();
     }

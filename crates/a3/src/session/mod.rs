@@ -16,6 +16,7 @@ mod opening;
 mod origin;
 mod pane;
 mod pins;
+mod predictability;
 mod readings;
 mod reference;
 mod rewind;

@@ -47,6 +47,8 @@ pub struct Readings {
     pub in_window: bool,
     /// Reason why the panes' errors are not known, if they are not.
     pub no_error: Option<&'static str>,
+    /// Time past which they say little (s), where small differences grow by themselves.
+    pub predictable: Option<f64>,
     /// Slow motion: simulated time goes by at 1 / 2^slowness of real time.
     pub slowness: i32,
     /// Position on the timeline after going back, unless it is the newest moment.

@@ -5,6 +5,7 @@ use web_time::{Duration, Instant};
 use a3_core::{Control, Method, Simulation, integrators};
 
 use super::pane::{PORTION, Pane};
+use super::predictability::Predictability;
 use crate::failure::Failure;
 use crate::progress;
 
@@ -14,6 +15,8 @@ const PATIENCE: u32 = 30;
 /// A run of the panes' scene that is much more exact than they are and gets the same hands.
 pub struct ReferenceRun {
     simulation: Simulation,
+    /// How long errors mean something in the scene as it starts.
+    predictability: Predictability,
     /// Frames in a row that it did not keep up with the panes.
     late: u32,
     /// Reason why it was stopped, if it was.
@@ -40,6 +43,7 @@ impl ReferenceRun {
         let run = &first.simulation;
         let mut scene = run.scene().clone();
         scene.limits.absolute = None;
+        let predictability = Predictability::new(scene.clone());
         let mut simulation = Simulation::new(scene, method, control).map_err(Failure::run)?;
         simulation.set_wind(run.windy());
         simulation.set_swinging(run.swinging());
@@ -48,6 +52,7 @@ impl ReferenceRun {
             .map_err(Failure::run)?;
         Ok(Some(Self {
             simulation,
+            predictability,
             late: 0,
             stopped: None,
         }))
@@ -80,6 +85,11 @@ impl ReferenceRun {
     /// Reason why there are no errors, if there are none.
     pub fn stopped(&self) -> Option<&'static str> {
         self.stopped
+    }
+
+    /// The time past which errors say little (s), as far as it is known.
+    pub fn predictable(&self) -> Option<f64> {
+        self.predictability.until()
     }
 
     /// Goes back to the beginning, and goes on if it was stopped.
@@ -138,10 +148,16 @@ impl ReferenceRun {
                 self.stop("the reference is too slow");
             }
         }
-        for pane in panes {
+        for pane in panes.iter_mut() {
             if self.stopped.is_some() || !pane.alive() {
                 pane.set_errors(vec![]);
             }
+        }
+        // Colours of one scale can be compared.
+        let errors = panes.iter().map(|pane| pane.show.colouring.largest_error());
+        let largest = errors.fold(0.0, f64::max);
+        for pane in panes {
+            pane.show.colouring.beside = largest;
         }
     }
 
@@ -151,6 +167,7 @@ impl ReferenceRun {
         // A blow-up is found by `reach`, through `follow`.
         let _ = progress::advance(&mut self.simulation, time, |_| {});
         self.follow(panes, Duration::MAX);
+        self.predictability.wait();
     }
 }
 

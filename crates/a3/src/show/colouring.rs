@@ -3,7 +3,7 @@
 use a3_core::Simulation;
 use a3_render::ramp;
 
-use super::quantity::Quantity;
+use super::quantity::{Quantity, lengths};
 use crate::rounding::{MANY, round_up};
 
 /// What is not larger is the rounding of nothing.
@@ -12,13 +12,18 @@ const NOTHING: f64 = 1e-9;
 /// The end of a scale shrinks where all that it measures is less than this share of it.
 const SHRINKS: f64 = 0.2;
 
-/// A scale from 0 to a round number: that of the largest value lately, or a fixed one.
+/// Powers of ten on a logarithmic scale.
+pub const DECADES: i32 = 5;
+
+/// A scale from 0 to a round number, or a logarithmic one of [`DECADES`] to a power of ten: that of the largest value lately, or a fixed one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scale {
     /// The end that was chosen, if one was.
     pub fixed: Option<f64>,
     /// The end that fits what was measured last; 0 if that was nothing.
     pub fitting: f64,
+    /// Whether it is logarithmic.
+    pub logarithmic: bool,
 }
 
 impl Scale {
@@ -26,8 +31,9 @@ impl Scale {
     pub fn follow(&mut self, largest: f64) {
         let fits = largest <= self.fitting && largest >= SHRINKS * self.fitting;
         if !fits && largest.is_finite() {
+            let rounds = if self.logarithmic { &[1.0, 10.0] } else { MANY };
             self.fitting = if largest > NOTHING {
-                round_up(largest, MANY)
+                round_up(largest, rounds)
             } else {
                 0.0
             };
@@ -41,7 +47,10 @@ impl Scale {
 
     /// The share of the scale at which a value is, from 0 to 1.
     pub fn share(&self, value: f64) -> f32 {
-        if value > 0.0 && value < self.end() {
+        if value > 0.0 && value < self.end() && self.logarithmic {
+            let below = (value / self.end()).log10() / f64::from(DECADES);
+            (1.0 + below).max(0.0) as f32
+        } else if value > 0.0 && value < self.end() {
             (value / self.end()) as f32
         } else {
             let least = if self.end() > 0.0 { 0.0 } else { NOTHING };
@@ -59,6 +68,8 @@ pub struct Colouring {
     pub scale: Scale,
     /// The ways to the particles from where a reference has them (m), n x 3, if there is one.
     pub errors: Vec<f64>,
+    /// The largest error of this and other runs, with which it shares a scale (m).
+    pub beside: f64,
     /// Value of each particle, NaN where it has none; empty where the run has none.
     values: Vec<f64>,
     /// The vectors of which these are the lengths, n x 3, if they are.
@@ -74,7 +85,15 @@ impl Colouring {
 
     /// Forgets the scale, as for another scene.
     pub fn forget(&mut self) {
-        self.scale = Scale::default();
+        self.scale = Scale {
+            logarithmic: self.quantity == Some(Quantity::Error),
+            ..Scale::default()
+        };
+    }
+
+    /// The largest distance of a particle from where a reference has it (m); 0 without one.
+    pub fn largest_error(&self) -> f64 {
+        lengths(&self.errors).into_iter().fold(0.0, f64::max)
     }
 
     /// Takes the values of a run.
@@ -87,7 +106,11 @@ impl Colouring {
             .quantity
             .map(|quantity| quantity.vectors(simulation, &self.errors))
             .unwrap_or_default();
-        let largest = self.values.iter().copied().fold(0.0, f64::max);
+        let least = match self.quantity {
+            Some(Quantity::Error) => self.beside,
+            _ => 0.0,
+        };
+        let largest = self.values.iter().copied().fold(least, f64::max);
         self.scale.follow(largest);
     }
 
@@ -117,7 +140,10 @@ impl Colouring {
         let (share, n) = (self.share(i)?, self.vectors.len() / 3);
         let end = self.scale.end();
         Some(if i < n && end > 0.0 {
-            [0, 1, 2].map(|axis| (self.vectors[axis * n + i] / end) as f32)
+            let vector = [0, 1, 2].map(|axis| self.vectors[axis * n + i]);
+            let length = vector.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let unit = f64::from(share) / length.max(f64::MIN_POSITIVE);
+            vector.map(|part| (part * unit) as f32)
         } else {
             [share, 0.0, 0.0]
         })

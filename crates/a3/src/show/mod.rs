@@ -18,6 +18,7 @@ mod vectors;
 mod view;
 mod wires;
 
+pub use colouring::DECADES;
 pub use manner::{Manner, Target};
 pub use obstacles::drawn_radius;
 pub use picture::Show;

@@ -156,7 +156,7 @@ fn forces(simulation: &Simulation) -> Vec<f64> {
 }
 
 /// The lengths of the rows of an n x 3 matrix.
-fn lengths(a: &[f64]) -> Vec<f64> {
+pub fn lengths(a: &[f64]) -> Vec<f64> {
     let n = a.len() / 3;
     let square = |i: usize| (0..3).map(|axis| a[axis * n + i].powi(2)).sum::<f64>();
     (0..n).map(|i| square(i).sqrt()).collect()
