@@ -170,6 +170,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 lost: false,
                 held: false,
                 label: Some(across.to_string()),
+                spread: None,
             });
         }
         let style = CurveStyle {

@@ -8,7 +8,8 @@ use a3_core::accuracy::{
 use a3_core::stability::spectrum;
 use a3_core::{Control, Method, Scene};
 
-use crate::chart::measure::{precision, reference, time, words};
+use crate::chart::measure::words;
+use crate::chart::single::{precision, reference, time};
 use crate::chart::table::fraction;
 use crate::chart::{
     check_contact, check_motion, describe, look_ahead, methods, metric, scope, unit,

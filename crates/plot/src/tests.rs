@@ -103,6 +103,7 @@ fn curves(n: usize, slower: f64) -> Vec<Curve> {
         lost,
         held: error == 1e-3,
         label: Some(format!("{:.3} ms", 2000.0 / work)),
+        spread: Some([0.8 * error, 1.3 * error]),
     };
     let curve = |&(letter, name, works): &(char, &str, [f64; 6])| {
         let reached = errors

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::each::Each;
 use super::record::Record;
 use super::text;
 use crate::failure::Failure;
@@ -16,6 +17,8 @@ const LARGEST_FILE: u64 = 64 << 20;
 pub struct Data {
     path: Option<PathBuf>,
     pub records: Vec<Record>,
+    /// The file for the errors of each particle of the runs that are measured, if there is one.
+    pub each: Option<Each>,
     /// The text of the file when it was last read or written.
     seen: String,
 }
@@ -26,6 +29,7 @@ impl Data {
         let mut data = Self {
             path: path.map(Path::to_owned),
             records: vec![],
+            each: None,
             seen: String::new(),
         };
         let Some(path) = path else { return Ok(data) };

@@ -1,40 +1,26 @@
 //! Measurement of the runs of a chart: every method at every step or tolerance that tells
 //! something, one run at a time, so that computing times are comparable.
 
-use std::time::{Duration, Instant};
-
-use a3_core::accuracy::{
-    self, Errors, Frames, Metric, Outcome, Precision, Reference, Scope, coarser, ladder,
-};
+use a3_core::accuracy::{Frames, Metric, Reference, Scope, coarser, ladder};
 use a3_core::stability::{Mode, largest_step, spectrum};
-use a3_core::{Control, Method, Model, Scene, Simulation};
+use a3_core::{Control, Method, Model, Scene};
 
 use super::check_contact;
 use super::data::{Data, VERSION};
 use super::record::Record;
+use super::single::{compared, precision, reference, time};
 use crate::cli::What;
 use crate::failure::Failure;
-use crate::interrupt;
 use crate::progress::Bar;
 
 /// Most work of a run, in evaluations. A run that fails may take more.
 const MOST_EVALUATIONS: f64 = 20_000.0;
-/// Work of the runs of the reference at which it is no longer refined: in evaluations, and in those
-/// times the length of the state, whichever is more work.
-const MOST_OF_REFERENCE: (f64, f64) = (80_000.0, 1.5e8);
 /// Least ratio of the longest step of a method to its shortest, however much work that is.
 const RANGE: f64 = 6.0;
 /// Work of a step of an implicit method, in evaluations, within a factor of three.
 const IMPLICIT: f64 = 25.0;
-/// Uncertainty of the reference over the motion of the scene, below which it is fine enough for any
-/// run.
-const FINE: f64 = 1e-10;
-/// Most times that a run is timed, with the run that is compared. The shortest time counts.
-const RUNS: u32 = 3;
-/// Total computing time after which a run is timed no more, if it was timed twice.
-const TOGETHER: Duration = Duration::from_millis(20);
-/// Computing time of a single run after which it is timed no more.
-const ALONE: Duration = Duration::from_millis(50);
+/// Tolerances beside one, over it, whose runs show how much errors vary.
+const BESIDE: [f64; 3] = [0.96, 0.98, 1.02];
 
 /// A scene at one stiffness, and how it is measured.
 pub struct Study<'a> {
@@ -49,13 +35,22 @@ pub struct Study<'a> {
     pub reference: Option<Reference>,
     methods: &'a [&'static Method],
     metric: Metric,
-    timed: bool,
+    /// What is measured beside errors and work.
+    measured: Measured,
+}
+
+/// What is measured of runs beside their errors and their work.
+#[derive(Clone, Copy)]
+pub struct Measured {
+    /// Computing times.
+    pub timed: bool,
+    /// Errors at tolerances beside each one.
+    pub spread: bool,
 }
 
 impl<'a> Study<'a> {
     /// A study of the scene. `name` and the flags of `what` describe it in the records; errors are
-    /// of a metric in a scope, on a scene whose particles move so far (m); `timed` says whether
-    /// computing times are measured.
+    /// of a metric in a scope, on a scene whose particles move so far (m).
     pub fn new(
         scene: Scene,
         (name, what): (&str, &What),
@@ -63,7 +58,7 @@ impl<'a> Study<'a> {
         until: f64,
         methods: &'a [&'static Method],
         (metric, scope, motion): (Metric, Scope, f64),
-        timed: bool,
+        measured: Measured,
     ) -> Self {
         let grid = scene.grid();
         let blank = Record {
@@ -89,7 +84,7 @@ impl<'a> Study<'a> {
             reference: None,
             methods,
             metric,
-            timed,
+            measured,
         }
     }
 
@@ -105,6 +100,16 @@ impl<'a> Study<'a> {
 
     /// The runs of this study.
     pub fn records<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
+        self.all(data).filter(|r| r.beside.is_none())
+    }
+
+    /// The runs at tolerances beside those, where they were asked for.
+    pub fn beside<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
+        self.all(data)
+            .filter(|r| self.measured.spread && r.beside.is_some())
+    }
+
+    fn all<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
         data.records.iter().filter(|r| r.same_scene(&self.blank))
     }
 
@@ -150,10 +155,17 @@ impl<'a> Study<'a> {
     pub fn run(&mut self, data: &mut Data, bar: &Bar) -> Result<bool, Failure> {
         for &method in self.methods {
             let (rungs, most) = (self.rungs(method)?, self.most(method)?);
+            let mut coarser_run: Option<Record> = None;
             for (i, &control) in rungs.iter().enumerate() {
-                let Some(record) = self.record(method, control, data, bar)? else {
+                let like = self.like(method, control);
+                let Some(record) = self.record(method, like, coarser_run.as_ref(), data, bar)?
+                else {
                     return Ok(false);
                 };
+                if !self.look_beside(method, control, &record, data, bar)? {
+                    return Ok(false);
+                }
+                coarser_run = Some(record.clone());
                 // The limit of stability is that of the start, and may be longer in motion.
                 let mut longest = (control, record.clone());
                 while i == 0
@@ -161,7 +173,8 @@ impl<'a> Study<'a> {
                     && longest.1.error(self.metric) < longest.1.still(self.metric)
                     && let Some(longer) = coarser(longest.0, &self.frames)
                 {
-                    let Some(record) = self.record(method, longer, data, bar)? else {
+                    let like = self.like(method, longer);
+                    let Some(record) = self.record(method, like, None, data, bar)? else {
                         return Ok(false);
                     };
                     longest = (longer, record);
@@ -185,26 +198,64 @@ impl<'a> Study<'a> {
         Ok(true)
     }
 
-    /// The run of a method, measured now if the data do not have it yet. `None` if it was
+    /// Measures the runs at tolerances beside one, if they were asked for. `false` if it was
     /// interrupted.
-    fn record(
+    fn look_beside(
         &mut self,
         method: &'static Method,
         control: Control,
+        record: &Record,
         data: &mut Data,
         bar: &Bar,
-    ) -> Result<Option<Record>, Failure> {
-        let like = Record {
+    ) -> Result<bool, Failure> {
+        let Some(tolerance) = control.tolerance() else {
+            return Ok(true);
+        };
+        if record.lost_at.is_some() || !self.measured.spread {
+            return Ok(true);
+        }
+        for factor in BESIDE {
+            let like = Record {
+                beside: Some(tolerance),
+                ..self.like(method, Control::Tolerance(factor * tolerance))
+            };
+            if self.record(method, like, None, data, bar)?.is_none() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// A record of a run of which nothing is known yet.
+    fn like(&self, method: &Method, control: Control) -> Record {
+        Record {
             solver: method.name.into(),
             setting: control.value(),
             ..self.blank.clone()
-        };
+        }
+    }
+
+    /// The run of a method like a record, measured now if the data do not have it yet, with the
+    /// order between it and a coarser run. `None` if it was interrupted.
+    fn record(
+        &mut self,
+        method: &'static Method,
+        like: Record,
+        coarser_run: Option<&Record>,
+        data: &mut Data,
+        bar: &Bar,
+    ) -> Result<Option<Record>, Failure> {
         bar.say(format!("{:<10} ", method.name));
-        let known = data.find(&like, self.timed).cloned();
+        let timed = self.measured.timed && like.beside.is_none();
+        let known = data.find(&like, timed).cloned();
+        let known = known.filter(|_| data.each.is_none());
         let is_new = known.is_none();
         let record = match known {
             Some(known) => Some(known),
-            None => self.measure(method, like, bar)?,
+            None => self.measure(method, like, data, bar)?.map(|record| Record {
+                order: coarser_run.and_then(|run| record.order_from(run)),
+                ..record
+            }),
         };
         if let Some(record) = &record {
             check_contact(self.metric, record.still(self.metric), record.until)?;
@@ -220,6 +271,7 @@ impl<'a> Study<'a> {
         &mut self,
         method: &'static Method,
         like: Record,
+        data: &mut Data,
         bar: &Bar,
     ) -> Result<Option<Record>, Failure> {
         if self.reference.is_none() {
@@ -232,10 +284,19 @@ impl<'a> Study<'a> {
         let Some(reference) = &self.reference else {
             return Ok(None);
         };
-        let Some((record, once)) = compared(like, &self.scene, method, reference)? else {
+        let timed = self.measured.timed && like.beside.is_none();
+        let mut coordinates = match (&data.each, like.beside) {
+            (Some(_), None) => vec![0.0; 3 * self.scene.model.particles()],
+            _ => vec![],
+        };
+        let found = compared(like, &self.scene, method, reference, &mut coordinates)?;
+        let Some((record, once)) = found else {
             return Ok(None);
         };
-        let seconds = if self.timed && record.lost_at.is_none() {
+        if let Some(each) = data.each.as_mut().filter(|_| record.lost_at.is_none()) {
+            each.add(&record, &coordinates)?;
+        }
+        let seconds = if timed && record.lost_at.is_none() {
             let control = method.control(record.setting);
             let Some(time) = time(&self.scene, method, control, &self.frames, Some(once))? else {
                 return Ok(None);
@@ -248,105 +309,6 @@ impl<'a> Study<'a> {
     }
 }
 
-/// The record of a run by a method with the setting of `like`, compared with the reference of its
-/// scene, and the computing time of that run. `None` if it was interrupted.
-pub fn compared(
-    like: Record,
-    scene: &Scene,
-    method: &'static Method,
-    reference: &Reference,
-) -> Result<Option<(Record, Duration)>, Failure> {
-    let (control, begun) = (method.control(like.setting), Instant::now());
-    let clock = || begun.elapsed();
-    let go_on = &interrupt::go_on;
-    let outcome = accuracy::measure_by(&clock, scene, method, control, reference, go_on)
-        .map_err(Failure::run)?;
-    let Some(Outcome {
-        errors,
-        work,
-        guarded,
-        lost,
-        time,
-    }) = outcome
-    else {
-        return Ok(None);
-    };
-    let Errors {
-        position,
-        energy,
-        strain,
-        momentum,
-        phase,
-        penetration,
-        impact,
-    } = errors;
-    let (floor, still) = (reference.floor, reference.still);
-    let of = |error: f64| Some(error).filter(|_| lost.is_none());
-    let record = Record {
-        error_position: of(position),
-        error_energy: of(energy),
-        error_strain: of(strain),
-        error_momentum: of(momentum),
-        error_phase: of(phase),
-        error_penetration: of(penetration),
-        error_impact: of(impact),
-        floor_position: floor.position,
-        floor_energy: floor.energy,
-        floor_strain: floor.strain,
-        floor_momentum: floor.momentum,
-        floor_phase: floor.phase,
-        floor_penetration: floor.penetration,
-        floor_impact: floor.impact,
-        still_position: still.position,
-        still_strain: still.strain,
-        still_penetration: still.penetration,
-        still_impact: still.impact,
-        lost_at: lost.map(|lost| lost.time),
-        guard_impulses: guarded.impulses,
-        guard_cuts: guarded.cuts,
-        guard_lost: guarded.lost,
-        work: work.total(),
-        evaluations: work.evaluations,
-        solves: work.solves,
-        iterations: work.iterations,
-        factorizations: work.factorizations,
-        rejections: work.rejections,
-        ..like
-    };
-    Ok(Some((record, time)))
-}
-
-/// Precision of a reference for all errors that a chart may show, of a scene whose particles move
-/// so far (m).
-pub fn precision(scene: &Scene, motion: f64) -> Precision {
-    let (evaluations, numbers) = MOST_OF_REFERENCE;
-    Precision {
-        metric: Metric::Position,
-        uncertainty: FINE * motion,
-        most: evaluations.max(numbers / scene.state.len() as f64),
-    }
-}
-
-/// Reference of a scene from its start. `None` if it was interrupted.
-pub fn reference(
-    scene: &Scene,
-    frames: Frames,
-    scope: Scope,
-    precision: Precision,
-) -> Result<Option<Reference>, Failure> {
-    Reference::new(scene, frames, scope, precision, &interrupt::go_on)
-        .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))
-}
-
-/// A scope in words.
-pub fn words(scope: Scope) -> String {
-    let when = if scope.at_end { " at the end" } else { "" };
-    match scope.particle {
-        Some(i) => format!("particle {i}{when}"),
-        None => format!("all particles{when}"),
-    }
-}
-
 /// Expected work of a step, in evaluations.
 fn each(method: &Method) -> f64 {
     if method.implicit && !method.needs_springs {
@@ -354,33 +316,6 @@ fn each(method: &Method) -> f64 {
     } else {
         f64::from(method.damped_evaluations.max(method.evaluations))
     }
-}
-
-/// Computing time of a whole run, the shortest of several, of which one may have been made before.
-/// `None` if it was interrupted.
-pub fn time(
-    scene: &Scene,
-    method: &'static Method,
-    control: Control,
-    frames: &Frames,
-    before: Option<Duration>,
-) -> Result<Option<Duration>, Failure> {
-    let (mut best, mut sum) = (before.unwrap_or(Duration::MAX), before.unwrap_or_default());
-    for runs in u32::from(before.is_some())..RUNS {
-        if runs > 0 && sum > if runs == 1 { ALONE } else { TOGETHER } {
-            break;
-        }
-        let mut run = Simulation::new(scene.clone(), method, control).map_err(Failure::run)?;
-        let begun = Instant::now();
-        let end = accuracy::run(&mut run, frames, &interrupt::go_on, None);
-        let elapsed = begun.elapsed();
-        if end.map_err(Failure::run)?.is_none() {
-            return Ok(None);
-        }
-        best = best.min(elapsed);
-        sum += elapsed;
-    }
-    Ok(Some(best))
 }
 
 /// The scene with the stiffness of its springs multiplied by a factor.
@@ -397,4 +332,13 @@ pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
         }
     }
     Ok(scene)
+}
+
+/// A scope in words.
+pub fn words(scope: Scope) -> String {
+    let when = if scope.at_end { " at the end" } else { "" };
+    match scope.particle {
+        Some(i) => format!("particle {i}{when}"),
+        None => format!("all particles{when}"),
+    }
 }

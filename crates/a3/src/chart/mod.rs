@@ -1,9 +1,11 @@
 //! `a3 chart`: speed against accuracy, measured on the user's own scene.
 
 pub mod data;
+mod each;
 pub mod measure;
 pub mod picture;
 pub mod record;
+pub mod single;
 pub mod style;
 pub mod table;
 pub mod text;
@@ -20,7 +22,8 @@ use crate::failure::Failure;
 use crate::progress::Bar;
 use crate::{interrupt, output, setup};
 use data::Data;
-use measure::{Study, stiffened};
+use each::Each;
+use measure::{Measured, Study, stiffened};
 
 /// Measures, prints and draws what the command line asks for.
 pub fn run(options: &Chart) -> Result<(), Failure> {
@@ -35,7 +38,12 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     let metric = metric(options.error, &scene)?;
     let scope = scope(&options.scope, &scene)?;
     let timed = options.work == WorkMeasure::Time;
+    let measured = Measured {
+        timed,
+        spread: options.spread,
+    };
     let mut data = Data::open(options.data.as_deref())?;
+    data.each = options.each.as_deref().map(Each::new).transpose()?;
     let mut studies = vec![];
     let mut until = options.until;
     let bar = Bar::new(1.0);
@@ -57,7 +65,7 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
         .into_iter()
         .map(|(factor, scene, motion)| {
             let of = (metric, scope, motion);
-            Study::new(scene, (&name, what), factor, until, &methods, of, timed)
+            Study::new(scene, (&name, what), factor, until, &methods, of, measured)
         })
         .collect();
     let mut expected = 0.0;
@@ -75,6 +83,9 @@ pub fn run(options: &Chart) -> Result<(), Failure> {
     bar.clear();
     interrupt::write_on();
     data.save()?;
+    if let Some(each) = data.each.take() {
+        each.finish()?;
+    }
     let studies: Vec<_> = studies
         .iter()
         .filter(|study| study.records(&data).next().is_some())

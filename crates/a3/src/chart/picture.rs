@@ -32,7 +32,8 @@ pub fn chart(
         .iter()
         .map(|study| {
             let records: Vec<_> = study.records(data).collect();
-            let mut problem = problem(&records, methods, metric, timed);
+            let beside: Vec<_> = study.beside(data).collect();
+            let mut problem = problem(&records, &beside, methods, metric, timed);
             if studies.len() > 1 || study.stiffness() != 1.0 {
                 problem.title = format!("stiffness × {}", study.stiffness());
             }
@@ -45,7 +46,15 @@ pub fn chart(
             describe(what, &studies[0].scene)
         ),
         subtitle: format!(
-            "{until} s of motion; each point is a run with another step or tolerance"
+            "{until} s of motion; each point is a run with another step or tolerance{}",
+            if studies
+                .iter()
+                .any(|study| study.beside(data).next().is_some())
+            {
+                "; bands: errors at tolerances within 4 %"
+            } else {
+                ""
+            }
         ),
         x_label: x_label(metric, scope),
         y_label: if timed {
@@ -153,9 +162,21 @@ pub fn x_label(metric: Metric, scope: Scope) -> String {
     }
 }
 
-/// The panel of the runs of a scene, without a title.
+/// The least and the largest error of a run and those beside it, if there are any.
+fn spread(run: &Record, beside: &[&Record], metric: Metric) -> Option<[f64; 2]> {
+    let own = run.error(metric);
+    let is_near = |r: &&&Record| r.solver == run.solver && r.beside == Some(run.setting);
+    let errors = beside.iter().filter(is_near).map(|r| r.error(metric));
+    errors.fold(None, |ends, error| {
+        let [least, most] = ends.unwrap_or([own, own]);
+        Some([least.min(error), most.max(error)])
+    })
+}
+
+/// The panel of the runs of a scene, without a title; the errors of the runs beside them are bands.
 pub fn problem(
     all: &[&Record],
+    beside: &[&Record],
     methods: &[&'static Method],
     metric: Metric,
     timed: bool,
@@ -188,6 +209,7 @@ pub fn problem(
                 lost: r.lost_at.is_some(),
                 held: r.is_held(),
                 label: Some(table::words(method.control(r.setting))),
+                spread: spread(r, beside, metric),
             }
         };
         Curve {

@@ -82,6 +82,13 @@ pub struct Record {
     pub iterations: u64,
     pub factorizations: u64,
     pub rejections: u64,
+    /// Order by the errors of the positions of this run and the next coarser one: their ratio, as a
+    /// power of the ratio of the steps or, for an adaptive method, of the evaluations.
+    #[serde(default)]
+    pub order: Option<f64>,
+    /// The tolerance of which this one is a neighbour, tried to see how much errors vary.
+    #[serde(default)]
+    pub beside: Option<f64>,
     /// Checksum of the file up to here, as it was read.
     #[serde(default, skip_serializing)]
     pub check: String,
@@ -101,6 +108,18 @@ impl Record {
     /// Whether both runs are of the same scene, method and setting.
     pub fn same_run(&self, other: &Self) -> bool {
         self.same_scene(other) && self.solver == other.solver && self.setting == other.setting
+    }
+
+    /// The order between a coarser run of the same method and this one.
+    pub fn order_from(&self, coarser: &Self) -> Option<f64> {
+        let is_adaptive = a3_core::integrators::find(&self.solver)?.is_adaptive();
+        let refined = if is_adaptive {
+            self.evaluations as f64 / coarser.evaluations as f64
+        } else {
+            coarser.setting / self.setting
+        };
+        let order = (coarser.error_position? / self.error_position?).ln() / refined.ln();
+        order.is_finite().then_some(order)
     }
 
     /// Whether the guard of surfaces held the run.

@@ -37,8 +37,8 @@ const FULL_VISION: f64 = 0.6;
 
 type Matrix = [[f64; 3]; 3];
 
-/// Difference of two colours, each `#` and six hexadecimal digits, to the kind of colour vision that
-/// sees least of it. Black and white differ by 60.
+/// Difference of two colours, each `#` and six hexadecimal digits, to the kind of colour vision
+/// that sees least of it. Black and white differ by 60.
 pub fn difference(a: &str, b: &str) -> f64 {
     let [a, b] = [a, b].map(linear);
     let apart = |[a, b]: [[f64; 3]; 2]| {

@@ -259,6 +259,14 @@ pub struct Chart {
     /// File that keeps all runs, ending in .csv or .json; if it exists, the chart continues from it
     #[arg(long, value_name = "FILE")]
     pub data: Option<PathBuf>,
+    /// File for the largest errors of each particle along x, y and z, ending in .csv; all runs are
+    /// measured anew
+    #[arg(long, value_name = "FILE")]
+    pub each: Option<PathBuf>,
+    /// Show as a light band how much errors of adaptive solvers vary: from each tolerance to three
+    /// within 4 % of it
+    #[arg(long)]
+    pub spread: bool,
     /// Width and height of the picture in pixels, 96 to the inch, or `column`, 340x360, for a
     /// column of a paper
     #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = picture_size, allow_hyphen_values = true)]

@@ -15,7 +15,8 @@ const SHRINKS: f64 = 0.2;
 /// Powers of ten on a logarithmic scale.
 pub const DECADES: i32 = 5;
 
-/// A scale from 0 to a round number, or a logarithmic one of [`DECADES`] to a power of ten: that of the largest value lately, or a fixed one.
+/// A scale from 0 to a round number, or a logarithmic one of [`DECADES`] to a power of ten: that
+/// of the largest value lately, or a fixed one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scale {
     /// The end that was chosen, if one was.

@@ -8,7 +8,7 @@ mod table;
 use a3_core::stability::{
     Budget, Limit, Mode, Motion, Observation, RestState, observe_at_rest, rest, spectrum,
 };
-use a3_core::{Error, Method};
+use a3_core::{Error, Method, Scene};
 use rayon::prelude::*;
 
 use crate::chart::{PICTURES, describe, methods, write_picture};
@@ -51,70 +51,12 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
     if let Some(data) = &options.data {
         output::check(data, &["json"])?;
     }
-    let nothing = || Failure::Interrupted("interrupted before anything was measured".into());
-    // The fixed steps of two adaptive solvers may be the same: they are measured once.
-    let first = |method: &Method| methods.iter().position(|m| m.shares_integrator(method));
-    let measured: Vec<_> = (methods.iter().enumerate())
-        .filter_map(|(k, &method)| (first(method) == Some(k)).then_some(method))
-        .collect();
-    // Each method's share is counted as half done, in case it is measured again.
-    let bar = Bar::new(2.0 + 2.0 * measured.len() as f64);
-    bar.say("the true motion and the state of rest ".into());
-    let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
-    let say = |method: &Method, stage| bar.say(format!("{} {stage} ", method.name));
-    // Nothing is timed here, so methods may be measured beside one another.
-    let in_motion = || {
-        let motion = Motion::of(&scene, interrupt::go_on)?;
-        bar.advance(1.0);
-        let limits = each(&measured, MOST_WORK[0], |method, budget| {
-            let Some(motion) = &motion else {
-                return Ok(None);
-            };
-            say(method, "in motion");
-            budget.allow(0.6);
-            let bounded = motion.bounded(method, budget, interrupt::go_on)?;
-            bar.advance(0.5);
-            say(method, "its errors");
-            budget.allow(1.0);
-            let longest = bounded.map_or(f64::INFINITY, |seen| seen.held);
-            let accurate = motion.accurate(method, longest, budget, interrupt::go_on)?;
-            bar.advance(0.5);
-            let found = (bounded, accurate, budget.limits());
-            Ok(interrupt::go_on().then_some(found))
-        });
-        Ok::<_, Error>((motion, limits?))
-    };
-    let at_rest = || {
-        let hanging = rest(&scene, interrupt::go_on)?;
-        bar.advance(1.0);
-        let limits = each(&measured, MOST_WORK[1], |method, budget| {
-            say(method, "at rest");
-            let by_modes = |rest: &RestState| rest.largest_step(method);
-            let limit = hanging.as_ref().map(by_modes).transpose()?.flatten();
-            let seen = match &hanging {
-                Some(rest) => {
-                    observe_at_rest(rest, method, limit.as_ref(), budget, interrupt::go_on)?
-                }
-                None => None,
-            };
-            bar.advance(0.5);
-            Ok(interrupt::go_on().then_some((limit, seen, budget.limits())))
-        });
-        Ok::<_, Error>((hanging, limits?))
-    };
-    let (moving, resting) = rayon::join(in_motion, at_rest);
-    let (motion, moving) = moving.map_err(Failure::run)?;
-    let (hanging, resting) = resting.map_err(Failure::run)?;
-    let motion = motion.ok_or_else(nothing)?;
-    let rows: Vec<_> = (measured.iter().zip(resting).zip(moving))
-        .filter_map(|((method, rest), moving)| Some(limits(method, rest?, moving?)))
-        .collect();
-    let row = |method: &'static Method| {
-        let row = (rows.iter()).find(|row| row.method.shares_integrator(method))?;
-        Some(MethodLimits { method, ..*row })
-    };
-    let rows: Vec<_> = methods.iter().filter_map(|method| row(method)).collect();
-    bar.clear();
+    let Found {
+        rows,
+        motion,
+        hanging,
+        at_start,
+    } = measure(&scene, &methods)?;
     interrupt::write_on();
     if rows.is_empty() {
         return Err(nothing());
@@ -150,6 +92,93 @@ pub fn run(options: &Stability) -> Result<(), Failure> {
             "interrupted: the chart has what was measured until then".into(),
         ))
     }
+}
+
+/// What is measured of a scene.
+struct Found {
+    rows: Vec<MethodLimits>,
+    motion: Motion,
+    hanging: Option<RestState>,
+    /// Modes at the start.
+    at_start: Vec<Mode>,
+}
+
+/// The end of a command that was interrupted too early.
+fn nothing() -> Failure {
+    Failure::Interrupted("interrupted before anything was measured".into())
+}
+
+/// Measures the limits of all methods, at rest and in motion at once.
+fn measure(scene: &Scene, methods: &[&'static Method]) -> Result<Found, Failure> {
+    // The fixed steps of two adaptive solvers may be the same: they are measured once.
+    let first = |method: &Method| methods.iter().position(|m| m.shares_integrator(method));
+    let measured: Vec<_> = (methods.iter().enumerate())
+        .filter_map(|(k, &method)| (first(method) == Some(k)).then_some(method))
+        .collect();
+    // Each method's share is counted as half done, in case it is measured again.
+    let bar = Bar::new(2.0 + 2.0 * measured.len() as f64);
+    bar.say("the true motion and the state of rest ".into());
+    let at_start = spectrum(scene.model.system(), 0.0, &scene.state);
+    let say = |method: &Method, stage| bar.say(format!("{} {stage} ", method.name));
+    // Nothing is timed here, so methods may be measured beside one another.
+    let in_motion = || {
+        let motion = Motion::of(scene, interrupt::go_on)?;
+        bar.advance(1.0);
+        let limits = each(&measured, MOST_WORK[0], |method, budget| {
+            let Some(motion) = &motion else {
+                return Ok(None);
+            };
+            say(method, "in motion");
+            budget.allow(0.6);
+            let bounded = motion.bounded(method, budget, interrupt::go_on)?;
+            bar.advance(0.5);
+            say(method, "its errors");
+            budget.allow(1.0);
+            let longest = bounded.map_or(f64::INFINITY, |seen| seen.held);
+            let accurate = motion.accurate(method, longest, budget, interrupt::go_on)?;
+            bar.advance(0.5);
+            let found = (bounded, accurate, budget.limits());
+            Ok(interrupt::go_on().then_some(found))
+        });
+        Ok::<_, Error>((motion, limits?))
+    };
+    let at_rest = || {
+        let hanging = rest(scene, interrupt::go_on)?;
+        bar.advance(1.0);
+        let limits = each(&measured, MOST_WORK[1], |method, budget| {
+            say(method, "at rest");
+            let by_modes = |rest: &RestState| rest.largest_step(method);
+            let limit = hanging.as_ref().map(by_modes).transpose()?.flatten();
+            let seen = match &hanging {
+                Some(rest) => {
+                    observe_at_rest(rest, method, limit.as_ref(), budget, interrupt::go_on)?
+                }
+                None => None,
+            };
+            bar.advance(0.5);
+            Ok(interrupt::go_on().then_some((limit, seen, budget.limits())))
+        });
+        Ok::<_, Error>((hanging, limits?))
+    };
+    let (moving, resting) = rayon::join(in_motion, at_rest);
+    let (motion, moving) = moving.map_err(Failure::run)?;
+    let (hanging, resting) = resting.map_err(Failure::run)?;
+    let motion = motion.ok_or_else(nothing)?;
+    let rows: Vec<_> = (measured.iter().zip(resting).zip(moving))
+        .filter_map(|((method, rest), moving)| Some(limits(method, rest?, moving?)))
+        .collect();
+    let row = |method: &'static Method| {
+        let row = (rows.iter()).find(|row| row.method.shares_integrator(method))?;
+        Some(MethodLimits { method, ..*row })
+    };
+    let rows: Vec<_> = methods.iter().filter_map(|method| row(method)).collect();
+    bar.clear();
+    Ok(Found {
+        rows,
+        motion,
+        hanging,
+        at_start,
+    })
 }
 
 /// What is found of each method, in their order, with so much work in all. The runs of implicit

@@ -111,7 +111,7 @@ fn diagram(sweep: &Sweep, plan: &Plan, records: &[(usize, Record)]) -> WorkPreci
             .iter()
             .filter(|(place, _)| plan.runs[*place].variant == number);
         let records: Vec<_> = of.map(|(_, record)| record).collect();
-        let mut problem = picture::problem(&records, &methods, variant.metric, false);
+        let mut problem = picture::problem(&records, &[], &methods, variant.metric, false);
         problem.title = title(sweep, variant);
         problem
     });

@@ -9,8 +9,9 @@ use super::file::Sweep;
 use super::folder::Folder;
 use super::plan::{Plan, Run, Variant};
 use crate::chart::data::VERSION;
-use crate::chart::measure::{compared, precision, reference, words};
+use crate::chart::measure::words;
 use crate::chart::record::Record;
+use crate::chart::single::{compared, precision, reference};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Bar;
@@ -73,7 +74,7 @@ fn together(
             setting: run.setting,
             ..blank.clone()
         };
-        if let Some((record, _)) = compared(like, &scene, run.method, &reference)? {
+        if let Some((record, _)) = compared(like, &scene, run.method, &reference, &mut [])? {
             folder.write(run.id, record)?;
             done();
         }

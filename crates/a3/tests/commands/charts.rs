@@ -19,7 +19,7 @@ pub fn said(folder: &Path, words: &[&str]) -> String {
 /// The scene of a bounce.
 const BOUNCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/bounce.toml");
 
-const CHAIN: [&str; 5] = ["chart", "--scene", "chain", "--work", "evaluations"];
+pub const CHAIN: [&str; 5] = ["chart", "--scene", "chain", "--work", "evaluations"];
 
 #[test]
 fn a_chart_of_evaluations_has_the_same_bits_every_time() {
@@ -317,7 +317,6 @@ fn wrong_usage_is_one_line() {
             ".svg, .pdf or .png",
             2,
         ),
-        (vec!["stability", "--data", "s.csv"], ".json", 2),
         (vec!["choose"], "--error", 2),
         (vec!["choose", "--error", "0"], "such as 1e-3", 2),
         (vec!["choose", "--budget", "-1"], "such as 2", 2),
@@ -344,27 +343,4 @@ fn wrong_usage_is_one_line() {
         );
     }
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
-}
-
-/// In linear motion the limits of Verlet's method and RK4 are sharp and known: 2 and 2 sqrt(2) over
-/// the fastest frequency. Explicit Euler has none, and an interval in its place.
-#[test]
-fn limits_are_written_as_data() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = ["stability", "--scene", "chain", "--solvers", "e,r,v"];
-    let words = [&words[..], &["--data", "l.json", "-o", "l.svg"]].concat();
-    let text = said(folder.path(), &words);
-    assert!(text.contains("a\u{2013}b"), "{text}");
-    let data = fs::read_to_string(folder.path().join("l.json")).unwrap();
-    let rows: Vec<serde_json::Value> = serde_json::from_str(&data).unwrap();
-    assert_eq!(rows.len(), 3);
-    let number = |row: usize, key: &str, part: &str| rows[row][key][part].as_f64().unwrap();
-    let euler = ["shortest_failed", "longest_held"].map(|part| number(0, "moving_bounded", part));
-    assert!(euler[0] < 0.5 * euler[1], "{euler:?}");
-    assert_eq!(rows[0]["rest_observed"]["sharp"], false);
-    let [rk4, verlet] = [1, 2].map(|row| number(row, "rest_observed", "longest_held"));
-    assert!((rk4 / verlet - 2f64.sqrt()).abs() < 0.03, "{rk4} {verlet}");
-    assert_eq!(rows[2]["rest_observed"]["sharp"], true);
-    let svg = fs::read_to_string(folder.path().join("l.svg")).unwrap();
-    assert!(svg.contains("not sharp: the shortest step that failed"));
 }

@@ -6,6 +6,7 @@ mod charts;
 mod choices;
 #[path = "../common/mod.rs"]
 mod common;
+mod data;
 #[cfg(unix)]
 mod endings;
 mod exports;

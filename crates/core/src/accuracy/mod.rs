@@ -100,11 +100,13 @@ pub fn measure(
     reference: &Reference,
     go_on: GoOn,
 ) -> Result<Option<Outcome>, Error> {
-    measure_by(&|| Duration::ZERO, scene, method, control, reference, go_on)
+    let clock = || Duration::ZERO;
+    measure_by(&clock, scene, method, control, reference, &mut [], go_on)
 }
 
 /// As [`measure`], with the computing time by a clock: a function that returns the time since some
-/// moment.
+/// moment. The largest error of each coordinate over the frames that count (m) is written to
+/// `coordinates`, n x 3, unless that is empty.
 ///
 /// # Errors
 /// The method does not support the scene or the control, or the run fails without a blow-up.
@@ -114,8 +116,10 @@ pub fn measure_by(
     method: &'static Method,
     control: Control,
     reference: &Reference,
+    coordinates: &mut [f64],
     go_on: GoOn,
 ) -> Result<Option<Outcome>, Error> {
+    coordinates.fill(0.0);
     let mut simulation = Simulation::new(scene.clone(), method, control)?;
     let mut errors = Errors::default();
     let mut last = reference.start.clone();
@@ -124,10 +128,23 @@ pub fn measure_by(
         last = last.next(model, reference.frames.time(k), look.state);
         if reference.counts(k) {
             let mut here = reference.errors(k, &last);
+            let mut at = (reference.frames.time(k), last.positions());
             if let Some(step) = &look.within {
-                here = here.min(reference.errors_between(model, k, step));
+                let at_end = reference.errors_between(model, k, step);
+                if at_end.position < here.position {
+                    at = step.nearest;
+                }
+                here = here.min(at_end);
             }
             errors = errors.max(here);
+            if coordinates.is_empty() {
+                return;
+            }
+            let truth = reference.positions(model, k, at.0);
+            let apart = truth.iter().zip(at.1).map(|(a, b)| (a - b).abs());
+            for (most, apart) in coordinates.iter_mut().zip(apart) {
+                *most = f64::max(*most, apart);
+            }
         }
     };
     let mut looks = Looks {

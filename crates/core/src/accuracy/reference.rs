@@ -7,6 +7,8 @@
 //! forces depend on the velocity. Its disagreement with the reference is the uncertainty: two
 //! tolerances of one method may share an error, two families do not.
 
+use std::borrow::Cow;
+
 use super::errors::Snapshot;
 use super::trajectory::Trajectory;
 use super::{Between, Errors, Frames, GoOn, Look, Metric, Scope, run};
@@ -154,6 +156,15 @@ impl Reference {
         let start = (&self.start, self.frames);
         self.trajectory
             .errors_between(start, (model, k, step), self.scope)
+    }
+
+    /// Positions (m) of a model at frame k, counted from 1, or at another time t (s) near it.
+    pub(super) fn positions(&self, model: &Model, k: u64, t: f64) -> Cow<'_, [f64]> {
+        if t == self.frames.time(k) {
+            return Cow::Borrowed(self.trajectory.snapshots[k as usize - 1].positions());
+        }
+        let start = (&self.start, self.frames);
+        Cow::Owned(self.trajectory.at(start, model, t).positions().to_vec())
     }
 
     /// Time (s) until which positions are known to less than a ten-thousandth of the

@@ -28,6 +28,11 @@ impl Trajectory {
         self.errors_of(&self.snapshots[k as usize - 1], other, scope)
     }
 
+    /// Quantities of a model at time t (s), interpolated.
+    pub fn at(&self, start: (&Snapshot, Frames), model: &Model, t: f64) -> Snapshot {
+        Snapshot::interpolated(model, &self.around(start, t), t)
+    }
+
     /// Errors at the nearest end of a step of a model that frame k, counted from 1, is within:
     /// those of contact are infinite, since they are not known there. That of the positions is at
     /// least what exact states at both ends of the step would not tell of the frame.
@@ -37,7 +42,7 @@ impl Trajectory {
         (model, k, step): (&Model, u64, &Between),
         scope: Scope,
     ) -> Errors {
-        let at = |t: f64| Snapshot::interpolated(model, &self.around((start, frames), t), t);
+        let at = |t: f64| self.at((start, frames), model, t);
         let (t, y) = step.nearest;
         let errors = self.errors_of(&at(t), &Snapshot::between_frames(model, t, y), scope);
         let mut position = errors.position;

@@ -156,8 +156,8 @@ impl Motion {
     /// Runs take [`HORIZON`] and [`STEPS`](super::STEPS) steps at least. The search begins at the
     /// limit by the modes. Runs ten times as long, with steps a tenth shorter and a tenth longer,
     /// tell whether the limit is sharp. If they do not, or if that by the modes is not sharp, runs
-    /// from half the limit to twice it show in which interval some hold and some fail. `None` if the
-    /// runs would take too long, and soon after `go_on` returns false.
+    /// from half the limit to twice it show in which interval some hold and some fail. `None` if
+    /// the runs would take too long, and soon after `go_on` returns false.
     ///
     /// # Errors
     /// The method does not support the scene.

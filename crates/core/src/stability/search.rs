@@ -194,8 +194,8 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
         Ok(holds)
     }
 
-    /// Brackets the limit, from an expected one (s), and bisects it, unless the longest step holds or
-    /// no step of at least `shortest` (s) does.
+    /// Brackets the limit, from an expected one (s), and bisects it, unless the longest step holds
+    /// or no step of at least `shortest` (s) does.
     fn search(
         &mut self,
         guess: f64,

@@ -281,7 +281,15 @@ fn looks_are_not_a_part_of_the_time_of_a_run() {
             reads.set(reads.get() + 1);
             Duration::from_secs(reads.get())
         };
-        let outcome = measure_by(&clock, &mit, method(name), control, &reference, GO_ON);
+        let outcome = measure_by(
+            &clock,
+            &mit,
+            method(name),
+            control,
+            &reference,
+            &mut [],
+            GO_ON,
+        );
         let looks = (reads.get() - 2) / 2;
         assert!(looks >= reference.frames.count, "{name}: {looks}");
         assert_eq!(outcome.unwrap().unwrap().time.as_secs(), looks + 1);

@@ -2,13 +2,16 @@
 
 use std::cmp::Reverse;
 
-use super::problem::{Measurement, Problem};
+use super::problem::{Curve, Measurement, Problem};
 use crate::axis::{self, Axis};
 use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
 use crate::label::{Anchor, GREY, Label};
 use crate::paint::{Paint, Pen};
 use crate::style::Filling;
+
+/// Opacity of a band of errors.
+const BAND: f64 = 0.25;
 
 /// The paint of errors that the reference cannot tell from 0.
 pub fn shade_paint() -> Paint {
@@ -103,10 +106,35 @@ impl<'a> Drawing<'a> {
         self.name_steps(figure, &front);
     }
 
+    /// Draws the spread of errors along a curve as a band, to and fro from the dearest run on.
+    fn band(&self, figure: &mut Figure, curve: &Curve) {
+        let mut outline = vec![];
+        let mut back = vec![];
+        for run in curve.joined() {
+            let Some([least, most]) = run.spread.filter(|ends| ends[1].is_finite()) else {
+                continue;
+            };
+            let at = |error| {
+                self.at(&Measurement {
+                    error,
+                    ..run.clone()
+                })
+            };
+            outline.push(at(least));
+            back.push(at(most));
+        }
+        outline.extend(back.into_iter().rev());
+        if outline.len() > 2 {
+            let paint = Paint::fill(curve.style.colour).opacity(BAND);
+            figure.area(vec![outline], paint);
+        }
+    }
+
     /// Draws the curves and their markers.
     fn curves(&mut self, figure: &mut Figure) {
         let radius = 0.38 * self.fine;
         for curve in &self.problem.curves {
+            self.band(figure, curve);
             let style = curve.style;
             let line: Vec<_> = curve.joined().iter().map(|run| self.at(run)).collect();
             figure.line(&line, style.pen(0.14 * self.fine));

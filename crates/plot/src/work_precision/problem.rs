@@ -15,6 +15,8 @@ pub struct Measurement {
     pub held: bool,
     /// The step or the tolerance of the run, in words.
     pub label: Option<String>,
+    /// The least and the largest error of runs like this one, drawn as a band.
+    pub spread: Option<[f64; 2]>,
 }
 
 /// The runs of a method on a problem.
@@ -121,6 +123,7 @@ mod tests {
             lost,
             held: false,
             label: None,
+            spread: None,
         };
         let curve = |runs| Curve {
             style: CurveStyle::default(),

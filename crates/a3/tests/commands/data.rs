@@ -1,0 +1,84 @@
+//! Data behind charts, against what is known of their scenes.
+
+use std::fs;
+
+use crate::charts::{CHAIN, said};
+use crate::common::a3;
+
+/// The order between runs is that of their method, the errors of single particles make those of
+/// all, and the errors beside a tolerance are near its own.
+#[test]
+fn orders_particles_and_spread_are_in_the_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["--solvers", "t,r,x", "--until", "3", "--spread"];
+    let files = ["--data", "d.csv", "--each", "e.csv", "-o", "c.svg"];
+    said(folder.path(), &[&CHAIN[..], &words, &files].concat());
+    let read = |name: &str| -> Vec<std::collections::HashMap<String, String>> {
+        let mut reader = csv::Reader::from_path(folder.path().join(name)).unwrap();
+        reader.deserialize().map(Result::unwrap).collect()
+    };
+    let (runs, each) = (read("d.csv"), read("e.csv"));
+    for (solver, order) in [("trapezoid", 2.0), ("rk4", 4.0)] {
+        let of = runs.iter().filter(|run| run["solver"] == solver);
+        let orders: Vec<f64> = of.filter_map(|run| run["order"].parse().ok()).collect();
+        let finest = orders[orders.len() - 2];
+        assert!((finest - order).abs() < 0.2, "{solver}: {orders:?}");
+    }
+    let number = |row: &std::collections::HashMap<String, String>, key: &str| -> f64 {
+        row[key].parse().unwrap()
+    };
+    let mut beside = 0;
+    for run in &runs {
+        if !run["beside"].is_empty() {
+            beside += 1;
+            assert!((number(run, "setting") / number(run, "beside") - 1.0).abs() < 0.05);
+            continue;
+        }
+        let own = each
+            .iter()
+            .filter(|row| row["solver"] == run["solver"] && row["setting"] == run["setting"]);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for row in own {
+            sum += ["x", "y", "z"]
+                .map(|axis| number(row, axis).powi(2))
+                .iter()
+                .sum::<f64>();
+            count += 1.0;
+        }
+        if run["lost_at"].is_empty() {
+            let (all, together) = ((sum / count).sqrt(), number(run, "error_position"));
+            assert!((0.999..5.0).contains(&(all / together)), "{all} {together}");
+        }
+    }
+    assert!(beside > 9, "{beside}");
+    let svg = fs::read_to_string(folder.path().join("c.svg")).unwrap();
+    assert!(svg.contains("fill-opacity=\"0.25\"") && svg.contains("within 4 %"));
+}
+
+/// In linear motion the limits of Verlet's method and RK4 are sharp and known: 2 and 2 sqrt(2) over
+/// the fastest frequency. Explicit Euler has none, and an interval in its place.
+#[test]
+fn limits_are_written_as_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["stability", "--scene", "chain", "--solvers", "e,r,v"];
+    let words = [&words[..], &["--data", "l.json", "-o", "l.svg"]].concat();
+    let text = said(folder.path(), &words);
+    assert!(text.contains("a\u{2013}b"), "{text}");
+    let data = fs::read_to_string(folder.path().join("l.json")).unwrap();
+    let rows: Vec<serde_json::Value> = serde_json::from_str(&data).unwrap();
+    assert_eq!(rows.len(), 3);
+    let number = |row: usize, key: &str, part: &str| rows[row][key][part].as_f64().unwrap();
+    let euler = ["shortest_failed", "longest_held"].map(|part| number(0, "moving_bounded", part));
+    assert!(euler[0] < 0.5 * euler[1], "{euler:?}");
+    assert_eq!(rows[0]["rest_observed"]["sharp"], false);
+    let [rk4, verlet] = [1, 2].map(|row| number(row, "rest_observed", "longest_held"));
+    assert!((rk4 / verlet - 2f64.sqrt()).abs() < 0.03, "{rk4} {verlet}");
+    assert_eq!(rows[2]["rest_observed"]["sharp"], true);
+    for words in ["stability --data s.csv", "chart --each e.json"] {
+        let refused = a3(folder.path(), &words.split(' ').collect::<Vec<_>>());
+        let said = String::from_utf8(refused.stderr).unwrap();
+        assert!(said.contains("must end in ."), "{said}");
+    }
+    let svg = fs::read_to_string(folder.path().join("l.svg")).unwrap();
+    assert!(svg.contains("not sharp: the shortest step that failed"));
+}
