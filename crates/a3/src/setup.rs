@@ -108,7 +108,7 @@ pub fn simulate(
     if what.self_collision {
         simulation.set_touching(true).map_err(|why| {
             Failure::usage(format!(
-                "--self-collision: {why}; leave the option out, or begin with surfaces that are apart"
+                "--self-collision: {why}; leave the option out, or move apart what crosses"
             ))
         })?;
     }

@@ -71,6 +71,7 @@ pub mod rigid;
 mod rows;
 mod scene;
 mod serial;
+mod sets;
 mod simulation;
 mod sine;
 mod spring;

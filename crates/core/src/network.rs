@@ -3,6 +3,7 @@
 mod bodies;
 mod compliant;
 mod constrained;
+mod crossed;
 mod energies;
 mod fluid;
 mod layer;

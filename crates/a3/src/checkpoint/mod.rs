@@ -225,6 +225,52 @@ mod tests {
         refused(&|kept| kept.tuned.push(("gravity".into(), f64::INFINITY)));
     }
 
+    /// A file whose checksum is right, but in which a number of the adaptive method or of the step
+    /// that the time is within is another one.
+    #[test]
+    fn forged_steps_are_refused() {
+        let kept = kept();
+        let progress = serde_json::to_value(&kept.checkpoint.progress).unwrap();
+        let forge = |place: &str, number: f64| {
+            let there = progress.pointer(place).unwrap().as_f64().unwrap();
+            let mut bytes = kept.bytes().ok().unwrap();
+            bytes.truncate(bytes.len() - 4);
+            let mut found = false;
+            for at in 0..bytes.len() - 7 {
+                if bytes[at..at + 8] == there.to_le_bytes() {
+                    bytes[at..at + 8].copy_from_slice(&number.to_le_bytes());
+                    found = true;
+                }
+            }
+            assert!(found, "{place}");
+            bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+            let mut run = {
+                let setup = Source::find("pendulum").unwrap().build(None).unwrap();
+                let method = a3_core::integrators::find("v").unwrap();
+                Simulation::new(setup.scene, method, method.default_control).unwrap()
+            };
+            let kept = Kept::parse(&bytes)?;
+            let restored = run.restore(&kept.checkpoint);
+            restored.map_err(|why| why.to_string())
+        };
+        let next = progress.pointer("/method/next").unwrap().as_f64().unwrap();
+        for place in ["/method/next", "/method/last/h"] {
+            assert_eq!(forge(place, 0.5 * next), Ok(()));
+            for number in [5e-324, -1e-3, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let why = forge(place, number).unwrap_err();
+                assert!(
+                    why.contains("a step must be 0 or a positive number"),
+                    "{why}"
+                );
+            }
+        }
+        for place in ["/within/times/0", "/within/times/1"] {
+            for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                assert!(forge(place, number).is_err(), "{place}: {number}");
+            }
+        }
+    }
+
     #[test]
     fn another_version_is_refused_by_name() {
         let mut bytes = kept().bytes().ok().unwrap();

@@ -152,6 +152,7 @@ pub struct Scenes {
 #[command(after_help = "Outputs, all in m and s, y up:\n  \
     FILE.json      the final state at full precision; with --fps, the states of all frames\n  \
     FILE.csv       all frames at full precision: frame,time,particle,x,y,z,vx,vy,vz\n  \
+    FILE.npz       arrays of all frames for NumPy: time, positions, velocities and masses\n  \
     FILE.obj       the final surface with normals, or points and lines where there is no surface\n  \
     FILE-####.obj  one such file for each frame, numbered with as many digits as there are #\n  \
     FILE.pc2       a point cache (PC2), and beside it FILE.obj, the mesh that it moves\n  \

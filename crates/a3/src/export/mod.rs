@@ -4,6 +4,7 @@ mod csv;
 mod geometry;
 mod glb;
 mod json;
+mod npz;
 mod obj;
 mod pc2;
 
@@ -22,11 +23,11 @@ use crate::output;
 /// Default frames a second.
 const RATE: f64 = 30.0;
 
-/// Sizes of the largest files (GiB): in general, and in the format whose lengths have 32 bits.
+/// Sizes of the largest files (GiB): in general, and in formats whose lengths have 32 bits.
 const LARGEST: (f64, f64) = (16.0, 4.0);
 
 /// Endings of files of all formats.
-const ENDINGS: &[&str] = &["json", "csv", "obj", "pc2", "glb"];
+const ENDINGS: &[&str] = &["json", "csv", "npz", "obj", "pc2", "glb"];
 
 /// `Ok` if the output is standard output or ends as a format does.
 pub fn check_ending(path: &Path) -> Result<(), Failure> {
@@ -90,6 +91,10 @@ pub fn begin(
         (Some("csv"), _) => {
             let frames = check(csv::ROW * particles * several.count as f64, LARGEST.0)?;
             (frames, Box::new(csv::Csv::new(path, frames.first)?))
+        }
+        (Some("npz"), _) => {
+            let frames = check(npz::size(particles, several), LARGEST.1)?;
+            (frames, Box::new(npz::Npz::new(path, simulation, frames)?))
         }
         (Some("pc2"), _) => {
             let frames = check(pc2::size(simulation, several), LARGEST.0)?;

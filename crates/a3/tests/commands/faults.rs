@@ -101,6 +101,7 @@ fn exports_survive_every_fault() {
     );
     fail_everywhere(&format!("{run} -o x.json --fps 30"), &["x.json"], 5);
     fail_everywhere(&format!("{run} -o x.csv"), &["x.csv"], 5);
+    fail_everywhere(&format!("{run} -o x.npz"), &["x.npz"], 10);
     fail_everywhere(&format!("{run} -o x.obj"), &["x.obj"], 5);
     fail_everywhere(&format!("{run} -o x-#.obj"), &["x-2.obj"], 20);
     fail_everywhere(&format!("{run} -o x.pc2"), &["x.pc2", "x.obj"], 10);

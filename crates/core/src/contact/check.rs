@@ -62,14 +62,14 @@ impl ContactLayer {
         self.with_scratch(|scratch| self.crossed_with(scratch, t, x))
     }
 
-    /// Whether more primitives are at one place at time t (s), with particles at x (m), n x 3, than
-    /// their pairs can be listed for: those whose boxes meet.
-    pub(crate) fn is_crowded(&self, t: f64, x: &[f64]) -> bool {
+    /// Whether more primitives of a thickness (m) are at one place at time t (s), with particles at
+    /// x (m), n x 3, than their pairs can be listed for: those whose boxes meet.
+    pub(crate) fn is_crowded(&self, t: f64, x: &[f64], thickness: f64) -> bool {
         let surface = self.surface();
         let mut places = vec![];
         surface.place(self.obstacles(), t, x, &mut places);
         let around = |corners: &[u32; 3]| {
-            Aabb::around(corners.map(|i| places[i as usize])).grown(0.5 * surface.thickest())
+            Aabb::around(corners.map(|i| places[i as usize])).grown(0.5 * thickness)
         };
         let corners = surface
             .bodies

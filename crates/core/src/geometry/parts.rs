@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use crate::error::Error;
+use crate::sets::Sets;
 
 /// Angle (rad) between two triangles at an edge that lie on one another.
 const SAME: f64 = 1e-9;
@@ -26,29 +27,6 @@ pub(super) struct Parts {
     pub part_of: Vec<u32>,
     /// Number of parts.
     pub count: usize,
-}
-
-/// Sets, each known by one of its members.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    /// The member by which the set of another is known.
-    fn find(&mut self, mut k: u32) -> u32 {
-        while self.0[k as usize] != k {
-            self.0[k as usize] = self.0[self.0[k as usize] as usize];
-            k = self.0[k as usize];
-        }
-        k
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }
 
 /// Parts of the surface with these points and triangles.

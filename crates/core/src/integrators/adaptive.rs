@@ -42,6 +42,21 @@ pub struct AdaptiveState {
     step: Option<LastStep>,
 }
 
+impl AdaptiveState {
+    /// `Ok` if the lengths of its steps are ones that a method takes.
+    fn check(&self) -> Result<(), Error> {
+        let Taken { t, h, .. } = self.last;
+        let within = self.step.as_ref().map_or(0.0, |step| step.h);
+        let is_length = |h: &&f64| **h == 0.0 || h.is_normal() && **h > 0.0;
+        if let Some(h) = [self.next, h, within].iter().find(|h| !is_length(h)) {
+            return Err(Error::Invalid(format!(
+                "a step must be 0 or a positive number of seconds, not {h:e}"
+            )));
+        }
+        at_least(f64::MIN, "the beginning of the last step", t)
+    }
+}
+
 /// An adaptive method: one that estimates its error, with its tolerance.
 ///
 /// Beside scratch it remembers the length of its last step, as the first guess for the next, and
@@ -120,7 +135,7 @@ impl Adaptive {
     /// The state is of another method or of another system, or its step is no step; nothing
     /// changes then.
     pub fn resume(&mut self, state: &AdaptiveState) -> Result<(), Error> {
-        at_least(0.0, "the next step", state.next)?;
+        state.check()?;
         if let Some(step) = &state.step {
             self.trial.resume(step)?;
         }

@@ -1,6 +1,7 @@
 //! Contact of a network's surfaces.
 
 use super::Network;
+use super::crossed::Description;
 use crate::contact::{ContactLayer, Crossed, Skin, Surface};
 use crate::elements::Element;
 use crate::error::Error;
@@ -81,26 +82,33 @@ impl Network {
     /// `Ok` if no surfaces pass through one another at time t (s) at x (m), n x 3.
     ///
     /// # Errors
-    /// Some do: the error names the first of them. Or so many are at one place that they cannot be
-    /// looked at one by one.
+    /// Some do: the error names the first of them, and which connected parts cross. Or so many are
+    /// at one place that they cannot be looked at one by one.
     pub fn check_apart(&self, t: f64, x: &[f64]) -> Result<(), Error> {
-        if self
-            .contact_layer()
-            .is_some_and(|layer| layer.is_crowded(t, x))
-        {
-            let why = "too many surfaces are at the same place for contact: move them apart";
-            return Err(Error::Invalid(why.into()));
-        }
-        match &self.crossed(t, x)[..] {
-            [] => Ok(()),
-            [first] => Err(Error::Invalid(format!("{first}"))),
-            [first, more @ ..] => {
-                let more = more.len();
-                Err(Error::Invalid(format!(
-                    "{first}, and so do {more} other pairs"
-                )))
+        if let Some(layer) = self.contact_layer() {
+            let thickest = layer.surface().thickest();
+            if layer.is_crowded(t, x, 0.0) {
+                let why = "too many surfaces are at the same place for contact: move them apart";
+                return Err(Error::Invalid(why.into()));
+            }
+            if layer.is_crowded(t, x, thickest) {
+                return Err(Error::Invalid(format!(
+                    "too many surfaces are within their thickness of one another for contact: it is up to {thickest} m, \
+                     and a smaller one would do"
+                )));
             }
         }
+        let crossed = self.crossed(t, x);
+        if crossed.is_empty() {
+            return Ok(());
+        }
+        let network = self;
+        let description = Description {
+            network,
+            x,
+            crossed: &crossed,
+        };
+        Err(Error::Invalid(description.to_string()))
     }
 
     /// Half the largest thickness (m) of surfaces that touch; infinite if none do.

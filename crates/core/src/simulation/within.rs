@@ -146,12 +146,18 @@ impl Within {
     /// Goes on within a step.
     ///
     /// # Errors
-    /// It is of another system.
+    /// It is of another system, or its times are none of a step.
     pub fn resume(&mut self, span: Option<&Span>, dim: usize) -> Result<(), Error> {
         self.times = None;
         let Some(Span { times, ends }) = span else {
             return Ok(());
         };
+        let [t0, t1] = *times;
+        if !(t0 < t1 && (t1 - t0).is_finite()) {
+            return Err(Error::Invalid(format!(
+                "a step must end after it begins, not begin at {t0} s and end at {t1} s"
+            )));
+        }
         for end in ends.iter().filter(|end| !end.is_empty()) {
             if end.len() != dim {
                 return Err(Error::Dimension {

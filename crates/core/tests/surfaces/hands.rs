@@ -221,3 +221,43 @@ fn what_crosses_does_not_begin_to_touch() {
     run.set_touching(true).unwrap();
     assert!(!run.touching());
 }
+
+/// Cloths of 16 particles in planes through one another, and one apart.
+#[test]
+fn what_crosses_is_named_by_its_parts() {
+    let cloth = |down: &str, at: &str| {
+        format!(
+            "[[cloth]]\ngrid = [4, 4]\nwidth = 1\ndensity = 0.2\nstiffness = [40, 20, 0.5]\n\
+             right = [1, 0, 0]\ndown = {down}\nat = {at}\n"
+        )
+    };
+    let apart = cloth("[0, -1, 0]", "[0, 0, 5]");
+    let upright = cloth("[0, -1, 0]", "[0, 0.03, 0]");
+    let level = cloth("[0, 0, -1]", "[0.07, -0.5, 0.53]");
+    let run = run(&[apart, upright, level].concat(), "implicit");
+    let why = run.model().network().unwrap();
+    let why = why.check_apart(0.0, &run.state()[..144]).unwrap_err();
+    let why = why.to_string();
+    let parts = "; of 3 connected parts, part 2 (16 particles from 16 on) crosses part 3 \
+                 (16 particles from 32 on) (";
+    assert!(why.contains(parts) && why.contains(" near (-0."), "{why}");
+}
+
+/// Surfaces that are apart, but within a thickness that is far too large.
+#[test]
+fn a_smaller_thickness_is_offered_where_it_would_do() {
+    let mut scene = described(
+        "self_collision = true\n[[cloth]]\ngrid = [30, 30]\nwidth = 1\ndensity = 0.2\n\
+         stiffness = [40, 20, 0.5]\n",
+    );
+    let state = scene.state.clone();
+    let network = network(&mut scene);
+    network.check_apart(0.0, &state[..2700]).unwrap();
+    let mut touch = network.touch().unwrap().clone();
+    for skin in &mut touch.skins {
+        skin.thickness = 10.0;
+    }
+    network.set_touch(Some(touch)).unwrap();
+    let why = network.check_apart(0.0, &state[..2700]).unwrap_err();
+    assert!(why.to_string().contains("it is up to 10 m"), "{why}");
+}

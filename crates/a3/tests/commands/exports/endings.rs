@@ -15,7 +15,10 @@ fn exports_that_cannot_be_are_refused_before_the_work() {
         [&run[..], more].concat()
     };
     for (words, says) in [
-        (long("5x5", "x.txt", &[]), ".json, .csv, .obj, .pc2 or .glb"),
+        (
+            long("5x5", "x.txt", &[]),
+            ".json, .csv, .npz, .obj, .pc2 or .glb",
+        ),
         (long("5x5", "-", &["--fps", "25"]), "final state"),
         (long("5x5", "-", &["--summary", "-"]), "not both"),
         (long("5x5", "x.json", &["--summary", "s.txt"]), ".json"),
@@ -33,6 +36,10 @@ fn exports_that_cannot_be_are_refused_before_the_work() {
         (
             long("1000x1000", "x.pc2", &[]),
             "33.5 GiB, and at most 16 GiB",
+        ),
+        (
+            long("1000x1000", "x.npz", &["--fps", "5"]),
+            "22.4 GiB, and at most 4 GiB",
         ),
         (long("1000x1000", "x.csv", &[]), "GiB"),
         (long("1000x1000", "x-####.obj", &[]), "GiB"),
@@ -72,7 +79,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
         assert!(run(&[output]).contains("blew up at step"));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{output}");
     }
-    for output in ["x.json", "x.csv", "x.pc2", "x.glb"] {
+    for output in ["x.json", "x.csv", "x.npz", "x.pc2", "x.glb"] {
         let line = run(&[&[output], &several[..]].concat());
         assert!(
             line.contains("blew up at step") && line.contains("nothing was written; a step of "),
@@ -97,7 +104,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
 #[cfg(unix)]
 fn an_interrupted_export_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    for output in ["x.csv", "x.pc2", "x.glb"] {
+    for output in ["x.csv", "x.npz", "x.pc2", "x.glb"] {
         let words = ["simulate", "v", "1e-5", "--until", "19", "--output", output];
         let child = command(folder.path(), &words).spawn().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(400));

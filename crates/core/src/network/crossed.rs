@@ -1,0 +1,140 @@
+//! What is said of surfaces that pass through one another: which pair, where, and of which
+//! connected parts.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use super::Network;
+use crate::contact::Crossed;
+use crate::error::Vertex;
+use crate::sets::Sets;
+
+/// Number of pairs of parts that are named.
+const NAMED: usize = 3;
+
+/// What a surface is a part of.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Whole {
+    /// A connected part, by its smallest particle.
+    Part(u32),
+    Body(usize),
+    Obstacle(usize),
+}
+
+/// Connected parts of the surfaces of a network.
+struct Parts {
+    sets: Sets,
+    /// Number of each part, from 1 on, and of its particles, by its smallest particle.
+    sizes: BTreeMap<u32, (usize, usize)>,
+}
+
+impl Parts {
+    fn of(network: &Network) -> Self {
+        let mut sets = Sets::new(network.particles());
+        let edges = network.touch().into_iter().flat_map(|touch| &touch.edges);
+        let sides = network
+            .triangles()
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c]]);
+        let mut members = vec![];
+        for [a, b] in sides.chain(edges.copied()) {
+            sets.join(a, b);
+            members.extend([a, b]);
+        }
+        members.sort_unstable();
+        members.dedup();
+        let mut sizes = BTreeMap::new();
+        for i in members {
+            let number = sizes.len() + 1;
+            sizes.entry(sets.find(i)).or_insert((number, 0)).1 += 1;
+        }
+        Self { sets, sizes }
+    }
+
+    fn whole(&mut self, vertex: Vertex) -> Whole {
+        match vertex {
+            Vertex::Particle(i) => Whole::Part(self.sets.find(i as u32)),
+            Vertex::Body(k) => Whole::Body(k),
+            Vertex::Obstacle(k) => Whole::Obstacle(k),
+        }
+    }
+
+    fn name(&self, whole: Whole) -> String {
+        match whole {
+            Whole::Part(first) => {
+                let (number, size) = self.sizes.get(&first).copied().unwrap_or((0, 1));
+                format!("part {number} ({size} particles from {first} on)")
+            }
+            Whole::Body(k) => Vertex::Body(k).to_string(),
+            Whole::Obstacle(k) => Vertex::Obstacle(k).to_string(),
+        }
+    }
+}
+
+/// Surfaces of a network that pass through one another at positions x (m), n x 3, in words.
+pub(super) struct Description<'a> {
+    pub network: &'a Network,
+    pub x: &'a [f64],
+    pub crossed: &'a [Crossed],
+}
+
+impl Description<'_> {
+    /// Middle of the particles of a primitive (m), if it has any.
+    fn place(&self, vertices: &[Vertex]) -> Option<[f64; 3]> {
+        let n = self.network.particles();
+        let particles = vertices.iter().filter_map(|vertex| match vertex {
+            Vertex::Particle(i) => Some(*i),
+            Vertex::Body(_) | Vertex::Obstacle(_) => None,
+        });
+        let particles: Vec<_> = particles.collect();
+        let mean = |axis: usize| {
+            let all = particles.iter().map(|i| self.x[axis * n + i]);
+            all.sum::<f64>() / particles.len() as f64
+        };
+        (!particles.is_empty()).then(|| [0, 1, 2].map(mean))
+    }
+}
+
+impl fmt::Display for Description<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some((first, more)) = self.crossed.split_first() else {
+            return f.write_str("nothing crosses");
+        };
+        write!(f, "{first}")?;
+        let place = self
+            .place(&first.first)
+            .or_else(|| self.place(&first.second));
+        if let Some([x, y, z]) = place {
+            write!(f, " near ({x:.3}, {y:.3}, {z:.3})")?;
+        }
+        if !more.is_empty() {
+            write!(f, ", and so do {} other pairs", more.len())?;
+        }
+        let mut parts = Parts::of(self.network);
+        let count = parts.sizes.len();
+        if count < 2 {
+            return Ok(());
+        }
+        let mut pairs = BTreeMap::<_, usize>::new();
+        for Crossed { first, second } in self.crossed {
+            if let (Some(a), Some(b)) = (first.first(), second.first()) {
+                let (a, b) = (parts.whole(*a), parts.whole(*b));
+                *pairs.entry((a.min(b), a.max(b))).or_default() += 1;
+            }
+        }
+        write!(f, "; of {count} connected parts")?;
+        for (k, ((a, b), times)) in pairs.iter().take(NAMED).enumerate() {
+            let before = if k == 0 { "," } else { ";" };
+            let what = if a == b {
+                "itself".into()
+            } else {
+                parts.name(*b)
+            };
+            write!(f, "{before} {} crosses {what} ({times}x)", parts.name(*a))?;
+        }
+        match pairs.len() - NAMED.min(pairs.len()) {
+            0 => Ok(()),
+            others => write!(f, "; and so do {others} other pairs of parts"),
+        }
+    }
+}
