@@ -71,16 +71,28 @@ pub fn time_of_impact(
     radius: f64,
     gap: f64,
 ) -> Option<f64> {
+    time_and_planes(kind, from, moves, radius, gap).0
+}
+
+/// As [`time_of_impact`], with the number of planes that it took.
+pub(super) fn time_and_planes(
+    kind: PairKind,
+    from: &[Vector3<f64>; 4],
+    moves: &[Vector3<f64>; 4],
+    radius: f64,
+    gap: f64,
+) -> (Option<f64>, usize) {
     let magnitude = magnitude(from) + magnitude(moves);
     if !magnitude.is_finite() {
-        return Some(0.0);
+        return (Some(0.0), 0);
     }
     let tolerance = LEAST + ROUNDING * magnitude;
     // Approach (m) in the step from which on a pair is hit that begins nearer than the gap.
     let approach = |room: f64| tolerance.min(NEAR * room.max(0.0)) + ROUNDED * magnitude;
     if kind == PairKind::VertexFloor {
         let (height, rise) = (from[0].y - from[1].y, moves[0].y - moves[1].y);
-        return sinks_to(gap, height, rise, tolerance, approach(height - radius));
+        let time = sinks_to(gap, height, rise, tolerance, approach(height - radius));
+        return (time, 0);
     }
     // As point 0 sees it: exact where coordinates are large and distances small.
     let (from, moves) = (from.map(|x| x - from[0]), moves.map(|u| u - moves[0]));
@@ -90,7 +102,7 @@ pub fn time_of_impact(
         let room = plane.apart - radius;
         let touches = NEAR * room <= 2.0 * tolerance;
         if plane.rate < -approach(room) || (touches && radius == 0.0) {
-            return Some(0.0);
+            return (Some(0.0), 1);
         }
         least = plane.apart - (NEAR * room).max(2.0 * tolerance);
     }
@@ -100,7 +112,8 @@ pub fn time_of_impact(
         gaps: [least, near],
         planes: PLANES,
     };
-    search.first_hit(&from, &moves, plane, FEW)
+    let time = search.first_hit(&from, &moves, plane, FEW);
+    (time, PLANES - search.planes)
 }
 
 /// Search for the first time at which a pair, or a part of it, comes near.

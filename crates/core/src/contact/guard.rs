@@ -95,6 +95,7 @@ impl ContactLayer {
         motion.inverse_masses.extend_from_slice(inverse_masses);
         motion.inverse_masses.resize(motion.x0.len(), 0.0);
         motion.read_solids(surface, [y0, y1]);
+        motion.take_planes();
         let mut guarded = Guarded::default();
         motion.cover(surface, candidates);
         let mut changed = rub(surface, h, candidates, motion, &mut guarded);
@@ -121,6 +122,7 @@ impl ContactLayer {
                 end.write(numbers);
             }
         }
+        guarded.planes = motion.take_planes();
         Ok(guarded)
     }
 }

@@ -1,19 +1,23 @@
 //! Motion of all vertices in a step, as the guard changes it, and what it did.
 
 use std::ops::AddAssign;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::advance::{are_apart, time_of_impact};
+use super::advance::{are_apart, time_and_planes};
 use super::candidates::{Candidates, Stretch};
 use super::impulses::Impulses;
 use super::listing::Candidate;
 use super::rebound::Course;
 use super::solids::{Field, Solid};
 use super::surface::Surface;
-use crate::geometry::closest;
+use crate::geometry::{PairKind, closest};
 use crate::rigid::{ROTATION, Rotation};
+
+/// Number of planes between a pair that the price of an evaluation includes.
+const USUAL: usize = 16;
 
 /// What the guard did in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,6 +32,8 @@ pub struct Guarded {
     pub lost: f64,
     /// Share of the step at which the first impulse was needed; 1 if none was.
     pub first: f64,
+    /// Number of planes between pairs that the search for impacts took beyond the usual few.
+    pub planes: usize,
 }
 
 impl Default for Guarded {
@@ -38,6 +44,7 @@ impl Default for Guarded {
             cuts: 0,
             lost: 0.0,
             first: 1.0,
+            planes: 0,
         }
     }
 }
@@ -49,6 +56,7 @@ impl AddAssign for Guarded {
         self.cuts += other.cuts;
         self.lost += other.lost;
         self.first = self.first.min(other.first);
+        self.planes += other.planes;
     }
 }
 
@@ -72,6 +80,8 @@ pub(super) struct Motion {
     /// Impulses that the guard gave.
     pub impulses: Impulses,
     ends: Vec<Vector3<f64>>,
+    /// Number of planes beyond the usual ones.
+    planes: AtomicUsize,
 }
 
 impl Motion {
@@ -170,7 +180,7 @@ impl Motion {
             return None;
         }
         let kept = Self::kept(surface, candidate, &x);
-        time_of_impact(candidate.kind, &x, &moves, law.radius, kept)
+        self.first_impact(candidate.kind, [&x, &moves], law.radius, kept)
     }
 
     /// Share of the step, after another one, at which a pair comes too near, if it does.
@@ -180,8 +190,28 @@ impl Motion {
         let rest = moves.map(|u| u * (1.0 - time));
         let law = surface.law(candidate.kind, &candidate.points);
         let kept = Self::kept(surface, candidate, &x);
-        let share = time_of_impact(candidate.kind, &at, &rest, law.radius, kept)?;
+        let share = self.first_impact(candidate.kind, [&at, &rest], law.radius, kept)?;
         Some(time + (1.0 - time) * share)
+    }
+
+    /// Time of impact of a pair, whose planes are counted. Several threads may look for impacts.
+    fn first_impact(
+        &self,
+        kind: PairKind,
+        [from, moves]: [&[Vector3<f64>; 4]; 2],
+        radius: f64,
+        kept: f64,
+    ) -> Option<f64> {
+        let (time, planes) = time_and_planes(kind, from, moves, radius, kept);
+        if planes > USUAL {
+            self.planes.fetch_add(planes - USUAL, Ordering::Relaxed);
+        }
+        time
+    }
+
+    /// Number of planes beyond the usual ones since this was last asked.
+    pub fn take_planes(&mut self) -> usize {
+        std::mem::take(self.planes.get_mut())
     }
 
     /// Distance (m) that a pair keeps, less than what it has at the beginning.

@@ -34,6 +34,9 @@ const MIN_RETRY_SHARE: f64 = 0.1;
 /// Price of a sweep over the springs that a limit of strain applies to, in evaluations.
 const SWEEP: f64 = 2.0;
 
+/// Price of a plane between two surfaces, in evaluations of one particle on springs.
+const PLANE: f64 = 7.0;
+
 /// Distance from an obstacle, over the radius of the scene, that counts as none.
 pub(super) const NONE: f64 = 1e-9;
 
@@ -147,7 +150,8 @@ impl Simulation {
                 Ok(settled) => settled,
                 Err(cause) => return Ok(Err(cause)),
             };
-            self.state.work.algebra += SWEEP * settled.strained.sweeps as f64;
+            let planes = PLANE * settled.met.guarded.planes as f64 / self.model.work();
+            self.state.work.algebra += SWEEP * settled.strained.sweeps as f64 + planes;
             if let Kind::Adaptive(adaptive) = &mut self.stepper.kind {
                 if let Some(share) = share_of_retry(&settled, part.h, max_depth, heights[1]) {
                     self.take_again(part.h, share);

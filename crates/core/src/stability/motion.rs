@@ -105,7 +105,7 @@ impl Motion {
                 return Ok(None);
             }
             let time = k as f64 * interval;
-            let dear = run.work().evaluations as f64 * scene.model.work() > TRUE;
+            let dear = run.work().total() * scene.model.work() > TRUE;
             if dear || run.advance_to(time).is_err() {
                 motion.predictable = motion.predictable.min(time - interval);
                 break;

@@ -19,6 +19,8 @@ pub(super) const MOST: f64 = 2e8;
 const LOOKS: u64 = 200;
 /// Longest run of a search, as a share of the search's budget.
 const RUN: f64 = 0.25;
+/// Work between two looks at what is spent, as a share of the search's budget.
+const PORTION: f64 = 0.01;
 /// Least number of particles that count: a small system costs more than its particles.
 const PARTICLES: usize = 20;
 /// Number of steps to which no run is shortened.
@@ -98,14 +100,24 @@ impl Budget {
 
     /// Takes steps of a run. Returns whether it holds; `None` once the budget is spent.
     pub(super) fn take(&self, run: &mut Simulation, steps: u64) -> Option<bool> {
-        let before = cost(run);
-        let holds = run.take_steps(steps).is_ok();
-        self.spent.set(self.spent.get() + cost(run) - before);
-        if holds && self.spent.get() > self.allowed.get() {
-            self.limits.set(true);
-            return None;
+        let (mut left, mut portion) = (steps, 1);
+        while left > 0 {
+            let before = cost(run);
+            let holds = run.take_steps(portion).is_ok();
+            let work = cost(run) - before;
+            self.spent.set(self.spent.get() + work);
+            if !holds {
+                return Some(false);
+            }
+            if self.spent.get() > self.allowed.get() {
+                self.limits.set(true);
+                return None;
+            }
+            left -= portion;
+            let room = PORTION * self.most * portion as f64 / work;
+            portion = (room as u64).clamp(1, left.max(1));
         }
-        Some(holds)
+        Some(true)
     }
 }
 

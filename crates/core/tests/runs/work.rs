@@ -235,3 +235,31 @@ fn a_run_shorter_than_a_look_is_looked_at() {
     let end = accuracy::run(&mut run, &Frames::new(0.06), &|| true, None);
     assert!(end.unwrap().flatten().is_some());
 }
+
+/// A capsule of a million kilometres turns past a jelly: hundreds of planes are needed to find that
+/// they stay apart, and count. One of a metre takes no more than what evaluations include.
+#[test]
+fn searches_for_impacts_that_take_long_are_work() {
+    let work = |length: &str| {
+        let scene = described(&format!(
+            "self_collision = true
+            [[jelly]]
+            grid = [3, 3, 3]
+            size = [0.4, 0.5, 0.3]
+            mass = 0.15
+            stiffness = [5, 5, 50]
+            at = [0.1, -0.5, 0]
+            [[capsule]]
+            from = [-1.5, -0.3, 2]
+            to = [-0.6, -0.8, {length}]
+            radius = 0.15
+            turn = {{ axis = [-0.5, 0.7, 0.5], rate = -17 }}"
+        ));
+        let mut run = Simulation::new(scene, method("rk4"), Control::Step(0.001)).unwrap();
+        run.advance_to(0.4).unwrap();
+        run.work()
+    };
+    let [long, short] = ["-1e9", "1"].map(work);
+    assert_eq!(short.algebra, 0.0);
+    assert!(long.total() > 2.0 * long.evaluations as f64, "{long:?}");
+}
