@@ -5,7 +5,6 @@ mod common;
 
 mod frames;
 mod known_times;
-mod resting;
 mod tears;
 mod thin;
 mod touches;
