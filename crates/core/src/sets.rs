@@ -1,5 +1,5 @@
-//! Sets that are joined: what is connected with what (Tarjan, *Efficiency of a good but not linear
-//! set union algorithm*, 1975).
+//! Disjoint sets, by which connected parts are found (union-find: Tarjan, *Efficiency of a good but
+//! not linear set union algorithm*, 1975).
 
 /// Sets of numbers, each known by its smallest member.
 pub(crate) struct Sets(Vec<u32>);

@@ -226,7 +226,7 @@ impl<'a> Study<'a> {
         Ok(true)
     }
 
-    /// A record of a run of which nothing is known yet.
+    /// The record of a run that is not measured yet: its scene, method and setting.
     fn like(&self, method: &Method, control: Control) -> Record {
         Record {
             solver: method.name.into(),

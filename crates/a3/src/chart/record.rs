@@ -86,7 +86,8 @@ pub struct Record {
     /// power of the ratio of the steps or, for an adaptive method, of the evaluations.
     #[serde(default)]
     pub order: Option<f64>,
-    /// The tolerance of which this one is a neighbour, tried to see how much errors vary.
+    /// For a run of `--spread`: the tolerance whose spread of errors it shows, within 4 % of its
+    /// own.
     #[serde(default)]
     pub beside: Option<f64>,
     /// Checksum of the file up to here, as it was read.

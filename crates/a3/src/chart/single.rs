@@ -122,8 +122,8 @@ pub fn reference(
         .map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))
 }
 
-/// Computing time of a whole run, the shortest of several, of which one may have been made before.
-/// `None` if it was interrupted.
+/// Computing time of a run: the shortest of several, `before` among them, if that is given. `None`
+/// if it was interrupted.
 pub fn time(
     scene: &Scene,
     method: &'static Method,

@@ -260,8 +260,8 @@ pub struct Chart {
     /// File that keeps all runs, ending in .csv or .json; if it exists, the chart continues from it
     #[arg(long, value_name = "FILE")]
     pub data: Option<PathBuf>,
-    /// File for the largest errors of each particle along x, y and z, ending in .csv; all runs are
-    /// measured anew
+    /// File for the largest errors of each particle along x, y and z, ending in .csv; runs that
+    /// --data has are measured again
     #[arg(long, value_name = "FILE")]
     pub each: Option<PathBuf>,
     /// Show as a light band how much errors of adaptive solvers vary: from each tolerance to three

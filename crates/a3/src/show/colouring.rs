@@ -33,7 +33,9 @@ impl Scale {
         let fits = largest <= self.fitting && largest >= SHRINKS * self.fitting;
         if !fits && largest.is_finite() {
             let rounds = if self.logarithmic { &[1.0, 10.0] } else { MANY };
-            self.fitting = if largest > NOTHING {
+            // A logarithmic scale says how small an error is, in scenes of any size.
+            let nothing = if self.logarithmic { 0.0 } else { NOTHING };
+            self.fitting = if largest > nothing {
                 round_up(largest, rounds)
             } else {
                 0.0

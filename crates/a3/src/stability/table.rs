@@ -13,6 +13,7 @@ pub fn step(seconds: f64) -> String {
     let ms = 1e3 * seconds;
     match ms {
         _ if ms.is_infinite() => "any".into(),
+        0.0 => "0".into(),
         _ if ms < 0.999_5 => format!("{ms:.3}"),
         _ if ms < 9.995 => format!("{ms:.2}"),
         _ if ms < 99.95 => format!("{ms:.1}"),

@@ -1,5 +1,5 @@
-//! What is said of surfaces that pass through one another: which pair, where, and of which
-//! connected parts.
+//! Error messages for surfaces that cross: the first pair, its place, and the connected parts that
+//! the pairs belong to.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,10 +9,10 @@ use crate::contact::Crossed;
 use crate::error::Vertex;
 use crate::sets::Sets;
 
-/// Number of pairs of parts that are named.
+/// Most pairs of parts that a message names.
 const NAMED: usize = 3;
 
-/// What a surface is a part of.
+/// Connected part, body or obstacle that a surface belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Whole {
     /// A connected part, by its smallest particle.
@@ -105,7 +105,11 @@ impl fmt::Display for Description<'_> {
             .place(&first.first)
             .or_else(|| self.place(&first.second));
         if let Some([x, y, z]) = place {
-            write!(f, " near ({x:.3}, {y:.3}, {z:.3})")?;
+            if x.abs().max(y.abs()).max(z.abs()) < 0.1 {
+                write!(f, " near ({x:.2e}, {y:.2e}, {z:.2e})")?;
+            } else {
+                write!(f, " near ({x:.3}, {y:.3}, {z:.3})")?;
+            }
         }
         if !more.is_empty() {
             write!(f, ", and so do {} other pairs", more.len())?;

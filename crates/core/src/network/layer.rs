@@ -82,8 +82,8 @@ impl Network {
     /// `Ok` if no surfaces pass through one another at time t (s) at x (m), n x 3.
     ///
     /// # Errors
-    /// Some do: the error names the first of them, and which connected parts cross. Or so many are
-    /// at one place that they cannot be looked at one by one.
+    /// Surfaces cross: the message names the first pair of triangles or edges, its place, and the
+    /// connected parts that cross. Or too many are at one place to be tested pair by pair.
     pub fn check_apart(&self, t: f64, x: &[f64]) -> Result<(), Error> {
         if let Some(layer) = self.contact_layer() {
             let thickest = layer.surface().thickest();
