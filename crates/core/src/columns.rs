@@ -2,10 +2,24 @@
 
 use std::ops::Range;
 
+use nalgebra::Vector3;
+
 /// The numbers of some particles in each column of an n x 3 matrix.
 pub(crate) fn columns<'a>(a: &'a [f64], particles: &Range<usize>) -> [&'a [f64]; 3] {
     let n = a.len() / 3;
     [0, n, 2 * n].map(|column| &a[column + particles.start..column + particles.end])
+}
+
+/// Row i of an n x 3 matrix.
+pub(crate) fn row(a: &[f64], n: usize, i: usize) -> Vector3<f64> {
+    Vector3::new(a[i], a[n + i], a[2 * n + i])
+}
+
+/// Sets row i of an n x 3 matrix.
+pub(crate) fn set_row(a: &mut [f64], n: usize, i: usize, to: Vector3<f64>) {
+    for axis in 0..3 {
+        a[axis * n + i] = to[axis];
+    }
 }
 
 /// The columns of an n x 3 matrix, or of one with another number of columns.

@@ -18,7 +18,7 @@ use crate::integrators::{Method, Work, find};
 use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
 use crate::stability::{LargestMode, Mode, largest_step, spectrum};
-use crate::system::{Mechanics, ParticleSystem};
+use crate::system::Mechanics;
 
 /// Largest and smallest tolerance of the reference. A tighter one loses more to rounding than it
 /// gains.
@@ -302,7 +302,7 @@ impl Making<'_> {
     /// falls.
     fn by_steps(&mut self, own: f64) -> Result<Option<Errors>, Error> {
         let system = self.scene.model.system();
-        let method = find(other(system)).ok_or_else(missing)?;
+        let method = find(other(&self.scene.model)).ok_or_else(missing)?;
         let longest = |modes: &[Mode]| -> Result<f64, Error> {
             Ok(largest_step(method, modes)?.map_or(f64::INFINITY, |limit| limit.step))
         };
@@ -359,10 +359,14 @@ fn is_stuck(history: &[f64]) -> bool {
 }
 
 /// Name of the method that checks the reference: PEFRL takes four evaluations for each kick of
-/// forces that depend on the velocity, and serves no first-order system.
-fn other(system: &dyn ParticleSystem) -> &'static str {
-    let splitting = system.mechanics().and_then(Mechanics::splitting);
-    if splitting.is_some_and(|splitting| !splitting.kick_reads_velocity()) {
+/// forces that depend on the velocity, serves no first-order system, and has no reactions of
+/// obstacles in its stages.
+fn other(model: &Model) -> &'static str {
+    let splitting = model.system().mechanics().and_then(Mechanics::splitting);
+    let touches = model
+        .network()
+        .is_some_and(|network| !network.obstacles().is_empty());
+    if !touches && splitting.is_some_and(|splitting| !splitting.kick_reads_velocity()) {
         "pefrl"
     } else {
         "rk4"

@@ -9,6 +9,7 @@ use super::impulses::Impulses;
 use super::motion::Guarded;
 use super::obstacle::Obstacle;
 use super::rebound::{Course, rebound_speed};
+use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::nearest::Nearest;
 use crate::path::Pose;
@@ -87,13 +88,13 @@ impl Met<'_> {
         for i in 0..n {
             let d = Vector3::new(x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
             let inside = surface(d);
-            let at = vector(x, n, i);
-            let may_pass = x0.is_some_and(|x0| self.may_pass(vector(x0, n, i), at));
+            let at = row(x, n, i);
+            let may_pass = x0.is_some_and(|x0| self.may_pass(row(x0, n, i), at));
             if inside.is_none() && !may_pass || self.inverse_masses[i] == 0.0 {
                 continue;
             }
             let touch = (may_pass || self.obstacle.restitution > 0.0)
-                .then(|| self.touch(i, [at, vector(v, n, i)]))
+                .then(|| self.touch(i, [at, row(v, n, i)]))
                 .flatten();
             let passed = touch
                 .as_ref()
@@ -101,12 +102,12 @@ impl Met<'_> {
             let Some(nearest) = passed.or(inside) else {
                 continue;
             };
-            if let Some(rebound) = touch.and_then(|touch| self.rebound(vector(v, n, i), &touch)) {
+            if let Some(rebound) = touch.and_then(|touch| self.rebound(row(v, n, i), &touch)) {
                 let end = at + rebound.change * rebound.left;
                 // What comes back within the step is put out at its end.
                 if surface(end - c).is_none() {
-                    set(x, n, i, end);
-                    set(v, n, i, vector(v, n, i) + rebound.change);
+                    set_row(x, n, i, end);
+                    set_row(v, n, i, row(v, n, i) + rebound.change);
                     let depth = nearest.normal.dot(&(nearest.point - d));
                     if depth > statistics.depth {
                         statistics.depth = depth;
@@ -120,7 +121,7 @@ impl Met<'_> {
                 }
             }
             let own = self.velocity(nearest.point);
-            let velocity = vector(v, n, i) - own;
+            let velocity = row(v, n, i) - own;
             let outwards = velocity.dot(&nearest.normal);
             let inwards = outwards.min(0.0);
             for axis in self.axes.clone() {
@@ -129,7 +130,7 @@ impl Met<'_> {
             }
             if let Some(x0) = self.x0 {
                 // Where it would be if the obstacle had carried it along.
-                let carried = self.carried(vector(x0, n, i));
+                let carried = self.carried(row(x0, n, i));
                 let depth = nearest.normal.dot(&(nearest.point - d));
                 let approach = nearest.normal.dot(&(carried - at));
                 if self.friction > 0.0 {
@@ -139,14 +140,14 @@ impl Met<'_> {
                         1.0
                     };
                     let touched = carried + (at - carried) * (1.0 - share);
-                    let slip = across(vector(x, n, i) - touched, nearest.normal);
+                    let slip = across(row(x, n, i) - touched, nearest.normal);
                     let kept = self.kept(slip, depth);
                     let held = if kept > 0.0 {
-                        vector(x, n, i) - slip * (1.0 - kept)
+                        row(x, n, i) - slip * (1.0 - kept)
                     } else {
                         surface(touched - c).map_or(touched, |nearest| c + nearest.point)
                     };
-                    set(x, n, i, held);
+                    set_row(x, n, i, held);
                 }
                 let moved_in = depth.min(approach);
                 if moved_in > statistics.depth {
@@ -168,12 +169,12 @@ impl Met<'_> {
                 let own = if kept > 0.0 {
                     own
                 } else {
-                    self.velocity(vector(x, n, i) - c)
+                    self.velocity(row(x, n, i) - c)
                 };
-                set(v, n, i, own + outwards + slip * kept);
+                set_row(v, n, i, own + outwards + slip * kept);
             }
             statistics.contacts += 1;
-            let change = vector(v, n, i) - own - velocity;
+            let change = row(v, n, i) - own - velocity;
             statistics.impulse += change.norm() / self.inverse_masses[i];
             impulses.add(i, change / self.inverse_masses[i]);
         }
@@ -194,8 +195,8 @@ impl Met<'_> {
     fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2]) -> Option<Touch> {
         let ((t, h), n) = (self.span, self.inverse_masses.len());
         let course = Course {
-            x: [vector(self.x0?, n, i), x],
-            v: [vector(self.v0?, n, i), v],
+            x: [row(self.x0?, n, i), x],
+            v: [row(self.v0?, n, i), v],
             h,
         };
         let approach = Approach::new(self.obstacle, &course, t);
@@ -261,8 +262,8 @@ impl Met<'_> {
             return Stop::default();
         };
         let n = self.inverse_masses.len();
-        let d = vector(x0, n, i) - self.before.place.position;
-        let begun = vector(v0, n, i) - velocity(&self.before, d);
+        let d = row(x0, n, i) - self.before.place.position;
+        let begun = row(v0, n, i) - velocity(&self.before, d);
         let begun = across(begun, up);
         let speed = begun.norm();
         // It falls linearly, by what friction takes and by other forces.
@@ -348,14 +349,4 @@ pub(super) fn velocity(pose: &Pose, point: Vector3<f64>) -> Vector3<f64> {
 /// Part of a vector at right angles to a unit normal.
 pub(super) fn across(a: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
     a - normal * a.dot(&normal)
-}
-
-pub(super) fn vector(a: &[f64], n: usize, i: usize) -> Vector3<f64> {
-    Vector3::new(a[i], a[n + i], a[2 * n + i])
-}
-
-pub(super) fn set(a: &mut [f64], n: usize, i: usize, to: Vector3<f64>) {
-    for axis in 0..3 {
-        a[axis * n + i] = to[axis];
-    }
 }

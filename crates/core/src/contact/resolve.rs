@@ -5,9 +5,10 @@ use nalgebra::Vector3;
 use super::cut::Squeezed;
 use super::impulses::Impulses;
 use super::layer::ContactLayer;
-use super::met::{Met, Statistics, across, set, vector, velocity};
+use super::met::{Met, Statistics, across, velocity};
 use super::obstacle::Obstacle;
 use super::rebound::rebound_speed;
+use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::nearest::{of_box, of_capsule, of_floor, of_sphere};
 
@@ -121,14 +122,14 @@ impl Contact {
         for obstacle in obstacles {
             let pose = obstacle.at(t);
             for i in (0..n).filter(|i| inverse_masses[*i] > 0.0) {
-                let d = vector(x, n, i) - pose.place.position;
+                let d = row(x, n, i) - pose.place.position;
                 let seen = obstacle.shape.separation(pose.inwards(d));
                 if seen.distance.abs() > none {
                     continue;
                 }
                 let normal = pose.outwards(seen.normal);
                 let point = d - normal * seen.distance;
-                let relative = vector(v, n, i) - velocity(&pose, point);
+                let relative = row(v, n, i) - velocity(&pose, point);
                 let approach = -relative.dot(&normal);
                 if approach <= 0.0 {
                     continue;
@@ -136,8 +137,8 @@ impl Contact {
                 let begun = self
                     .y0
                     .get(3 * n..6 * n)
-                    .map_or(vector(v, n, i), |v0| vector(v0, n, i));
-                let press = ((begun - vector(v, n, i)).dot(&normal) / h).max(0.0);
+                    .map_or(row(v, n, i), |v0| row(v0, n, i));
+                let press = ((begun - row(v, n, i)).dot(&normal) / h).max(0.0);
                 // The time in which what rebounds by that height comes back.
                 let shortest = if press > 0.0 {
                     (8.0 * height / press).sqrt()
@@ -154,8 +155,8 @@ impl Contact {
                     slip
                 };
                 let change = normal * along - taken;
-                set(x, n, i, pose.place.position + point);
-                set(v, n, i, vector(v, n, i) + change);
+                set_row(x, n, i, pose.place.position + point);
+                set_row(v, n, i, row(v, n, i) + change);
                 let impulse = change / inverse_masses[i];
                 self.struck += impulse.norm();
             }

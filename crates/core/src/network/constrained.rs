@@ -127,7 +127,7 @@ impl Network {
         self.constraints.set_baumgarte_frequency(w)
     }
 
-    pub(super) fn is_constrained(&self) -> bool {
+    pub(crate) fn is_constrained(&self) -> bool {
         !self.constraints.all().is_empty()
     }
 

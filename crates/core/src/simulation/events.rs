@@ -35,6 +35,8 @@ pub(super) enum EventKind {
     Touch { particle: usize, obstacle: usize },
     /// A particle that rests on an obstacle sank into it by more than is allowed.
     Sunk,
+    /// A particle no longer rests, sticks or slides on an obstacle as it did.
+    Rested,
     /// A spring reaches the length (m) at which it breaks: its ends.
     Tear { ends: [usize; 2], longest: f64 },
 }
@@ -323,7 +325,7 @@ impl Searched<'_> {
                 let (d, v) = (row(0, j) - row(0, i), row(3 * n, j) - row(3 * n, i));
                 (longest - d.norm(), -d.dot(&v) / d.norm())
             }
-            EventKind::Sunk => (0.0, 0.0),
+            EventKind::Sunk | EventKind::Rested => (0.0, 0.0),
         }
     }
 }

@@ -6,8 +6,10 @@ mod checkpoint;
 mod drive;
 mod events;
 mod hands;
+mod located;
 mod phases;
 mod readings;
+mod resting;
 mod state;
 mod step;
 mod stepper;
@@ -30,6 +32,7 @@ use crate::scene::{Model, Scene};
 use balance::Watch;
 use events::Events;
 use phases::Phases;
+use resting::Rests;
 use stepper::Stepper;
 
 /// A run of a scene.
@@ -40,6 +43,8 @@ pub struct Simulation {
     stepper: Stepper,
     phases: Phases,
     events: Events,
+    /// Particles that rest on obstacles in the step that is taken.
+    rests: Rests,
     /// Whether fixed steps end at events too, in parts.
     locates: bool,
     blow_up: Option<BlowUp>,
@@ -77,7 +82,7 @@ impl Simulation {
             apart.map_err(|e| Error::Invalid(format!("surfaces cannot begin crossed: {e}")))?;
         }
         let (middle, radius) = scene.extent();
-        let events = Events::new(&model);
+        let (events, rests) = (Events::new(&model), Rests::new(&model));
         let mut run = Self {
             state: RunState::new(method, control, scene.state.clone()),
             scene,
@@ -85,6 +90,7 @@ impl Simulation {
             stepper,
             phases: Phases::new(dim),
             events,
+            rests,
             locates: false,
             blow_up: None,
             watch: Watch::default(),
@@ -128,9 +134,9 @@ impl Simulation {
     }
 
     /// Lets fixed steps end at events, as adaptive ones do: where a prescribed motion begins or
-    /// ends and, in scenes of few particles, where one touches an obstacle or a spring breaks. A
-    /// step goes on from there by the rest of its length. So the order of the method is kept, at
-    /// any price: this is for references.
+    /// ends, a particle touches an obstacle, its slide ends, or a spring breaks. A step goes on from
+    /// there by the rest of its length. So the order of the method is kept, at any price: this is
+    /// for references.
     pub fn locate_events(&mut self) {
         self.locates = true;
     }

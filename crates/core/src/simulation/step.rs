@@ -9,8 +9,9 @@
 use super::Simulation;
 use super::blow_up::blow_up_by;
 use super::drive::{End, energy_of};
-use super::events::{Event, EventKind, Searched};
+use super::events::{Event, EventKind};
 use super::phases::Settled;
+use super::resting;
 use super::stepper::Kind;
 use crate::control::Control;
 use crate::error::{Cause, Error};
@@ -21,7 +22,7 @@ use crate::system::ParticleSystem;
 /// Largest depth, as a share of the scene's radius, to which a step of an adaptive method may take
 /// a particle into an obstacle: a state between the ends of the step is shown as it is, and must
 /// not sink visibly.
-const MAX_PENETRATION: f64 = 1e-3;
+pub(super) const MAX_PENETRATION: f64 = 1e-3;
 
 /// Largest growth of the excess length of a spring in a step of an adaptive method, over the
 /// longest length that a limit of strain allows it: for the same reason.
@@ -36,12 +37,8 @@ const SWEEP: f64 = 2.0;
 /// Price of a plane between two surfaces, in evaluations of one particle on springs.
 const PLANE: f64 = 7.0;
 
-/// Most particles of a scene in which a fixed step ends at touches and tears: where there are more,
-/// each step would have many parts.
-const FEW: usize = 32;
-
 /// Distance from an obstacle, over the radius of the scene, that counts as none.
-const NONE: f64 = 1e-9;
+pub(super) const NONE: f64 = 1e-9;
 
 /// Length (s) below which a step is not shortened for contact or strain.
 const MIN_RETRY_STEP: f64 = 1e-6;
@@ -102,8 +99,11 @@ impl Simulation {
         } else {
             Reach::default()
         };
+        self.list_rests(t);
         loop {
-            let (system, y) = (self.model.system(), &mut self.state.y);
+            let resting = resting::view(&self.model, self.rests.split().0);
+            let system = resting.as_ref().map_or(self.model.system(), |view| view);
+            let y = &mut self.state.y;
             self.phases.begin(&self.model, y, locates);
             let control = match self.state.control {
                 // What rounding leaves of a step is no part of its own.
@@ -210,44 +210,11 @@ impl Simulation {
 
     /// Depth (m) into an obstacle that an adaptive method's tolerance allows a particle that comes
     /// to it within a step.
-    fn shallow(&self) -> f64 {
+    pub(super) fn shallow(&self) -> f64 {
         let relative = self.state.control.tolerance().unwrap_or(0.0);
         let absolute = self.scene.limits.absolute;
         let absolute = absolute.unwrap_or(relative * self.radius);
         absolute.min(MAX_PENETRATION * self.radius)
-    }
-
-    /// Finds the first event of a step of h (s) from time t (s) to the state as it is now.
-    fn first_event(&mut self, t: f64, h: f64) -> Option<Event> {
-        let network = self.model.network()?;
-        if network.obstacles().is_empty() && network.tear_limit().is_none() {
-            return None;
-        }
-        if !self.stepper.is_adaptive() && self.particles() > FEW {
-            return None;
-        }
-        let shallow = self.shallow();
-        let step = Searched {
-            network,
-            t,
-            h,
-            ends: [self.phases.contact.y0(), &self.state.y],
-            none: NONE * self.radius,
-            shallow,
-            deepest: MAX_PENETRATION * self.radius,
-        };
-        if step.ends.iter().any(|y| y.len() != self.state.y.len())
-            || self.state.y.iter().any(|y| !y.is_finite())
-        {
-            return None;
-        }
-        let (stepper, work) = (&mut self.stepper, &mut self.state.work);
-        let y0 = self.phases.contact.y0();
-        let system = self.model.system();
-        self.events.first(&step, &mut |share, out| {
-            *work += stepper.state_at(system, t, share * h, y0, out);
-            system.hold(t + share * h, out);
-        })
     }
 
     /// Notes the end of a step at time t (s). Returns why the run is lost, if it is.

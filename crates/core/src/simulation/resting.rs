@@ -1,0 +1,323 @@
+//! Particles that rest or slide on flat obstacles while a step is taken.
+//!
+//! A contact that is settled after each step lets a particle sink within it, by the acceleration
+//! times half the square of the step, whatever the tolerance. So in steps that locate events the
+//! obstacle's reaction and its friction are forces at every stage. What sticks does not move. What
+//! slides has no acceleration along the normal, and friction against its velocity. That is so for a
+//! whole step, which ends where it ceases to be: where the obstacle would have to pull, where
+//! friction cannot hold what sticks, where it ends a slide, and at the edge of a face.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::events::{Event, EventKind};
+use crate::columns::{row, set_row};
+use crate::contact::Obstacle;
+use crate::geometry::Shape;
+use crate::network::Network;
+use crate::scene::Model;
+use crate::system::{Measure, ParticleSystem};
+
+/// Way in which friction or weight ends a motion, over the height that is none, that is none too.
+const STILL: f64 = 1e-3;
+/// Length of the interval in which a contact ceases, as a share of the step, at which its search
+/// ends.
+const FINEST: f64 = 1e-13;
+/// Largest speed at the end of a slide, over that at the beginning of the step.
+const TURNS: f64 = 0.01;
+/// Excess of a force over what a contact can hold, as a share of it, that rounding cannot cause.
+const ROUNDING: f64 = 1e-10;
+
+/// Particle that touches an obstacle during a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rest {
+    particle: usize,
+    obstacle: usize,
+    /// Normal of the obstacle.
+    normal: Vector3<f64>,
+    /// Direction in which the particle slides, or begins to, and its speed (m/s); `None` if it
+    /// sticks.
+    slide: Option<(Vector3<f64>, f64)>,
+}
+
+/// Particles that rest in a step, and those of the step before.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rests {
+    now: Vec<Rest>,
+    before: Vec<Rest>,
+    scratch: Scratch,
+}
+
+/// Scratch of the search for where a contact ceases.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    /// State that is tried.
+    state: Vec<f64>,
+    /// Its derivative without reactions.
+    free: Vec<f64>,
+}
+
+/// Network in which particles rest on obstacles, as methods for first-order systems see it.
+pub(super) struct Resting<'a> {
+    network: &'a Network,
+    rests: &'a [Rest],
+}
+
+/// Whether an obstacle's reaction can be told at each stage: it is flat and does not move.
+fn is_flat(obstacle: &Obstacle) -> bool {
+    obstacle.is_still() && matches!(obstacle.shape, Shape::Floor | Shape::Box { .. })
+}
+
+/// Whether any particle of a network may rest so: what holds rods, bodies or surfaces would have to
+/// be solved together with the reactions.
+pub(super) fn may_rest(network: &Network) -> bool {
+    network.obstacles().iter().any(is_flat)
+        && network.contact_layer().is_none()
+        && network.bodies().is_empty()
+        && !network.is_constrained()
+}
+
+/// Height (m) of a place above a flat obstacle that does not move, and the normal there.
+fn height(obstacle: &Obstacle, x: Vector3<f64>) -> (f64, Vector3<f64>) {
+    let pose = obstacle.at(0.0);
+    let seen = obstacle
+        .shape
+        .separation(pose.inwards(x - pose.place.position));
+    (seen.distance, pose.outwards(seen.normal))
+}
+
+impl Rests {
+    /// Lists with room for all particles of a model.
+    pub fn new(model: &Model) -> Self {
+        let Some(network) = model.network().filter(|network| may_rest(network)) else {
+            return Self::default();
+        };
+        let flat = network.obstacles().iter().filter(|o| is_flat(o)).count();
+        let most = flat * network.particles();
+        Self {
+            now: Vec::with_capacity(most),
+            before: Vec::with_capacity(most),
+            scratch: Scratch {
+                state: vec![0.0; network.dim()],
+                free: vec![0.0; network.dim()],
+            },
+        }
+    }
+
+    /// The particles that rest, and scratch.
+    pub fn split(&mut self) -> (&[Rest], &mut Scratch) {
+        (&self.now, &mut self.scratch)
+    }
+
+    /// Begins a step in which no particle rests, as far as is known.
+    pub fn clear(&mut self) {
+        std::mem::swap(&mut self.now, &mut self.before);
+        self.now.clear();
+    }
+
+    /// Adds the particles that press on a flat obstacle in the state y at time t (s), within a
+    /// height (m), and do not leave it. Velocities are set to 0 that would take them no farther
+    /// than a small share of that. Returns the number of evaluations.
+    pub fn list(&mut self, network: &Network, t: f64, y: &mut [f64], none: f64) -> u64 {
+        let n = network.particles();
+        for (k, obstacle) in network.obstacles().iter().enumerate() {
+            if !is_flat(obstacle) {
+                continue;
+            }
+            for particle in (0..n).filter(|i| !network.is_pinned(*i)) {
+                let (distance, normal) = height(obstacle, row(y, n, particle));
+                if distance.abs() <= none {
+                    self.now.push(Rest {
+                        particle,
+                        obstacle: k,
+                        normal,
+                        slide: None,
+                    });
+                }
+            }
+        }
+        if self.now.is_empty() {
+            return 0;
+        }
+        let free = &mut self.scratch.free;
+        free.resize(network.dim(), 0.0);
+        network.eval_f(t, y, free);
+        let a = &free[3 * n..6 * n];
+        let v = &mut y[3 * n..6 * n];
+        self.now.retain_mut(|rest| {
+            let (free, speed) = (row(a, n, rest.particle), row(v, n, rest.particle));
+            let press = -free.dot(&rest.normal);
+            let most = network.obstacles()[rest.obstacle].friction * press;
+            let leaving = speed.dot(&rest.normal);
+            let is_still = |speed: f64, slowing: f64| speed * speed <= STILL * none * slowing;
+            if press <= 0.0 || !is_still(leaving, press) {
+                return false;
+            }
+            let slide = speed - rest.normal * leaving;
+            let across = free + rest.normal * press;
+            if !is_still(slide.norm(), most) {
+                rest.slide = slide.try_normalize(0.0).map(|along| (along, slide.norm()));
+                set_row(v, n, rest.particle, slide);
+            } else if across.norm() > most {
+                rest.slide = across.try_normalize(0.0).map(|along| (along, 0.0));
+                set_row(v, n, rest.particle, slide);
+            } else {
+                set_row(v, n, rest.particle, Vector3::zeros());
+            }
+            true
+        });
+        1
+    }
+
+    /// Whether others rest, or slide, than in the step before: then its last evaluation is of
+    /// another system.
+    pub fn have_changed(&self) -> bool {
+        let is_as = |a: &Rest, b: &Rest| {
+            let [own, its] = [a, b].map(|rest| rest.slide.is_some());
+            (a.particle, a.obstacle, own) == (b.particle, b.obstacle, its)
+        };
+        let mut both = self.now.iter().zip(&self.before);
+        self.now.len() != self.before.len() || !both.all(|(a, b)| is_as(a, b))
+    }
+}
+
+/// View of a model in which particles rest, if any do.
+pub(super) fn view<'a>(model: &'a Model, rests: &'a [Rest]) -> Option<Resting<'a>> {
+    let network = model.network().filter(|_| !rests.is_empty())?;
+    Some(Resting { network, rests })
+}
+
+/// Finds where the first contact ceases, before a share of a step from t (s) of h (s), on its
+/// polynomial. Leaves the state there. Heights up to `none` (m) are none.
+pub(super) fn first_end(
+    network: &Network,
+    (rests, scratch): (&[Rest], &mut Scratch),
+    (t, h, none): (f64, f64, f64),
+    before: f64,
+    state: &mut Vec<f64>,
+    state_at: &mut dyn FnMut(f64, &mut [f64]),
+) -> Option<Event> {
+    if rests.is_empty() {
+        return None;
+    }
+    let Scratch { state: found, free } = scratch;
+    found.resize(network.dim(), 0.0);
+    let mut margin = |share: f64, found: &mut [f64]| {
+        state_at(share, found);
+        network.eval_f(t + share * h, found, free);
+        let margins = rests
+            .iter()
+            .map(|rest| rest.margin(network, found, free, none));
+        margins.fold(f64::INFINITY, f64::min)
+    };
+    let mut high = (before, margin(before, found));
+    if high.1 >= 0.0 {
+        return None;
+    }
+    let mut low = (0.0, margin(0.0, found));
+    while low.1 > 0.0 && high.0 - low.0 > FINEST {
+        // The secant's step, kept away from the ends.
+        let secant = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+        let edge = 0.01 * (high.0 - low.0);
+        let share = secant.clamp(low.0 + edge, high.0 - edge);
+        let at = margin(share, found);
+        *(if at >= 0.0 { &mut low } else { &mut high }) = (share, at);
+    }
+    margin(high.0, found);
+    state.clone_from(found);
+    for rest in rests {
+        rest.stop(network, state);
+    }
+    Some(Event {
+        share: high.0,
+        kind: EventKind::Rested,
+    })
+}
+
+impl Rest {
+    /// Part of a particle's velocity along the obstacle (m/s).
+    fn slide(&self, network: &Network, y: &[f64]) -> Vector3<f64> {
+        let v = row(network.halves(y).1, network.particles(), self.particle);
+        v - self.normal * v.dot(&self.normal)
+    }
+
+    /// Margin by which the contact goes on as it is in the state y, with its derivative without
+    /// reactions, as a share of what sets it: negative where it ceases.
+    fn margin(&self, network: &Network, y: &[f64], free: &[f64], none: f64) -> f64 {
+        let (n, i) = (network.particles(), self.particle);
+        let obstacle = &network.obstacles()[self.obstacle];
+        if height(obstacle, row(y, n, i)).0 > none {
+            return -1.0;
+        }
+        let free = row(&free[3 * n..6 * n], n, i);
+        let press = -free.dot(&self.normal);
+        let most = obstacle.friction * press;
+        let other = match self.slide {
+            None => most - (free + self.normal * press).norm(),
+            Some((along, speed)) if speed > 0.0 && most > 0.0 => {
+                return (press / free.norm() + ROUNDING)
+                    .min(self.slide(network, y).dot(&along) / speed);
+            }
+            Some(_) => press,
+        };
+        press.min(other) / free.norm() + ROUNDING
+    }
+
+    /// Ends a slide that friction has ended, and not only turned.
+    fn stop(&self, network: &Network, y: &mut [f64]) {
+        let Some((along, speed)) = self.slide else {
+            return;
+        };
+        let slide = self.slide(network, y);
+        if slide.dot(&along) <= 0.0 && slide.norm() <= TURNS * speed {
+            let (n, i) = (network.particles(), self.particle);
+            let v = &mut y[3 * n..6 * n];
+            let still = row(v, n, i) - slide;
+            set_row(v, n, i, still);
+        }
+    }
+
+    /// Acceleration (m/s2) with the obstacle's reaction and friction, at a velocity (m/s), from that
+    /// without them.
+    fn held(&self, obstacle: &Obstacle, v: Vector3<f64>, free: Vector3<f64>) -> Vector3<f64> {
+        let Some((along, _)) = self.slide else {
+            return Vector3::zeros();
+        };
+        let press = -free.dot(&self.normal);
+        let slide = v - self.normal * v.dot(&self.normal);
+        // Past its turning point the slide goes on as if friction did not turn: the step ends
+        // there, and its polynomial is smooth.
+        let direction = match slide.try_normalize(0.0) {
+            Some(direction) if direction.dot(&along) < 0.0 => -direction,
+            Some(direction) => direction,
+            None => along,
+        };
+        free + (self.normal - direction * obstacle.friction) * press
+    }
+}
+
+impl ParticleSystem for Resting<'_> {
+    fn dim(&self) -> usize {
+        self.network.dim()
+    }
+
+    fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
+        self.network.eval_f(t, y, dydt);
+        let n = self.network.particles();
+        let (v, a) = (self.network.halves(y).1, &mut dydt[3 * n..6 * n]);
+        for rest in self.rests {
+            let (obstacle, i) = (&self.network.obstacles()[rest.obstacle], rest.particle);
+            let held = rest.held(obstacle, row(v, n, i), row(a, n, i));
+            set_row(a, n, i, held);
+        }
+    }
+
+    fn hold(&self, t: f64, y: &mut [f64]) {
+        self.network.hold(t, y);
+    }
+
+    fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
+        self.network.measures(visit);
+    }
+}
