@@ -4,8 +4,10 @@
 //! tolerance ten times as large, and with a method of another family at the steps h, h/2, h/4, ...,
 //! extrapolated to zero step (Richardson; Hairer, Norsett, Wanner, *Solving Ordinary Differential
 //! Equations I*, 1993, II.9). That method is PEFRL, or the classical Runge-Kutta method where
-//! forces depend on the velocity. Its disagreement with the reference is the uncertainty: two
-//! tolerances of one method may share an error, two families do not.
+//! forces depend on the velocity. Where particles rest and slide on obstacles, it is Verner's pair
+//! at smaller and smaller tolerances: fixed steps are too long for friction that begins. Its
+//! disagreement with the reference is the uncertainty: two tolerances of one method may share an
+//! error, two families do not.
 
 use std::borrow::Cow;
 
@@ -16,7 +18,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, Work, find};
 use crate::scene::{Model, Scene};
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, may_rest};
 use crate::stability::{LargestMode, Mode, largest_step, spectrum};
 use crate::system::Mechanics;
 
@@ -134,7 +136,7 @@ impl Reference {
         let Some((own, sure)) = making.by_tolerances()? else {
             return Ok(None);
         };
-        let Some(others) = making.by_steps(sure * making.precision.metric.of(&own))? else {
+        let Some(others) = making.by_another(sure * making.precision.metric.of(&own))? else {
             return Ok(None);
         };
         let mut reference = making.reference;
@@ -297,25 +299,38 @@ impl Making<'_> {
         fastest.collect()
     }
 
-    /// Disagreement of the reference with the other method, whose step is halved until that is as
-    /// small as asked for, or as `own`, which the reference leaves in doubt itself, or no longer
-    /// falls.
-    fn by_steps(&mut self, own: f64) -> Result<Option<Errors>, Error> {
-        let system = self.scene.model.system();
-        let method = find(other(&self.scene.model)).ok_or_else(missing)?;
+    /// The other method, and the setting that it begins with: PEFRL takes four evaluations for each
+    /// kick of forces that depend on the velocity, and serves no first-order system.
+    fn other(&self) -> Result<(&'static Method, Control), Error> {
+        let model = &self.scene.model;
+        if model.network().is_some_and(may_rest) {
+            let method = find("verner65").ok_or_else(missing)?;
+            return Ok((method, Control::Tolerance(TOLERANCES.0)));
+        }
+        let splitting = model.system().mechanics().and_then(Mechanics::splitting);
+        let smooth = splitting.is_some_and(|splitting| !splitting.kick_reads_velocity());
+        let method = find(if smooth { "pefrl" } else { "rk4" }).ok_or_else(missing)?;
         let longest = |modes: &[Mode]| -> Result<f64, Error> {
             Ok(largest_step(method, modes)?.map_or(f64::INFINITY, |limit| limit.step))
         };
-        let limit = SHARE * longest(&spectrum(system, 0.0, &self.scene.state))?;
+        let limit = SHARE * longest(&spectrum(model.system(), 0.0, &self.scene.state))?;
         let limit = limit.min(longest(&self.contact_modes())?);
         let spacing = self.reference.frames.spacing();
-        let mut step = spacing / (spacing / limit).ceil().max(1.0);
+        let step = spacing / (spacing / limit).ceil().max(1.0);
+        Ok((method, Control::Step(step)))
+    }
+
+    /// Disagreement of the reference with the other method, whose step or tolerance is made smaller
+    /// until that is as small as asked for, or as `own`, which the reference leaves in doubt itself,
+    /// or no longer falls.
+    fn by_another(&mut self, own: f64) -> Result<Option<Errors>, Error> {
+        let (method, mut control) = self.other()?;
         let metric = self.precision.metric;
         let mut least = Errors::with_all(f64::INFINITY);
         let (mut history, mut sum) = (vec![], 0.0);
         let mut row: Vec<Vec<Snapshot>> = vec![];
         loop {
-            match self.run(method, Control::Step(step)) {
+            match self.run(method, control) {
                 Ok(None) => return Ok(None),
                 // Steps that are too long to stay in shape.
                 Err(Error::BlowUp(lost)) => {
@@ -327,7 +342,10 @@ impl Making<'_> {
                 }
                 Err(error) => return Err(error),
                 Ok(Some((snapshots, work))) => {
-                    row = extrapolate(row, snapshots);
+                    row = match control {
+                        Control::Step(_) => extrapolate(row, snapshots),
+                        Control::Tolerance(_) => vec![snapshots],
+                    };
                     for column in &row {
                         least = least.min(self.reference.disagreement(column));
                         self.reference.note_uncertainty(column);
@@ -340,12 +358,16 @@ impl Making<'_> {
                         || is_stuck(&history)
                         || sum + 2.0 * work > self.precision.most
                         || history.len() > REFINEMENTS
+                        || control.tolerance().is_some_and(|tolerance| tolerance <= TOLERANCES.1)
                     {
                         return Ok(Some(least));
                     }
                 }
             }
-            step *= 0.5;
+            control = match control {
+                Control::Step(step) => Control::Step(0.5 * step),
+                Control::Tolerance(tolerance) => Control::Tolerance(tolerance / LOOSER),
+            };
         }
     }
 }
@@ -355,21 +377,6 @@ fn is_stuck(history: &[f64]) -> bool {
     match history {
         [.., before, _, last] => before.is_finite() && *last > FALLS * before,
         _ => false,
-    }
-}
-
-/// Name of the method that checks the reference: PEFRL takes four evaluations for each kick of
-/// forces that depend on the velocity, serves no first-order system, and has no reactions of
-/// obstacles in its stages.
-fn other(model: &Model) -> &'static str {
-    let splitting = model.system().mechanics().and_then(Mechanics::splitting);
-    let touches = model
-        .network()
-        .is_some_and(|network| !network.obstacles().is_empty());
-    if !touches && splitting.is_some_and(|splitting| !splitting.kick_reads_velocity()) {
-        "pefrl"
-    } else {
-        "rk4"
     }
 }
 

@@ -65,13 +65,17 @@ impl Simulation {
         let serves = !method.implicit && !method.needs_mechanics && !method.positions_only;
         let network = self.model.network();
         let network = network.filter(|network| serves && resting::may_rest(network));
+        let none = NONE * self.radius;
+        let heights = [none, none.max(self.shallow())];
         self.rests.clear();
         if let Some(network) = network.filter(|_| self.stepper.is_adaptive() || self.locates) {
-            self.rests
-                .list(network, t, &mut self.state.y, NONE * self.radius);
+            let evaluated = self.rests.list(network, t, &mut self.state.y, heights);
+            self.state.work += Work::of(evaluated);
         }
+        // The last evaluation of a step in which others rest is of another system.
+        let before = std::mem::replace(&mut self.state.resting, self.rests.fingerprint());
         if let Kind::Adaptive(adaptive) = &mut self.stepper.kind
-            && self.rests.have_changed()
+            && before != self.state.resting
         {
             adaptive.restart();
         }

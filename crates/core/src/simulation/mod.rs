@@ -33,6 +33,7 @@ use balance::Watch;
 use events::Events;
 use phases::Phases;
 use resting::Rests;
+pub(crate) use resting::may_rest;
 use stepper::Stepper;
 
 /// A run of a scene.

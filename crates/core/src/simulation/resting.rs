@@ -19,8 +19,9 @@ use crate::network::Network;
 use crate::scene::Model;
 use crate::system::{Measure, ParticleSystem};
 
-/// Way in which friction or weight ends a motion, over the height that is none, that is none too.
-const STILL: f64 = 1e-3;
+/// Way (m) in which friction or weight ends a motion that counts as none, over the error that is
+/// tolerated. Larger, it shows; smaller, what friction has nearly stopped creeps on, in tiny steps.
+const STILL: f64 = 1e-2;
 /// Length of the interval in which a contact ceases, as a share of the step, at which its search
 /// ends.
 const FINEST: f64 = 1e-13;
@@ -36,16 +37,37 @@ pub(super) struct Rest {
     obstacle: usize,
     /// Normal of the obstacle.
     normal: Vector3<f64>,
-    /// Direction in which the particle slides, or begins to, and its speed (m/s); `None` if it
-    /// sticks.
-    slide: Option<(Vector3<f64>, f64)>,
+    /// `None` if the particle sticks.
+    slide: Option<Slide>,
 }
 
-/// Particles that rest in a step, and those of the step before.
+/// Slide of a particle over an obstacle.
+#[derive(Clone, Copy, Debug)]
+struct Slide {
+    /// Direction in which it slides, or begins to.
+    along: Vector3<f64>,
+    /// Its speed (m/s).
+    speed: f64,
+    /// Speed backwards (m/s) at which it has turned.
+    slack: f64,
+}
+
+impl Slide {
+    /// Slide in the direction of a vector, unless that is 0.
+    fn of(along: Vector3<f64>, speed: f64, slack: f64) -> Option<Self> {
+        let along = along.try_normalize(0.0)?;
+        Some(Self {
+            along,
+            speed,
+            slack,
+        })
+    }
+}
+
+/// Particles that rest in a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rests {
     now: Vec<Rest>,
-    before: Vec<Rest>,
     scratch: Scratch,
 }
 
@@ -71,7 +93,7 @@ fn is_flat(obstacle: &Obstacle) -> bool {
 
 /// Whether any particle of a network may rest so: what holds rods, bodies or surfaces would have to
 /// be solved together with the reactions.
-pub(super) fn may_rest(network: &Network) -> bool {
+pub(crate) fn may_rest(network: &Network) -> bool {
     network.obstacles().iter().any(is_flat)
         && network.contact_layer().is_none()
         && network.bodies().is_empty()
@@ -97,7 +119,6 @@ impl Rests {
         let most = flat * network.particles();
         Self {
             now: Vec::with_capacity(most),
-            before: Vec::with_capacity(most),
             scratch: Scratch {
                 state: vec![0.0; network.dim()],
                 free: vec![0.0; network.dim()],
@@ -112,14 +133,19 @@ impl Rests {
 
     /// Begins a step in which no particle rests, as far as is known.
     pub fn clear(&mut self) {
-        std::mem::swap(&mut self.now, &mut self.before);
         self.now.clear();
     }
 
     /// Adds the particles that press on a flat obstacle in the state y at time t (s), within a
-    /// height (m), and do not leave it. Velocities are set to 0 that would take them no farther
-    /// than a small share of that. Returns the number of evaluations.
-    pub fn list(&mut self, network: &Network, t: f64, y: &mut [f64], none: f64) -> u64 {
+    /// height `none` (m), and do not leave it. Velocities are set to 0 that would take them no
+    /// farther than a small share of `still` (m). Returns the number of evaluations.
+    pub fn list(
+        &mut self,
+        network: &Network,
+        t: f64,
+        y: &mut [f64],
+        [none, still]: [f64; 2],
+    ) -> u64 {
         let n = network.particles();
         for (k, obstacle) in network.obstacles().iter().enumerate() {
             if !is_flat(obstacle) {
@@ -150,17 +176,18 @@ impl Rests {
             let press = -free.dot(&rest.normal);
             let most = network.obstacles()[rest.obstacle].friction * press;
             let leaving = speed.dot(&rest.normal);
-            let is_still = |speed: f64, slowing: f64| speed * speed <= STILL * none * slowing;
+            let is_still = |speed: f64, slowing: f64| speed * speed <= STILL * still * slowing;
             if press <= 0.0 || !is_still(leaving, press) {
                 return false;
             }
             let slide = speed - rest.normal * leaving;
             let across = free + rest.normal * press;
-            if !is_still(slide.norm(), most) {
-                rest.slide = slide.try_normalize(0.0).map(|along| (along, slide.norm()));
+            let slack = (STILL * still * most).sqrt();
+            if slide.norm() > slack {
+                rest.slide = Slide::of(slide, slide.norm(), 0.0);
                 set_row(v, n, rest.particle, slide);
             } else if across.norm() > most {
-                rest.slide = across.try_normalize(0.0).map(|along| (along, 0.0));
+                rest.slide = Slide::of(across, slack, slack);
                 set_row(v, n, rest.particle, slide);
             } else {
                 set_row(v, n, rest.particle, Vector3::zeros());
@@ -170,15 +197,17 @@ impl Rests {
         1
     }
 
-    /// Whether others rest, or slide, than in the step before: then its last evaluation is of
-    /// another system.
-    pub fn have_changed(&self) -> bool {
-        let is_as = |a: &Rest, b: &Rest| {
-            let [own, its] = [a, b].map(|rest| rest.slide.is_some());
-            (a.particle, a.obstacle, own) == (b.particle, b.obstacle, its)
-        };
-        let mut both = self.now.iter().zip(&self.before);
-        self.now.len() != self.before.len() || !both.all(|(a, b)| is_as(a, b))
+    /// Number that tells which particles rest on which obstacles, and which of them slide: 0 if none
+    /// rests.
+    pub fn fingerprint(&self) -> u64 {
+        let parts = self.now.iter().flat_map(|rest| {
+            let slides = usize::from(rest.slide.is_some());
+            [rest.particle, rest.obstacle, slides]
+        });
+        // Fowler, Noll and Vo's hash.
+        parts.fold(0, |hash: u64, part| {
+            (hash ^ (part as u64 + 1)).wrapping_mul(0x0100_0000_01b3)
+        })
     }
 }
 
@@ -255,9 +284,9 @@ impl Rest {
         let most = obstacle.friction * press;
         let other = match self.slide {
             None => most - (free + self.normal * press).norm(),
-            Some((along, speed)) if speed > 0.0 && most > 0.0 => {
-                return (press / free.norm() + ROUNDING)
-                    .min(self.slide(network, y).dot(&along) / speed);
+            Some(slide) if slide.speed > 0.0 => {
+                let speed = self.slide(network, y).dot(&slide.along) + slide.slack;
+                return (press / free.norm() + ROUNDING).min(speed / slide.speed);
             }
             Some(_) => press,
         };
@@ -266,7 +295,7 @@ impl Rest {
 
     /// Ends a slide that friction has ended, and not only turned.
     fn stop(&self, network: &Network, y: &mut [f64]) {
-        let Some((along, speed)) = self.slide else {
+        let Some(Slide { along, speed, .. }) = self.slide else {
             return;
         };
         let slide = self.slide(network, y);
@@ -281,7 +310,7 @@ impl Rest {
     /// Acceleration (m/s2) with the obstacle's reaction and friction, at a velocity (m/s), from that
     /// without them.
     fn held(&self, obstacle: &Obstacle, v: Vector3<f64>, free: Vector3<f64>) -> Vector3<f64> {
-        let Some((along, _)) = self.slide else {
+        let Some(Slide { along, .. }) = self.slide else {
             return Vector3::zeros();
         };
         let press = -free.dot(&self.normal);

@@ -55,6 +55,8 @@ pub struct RunState {
     pub swinging: bool,
     /// Phase of the swing (rad): while it swings, sin(rate t + phase); while it stands, sin(phase).
     pub swing_phase: f64,
+    /// Number that tells which particles rested on which obstacles in the last step.
+    pub resting: u64,
 }
 
 impl RunState {
@@ -76,6 +78,7 @@ impl RunState {
             grabbed_obstacle: None,
             swinging: false,
             swing_phase: 0.0,
+            resting: 0,
         }
     }
 
