@@ -111,8 +111,8 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: 
 
 /// What the errors are, and which methods solve another model.
 pub fn foot(methods: &[&'static Method]) -> String {
-    let errors = "Errors are true ones, against DOP853 at two tolerances and a method of order 4 \
-                  extrapolated. Those below ten times their disagreement are shaded.";
+    let errors = "Errors are true ones, against DOP853 at two tolerances and a method of another \
+                  family. Those below ten times their disagreement are shaded.";
     if methods.iter().any(|method| method.needs_springs) {
         format!(
             "{errors} Methods with a number of iterations stop before implicit Euler is solved: \

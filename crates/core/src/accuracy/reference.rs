@@ -320,9 +320,9 @@ impl Making<'_> {
         Ok((method, Control::Step(step)))
     }
 
-    /// Disagreement of the reference with the other method, whose step or tolerance is made smaller
-    /// until that is as small as asked for, or as `own`, which the reference leaves in doubt itself,
-    /// or no longer falls.
+    /// Disagreement of the reference with the other method, whose step or tolerance is made
+    /// smaller until that is as small as asked for, or as `own`, which the reference leaves in
+    /// doubt itself, or no longer falls.
     fn by_another(&mut self, own: f64) -> Result<Option<Errors>, Error> {
         let (method, mut control) = self.other()?;
         let metric = self.precision.metric;
@@ -352,13 +352,12 @@ impl Making<'_> {
                     }
                     history.push(metric.of(&least));
                     sum += work;
-                    let as_good = metric.of(&least) <= own;
                     if self.is_enough(&least)
-                        || as_good
+                        || metric.of(&least) <= own
                         || is_stuck(&history)
                         || sum + 2.0 * work > self.precision.most
                         || history.len() > REFINEMENTS
-                        || control.tolerance().is_some_and(|tolerance| tolerance <= TOLERANCES.1)
+                        || control == Control::Tolerance(TOLERANCES.1)
                     {
                         return Ok(Some(least));
                     }
@@ -366,7 +365,7 @@ impl Making<'_> {
             }
             control = match control {
                 Control::Step(step) => Control::Step(0.5 * step),
-                Control::Tolerance(tolerance) => Control::Tolerance(tolerance / LOOSER),
+                Control::Tolerance(loose) => Control::Tolerance(TOLERANCES.1.max(loose / LOOSER)),
             };
         }
     }

@@ -135,9 +135,9 @@ impl Simulation {
     }
 
     /// Lets fixed steps end at events, as adaptive ones do: where a prescribed motion begins or
-    /// ends, a particle touches an obstacle, its slide ends, or a spring breaks. A step goes on from
-    /// there by the rest of its length. So the order of the method is kept, at any price: this is
-    /// for references.
+    /// ends, a particle touches an obstacle, its slide ends, or a spring breaks. A step goes on
+    /// from there by the rest of its length. So the order of the method is kept, at any price:
+    /// this is for references.
     pub fn locate_events(&mut self) {
         self.locates = true;
     }

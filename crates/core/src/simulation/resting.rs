@@ -197,8 +197,8 @@ impl Rests {
         1
     }
 
-    /// Number that tells which particles rest on which obstacles, and which of them slide: 0 if none
-    /// rests.
+    /// Number that tells which particles rest on which obstacles, and which of them slide: 0 if
+    /// none rests.
     pub fn fingerprint(&self) -> u64 {
         let parts = self.now.iter().flat_map(|rest| {
             let slides = usize::from(rest.slide.is_some());
@@ -307,8 +307,8 @@ impl Rest {
         }
     }
 
-    /// Acceleration (m/s2) with the obstacle's reaction and friction, at a velocity (m/s), from that
-    /// without them.
+    /// Acceleration (m/s2) with the obstacle's reaction and friction, at a velocity (m/s), from
+    /// that without them.
     fn held(&self, obstacle: &Obstacle, v: Vector3<f64>, free: Vector3<f64>) -> Vector3<f64> {
         let Some(Slide { along, .. }) = self.slide else {
             return Vector3::zeros();

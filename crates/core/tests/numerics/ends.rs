@@ -75,7 +75,7 @@ fn a_reference_says_until_when_it_is_clear() {
     let impact = f64::sqrt(2.0 * 0.1 / 9.81);
     assert!((until - impact).abs() < 1.0 / 60.0, "{until} {impact}");
     assert!(
-        known < 1e-11 && reference.floor.position > 1e-8,
+        known < 1e-9 && reference.floor.position > 1e-8,
         "{known} {:?}",
         reference.floor
     );
