@@ -83,7 +83,7 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     export.finish()?;
     looks.keep(&simulation)?;
     let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
-    if simulation.tears() > 0 && ["pc2", "glb"].iter().any(one_mesh) {
+    if simulation.tears() > 0 && ["pc2", "glb", "usda"].iter().any(one_mesh) {
         output::warn(&format!(
             "{} springs broke, but {} has one mesh for all its frames: a sequence such as torn-####.obj has the holes",
             simulation.tears(),

@@ -7,6 +7,7 @@ mod json;
 mod npz;
 mod obj;
 mod pc2;
+mod usd;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -27,7 +28,7 @@ const RATE: f64 = 30.0;
 const LARGEST: (f64, f64) = (16.0, 4.0);
 
 /// Endings of files of all formats.
-const ENDINGS: &[&str] = &["json", "csv", "npz", "obj", "pc2", "glb"];
+const ENDINGS: &[&str] = &["json", "csv", "npz", "obj", "pc2", "glb", "usda"];
 
 /// `Ok` if the output is standard output or ends as a format does.
 pub fn check_ending(path: &Path) -> Result<(), Failure> {
@@ -109,6 +110,13 @@ pub fn begin(
             (
                 frames,
                 Box::new(glb::Glb::new(path, surface, simulation, frames)?),
+            )
+        }
+        (Some("usda"), _) => {
+            let frames = check(usd::size(simulation, several), LARGEST.0)?;
+            (
+                frames,
+                Box::new(usd::Usd::new(path, surface, simulation, frames)?),
             )
         }
         (Some("obj"), Some(sequence)) => {

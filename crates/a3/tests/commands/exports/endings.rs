@@ -17,7 +17,7 @@ fn exports_that_cannot_be_are_refused_before_the_work() {
     for (words, says) in [
         (
             long("5x5", "x.txt", &[]),
-            ".json, .csv, .npz, .obj, .pc2 or .glb",
+            ".json, .csv, .npz, .obj, .pc2, .glb or .usda",
         ),
         (long("5x5", "-", &["--fps", "25"]), "final state"),
         (long("5x5", "-", &["--summary", "-"]), "not both"),
@@ -79,7 +79,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
         assert!(run(&[output]).contains("blew up at step"));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{output}");
     }
-    for output in ["x.json", "x.csv", "x.npz", "x.pc2", "x.glb"] {
+    for output in ["x.json", "x.csv", "x.npz", "x.pc2", "x.glb", "x.usda"] {
         let line = run(&[&[output], &several[..]].concat());
         assert!(
             line.contains("blew up at step") && line.contains("nothing was written; a step of "),
@@ -104,7 +104,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
 #[cfg(unix)]
 fn an_interrupted_export_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    for output in ["x.csv", "x.npz", "x.pc2", "x.glb"] {
+    for output in ["x.csv", "x.npz", "x.pc2", "x.glb", "x.usda"] {
         let words = ["simulate", "v", "1e-5", "--until", "19", "--output", output];
         let child = command(folder.path(), &words).spawn().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(400));

@@ -85,7 +85,7 @@ fn what_is_torn_is_no_face() {
     let summary: Value = serde_json::from_slice(&summary).unwrap();
     let torn = summary["torn"].as_u64().unwrap();
     assert!(torn > 5, "{torn}");
-    for name in ["f.pc2", "f.glb"] {
+    for name in ["f.pc2", "f.glb", "f.usda"] {
         let said = write(name, &["--fps", "10"]);
         let right = format!("{torn} springs broke, but {name} has one mesh for all its frames");
         assert!(said.starts_with(&right), "{said}");

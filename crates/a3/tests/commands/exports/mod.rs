@@ -9,6 +9,7 @@ mod fluid;
 mod glb;
 mod meshes;
 mod numbers;
+mod usd;
 
 use std::path::Path;
 
