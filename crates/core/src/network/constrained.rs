@@ -127,6 +127,15 @@ impl Network {
         self.constraints.set_baumgarte_frequency(w)
     }
 
+    /// Rate at which a drift off a constraint is corrected (1/s); 0 if there is none.
+    pub(super) fn correction_rate(&self) -> f64 {
+        if self.is_constrained() {
+            self.constraints.baumgarte_frequency()
+        } else {
+            0.0
+        }
+    }
+
     pub(crate) fn is_constrained(&self) -> bool {
         !self.constraints.all().is_empty()
     }

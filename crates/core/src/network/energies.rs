@@ -5,6 +5,7 @@ use crate::contact::Obstacle;
 use crate::elements::Element;
 use crate::energy::Energy;
 use crate::path::Path;
+use crate::random::SplitMix;
 
 impl Network {
     /// The energy in the state (x, v) at time 0, and at all times if no obstacle moves. Drag,
@@ -40,6 +41,20 @@ impl Network {
             energy.kinetic += body.energy(&self.rotation(k, y));
         }
         energy
+    }
+
+    /// Energy (J) of errors of all positions, of up to so much (m), at y at time t (s): elastic, and
+    /// of the motion that corrects a drift off constraints.
+    pub(crate) fn energy_of_errors(&self, t: f64, y: &[f64], error: f64) -> f64 {
+        let (mut off, mut random) = (y.to_vec(), SplitMix(1));
+        for x in &mut off[..3 * self.particles()] {
+            *x += random.between(-error, error);
+        }
+        let elastic = self.energy_of(t, &off).elastic - self.energy_of(t, y).elastic;
+        let mass = self.masses().iter().sum::<f64>();
+        let correction = 0.5 * mass * (error * self.correction_rate()).powi(2);
+        let all = elastic.max(0.0) + correction;
+        if all.is_finite() { all } else { 0.0 }
     }
 
     /// Adds the forces of wind (N) in the state (x, v) at time t (s) to f.

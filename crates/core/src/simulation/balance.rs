@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
-use super::drive::{Drive, End, energy_of};
+use super::drive::{Drive, End, energy_of, fastest, fastest_particle};
 use crate::contact::{Obstacle, Statistics};
 use crate::error::{Cause, Error, Unmet};
 use crate::network::Network;
@@ -47,7 +47,7 @@ pub struct Balance {
     /// Energy at the beginning, with what hands and tears have changed since.
     begin: f64,
     /// Energy of the scene: kinetic and elastic at the beginning, its weight times its radius, and
-    /// that of a motion that nobody sees.
+    /// that of a motion that nobody sees; at least that of the errors that its tolerance allows.
     own: f64,
     /// Kinetic and elastic energy at the beginning.
     moving: f64,
@@ -74,7 +74,10 @@ pub struct Balance {
 impl Balance {
     /// Energy that the gain of a run is compared with (J).
     fn scale(&self) -> f64 {
-        self.own + self.fall + self.turnover
+        let put_in = 0.5 * (self.turnover + self.work).max(0.0);
+        let had = self.own + self.fall + put_in;
+        // No more than that can be taken out: what is, was gained before.
+        had + (self.turnover - put_in).max(0.0).min(had)
     }
 
     /// Whether the run had gained little when it was last looked at.
@@ -152,7 +155,7 @@ pub(super) struct Watch {
 
 impl Watch {
     /// Balance of a run at y at time t (s), whose scene has that radius (m).
-    pub fn begin(&mut self, network: &Network, (t, y): (f64, &[f64]), radius: f64) -> Balance {
+    fn begin(&mut self, network: &Network, (t, y): (f64, &[f64]), radius: f64) -> Balance {
         let energy = energy_of(network, t, y);
         let mass = network.masses().iter().sum::<f64>();
         let weight = network.gravity().map_or(0.0, |g| g.norm()) * mass;
@@ -164,7 +167,8 @@ impl Watch {
             ..Self::default()
         };
         self.drive.begin(network, t, y);
-        let moving = energy.kinetic + energy.elastic + energy.contact;
+        // Rounding leaves a fluid at rest with less than none.
+        let moving = (energy.kinetic + energy.elastic + energy.contact).max(0.0);
         Balance {
             time: t,
             begin: energy.total(),
@@ -181,8 +185,8 @@ impl Watch {
         self.drive.forget();
     }
 
-    /// Forgets what the run gained: it goes on by other steps.
-    pub fn start_over(&mut self, balance: &mut Balance) {
+    /// Forgets what the run gained.
+    fn start_over(&mut self, balance: &mut Balance) {
         (balance.most, balance.gain, balance.share) = (None, 0.0, 0.0);
         (balance.worst, balance.singular) = (None, false);
         self.disturbed = true;
@@ -297,6 +301,26 @@ impl Simulation {
             let (now, radius) = ((self.state.since, &self.state.y[..]), self.radius);
             self.state.balance = self.watch.begin(network, now, radius);
         }
+        self.tolerate();
+    }
+
+    /// Takes what the errors that a tolerance allows can gain as the scene's own energy: where
+    /// nothing moves, an adaptive method makes steps so long that it just meets its tolerance.
+    fn tolerate(&mut self) {
+        if let (Some(relative), Model::Network(network)) =
+            (self.state.control.tolerance(), &self.model)
+        {
+            let error = self.scene.limits.absolute.unwrap_or(relative * self.radius);
+            let (t, y) = self.last_end();
+            let errors = network.energy_of_errors(t, y, error);
+            self.state.balance.own = self.state.balance.own.max(errors);
+        }
+    }
+
+    /// Forgets what the run gained: it goes on by other steps.
+    pub(super) fn start_watch_over(&mut self) {
+        self.watch.start_over(&mut self.state.balance);
+        self.tolerate();
     }
 
     /// Balance at the end of the last step.
@@ -364,26 +388,4 @@ impl Simulation {
     pub fn was_nearly_singular(&self) -> bool {
         self.balance_now().0.singular
     }
-}
-
-/// Most of the speed of an obstacle's points within reach of a scene of that radius (m), in m/s.
-fn fastest(obstacle: &Obstacle, t: f64, radius: f64) -> f64 {
-    let pose = obstacle.at(t);
-    let spin = pose.orientation.map_or(0.0, |turned| turned.spin.norm());
-    pose.place.velocity.norm() + spin * 2.0 * radius
-}
-
-/// The fastest of particles with velocities v, n x 3, and its speed (m/s).
-fn fastest_particle(v: &[f64]) -> (usize, f64) {
-    let n = v.len() / 3;
-    let speed = |i: usize| {
-        (0..3)
-            .map(|axis| v[axis * n + i].powi(2))
-            .sum::<f64>()
-            .sqrt()
-    };
-    let speeds = (0..n).map(|i| (i, speed(i)));
-    speeds
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .unwrap_or_default()
 }

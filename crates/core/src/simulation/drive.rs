@@ -361,3 +361,25 @@ pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
     }
     energy
 }
+
+/// Most of the speed of an obstacle's points within reach of a scene of that radius (m), in m/s.
+pub(super) fn fastest(obstacle: &Obstacle, t: f64, radius: f64) -> f64 {
+    let pose = obstacle.at(t);
+    let spin = pose.orientation.map_or(0.0, |turned| turned.spin.norm());
+    pose.place.velocity.norm() + spin * 2.0 * radius
+}
+
+/// The fastest of particles with velocities v, n x 3, and its speed (m/s).
+pub(super) fn fastest_particle(v: &[f64]) -> (usize, f64) {
+    let n = v.len() / 3;
+    let speed = |i: usize| {
+        (0..3)
+            .map(|axis| v[axis * n + i].powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let speeds = (0..n).map(|i| (i, speed(i)));
+    speeds
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .unwrap_or_default()
+}

@@ -151,7 +151,7 @@ impl Simulation {
         self.stepper = Stepper::new(method, &self.scene, self.model.system(), control)?;
         self.state.set_time(self.time());
         (self.state.method, self.state.control) = (method, control);
-        self.watch.start_over(&mut self.state.balance);
+        self.start_watch_over();
         Ok(())
     }
 
@@ -167,7 +167,7 @@ impl Simulation {
         self.look_again();
         self.state.set_time(self.time());
         self.state.control = control;
-        self.watch.start_over(&mut self.state.balance);
+        self.start_watch_over();
         Ok(())
     }
 }

@@ -192,12 +192,11 @@ impl Simulation {
             }
             if self.stepper.is_adaptive() {
                 let longest = network.quarter_period(t, t + reach.longest.min(f64::MAX));
-                reach.longest = reach.longest.min(longest);
+                reach.limit(longest);
             }
         }
         if self.stepper.is_adaptive() {
-            let longest = self.scene.limits.max_step.unwrap_or(f64::INFINITY);
-            reach.longest = reach.longest.min(longest);
+            reach.limit(self.scene.limits.max_step.unwrap_or(f64::INFINITY));
         }
         if let Some(target) = target.filter(|target| *target <= reach.until.unwrap_or(f64::MAX)) {
             reach = Reach {
@@ -310,6 +309,16 @@ impl Reach {
         }
     }
 
+    /// Limits the length (s). A step of a shorter one does not end at the time.
+    fn limit(&mut self, longest: f64) {
+        if longest < self.longest {
+            *self = Self {
+                longest,
+                until: None,
+            };
+        }
+    }
+
     /// The step from t that takes h (s).
     fn part(&self, t: f64, h: f64) -> Part {
         let until = self.until.filter(|_| h == self.longest);
@@ -345,13 +354,19 @@ fn share_of_retry(settled: &Settled, h: f64, max_depth: f64, shallow: f64) -> Op
 }
 
 /// Limits the next step of an adaptive method by the depth and the growth of the last one, of
-/// h (s): under a constant force both grow with the square of the step.
+/// h (s): under a constant force both grow with the square of the step. What does not, as where no
+/// shortening makes springs short enough, shortens no step below what is retried.
 fn limit_next(adaptive: &mut Adaptive, settled: &Settled, h: f64, max_depth: f64) {
     let Settled { met, grown, .. } = settled;
+    let mut limit = |allowed: f64| {
+        let next = h * 0.9 * allowed.sqrt();
+        let least = if next < h { MIN_RETRY_STEP } else { 0.0 };
+        adaptive.try_at_most(next.max(least));
+    };
     if met.depth > 0.0 {
-        adaptive.try_at_most(h * 0.9 * (max_depth / met.depth).sqrt());
+        limit(max_depth / met.depth);
     }
     if *grown > 0.0 {
-        adaptive.try_at_most(h * 0.9 * (MAX_STRAIN_GROWTH / grown).sqrt());
+        limit(MAX_STRAIN_GROWTH / grown);
     }
 }

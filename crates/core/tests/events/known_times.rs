@@ -88,3 +88,33 @@ fn no_step_is_longer_than_the_longest() {
     run.advance_to(4.0).unwrap();
     assert!(run.steps() >= 32 && run.step_size().unwrap() <= 0.125);
 }
+
+/// A step that is as long as the longest one allowed ends there, and not where a motion begins.
+#[test]
+fn longest_steps_stay_what_they_are() {
+    let toml = "
+        max_step = 1e-3
+        [particles]
+        positions = [[0, 0, 0], [0.5, 0, 0]]
+        velocities = [[0, 0, 0], [0, 1, 0]]
+        mass = 0.1
+        springs = [[0, 1, 40.0, 0.5, 0.3]]
+        [[pin]]
+        particles = [0]
+        shift = { by = [0.3, 0, 0], start = 0.3105, end = 0.67 }
+    ";
+    for name in ["dop853", "rkf45", "bdf"] {
+        let solver = method(name);
+        let mut run = Simulation::new(described(toml), solver, solver.control(1e-3)).unwrap();
+        for k in 0..315 {
+            let begin = run.time();
+            run.take_steps(1).unwrap();
+            let h = run.time() - begin;
+            assert!(h < 1e-3 + 1e-12, "{name}: step {k} from {begin} takes {h}");
+        }
+        assert!(run.time() < 0.315, "{name}: {}", run.time());
+        // A step ends where the motion begins.
+        let far = run.position(0).x;
+        assert!((far - 0.3 * (run.time() - 0.3105).max(0.0) / 0.3595).abs() < 1e-12);
+    }
+}

@@ -129,3 +129,71 @@ fn what_falls_or_is_thrown_far_away_is_not_lost() {
     };
     assert!(matches!(lost.cause, Cause::Away { distance, .. } if distance > 50.0));
 }
+
+/// Where nothing moves, an adaptive method's steps are so long that it just meets its tolerance:
+/// what it errs by is no blow-up.
+#[test]
+fn errors_within_a_tolerance_are_no_gain() {
+    let chain = "
+        [[chain]]
+        particles = 9
+        from = [2.07, 0.08, -0.59]
+        to = [3.57, -0.94, -0.78]
+        mass = 6.6
+        damping = 1.6
+        stiffness = 1000
+        buckling = { bending = 7.1e-7, compression = 710 }
+    ";
+    let rods = "
+        drag = 3.15
+        [[chain]]
+        particles = 4
+        from = [5.8922537, 0.51199329, -0.1132023]
+        to = [5.2328742, -0.18579852, 0.72879147]
+        mass = 0.489
+        rigid = true
+    ";
+    for (toml, name) in [
+        (chain, "dopri5"),
+        (chain, "rkf45"),
+        (chain, "dop853"),
+        (rods, "rkf45"),
+        (rods, "dopri5"),
+    ] {
+        for tolerance in [5e-3, 1e-6] {
+            let control = Control::Tolerance(tolerance);
+            let mut run = Simulation::new(described(toml), method(name), control).unwrap();
+            run.advance_to(20.0).unwrap();
+            run.conclude().unwrap();
+            assert_eq!(run.gained(), None, "{name} {tolerance}");
+        }
+    }
+}
+
+/// What damping takes out of a run that explodes does not hide that it does.
+#[test]
+fn damped_explosions_are_noticed() {
+    let toml = "
+        drag_per_mass = 0.035
+        tear = 2.43
+        [[chain]]
+        from = [-0.348, 0.504, 0.635]
+        to = [-0.172, 0.485, -0.771]
+        mass = 0.066
+        particles = 4
+        rigid = true
+        [[cloth]]
+        damping_ratio = 0.61
+        density = 1255
+        grid = [5, 3]
+        spacing = 0.128
+        stiffness = [0.71, 76245, 1014]
+    ";
+    let control = Control::Step(4.4e-4);
+    let mut run = Simulation::new(described(toml), method("symplectic"), control).unwrap();
+    let end = run.advance_to(0.009).and_then(|()| run.conclude());
+    let Err(Error::BlowUp(lost)) = end else {
+        panic!("it ended well, at {:?}", run.energy());
+    };
+    assert!(matches!(lost.cause, Cause::Gained { .. }), "{lost}");
+}

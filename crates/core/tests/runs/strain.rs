@@ -1,6 +1,6 @@
 //! Limit of strain: springs that are too long after a step are shortened, whatever the method.
 
-use crate::common::{method, scene};
+use crate::common::{described, method, scene};
 use a3_core::contact::{StrainLimit, StrainLimiter};
 use a3_core::{
     Control, Model, Network, Path, Scene, Simulation, Spring, SpringKind, SpringLaw, Vector3,
@@ -254,4 +254,27 @@ fn limits_that_make_no_sense_are_refused() {
     assert!(network.forces_in_use().contains(&"strain limit"));
     network.set_strain_limit(3..4, None).unwrap();
     assert!(!network.forces_in_use().contains(&"strain limit"));
+}
+
+/// Particles that begin in the floor are put out of it, beyond what their springs allow: neither
+/// gives way, however short a step is, and an adaptive run goes on all the same.
+#[test]
+fn what_cannot_be_shortened_does_not_stop_a_run() {
+    let toml = "
+        floor = -0.2
+        [[jelly]]
+        at = [0, 0, 0]
+        density = 59
+        grid = [3, 2, 2]
+        size = [0.058, 0.595, 0.419]
+        stiffness = [9.3, 0.15, 0.92]
+        strain_limit = 1.25
+        [[jelly.pin]]
+        particles = [1]
+        shift = { by = [0.3, -0.9, 0], end = 1.7 }
+    ";
+    let dop853 = method("dop853");
+    let mut run = Simulation::new(described(toml), dop853, dop853.control(1e-6)).unwrap();
+    run.take_steps(2000).unwrap();
+    assert!(run.time() > 1e-3, "{}", run.time());
 }

@@ -186,11 +186,17 @@ impl Dense {
             for j in 0..n {
                 matrix.swap(k * n + j, pivot * n + j);
             }
-            for i in k + 1..n {
-                let factor = matrix[i * n + k] / matrix[k * n + k];
-                matrix[i * n + k] = factor;
-                for j in k + 1..n {
-                    matrix[i * n + j] -= factor * matrix[k * n + j];
+            let (above, below) = matrix.split_at_mut((k + 1) * n);
+            let pivots = &above[k * n + k..];
+            for row in below.chunks_exact_mut(n) {
+                let row = &mut row[k..];
+                let factor = row[0] / pivots[0];
+                row[0] = factor;
+                // Most particles do not act on one another.
+                if factor != 0.0 {
+                    for (x, pivot) in row[1..].iter_mut().zip(&pivots[1..]) {
+                        *x -= factor * pivot;
+                    }
                 }
             }
         }

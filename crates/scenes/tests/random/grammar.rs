@@ -1,0 +1,217 @@
+//! Scenes by chance, from the schema of scene files: every table and key that it knows.
+
+use std::collections::BTreeSet;
+
+use a3_scenes::Description;
+use serde_json::{Map, Value};
+
+use crate::chance::Chance;
+use crate::ranges::{ALTERNATIVES, COUNTS, NEEDS, NUMBERS, ODD, ONE, TOGETHER, WORDS};
+use crate::sense;
+
+/// Keys of a scene that tell particles by number: they are added when these are known.
+pub const NUMBERED: [&str; 6] = ["springs", "constraint", "pin", "torn", "trail", "state"];
+
+/// Tables of the bodies, and their keys in a scene.
+pub const BODIES: [&str; 8] = [
+    "cloth",
+    "jelly",
+    "mesh",
+    "solid",
+    "chain",
+    "particles",
+    "body",
+    "fluid",
+];
+
+/// The grammar of scene files.
+pub struct Grammar {
+    schema: Value,
+}
+
+impl Grammar {
+    pub fn new() -> Self {
+        let schema = serde_json::from_str(&Description::schema()).unwrap();
+        Self { schema }
+    }
+
+    /// All keys, each behind the name of its table.
+    pub fn keys(&self) -> BTreeSet<String> {
+        let tables = self.schema["$defs"].as_object().unwrap().iter();
+        let tables = tables.map(|(name, table)| (name.as_str(), table));
+        let all = tables.chain([("", &self.schema)]);
+        let named = all.filter_map(|(name, table)| Some((name, table["properties"].as_object()?)));
+        let keys = named.flat_map(|(name, keys)| keys.keys().map(move |k| format!("{name}.{k}")));
+        keys.collect()
+    }
+
+    /// The table of a scene's key, or of the scene itself where it is empty, and its keys.
+    pub fn table(&self, key: &str, chance: &mut Chance) -> (Value, BTreeSet<String>) {
+        let mut writer = Writer {
+            grammar: self,
+            chance,
+            keys: BTreeSet::new(),
+        };
+        let value = if key.is_empty() {
+            writer.table("", "", &self.schema)
+        } else {
+            writer.value("", key, &self.schema["properties"][key])
+        };
+        (value, writer.keys)
+    }
+
+    /// The definition that a schema refers to, with its name.
+    fn resolve<'a>(&'a self, schema: &'a Value) -> (&'a str, &'a Value) {
+        let Some(name) = schema["$ref"].as_str() else {
+            return ("", schema);
+        };
+        let name = name.trim_start_matches("#/$defs/");
+        (name, &self.schema["$defs"][name])
+    }
+}
+
+struct Writer<'a> {
+    grammar: &'a Grammar,
+    chance: &'a mut Chance,
+    keys: BTreeSet<String>,
+}
+
+impl Writer<'_> {
+    /// Whether an optional key is there: few of a scene's own, and some of a table's.
+    fn is_there(&mut self, table: &str, key: &str) -> bool {
+        match (table, key) {
+            ("", key) if NUMBERED.contains(&key) || key == "circle" => false,
+            ("", "gravity") => self.chance.once_in(2),
+            ("", key) if BODIES.contains(&key) => self.chance.once_in(5),
+            ("", _) => self.chance.once_in(6),
+            _ => self.chance.once_in(4),
+        }
+    }
+
+    /// The keys of a table: those that it must have, and others by chance.
+    fn choose<'a>(&mut self, name: &str, schema: &'a Value) -> Vec<&'a str> {
+        let all = || schema["properties"].as_object().unwrap().keys();
+        let required = schema["required"].as_array();
+        let is_required = |key: &&str| required.is_some_and(|all| all.iter().any(|r| r == *key));
+        let mut keys: Vec<&str> = all()
+            .map(String::as_str)
+            .filter(|key| is_required(key) || self.is_there(name, key))
+            .collect();
+        // A circle is alone.
+        if name.is_empty() && self.chance.once_in(60) {
+            keys.retain(|key| !BODIES.contains(key));
+            keys.push("circle");
+        } else if name.is_empty() && !keys.iter().any(|key| BODIES.contains(key)) {
+            keys.push(self.chance.from(&BODIES));
+        }
+        let among = |one: &[&str]| -> Vec<&'a str> {
+            let known = all().map(String::as_str);
+            known.filter(|key| one.contains(key)).collect()
+        };
+        for (_, one) in ONE.iter().filter(|(table, _)| *table == name) {
+            keys.retain(|key| !one.contains(key));
+            keys.push(self.chance.from(&among(one)));
+        }
+        for one in ALTERNATIVES {
+            let there: Vec<_> = keys.iter().copied().filter(|k| one.contains(k)).collect();
+            if there.len() > 1 && !there.iter().all(is_required) {
+                let kept = self.chance.from(&there);
+                keys.retain(|key| !one.contains(key) || *key == kept || is_required(key));
+            }
+        }
+        for (_, key, others) in TOGETHER.iter().filter(|(table, ..)| *table == name) {
+            keys.retain(|other| other != key);
+            if keys
+                .iter()
+                .any(|other| others.split(' ').any(|o| o == *other))
+            {
+                keys.extend(among(&[key]));
+            }
+        }
+        for (_, key, other) in NEEDS.iter().filter(|(table, ..)| *table == name) {
+            if !keys.contains(other) {
+                keys.retain(|k| k != key);
+            }
+        }
+        keys
+    }
+
+    /// A table that has that name, and is that of a key.
+    fn table(&mut self, owner: &str, name: &str, schema: &Value) -> Value {
+        let mut table = Map::new();
+        for key in self.choose(name, schema) {
+            let value = self.value(name, key, &schema["properties"][key]);
+            table.insert(key.into(), value);
+        }
+        // Now and then it makes no sense.
+        if !self.chance.once_in(150) {
+            sense::mend(owner, name, &mut table, self.chance);
+        }
+        for key in table.keys() {
+            self.keys.insert(format!("{name}.{key}"));
+        }
+        Value::Object(table)
+    }
+
+    fn value(&mut self, table: &str, key: &str, schema: &Value) -> Value {
+        let (name, schema) = self.grammar.resolve(schema);
+        if schema["properties"].is_object() {
+            return self.table(table, name, schema);
+        }
+        for choices in ["anyOf", "oneOf"] {
+            if let Some(all) = schema[choices].as_array() {
+                let all: Vec<_> = all.iter().filter(|s| s["type"] != "null").collect();
+                let one = self.chance.from(&all);
+                return self.value(table, key, one);
+            }
+        }
+        if let Some(all) = schema["enum"].as_array() {
+            return all[self.chance.below(all.len())].clone();
+        }
+        if !schema["const"].is_null() {
+            return schema["const"].clone();
+        }
+        let kind = schema["type"].as_array();
+        let kind = kind.map_or(&schema["type"], |all| &all[0]);
+        let own = format!("{table}.{key}");
+        let is_meant = |keys: &&[&str]| keys.contains(&key) || keys.contains(&own.as_str());
+        match kind.as_str().unwrap() {
+            "array" => self.list(table, key, schema),
+            "boolean" => Value::Bool(self.chance.once_in(2)),
+            "integer" => {
+                let counts = COUNTS.iter().find(|(keys, ..)| is_meant(keys));
+                let (_, low, high) = counts.unwrap_or_else(|| panic!("no counts of {own}"));
+                (low + self.chance.below(high - low + 1)).into()
+            }
+            "number" => {
+                let numbers = NUMBERS.iter().find(|(keys, _)| is_meant(keys));
+                let (_, range) = numbers.unwrap_or_else(|| panic!("no numbers of {own}"));
+                if self.chance.once_in(200) {
+                    return self.chance.from(&ODD).into();
+                }
+                self.chance.within(*range).into()
+            }
+            "string" => {
+                let words = WORDS.iter().find(|(word, _)| *word == key || *word == own);
+                let (_, words) = words.unwrap_or_else(|| panic!("no words of {own}"));
+                self.chance.from(words).into()
+            }
+            other => panic!("{own} is of the kind {other}"),
+        }
+    }
+
+    fn list(&mut self, table: &str, key: &str, schema: &Value) -> Value {
+        if let Some(items) = schema["prefixItems"].as_array() {
+            let items = items.iter().map(|item| self.value(table, key, item));
+            return items.collect();
+        }
+        let count = match (schema["minItems"].as_u64(), key) {
+            (Some(count), _) => count as usize,
+            (None, "positions") => 2 + self.chance.below(5),
+            (None, _) => 1 + self.chance.below(2),
+        };
+        (0..count)
+            .map(|_| self.value(table, key, &schema["items"]))
+            .collect()
+    }
+}

@@ -1,0 +1,207 @@
+//! Short runs of scenes by chance, by all methods: none panics, none hangs, and none explodes
+//! without a word.
+
+mod chance;
+mod grammar;
+mod numbered;
+mod ranges;
+mod run;
+mod sense;
+
+use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use a3_scenes::{Description, Mesh, Setup};
+use serde_json::Value;
+
+use chance::Chance;
+use grammar::Grammar;
+use run::{Ended, check_said, run};
+
+/// Number of scenes, where `A3_SCENES` tells no other. `A3_FIRST` is the number of the first.
+const SCENES: usize = 2000;
+
+/// Most particles of a scene: it is counted on many small ones.
+const MOST_PARTICLES: usize = 80;
+
+/// Time (s) of a processor after which a run counts as one that never ends: a thousand times what
+/// most take.
+const LONGEST: Duration = Duration::from_secs(5);
+
+/// Real time (s) after which it is ended.
+const NEVER: Duration = Duration::from_secs(120);
+
+/// Most findings that are shown.
+const SHOWN: usize = 20;
+
+/// Time of a processor that this thread has taken; real time where the system does not tell.
+fn time_taken(begun: Instant) -> Duration {
+    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let nanoseconds = told.and_then(|told| told.split(' ').next()?.parse().ok());
+    nanoseconds.map_or_else(|| begun.elapsed(), Duration::from_nanos)
+}
+
+fn mesh(name: &str) -> Result<Mesh, String> {
+    let file = |path: &str| {
+        let seeds = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/");
+        std::fs::read(format!("{seeds}{path}")).unwrap()
+    };
+    match name {
+        "two.msh" => Mesh::from_gmsh(&file("msh/two.msh")),
+        other => Mesh::from_obj(&file(&format!("obj/{other}"))),
+    }
+}
+
+/// The scene of a text; `None` if it is refused, by a clear line.
+fn build(text: &str) -> Result<Option<Setup>, String> {
+    match Description::parse(text).and_then(|d| d.build(None, &mut mesh)) {
+        Ok(setup) => Ok(Some(setup)),
+        Err(fault) => check_said(&fault.to_string()).map(|()| None),
+    }
+}
+
+/// What became of the scenes.
+#[derive(Default)]
+struct Results {
+    taken: usize,
+    well: usize,
+    seen: BTreeSet<String>,
+    findings: Vec<String>,
+    /// Longest time of a scene, and its number.
+    slowest: (Duration, usize),
+}
+
+/// A scene that is tried: since when, and its text so far.
+#[derive(Default)]
+struct Trial {
+    since: Option<Instant>,
+    text: String,
+}
+
+/// Makes scene k and runs it. What is found wrong is an error.
+fn try_scene(
+    k: usize,
+    grammar: &Grammar,
+    trial: &Mutex<Trial>,
+    results: &Mutex<Results>,
+) -> Result<(), String> {
+    let show = |text: &str| trial.lock().unwrap().text = format!("# scene {k}\n{text}");
+    let mut chance = Chance(k as u64);
+    let (mut scene, mut keys) = grammar.table("", &mut chance);
+    let write = |scene: &Value| toml::to_string(scene).unwrap();
+    let mut text = write(&scene);
+    show(&text);
+    let Some(mut setup) = build(&text)? else {
+        return Ok(());
+    };
+    if setup.scene.model.particles() > MOST_PARTICLES {
+        return Ok(());
+    }
+    let more = numbered::add(grammar, &mut scene, &setup, &mut chance);
+    if !more.is_empty() {
+        text = write(&scene);
+        show(&text);
+        let Some(other) = build(&text)? else {
+            return Ok(());
+        };
+        setup = other;
+        keys.extend(more);
+    }
+    results.lock().unwrap().taken += 1;
+    let mut said = String::new();
+    let ended = run(&text, &setup, &mut chance, |method| {
+        said = format!("# {method}\n{text}");
+        show(&said);
+    })?;
+    let mut results = results.lock().unwrap();
+    results.seen.extend(keys);
+    results.well += usize::from(ended == Ended::Well);
+    Ok(())
+}
+
+/// Tries scenes until there are none left, whose numbers `next` gives.
+fn work(next: impl Fn() -> Option<usize>, trial: &Mutex<Trial>, results: &Mutex<Results>) {
+    let grammar = Grammar::new();
+    let begun = Instant::now();
+    while let Some(k) = next() {
+        *trial.lock().unwrap() = Trial {
+            since: Some(Instant::now()),
+            text: format!("# scene {k}"),
+        };
+        let before = time_taken(begun);
+        let tried = catch_unwind(AssertUnwindSafe(|| try_scene(k, &grammar, trial, results)));
+        let took = time_taken(begun).saturating_sub(before);
+        let why = match tried {
+            Ok(Ok(())) if took > LONGEST => Some(format!("it took {took:?}")),
+            Ok(Ok(())) => None,
+            Ok(Err(why)) => Some(why),
+            Err(_) => Some("it panicked".to_owned()),
+        };
+        let mut trial = trial.lock().unwrap();
+        trial.since = None;
+        let mut results = results.lock().unwrap();
+        results.slowest = results.slowest.max((took, k));
+        let found = why.map(|why| format!("{why}\n{}", trial.text));
+        results.findings.extend(found);
+    }
+}
+
+/// Ends the process if a trial does not end.
+fn watch(trials: &[Mutex<Trial>], is_done: impl Fn() -> bool) {
+    while !is_done() {
+        thread::sleep(Duration::from_millis(100));
+        for trial in trials {
+            let trial = trial.lock().unwrap();
+            if trial.since.is_some_and(|since| since.elapsed() > NEVER) {
+                eprintln!("this does not end:\n{}", trial.text);
+                std::process::exit(1);
+            }
+        }
+    }
+}
+
+#[test]
+fn random_scenes_run_or_say_why_not() {
+    let told = |name: &str, usual: usize| {
+        std::env::var(name).map_or(usual, |number| number.parse().unwrap())
+    };
+    let (scenes, first) = (told("A3_SCENES", SCENES), told("A3_FIRST", 0));
+    let (next, done) = (AtomicUsize::new(first), AtomicUsize::new(0));
+    let results = Mutex::new(Results::default());
+    let workers = thread::available_parallelism().map_or(1, usize::from);
+    let trials: Vec<_> = (0..workers).map(|_| Mutex::default()).collect();
+    thread::scope(|scope| {
+        let number = || Some(next.fetch_add(1, Ordering::Relaxed)).filter(|k| *k < first + scenes);
+        for trial in &trials {
+            let (results, done) = (&results, &done);
+            scope.spawn(move || {
+                work(number, trial, results);
+                done.fetch_add(1, Ordering::Relaxed);
+            });
+        }
+        scope.spawn(|| watch(&trials, || done.load(Ordering::Relaxed) == workers));
+    });
+    let results = results.into_inner().unwrap();
+    let Results {
+        taken,
+        well,
+        seen,
+        findings,
+        slowest,
+    } = results;
+    println!("{taken} of {scenes} scenes were taken, {well} ran well; the slowest is {slowest:?}");
+    let shown: Vec<_> = findings.iter().take(SHOWN).map(String::as_str).collect();
+    assert!(findings.is_empty(), "{}", shown.join("\n"));
+    if scenes < SCENES {
+        return;
+    }
+    assert!(10 * taken > 7 * scenes, "{taken} of {scenes} were taken");
+    assert!(2 * well > scenes, "{well} of {scenes} ran well");
+    let all = Grammar::new().keys();
+    let unseen: Vec<_> = all.difference(&seen).collect();
+    assert!(unseen.is_empty(), "no run has {unseen:?}");
+}

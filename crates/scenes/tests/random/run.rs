@@ -1,0 +1,122 @@
+//! A short run of a scene, and what must not happen in it.
+
+use a3_core::integrators::METHODS;
+use a3_core::{Control, Energy, Error, Simulation};
+use a3_scenes::Setup;
+
+use crate::chance::Chance;
+
+/// Number of steps of a run.
+const STEPS: u64 = 20;
+
+/// Number of methods that are tried until one serves a scene.
+const TRIES: usize = 5;
+
+/// Energy over that of the scene at the beginning, above which it has exploded.
+const EXPLODED: f64 = 100.0;
+
+/// Speed (m/s) that nobody sees.
+const UNSEEN: f64 = 1e-3;
+
+/// How a run ended.
+#[derive(Debug, PartialEq)]
+pub enum Ended {
+    Well,
+    /// With an error, or a warning.
+    Told,
+}
+
+/// Whether anything works on a scene but its own forces.
+fn is_driven(text: &str) -> bool {
+    ["sine", "shift", "turn", "wind"]
+        .iter()
+        .any(|word| text.contains(word))
+}
+
+/// `Ok` if an error is a line, not a file.
+pub fn check_said(why: &str) -> Result<(), String> {
+    if why.is_empty() || why.len() > 400 || why.contains('\n') {
+        return Err(format!("this is no clear line: {why:?}"));
+    }
+    Ok(())
+}
+
+/// Runs a scene by a method by chance, which `begins` is told. Returns how it ended.
+pub fn run(
+    text: &str,
+    setup: &Setup,
+    chance: &mut Chance,
+    mut begins: impl FnMut(&str),
+) -> Result<Ended, String> {
+    let mut made = None;
+    for _ in 0..TRIES {
+        let method = &METHODS[chance.below(METHODS.len())];
+        let control = match method.default_control {
+            Control::Step(h) => Control::Step(h * chance.within((0.01, 3.0, true))),
+            Control::Tolerance(_) => Control::Tolerance(chance.within((1e-9, 1e-2, true))),
+        };
+        begins(&format!("{} {control:?}", method.name));
+        match Simulation::new(setup.scene.clone(), method, control) {
+            Ok(run) => {
+                made = Some(run);
+                break;
+            }
+            Err(why) => check_said(&why.to_string())?,
+        }
+    }
+    let Some(mut run) = made else {
+        return Ok(Ended::Told);
+    };
+    run.set_swinging(chance.once_in(8));
+    let begin = run.energy();
+    let gone = steps(&mut run);
+    if !run.state().iter().all(|y| y.is_finite()) {
+        return Err("the state is not finite".into());
+    }
+    if let Err(why) = gone {
+        check_said(&why.to_string())?;
+        return Ok(Ended::Told);
+    }
+    let driven = run.swinging() || is_driven(text);
+    if let (Some(begin), Some(end), false) = (begin, run.energy(), driven) {
+        let own = own_energy(&run, begin);
+        let gained = end.total() - begin.total();
+        if gained.is_nan() || gained > EXPLODED * own {
+            if run.gained().is_some() {
+                return Ok(Ended::Told);
+            }
+            return Err(format!("{gained:e} J of {own:e} J: {end:?}"));
+        }
+    }
+    Ok(Ended::Well)
+}
+
+/// Takes whole steps, and goes on to a state within one.
+fn steps(run: &mut Simulation) -> Result<(), Error> {
+    run.take_steps(STEPS - 1)?;
+    let before = run.time();
+    run.take_steps(1)?;
+    run.advance_to(run.time() + 0.3 * (run.time() - before))?;
+    run.conclude()
+}
+
+/// Energy (J) of a run that began with that one: what it moves by, what its weight gives it over
+/// its own size, and what errors within its tolerance and a motion that nobody sees have.
+fn own_energy(run: &Simulation, begin: Energy) -> f64 {
+    let Some(network) = run.model().network() else {
+        return 1.0;
+    };
+    let (mass, (_, radius)) = (network.masses().iter().sum::<f64>(), run.scene().extent());
+    let weight = network.gravity().map_or(0.0, |g| g.norm()) * mass;
+    let mut tolerated = 0.0;
+    if let Some(tolerance) = run.control().tolerance() {
+        let (mut off, mut chance) = (run.scene().state.clone(), Chance(1));
+        let (error, before) = (tolerance * radius, network.energy_of(0.0, &off).elastic);
+        for x in &mut off[..3 * network.particles()] {
+            *x += chance.within((-error, error, false));
+        }
+        tolerated = network.energy_of(0.0, &off).elastic - before;
+    }
+    let moving = begin.kinetic + begin.elastic + begin.contact;
+    moving.max(0.0) + weight * radius + tolerated.max(0.0) + 0.5 * mass * UNSEEN.powi(2)
+}

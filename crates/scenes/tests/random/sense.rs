@@ -1,0 +1,172 @@
+//! What makes sense of a table by chance: numbers that have to fit together.
+
+use serde_json::{Map, Value, json};
+
+use crate::chance::Chance;
+use crate::ranges::SPOTS;
+
+/// Edge of the cells in which bodies and obstacles begin apart (m).
+const CELL: f64 = 3.0;
+
+/// Makes sense of a table of that name, which is that of a key of its owner.
+pub fn mend(owner: &str, name: &str, table: &mut Map<String, Value>, chance: &mut Chance) {
+    match name {
+        "Cloth" if table.contains_key("right") || table.contains_key("down") => {
+            let [right, down] = chance.corner();
+            table.insert("right".into(), json!(right));
+            table.insert("down".into(), json!(down));
+        }
+        "Fluid" => fluid(table, chance),
+        "Turn" => {
+            // That of a pin needs a point, and one by an angle an end.
+            if owner == "Pin" {
+                table.insert("about".into(), json!(chance.triple((-1.0, 1.0, false))));
+            }
+            if table.contains_key("angle") {
+                table.insert("end".into(), json!(1.5));
+            }
+        }
+        // A pin begins where it is.
+        "Sine" if owner == "Pin" => {
+            table
+                .retain(|key, _| !["center", "phase"].contains(&key.as_str()) || chance.once_in(8));
+        }
+        "Pin" => {
+            table.retain(|key, _| !["at", "particles"].contains(&key.as_str()));
+            let spots = SPOTS.iter().find(|(body, _)| *body == owner);
+            match spots.filter(|_| chance.once_in(2)) {
+                Some((_, spots)) => table.insert("at".into(), json!([chance.from(spots)])),
+                None if owner == "RigidBody" => table.insert("particles".into(), json!([0])),
+                None => table.insert("particles".into(), json!([chance.below(2)])),
+            };
+        }
+        // Its rods are as long as they begin.
+        "Chain" if table.get("rigid") == Some(&json!(true)) => {
+            table.remove("rest_length");
+        }
+        "Particles" => particles(table, chance),
+        "" => scene(table, chance),
+        _ => {}
+    }
+}
+
+/// Edges of so many spacings each, flat in two dimensions.
+fn edges(most: usize, spacing: f64, flat: bool, chance: &mut Chance) -> [f64; 3] {
+    let mut size = [(); 3].map(|()| (1 + chance.below(most)) as f64 * spacing);
+    if flat {
+        size[2] = 0.0;
+    }
+    size
+}
+
+/// Whole multiples of the spacing, within the tank.
+fn fluid(table: &mut Map<String, Value>, chance: &mut Chance) {
+    let spacing = table["spacing"].as_f64().unwrap();
+    let flat = table.get("dimensions").is_some_and(|d| *d == 2);
+    let size = edges(3, spacing, flat, chance);
+    table.insert("size".into(), json!(size));
+    let at = table["at"].clone();
+    if let Some(Value::Object(tank)) = table.get_mut("tank") {
+        let more = edges(2, spacing, flat, chance);
+        let size: Vec<_> = size.iter().zip(more).map(|(a, b)| a + b).collect();
+        tank.insert("size".into(), json!(size));
+        tank.insert("at".into(), at);
+    }
+}
+
+/// As many of all as there are particles, with springs between two of them.
+fn particles(table: &mut Map<String, Value>, chance: &mut Chance) {
+    let count = table["positions"].as_array().unwrap().len();
+    for (key, value) in table.iter_mut() {
+        match (key.as_str(), value) {
+            ("velocities" | "masses", Value::Array(rows)) => {
+                let first = rows[0].clone();
+                rows.resize(count, first);
+            }
+            ("springs", Value::Array(rows)) => rows.iter_mut().for_each(|row| {
+                let i = chance.below(count);
+                (row[0], row[1]) = (json!(i), json!((i + 1) % count));
+            }),
+            _ => {}
+        }
+    }
+}
+
+/// Bodies that begin apart, mostly, and fluids of one liquid.
+fn scene(table: &mut Map<String, Value>, chance: &mut Chance) {
+    if let Some(Value::Array(fluids)) = table.get_mut("fluid") {
+        fluids.truncate(1);
+        if chance.once_in(3) {
+            let mut other = fluids[0].clone();
+            for x in other["at"].as_array_mut().unwrap() {
+                *x = json!(x.as_f64().unwrap() + 2.0);
+            }
+            other.as_object_mut().unwrap().remove("tank");
+            fluids.push(other);
+        }
+    }
+    // Springs break before their strain is limited, or it makes no sense.
+    let tear = table.get("tear").and_then(Value::as_f64);
+    for key in ["cloth", "jelly", "mesh"] {
+        let bodies = table.get_mut(key).and_then(Value::as_array_mut);
+        for body in bodies.into_iter().flatten() {
+            if let (Some(tear), Some(limit)) = (tear, body.get_mut("strain_limit")) {
+                *limit = json!(1.2 * tear);
+            }
+        }
+    }
+    let mut cell = 0;
+    let places = [
+        "at",
+        "foot",
+        "from",
+        "to",
+        "positions",
+        "center",
+        "size",
+        "point",
+    ];
+    for (key, bodies) in table.iter_mut() {
+        let bodies: Vec<&mut Value> = match bodies {
+            Value::Array(bodies) if bodies.iter().all(Value::is_object) => {
+                bodies.iter_mut().collect()
+            }
+            body if key == "particles" => vec![body],
+            _ => continue,
+        };
+        for body in bodies {
+            // Some are where others are.
+            cell += usize::from(!chance.once_in(8));
+            let offset = [cell % 3, (cell / 3) % 3, cell / 9].map(|k| CELL * k as f64);
+            let body = body.as_object_mut().unwrap();
+            if !body.contains_key("foot") && ["cloth", "mesh", "body", "obstacle"].contains(&&**key)
+            {
+                body.entry("at").or_insert(json!([0.0, 0.0, 0.0]));
+            }
+            for place in places.iter().filter(|place| **place != "size") {
+                if let Some(value) = body.get_mut(*place) {
+                    shift(value, offset);
+                }
+            }
+            if let Some(tank) = body.get_mut("tank") {
+                shift(&mut tank["at"], offset);
+            }
+        }
+    }
+}
+
+/// Adds an offset to a place, or to each of several.
+fn shift(place: &mut Value, offset: [f64; 3]) {
+    let Value::Array(numbers) = place else {
+        return;
+    };
+    if numbers.iter().all(Value::is_array) {
+        for row in numbers {
+            shift(row, offset);
+        }
+        return;
+    }
+    for (x, by) in numbers.iter_mut().zip(offset) {
+        *x = json!(x.as_f64().unwrap() + by);
+    }
+}
