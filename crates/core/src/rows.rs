@@ -194,8 +194,8 @@ impl Registers {
         self.stage.columns_mut(row)
     }
 
-    /// Takes a row to the next stage by its accelerations (m/s2), by axis, without the drift: to the
-    /// sum, if the next stage is ahead of it.
+    /// Takes a row to the next stage by its accelerations (m/s2), by axis, without the drift: to
+    /// the sum, if the next stage is ahead of it.
     pub fn advance(&mut self, stage: &Stage, row: usize, accelerations: [&[f64]; 3]) {
         let moves = stage.terms == Terms::Motion;
         for column in if moves { 0 } else { 3 }..6 {

@@ -1,6 +1,7 @@
 //! Splitting methods: alternate drifts, which move x by v, and kicks, which change v by the forces
-//! at fixed x. Where forces depend on v too, as those of damped springs do, a method has other kicks:
-//! each a step of an explicit Runge-Kutta method in v, or by forces at velocities ahead of v.
+//! at fixed x. Where forces depend on v too, as those of damped springs do, a method has other
+//! kicks: each a step of an explicit Runge-Kutta method in v, or by forces at velocities ahead of
+//! v.
 
 use pulp::Arch;
 
