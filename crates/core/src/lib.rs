@@ -94,7 +94,7 @@ pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;
 pub use network::{Network, Touch};
 pub use path::{Orientation, Path, Place, Pose, Turn, rotation};
-pub use rows::{Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
+pub use rows::{Next, Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms};
 pub use scene::{FirstOrder, Model, Scene, StepLimits, Swing};
 pub use simulation::{Balance, Checkpoint, Gain, Grabbed, Progress, RunState, Simulation, Span};
 pub use spring::{Spring, SpringKind, SpringLaw};

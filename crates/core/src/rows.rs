@@ -23,8 +23,7 @@ pub enum Terms {
     AllForces,
 }
 
-/// A stage of a step: that of an explicit Runge-Kutta method over h whose stages read only the one
-/// before them, k = f(t, stage), sum + b k, and y + c k for the next one.
+/// A stage of a step: k = f(t, stage), sum + b k, and what the next stage is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stage {
     /// The terms that it evaluates.
@@ -37,11 +36,42 @@ pub struct Stage {
     pub first: bool,
     /// Weight b of its k in the sum (s).
     pub b: f64,
-    /// Weight c of its k in the next stage (s). After the last one there is none, and the sum is
-    /// the new state.
-    pub c: Option<f64>,
+    /// What the next stage is.
+    pub next: Next,
     /// Length of the drift that follows (s).
     pub drift: f64,
+}
+
+/// What follows a stage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Next {
+    /// The sum: the new state, or that from which another method begins.
+    Sum,
+    /// y + c k with this c (s), as in an explicit Runge-Kutta method whose stages read only the one
+    /// before them.
+    FromY(f64),
+    /// The sum after the drift, ahead of it by e = `keep` e + `add` k, `add` in s. There is no e
+    /// before the first stage.
+    Ahead {
+        /// Share of e that is kept.
+        keep: f64,
+        /// Weight of k in e (s).
+        add: f64,
+    },
+}
+
+impl Next {
+    /// Whether the next stage is found from the y at which the method began.
+    #[must_use]
+    pub fn is_from_y(self) -> bool {
+        matches!(self, Self::FromY(_))
+    }
+
+    /// Whether the next stage is ahead of the sum.
+    #[must_use]
+    pub fn is_ahead(self) -> bool {
+        matches!(self, Self::Ahead { .. })
+    }
 }
 
 /// Some particles of a system that stand in rows, numbered row by row, and that no others act on.
@@ -115,7 +145,8 @@ pub trait Rows: Sync {
 }
 
 /// The numbers of some rows during a step, six columns each, x y z of positions and of velocities:
-/// y as it was, the sum over the stages, and the stage under way.
+/// y as it was, or how far the stage is ahead of the sum; the sum over the stages; and the stage
+/// under way.
 pub struct Registers {
     pub(crate) y: Window,
     pub(crate) sum: Window,
@@ -138,6 +169,20 @@ impl Registers {
         self.y.row_mut(row).copy_from_slice(self.stage.row(row));
     }
 
+    /// Takes the velocities of a row, which are at the sum, ahead of it.
+    pub(crate) fn look_ahead(&mut self, row: usize) {
+        for column in 3..6 {
+            let (stage, ahead) = (
+                self.stage.column_mut(row, column),
+                self.y.column(row, column),
+            );
+            self.sum.column_mut(row, column).copy_from_slice(stage);
+            for (v, ahead) in stage.iter_mut().zip(ahead) {
+                *v += ahead;
+            }
+        }
+    }
+
     /// Columns of a row of the stage under way.
     #[must_use]
     pub fn stage(&self, row: usize) -> [&[f64]; 6] {
@@ -149,7 +194,8 @@ impl Registers {
         self.stage.columns_mut(row)
     }
 
-    /// Takes a row to the next stage by its accelerations (m/s2), by axis, without the drift.
+    /// Takes a row to the next stage by its accelerations (m/s2), by axis, without the drift: to
+    /// the sum, if the next stage is ahead of it.
     pub fn advance(&mut self, stage: &Stage, row: usize, accelerations: [&[f64]; 3]) {
         let moves = stage.terms == Terms::Motion;
         for column in if moves { 0 } else { 3 }..6 {
@@ -166,11 +212,21 @@ impl Registers {
                     self.sum.column(row, column)[i]
                 };
                 let after = mul_add(stage.b, k, before);
-                self.stage.column_mut(row, column)[i] = match stage.c {
-                    None => after,
-                    Some(c) => {
+                let y = &mut self.y.column_mut(row, column)[i];
+                self.stage.column_mut(row, column)[i] = match stage.next {
+                    Next::Sum => after,
+                    Next::FromY(c) => {
                         self.sum.column_mut(row, column)[i] = after;
-                        mul_add(c, k, self.y.column(row, column)[i])
+                        mul_add(c, k, *y)
+                    }
+                    Next::Ahead { keep, add } => {
+                        let more = add * k;
+                        *y = if stage.first {
+                            more
+                        } else {
+                            mul_add(keep, *y, more)
+                        };
+                        after
                     }
                 };
             }

@@ -99,8 +99,8 @@ pub trait Mechanics {
         None
     }
 
-    /// View for methods that kick and drift. Without it, they kick with all forces, twice as if
-    /// these read v, and drift freely.
+    /// View for methods that kick and drift. Without it, they kick with all forces, as if these
+    /// read v, and drift freely.
     fn splitting(&self) -> Option<&dyn Splitting> {
         None
     }
@@ -121,8 +121,8 @@ pub trait Splitting {
     /// Writes the forces (N) that [`drift`](Self::drift) does not carry to `f`.
     fn kick_forces(&self, t: f64, x: &[f64], v: &[f64], f: &mut [f64]);
 
-    /// Whether [`kick_forces`](Self::kick_forces) depend on v. If not, a kick takes one evaluation,
-    /// and otherwise two.
+    /// Whether [`kick_forces`](Self::kick_forces) depend on v. A step of velocity Verlet takes one
+    /// evaluation if not, and three otherwise.
     fn kick_reads_velocity(&self) -> bool {
         true
     }
@@ -260,6 +260,12 @@ pub trait Compliant: Mechanics {
     fn drag_coefficient(&self) -> f64 {
         0.0
     }
+}
+
+/// Whether kicks depend on v, or the system does not say.
+pub(crate) fn kick_reads_velocity<M: Mechanics + ?Sized>(system: &M) -> bool {
+    let splitting = system.splitting();
+    splitting.is_none_or(Splitting::kick_reads_velocity)
 }
 
 /// Makes accelerations of forces.

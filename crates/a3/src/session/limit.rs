@@ -79,7 +79,7 @@ impl LimitWatch {
         let linearized = system.mechanics().and_then(Mechanics::linearized);
         let Some(free) = linearized.filter(|m| m.baumgarte_frequency().is_none()) else {
             let modes = if small { all() } else { vec![] };
-            let grows = |mode: &Mode| mode.drag < -GROWS * mode.frequency();
+            let grows = |mode: &Mode| mode.drag + mode.damping < -GROWS * mode.frequency();
             return if modes.iter().any(grows) {
                 vec![]
             } else {

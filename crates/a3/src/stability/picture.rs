@@ -49,6 +49,7 @@ fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
     let share = modes
         .first()
         .map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300));
+    let reads_velocity = modes.first().is_some_and(|m| m.reads_velocity);
     let radius = move |re: f64, im: f64| {
         // Its fixed steps are those of TR-BDF2, but its own are not.
         if is_bdf {
@@ -58,6 +59,7 @@ fn region(row: &MethodLimits, modes: &[Mode], h: f64) -> Region {
         let mode = Mode {
             drag: (1.0 - share) * mode.drag,
             damping: share * mode.drag,
+            reads_velocity,
             ..mode
         };
         Growth::new(method, mode).map_or(f64::INFINITY, |mut growth| growth.of_step(1.0))

@@ -7,8 +7,8 @@
 //! method in v at fixed x. A method of lower order there would reduce the order of the whole.
 
 use super::Method;
-use super::runge_kutta::RK4;
-use super::splitting::Plan;
+use super::runge_kutta::{EULER, RK4, Table};
+use super::splitting::{Kicks, Plan};
 use crate::control::Control;
 use crate::rows::Terms;
 
@@ -35,13 +35,21 @@ const CHI: f64 = -0.066_264_582_669_818_5;
 
 pub(super) static PLAN: Plan = Plan {
     name: METHOD.name,
-    steps: &[
-        (XI, 0.5 - LAMBDA),
-        (CHI, LAMBDA),
-        (1.0 - 2.0 * (CHI + XI), LAMBDA),
-        (CHI, 0.5 - LAMBDA),
-    ],
-    last: XI,
     terms: Terms::KickForces,
-    damped: Some(RK4),
+    free: kicks(EULER),
+    damped: Some(kicks(RK4)),
 };
+
+const fn kicks(table: Table) -> Kicks {
+    Kicks {
+        steps: &[
+            (XI, 0.5 - LAMBDA),
+            (CHI, LAMBDA),
+            (1.0 - 2.0 * (CHI + XI), LAMBDA),
+            (CHI, 0.5 - LAMBDA),
+        ],
+        last: XI,
+        table,
+        ahead: &[],
+    }
+}

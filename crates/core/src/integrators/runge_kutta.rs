@@ -8,7 +8,7 @@ use super::sweep::Sweeper;
 use super::{Integrator, Work, check_dim};
 use crate::error::Error;
 use crate::fused::mul_adds;
-use crate::rows::{Stage, Terms};
+use crate::rows::{Next, Stage, Terms};
 use crate::system::ParticleSystem;
 
 /// Coefficients (c, b) of each stage.
@@ -32,7 +32,9 @@ pub(super) fn stages(table: Table, terms: Terms, t: f64, h: f64) -> impl Iterato
         until: table.get(i + 1).map_or(t + h, |(c, _)| t + c * h),
         first: i == 0,
         b: h * b,
-        c: table.get(i + 1).map(|(c, _)| h * c),
+        next: table
+            .get(i + 1)
+            .map_or(Next::Sum, |(c, _)| Next::FromY(h * c)),
         drift: 0.0,
     })
 }
@@ -108,11 +110,12 @@ impl Integrator for RungeKutta {
     }
 }
 
-/// Step from one stage to the next on whole arrays: adds the stage's k to the sum and forms the y
-/// of the next stage, or the new state.
+/// Step from one stage to the next on whole arrays: adds the stage's k to the sum and forms the
+/// next stage, or the new state. A stage that is to be ahead of the sum is at the sum then, and y
+/// is how far it is to be ahead.
 pub(super) struct Combine<'a> {
     pub stage: &'a Stage,
-    pub y: &'a [f64],
+    pub y: &'a mut [f64],
     pub sum: &'a mut [f64],
     pub next: &'a mut [f64],
     pub k: &'a [f64],
@@ -127,18 +130,13 @@ impl WithSimd for Combine<'_> {
     )]
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let (y, y_rest) = S::as_simd_f64s(self.y);
+        let (y, y_rest) = S::as_mut_simd_f64s(self.y);
         let (sum, sum_rest) = S::as_mut_simd_f64s(self.sum);
         let (next, next_rest) = S::as_mut_simd_f64s(self.next);
         let (k, k_rest) = S::as_simd_f64s(self.k);
-        combine(simd, self.stage, [y, k], sum, next);
-        combine(
-            pulp::Scalar::new(),
-            self.stage,
-            [y_rest, k_rest],
-            sum_rest,
-            next_rest,
-        );
+        combine(simd, self.stage, [y, sum, next], k);
+        let rest = [y_rest, sum_rest, next_rest];
+        combine(pulp::Scalar::new(), self.stage, rest, k_rest);
     }
 }
 
@@ -147,24 +145,26 @@ impl WithSimd for Combine<'_> {
     reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found"
 )]
 #[inline(always)]
-fn combine<S: Simd>(
-    simd: S,
-    stage: &Stage,
-    [y, k]: [&[S::f64s]; 2],
-    sum: &mut [S::f64s],
-    next: &mut [S::f64s],
-) {
+fn combine<S: Simd>(simd: S, stage: &Stage, [y, sum, next]: [&mut [S::f64s]; 3], k: &[S::f64s]) {
     let b = simd.splat_f64s(stage.b);
-    let c = stage.c.map(|c| simd.splat_f64s(c));
-    for (((y, k), sum), next) in y.iter().zip(k).zip(sum).zip(next) {
-        let before = if stage.first { *y } else { *sum };
+    for (((y, k), sum), next) in y.iter_mut().zip(k).zip(sum).zip(next) {
+        let before = if stage.first { *next } else { *sum };
         let after = mul_adds(simd, b, *k, before);
-        match c {
-            None => *next = after,
-            Some(c) => {
+        *next = match stage.next {
+            Next::Sum => after,
+            Next::FromY(c) => {
                 *sum = after;
-                *next = mul_adds(simd, c, *k, *y);
+                mul_adds(simd, simd.splat_f64s(c), *k, *y)
             }
-        }
+            Next::Ahead { keep, add } => {
+                let more = simd.mul_f64s(simd.splat_f64s(add), *k);
+                *y = if stage.first {
+                    more
+                } else {
+                    mul_adds(simd, simd.splat_f64s(keep), *y, more)
+                };
+                after
+            }
+        };
     }
 }

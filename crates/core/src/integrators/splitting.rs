@@ -1,15 +1,18 @@
 //! Splitting methods: alternate drifts, which move x by v, and kicks, which change v by the forces
-//! at fixed x. Where forces depend on v too, as those of damped springs do, a kick is a step of an
-//! explicit Runge-Kutta method in v.
+//! at fixed x. Where forces depend on v too, as those of damped springs do, a method has other
+//! kicks: each a step of an explicit Runge-Kutta method in v, or by forces at velocities ahead of
+//! v.
 
 use pulp::Arch;
 
-use super::runge_kutta::{Combine, EULER, Table, stages};
+use super::runge_kutta::{Combine, Table, stages};
 use super::sweep::Sweeper;
-use super::{Integrator, Work, check_dim};
+use super::{Integrator, Work, add_scaled, check_dim};
 use crate::error::Error;
-use crate::rows::{Stage, Terms};
-use crate::system::{Mechanics, ParticleSystem, Rigid, Splitting, divide_by_masses, place_pins};
+use crate::rows::{Next, Stage, Terms};
+use crate::system::{
+    Mechanics, ParticleSystem, Rigid, divide_by_masses, kick_reads_velocity, place_pins,
+};
 
 /// Largest number of stages of a sweep through several kicks: with more, the rows no longer fit in
 /// the cache.
@@ -19,16 +22,27 @@ const STAGES: usize = 4;
 pub(super) struct Plan {
     /// Name of the method.
     pub name: &'static str,
+    /// Terms that act in kicks: [`Terms::KickForces`] if drifts carry gravity and drag exactly, and
+    /// otherwise [`Terms::AllForces`].
+    pub terms: Terms,
+    /// Drifts and kicks where forces do not depend on v.
+    pub free: Kicks,
+    /// Drifts and kicks where they do; `None` for a method that does not serve such forces.
+    pub damped: Option<Kicks>,
+}
+
+/// Drifts and kicks of a step.
+#[derive(Clone, Copy)]
+pub(super) struct Kicks {
     /// Lengths of each drift and of the kick after it, as fractions of the step.
     pub steps: &'static [(f64, f64)],
     /// Length of the last drift, as a fraction of the step.
     pub last: f64,
-    /// Terms that act in kicks: [`Terms::KickForces`] if drifts carry gravity and drag exactly, and
-    /// otherwise [`Terms::AllForces`].
-    pub terms: Terms,
-    /// Runge-Kutta method of a kick where forces depend on v; `None` for a method that does not
-    /// serve such forces.
-    pub damped: Option<Table>,
+    /// Runge-Kutta method in v of each kick.
+    pub table: Table,
+    /// How far ahead of v each kick after the first takes its forces, e = k e + c h a, by k and c
+    /// and the acceleration a of the kick before. Without them, kicks take forces at v.
+    pub ahead: &'static [(f64, f64)],
 }
 
 /// Splitting method with its scratch.
@@ -38,9 +52,10 @@ pub(super) struct SplittingMethod {
     stages: Vec<Stage>,
     /// Scratch for systems of rows; `None` for others.
     sweeper: Option<Sweeper>,
-    /// Scratch for other systems: v at the beginning of the kick, the sum over its stages, and the
-    /// accelerations; with rigid bodies, of the whole state.
-    v: Vec<f64>,
+    /// Scratch for other systems: v at the beginning of the kick, or how far the stage is ahead of
+    /// v; the sum over its stages, or v; and the accelerations. With rigid bodies, of the whole
+    /// state.
+    y: Vec<f64>,
     sum: Vec<f64>,
     a: Vec<f64>,
 }
@@ -58,7 +73,7 @@ impl Plan {
         system: &dyn ParticleSystem,
         sweeper: Option<Sweeper>,
     ) -> Box<dyn Integrator> {
-        let dim = system.dim();
+        let (dim, kicks) = (system.dim(), self.kicks(system));
         let length = match system.rigid() {
             Some(_) => dim,
             None if sweeper.is_some() => 0,
@@ -67,26 +82,63 @@ impl Plan {
         Box::new(SplittingMethod {
             plan: self,
             dim,
-            stages: Vec::with_capacity(self.steps.len() * self.kick(system).len()),
+            stages: Vec::with_capacity(kicks.steps.len() * kicks.table.len()),
             sweeper,
-            v: vec![0.0; length],
+            y: vec![0.0; length],
             sum: vec![0.0; length],
             a: vec![0.0; length],
         })
     }
 
-    /// Runge-Kutta method of a kick of this system: that of forces without velocities, if the
-    /// method does not serve others.
-    fn kick(&self, system: &dyn ParticleSystem) -> Table {
+    /// Drifts and kicks for this system: those of forces without velocities, if the method does not
+    /// serve others.
+    fn kicks(&self, system: &dyn ParticleSystem) -> Kicks {
         self.damped
             .filter(|_| reads_velocity(system))
-            .unwrap_or(EULER)
+            .unwrap_or(self.free)
     }
 
     /// Number of stages of a sweep: as many whole kicks as fit, at least one.
     pub fn stages_of_sweep(&self, system: &dyn ParticleSystem) -> usize {
-        let kick = self.kick(system).len();
-        kick * (STAGES / kick).clamp(1, self.steps.len())
+        let Kicks { steps, table, .. } = self.kicks(system);
+        table.len() * (STAGES / table.len()).clamp(1, steps.len())
+    }
+}
+
+impl Kicks {
+    /// Stages of a step from t to t + h (s).
+    fn stages(self, terms: Terms, t: f64, h: f64) -> impl Iterator<Item = Stage> {
+        let mut now = t;
+        self.steps
+            .iter()
+            .enumerate()
+            .flat_map(move |(i, (drift, length))| {
+                now += drift * h;
+                let (start, is_ahead) = (now, (1..=self.ahead.len()).contains(&i));
+                let drift = self.steps.get(i + 1).map_or(self.last, |(drift, _)| *drift) * h;
+                let next = self
+                    .ahead
+                    .get(i)
+                    .map_or(Next::Sum, |(keep, add)| Next::Ahead {
+                        keep: *keep,
+                        add: add * h,
+                    });
+                stages(self.table, terms, now, length * h).map(move |stage| match stage.next {
+                    Next::Sum => Stage {
+                        t: start,
+                        until: start + drift,
+                        first: stage.first && !is_ahead,
+                        next,
+                        drift,
+                        ..stage
+                    },
+                    _ => Stage {
+                        t: start,
+                        until: start,
+                        ..stage
+                    },
+                })
+            })
     }
 }
 
@@ -103,22 +155,10 @@ impl Integrator for SplittingMethod {
         if plan.damped.is_none() && reads_velocity(system) {
             return Err(Error::ReadsVelocity { method: plan.name });
         }
-        let kick = plan.kick(system);
-        let lead = (t, plan.steps[0].0 * h);
-        let mut now = t;
+        let kicks = plan.kicks(system);
+        let lead = (t, kicks.steps[0].0 * h);
         self.stages.clear();
-        for (i, (drift, length)) in plan.steps.iter().enumerate() {
-            now += drift * h;
-            let next = plan.steps.get(i + 1).map_or(plan.last, |(drift, _)| *drift) * h;
-            self.stages.extend(
-                stages(kick, plan.terms, now, length * h).map(|stage| Stage {
-                    t: now,
-                    until: if stage.c.is_none() { now + next } else { now },
-                    drift: if stage.c.is_none() { next } else { 0.0 },
-                    ..stage
-                }),
-            );
-        }
+        self.stages.extend(kicks.stages(plan.terms, t, h));
         let per_sweep = plan.stages_of_sweep(system);
         match (&mut self.sweeper, system.rows()) {
             (Some(sweeper), Some(system)) if sweeper.fits(system, per_sweep) => {
@@ -143,14 +183,14 @@ impl SplittingMethod {
     fn plain(&mut self, mechanics: &dyn Mechanics, (t, lead): (f64, f64), y: &mut [f64]) {
         let (x, v) = y.split_at_mut(self.dim / 2);
         // An integrator that was made for rows has no scratch for whole arrays yet.
-        for scratch in [&mut self.v, &mut self.sum, &mut self.a] {
+        for scratch in [&mut self.y, &mut self.sum, &mut self.a] {
             scratch.resize(v.len(), 0.0);
         }
         let terms = self.plan.terms;
         drift(mechanics, terms, t, lead, x, v);
         for stage in &self.stages {
-            if stage.first {
-                self.v.copy_from_slice(v);
+            if stage.first && stage.next.is_from_y() {
+                self.y.copy_from_slice(v);
             }
             match mechanics.splitting() {
                 Some(splitting) if terms == Terms::KickForces => {
@@ -161,12 +201,16 @@ impl SplittingMethod {
             }
             Arch::new().dispatch(Combine {
                 stage,
-                y: &self.v,
+                y: &mut self.y,
                 sum: &mut self.sum,
                 next: v,
                 k: &self.a,
             });
             drift(mechanics, terms, stage.t, stage.drift, x, v);
+            if stage.next.is_ahead() {
+                self.sum.copy_from_slice(v);
+                add_scaled(v, 1.0, &self.y);
+            }
         }
     }
 
@@ -181,18 +225,22 @@ impl SplittingMethod {
         };
         drift(t, lead, y);
         for stage in &self.stages {
-            if stage.first {
-                self.v.copy_from_slice(y);
+            if stage.first && stage.next.is_from_y() {
+                self.y.copy_from_slice(y);
             }
             system.kick(stage.t, terms, y, &mut self.a);
             Arch::new().dispatch(Combine {
                 stage,
-                y: &self.v,
+                y: &mut self.y,
                 sum: &mut self.sum,
                 next: y,
                 k: &self.a,
             });
             drift(stage.t, stage.drift, y);
+            if stage.next.is_ahead() {
+                self.sum.copy_from_slice(y);
+                add_scaled(y, 1.0, &self.y);
+            }
         }
     }
 }
@@ -202,8 +250,7 @@ fn reads_velocity(system: &dyn ParticleSystem) -> bool {
     if let Some(rigid) = system.rigid() {
         return rigid.kick_reads_velocity();
     }
-    let splitting = system.mechanics().and_then(Mechanics::splitting);
-    splitting.is_none_or(Splitting::kick_reads_velocity)
+    system.mechanics().is_none_or(kick_reads_velocity)
 }
 
 /// Takes x and v through a drift from t to t + h (s), and pins to their places at its end.
@@ -214,7 +261,7 @@ fn drift(mechanics: &dyn Mechanics, terms: Terms, t: f64, h: f64, x: &mut [f64],
     match mechanics.splitting() {
         Some(splitting) if terms == Terms::KickForces => splitting.drift(t, h, x, v),
         _ => {
-            super::add_scaled(x, h, v);
+            add_scaled(x, h, v);
             place_pins(mechanics, t + h, x, v);
         }
     }

@@ -7,7 +7,8 @@
 //! that do not depend on the velocity.
 
 use super::Method;
-use super::splitting::Plan;
+use super::runge_kutta::EULER;
+use super::splitting::{Kicks, Plan};
 use crate::control::Control;
 use crate::rows::Terms;
 
@@ -43,21 +44,25 @@ const B6: f64 = 0.5 - (B1 + B2 + B3 + B4 + B5);
 
 pub(super) static PLAN: Plan = Plan {
     name: METHOD.name,
-    steps: &[
-        (0.0, B1),
-        (A1, B2),
-        (A2, B3),
-        (A3, B4),
-        (A4, B5),
-        (A5, B6),
-        (A6, B6),
-        (A5, B5),
-        (A4, B4),
-        (A3, B3),
-        (A2, B2),
-        (A1, B1),
-    ],
-    last: 0.0,
     terms: Terms::KickForces,
+    free: Kicks {
+        steps: &[
+            (0.0, B1),
+            (A1, B2),
+            (A2, B3),
+            (A3, B4),
+            (A4, B5),
+            (A5, B6),
+            (A6, B6),
+            (A5, B5),
+            (A4, B4),
+            (A3, B3),
+            (A2, B2),
+            (A1, B1),
+        ],
+        last: 0.0,
+        table: EULER,
+        ahead: &[],
+    },
     damped: None,
 };

@@ -6,14 +6,14 @@
 use std::array;
 use std::ops::Range;
 
-use crate::rows::{Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms, Window};
+use crate::rows::{Next, Patch, REACH, Registers, Rows, Stage, SweepScratch, Terms, Window};
 use crate::system::ParticleSystem;
 use crate::threads::{Columns, split_off, threads};
 
 /// Number of particles that a stage goes through at a time.
 const BLOCK: usize = 256;
 
-/// Number of particles below which what passes between one or two stages stays in the cache anyway
+/// Number of particles below which what passes between up to three stages stays in the cache anyway
 /// (docs/performance.md).
 const MANY: usize = 4096;
 /// Columns above which what is kept of a few rows takes more room than the whole state.
@@ -35,7 +35,7 @@ impl Sweeper {
         let patches: Vec<_> = (0..rows.patches()).map(|k| rows.patch(k)).collect();
         let particles = patches.iter().map(Patch::particles).sum();
         let widest = patches.iter().map(|patch| patch.cols).max()?;
-        let pays = (stages > 2 || particles >= MANY) && widest <= WIDE;
+        let pays = (stages > 3 || particles >= MANY) && widest <= WIDE;
         let share = |patch: &Patch| (threads(particles) * patch.particles()).div_ceil(particles);
         pays.then(|| Self::with_bands(rows, stages, share))
     }
@@ -177,7 +177,7 @@ impl Band {
                 if let Some((terms, times)) = *lead {
                     system.drift(self.number, terms, times, loaded, &mut self.registers);
                 }
-                if stages[0].c.is_some() {
+                if stages[0].next.is_from_y() {
                     self.registers.begin(loaded);
                 }
                 loaded += 1;
@@ -205,7 +205,9 @@ impl Band {
                         if to == end {
                             return;
                         }
-                    } else if stage.c.is_none() && stages[number + 1].c.is_some() {
+                    } else if stage.next.is_ahead() {
+                        (from..to).for_each(|row| self.registers.look_ahead(row));
+                    } else if stage.next == Next::Sum && stages[number + 1].next.is_from_y() {
                         (from..to).for_each(|row| self.registers.begin(row));
                     }
                 }

@@ -2,7 +2,7 @@
 
 use super::Method;
 use super::runge_kutta::EULER;
-use super::splitting::Plan;
+use super::splitting::{Kicks, Plan};
 use crate::control::Control;
 use crate::rows::Terms;
 
@@ -25,8 +25,14 @@ pub(super) const METHOD: Method = Method {
 
 pub(super) static PLAN: Plan = Plan {
     name: METHOD.name,
+    terms: Terms::AllForces,
+    free: KICK,
+    damped: Some(KICK),
+};
+
+const KICK: Kicks = Kicks {
     steps: &[(0.0, 1.0)],
     last: 1.0,
-    terms: Terms::AllForces,
-    damped: Some(EULER),
+    table: EULER,
+    ahead: &[],
 };

@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::integrators::{Integrator, Method};
 use crate::path::Place;
 use crate::random::SplitMix;
-use crate::system::{Linearized, Mechanics, Splitting, place_pins};
+use crate::system::{Linearized, Mechanics, Splitting, kick_reads_velocity, place_pins};
 
 /// Numbers of steps after which growth is seen, and has to be seen again.
 const SEEN: [usize; 2] = [1000, 4000];
@@ -212,8 +212,7 @@ impl Splitting for AtRest<'_> {
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        let splitting = self.mechanics.splitting();
-        splitting.is_none_or(Splitting::kick_reads_velocity)
+        kick_reads_velocity(self.mechanics)
     }
 
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {

@@ -49,6 +49,9 @@ pub struct Mode {
     pub drag: f64,
     /// Damping of the springs over mass (1/s).
     pub damping: f64,
+    /// Whether forces other than drag depend on velocities in the system, if not in this mode:
+    /// splitting methods then have other kicks.
+    pub reads_velocity: bool,
 }
 
 impl Mode {
@@ -58,7 +61,7 @@ impl Mode {
         Self {
             stiffness: re * re + im * im,
             drag: -2.0 * re,
-            damping: 0.0,
+            ..Self::default()
         }
     }
 
@@ -150,7 +153,7 @@ impl Splitting for Tied {
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        self.0.damping != 0.0
+        self.0.reads_velocity || self.0.damping != 0.0
     }
 
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {

@@ -2,7 +2,7 @@
 
 use super::Mode;
 use crate::random::SplitMix;
-use crate::system::Linearized;
+use crate::system::{Linearized, kick_reads_velocity};
 
 /// Length of the part of a shape's damping in other shapes, over that in its own, from which
 /// damping is said to mix shapes; and over the frequency, from which it changes the frequency by
@@ -95,6 +95,7 @@ impl<'a> Normalised<'a> {
             stiffness,
             drag,
             damping: if damping > 1e-9 * drag { damping } else { 0.0 },
+            reads_velocity: kick_reads_velocity(self.mechanics),
         };
         let mixing = if turned > STRONG * stiffness.abs().sqrt() && turned > MIXED * all.abs() {
             Mixing::Strong

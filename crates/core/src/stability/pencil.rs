@@ -80,6 +80,7 @@ impl Pencil {
                 .min_by(|a, b| distance(a).total_cmp(&distance(b)));
             nearest.map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300))
         };
+        let reads_velocity = undamped.iter().any(|mode| mode.reads_velocity);
         let scale = found.iter().fold(0.0, |m: f64, l| m.max(l.norm()));
         let mut modes: Vec<_> = found
             .iter()
@@ -92,6 +93,7 @@ impl Pencil {
                 Mode {
                     drag: mode.drag - damping,
                     damping,
+                    reads_velocity,
                     ..mode
                 }
             })

@@ -7,7 +7,7 @@ use super::Mode;
 use super::eigenvalues::{ITERATIONS, PRECISIONS, eigenvalues};
 use super::normalised::{MIXED, Mixing, Normalised, dot, normalise};
 use super::pencil::Pencil;
-use crate::system::{Linearized, Mechanics, ParticleSystem};
+use crate::system::{Linearized, Mechanics, ParticleSystem, kick_reads_velocity};
 
 /// Largest number of products with the stiffness for a spectrum: enough for three exact digits of
 /// its ends on any cloth, and for a sample of its middle.
@@ -150,6 +150,7 @@ pub(super) fn of_drag(mechanics: &dyn Linearized) -> Option<Mode> {
         stiffness: (1e-3 * drag).powi(2),
         drag,
         damping: 0.0,
+        reads_velocity: kick_reads_velocity(mechanics),
     })
 }
 
@@ -160,11 +161,13 @@ fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
         stiffness: w * w,
         drag: 0.0,
         damping: 2.0 * w,
+        reads_velocity: true,
     })
 }
 
 /// Modes of a first-order system: one for each real eigenvalue and each conjugate pair of the
-/// Jacobian, which is computed by central differences.
+/// Jacobian, which is computed by central differences. It does not tell drag from other damping:
+/// all of it counts as damping where kicks depend on v.
 fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let carried = |k: &usize| system.rigid().is_some_and(|rigid| rigid.is_carried(*k));
     let unknowns: Vec<usize> = (0..y.len()).filter(|k| !carried(k)).collect();
@@ -189,11 +192,21 @@ fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     }
     let scale = jacobian.amax();
     let eigenvalues = eigenvalues(&jacobian).into_iter();
+    let reads_velocity = match (system.rigid(), system.mechanics()) {
+        (Some(rigid), _) => rigid.kick_reads_velocity(),
+        (None, mechanics) => mechanics.is_some_and(kick_reads_velocity),
+    };
     eigenvalues
         // Parts that central differences cannot tell from zero become zero.
         .map(|l| [l.re, l.im].map(|part| if part.abs() < 1e-9 * scale { 0.0 } else { part }))
         .filter(|[re, im]| *im >= 0.0 && (*re, *im) != (0.0, 0.0))
         .map(|[re, im]| Mode::of_eigenvalue(re, im))
+        .map(|mode| Mode {
+            drag: if reads_velocity { 0.0 } else { mode.drag },
+            damping: if reads_velocity { mode.drag } else { 0.0 },
+            reads_velocity,
+            ..mode
+        })
         .collect()
 }
 

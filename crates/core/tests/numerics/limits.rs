@@ -116,7 +116,7 @@ fn limits_in_the_plane() {
             let mode = Mode {
                 stiffness: w * w,
                 drag: 2.0 * zeta * w,
-                damping: 0.0,
+                ..Mode::default()
             };
             let found = limit(name, mode);
             assert_relative_eq!(w * found.step, expected, max_relative = 2e-3);
@@ -136,6 +136,45 @@ fn limits_in_the_plane() {
         let critical = Mode::of_eigenvalue(-w, 0.0);
         assert!(w * limit(name, critical).step > 40.0);
     }
+}
+
+/// Limits where forces of springs damp a mode, or other modes: Verlet's method then takes three
+/// kicks, each of which is stable to 2 without damping.
+#[test]
+fn limits_of_damped_springs() {
+    let w = 1e5;
+    for (zeta, expected) in [
+        (0.0, 6.0),
+        (0.01, 5.824_314),
+        (0.1, 5.306_993),
+        (0.2, 4.808_862),
+        (0.3, 4.390_518),
+        (0.36, 4.177_438),
+        (0.5, 3.758_512),
+        (0.7, 3.132_067),
+        (1.0, 2.459_701),
+        (2.0, 1.380_401),
+    ] {
+        let mode = Mode {
+            damping: 2.0 * zeta * w,
+            reads_velocity: true,
+            ..undamped(w)
+        };
+        let found = largest_step(method("verlet"), &[mode]).unwrap().unwrap();
+        assert_relative_eq!(w * found.step, expected, max_relative = 2e-3);
+        assert_relative_eq!(w * found.bounded, expected, max_relative = 2e-6);
+    }
+    // What a scene says of its modes.
+    let modes = |damping: f64| {
+        let scene = described(&format!(
+            "[[chain]]\nparticles = 3\nfrom = [0, 0, 0]\nto = [2, 0, 0]\nmass = 1\n\
+             stiffness = 1\ndamping = {damping}\npin = [{{ at = [\"first\"] }}]\n"
+        ));
+        spectrum(scene.model.system(), 0.0, &scene.state)
+    };
+    let damped = modes(0.1);
+    assert!(!damped.is_empty() && damped.iter().all(|mode| mode.reads_velocity));
+    assert!(modes(0.0).iter().all(|mode| !mode.reads_velocity));
 }
 
 /// Steps at which modes grow at all, and at which they grow tenfold, of methods that grow slowly in

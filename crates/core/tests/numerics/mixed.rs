@@ -117,7 +117,8 @@ fn growth(still: &Scene, name: &str, h: f64) -> f64 {
         let speed = speeds.fold(0.0, |most: f64, (k, (a, b))| {
             most.max((a - b).abs() * network.masses()[k % n].sqrt())
         });
-        if speed > 1e4 * size {
+        // Before it ends in a bounded motion, as that of damped springs may.
+        if speed > 1e2 * size {
             return f64::INFINITY;
         }
         let part = (2 * k / steps) as usize;

@@ -1,7 +1,7 @@
 //! Orders of convergence: the global error falls as h to the method's order, with gravity, drag,
 //! damped springs and a moving pin.
 
-use crate::common::{distance, integrate, method};
+use crate::common::{described, distance, integrate, method};
 use a3_core::{
     Grid, Method, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Turn, Vector3, integrators,
 };
@@ -98,6 +98,36 @@ fn every_method_has_its_order() {
                 m.order
             );
         }
+    }
+}
+
+/// The forces of springs that hold a rigid body at its ends turn it, and read its spin.
+#[test]
+fn bodies_on_damped_springs_keep_the_order() {
+    let scene = described(
+        "gravity = [0, -9.81, 0]
+        drag = 0.1
+        springs = [[0, 3, 60, 0.3, 2], [1, 4, 90, 0.2, 1], [3, 4, 5, 1, 0.1]]
+        [particles]
+        positions = [[0.6, 0.4, 0], [-0.6, 0.5, 0.2]]
+        mass = 1
+        pin = [{ particles = [0, 1] }]
+        [[body]]
+        parts = [{ capsule = [1.2, 0.1] }]
+        rotation = [0, 0, 1.5]
+        mass = 1.5
+        spin = [0.5, 2, 1]",
+    );
+    let (system, y) = (scene.model.system(), &scene.state);
+    let exact = integrate(system, method("dop853"), y, 1.0 / 512.0, 512);
+    for (name, steps) in [("verlet", 256), ("rk4", 64), ("pefrl", 64)] {
+        let m = method(name);
+        let error = |steps: u64| {
+            let found = integrate(system, m, y, 1.0 / steps as f64, steps);
+            distance(&found, &exact)
+        };
+        let order = (error(steps) / error(2 * steps)).log2();
+        assert!((order - f64::from(m.order)).abs() < 0.2, "{name}: {order}");
     }
 }
 

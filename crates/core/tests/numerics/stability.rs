@@ -1,6 +1,7 @@
 //! Exact growth factors and stability limits; each limit is tested from both sides.
 
 use crate::common::{integrate, method, oscillator, scene, size};
+use a3_core::{Network, Path, Spring, SpringKind, SpringLaw, Vector3};
 use approx::assert_relative_eq;
 
 /// Growth of the radius in one step of h on the circle f = (-y, x, 0).
@@ -49,32 +50,29 @@ fn the_circle_after_1571_steps() {
 
 /// Largest magnitude in the final states of two runs of a damped oscillator of 1 rad/s, in steps of
 /// `h_omega` (s).
-fn largest(name: &str, zeta: f64, h_omega: f64) -> f64 {
-    let network = oscillator(1.0, zeta);
+fn largest(name: &str, network: &Network, h_omega: f64) -> f64 {
     let mut largest: f64 = 0.0;
     for axis in 0..2 {
         // One run starts from a displacement, the other from a velocity: one of them excites the
         // growing mode.
         let mut y = vec![0.0; 12];
         y[1 + 6 * axis] = 1.0;
-        largest = largest.max(size(&integrate(
-            &network,
-            method(name),
-            &y,
-            h_omega,
-            60_000,
-        )));
+        largest = largest.max(size(&integrate(network, method(name), &y, h_omega, 60_000)));
     }
     largest
 }
 
 fn holds_below_and_fails_above(name: &str, zeta: f64, limit: f64) {
-    let below = largest(name, zeta, 0.99 * limit);
+    check(name, &oscillator(1.0, zeta), zeta, limit);
+}
+
+fn check(name: &str, network: &Network, zeta: f64, limit: f64) {
+    let below = largest(name, network, 0.99 * limit);
     assert!(
         below < 100.0,
         "{name}, zeta {zeta}: {below:e} at 0.99 of the limit {limit}"
     );
-    let above = largest(name, zeta, 1.01 * limit);
+    let above = largest(name, network, 1.01 * limit);
     assert!(
         above > 1e3,
         "{name}, zeta {zeta}: only {above:e} at 1.01 of the limit {limit}"
@@ -155,6 +153,26 @@ fn damped_limits() {
             }
             holds_below_and_fails_above(name, zeta, limit);
         }
+    }
+}
+
+/// The spring damps the oscillator, and no drag.
+#[test]
+fn limits_of_a_damped_spring() {
+    for (zeta, limit) in [
+        (0.01, 5.824_314),
+        (0.1, 5.306_993),
+        (0.3, 4.390_518),
+        (0.5, 3.758_512),
+        (1.0, 2.459_701),
+        (2.0, 1.380_401),
+    ] {
+        let mut network = Network::new(vec![1.0; 2]).unwrap();
+        let law = SpringLaw::new(1.0, 0.0, 2.0 * zeta).unwrap();
+        let (i, j, kind) = (0, 1, SpringKind::Structural);
+        network.add_spring(Spring { kind, i, j, law }).unwrap();
+        network.pin(0, Path::Still(Vector3::zeros())).unwrap();
+        check("verlet", &network, zeta, limit);
     }
 }
 

@@ -19,6 +19,8 @@ const G: [f64; 3] = [0.5, -9.81, 0.0];
 struct Line {
     inverse_masses: Vec<f64>,
     has_views: bool,
+    /// Damping over stiffness (s).
+    damping_time: f64,
 }
 
 impl Line {
@@ -28,6 +30,14 @@ impl Line {
         Self {
             inverse_masses,
             has_views,
+            damping_time: 0.0,
+        }
+    }
+
+    fn damped(self) -> Self {
+        Self {
+            damping_time: 0.02,
+            ..self
         }
     }
 
@@ -64,12 +74,13 @@ fn force(above: [f64; 3], below: [f64; 3], g: bool) -> [f64; 3] {
 }
 
 impl Line {
-    fn add_up(&self, x: &[f64], g: bool, f: &mut [f64]) {
+    fn add_up(&self, x: &[f64], v: &[f64], g: bool, f: &mut [f64]) {
         let n = self.particles();
+        let at = |i| self.moved(row(x, i), row(v, i));
         let mut above = [0.0; 3];
         for i in 0..n {
             let below = if i + 1 < n {
-                product(difference(row(x, i), row(x, i + 1)))
+                product(difference(at(i), at(i + 1)))
             } else {
                 [0.0; 3]
             };
@@ -78,6 +89,11 @@ impl Line {
             above = below;
         }
     }
+
+    /// Where a spring that is not damped would pull as this one does at x, moving at v.
+    fn moved(&self, x: [f64; 3], v: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| x[axis] + self.damping_time * v[axis])
+    }
 }
 
 impl Mechanics for Line {
@@ -85,8 +101,8 @@ impl Mechanics for Line {
         &self.inverse_masses
     }
 
-    fn forces(&self, _t: f64, x: &[f64], _v: &[f64], f: &mut [f64]) {
-        self.add_up(x, true, f);
+    fn forces(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.add_up(x, v, true, f);
     }
 
     fn pins(&self, _t: f64, visit: &mut dyn FnMut(usize, Place)) {
@@ -115,12 +131,12 @@ fn fall(h: f64, x: &mut [f64], v: &mut [f64], g: f64) {
 }
 
 impl Splitting for Line {
-    fn kick_forces(&self, _t: f64, x: &[f64], _v: &[f64], f: &mut [f64]) {
-        self.add_up(x, false, f);
+    fn kick_forces(&self, _t: f64, x: &[f64], v: &[f64], f: &mut [f64]) {
+        self.add_up(x, v, false, f);
     }
 
     fn kick_reads_velocity(&self) -> bool {
-        false
+        self.damping_time > 0.0
     }
 
     fn drift(&self, _t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
@@ -140,10 +156,10 @@ impl Linearized for Line {
         _x: &[f64],
         _v: &[f64],
         dx: &[f64],
-        _dv: &[f64],
+        dv: &[f64],
         df: &mut [f64],
     ) {
-        self.add_up(dx, false, df);
+        self.add_up(dx, dv, false, df);
     }
 
     fn couplings(&self, _t: f64, _x: &[f64], _clamped: bool, visit: &mut dyn FnMut(Coupling)) {
@@ -213,8 +229,8 @@ impl Rows for Line {
     ) {
         for row in rows {
             let at = |row| {
-                let [x, y, z, ..] = registers.stage(row);
-                [x[0], y[0], z[0]]
+                let [x, y, z, u, v, w] = registers.stage(row);
+                self.moved([x[0], y[0], z[0]], [u[0], v[0], w[0]])
             };
             let below = if row + 1 < self.particles() {
                 product(difference(at(row), at(row + 1)))
@@ -267,11 +283,18 @@ fn rows_step_to_the_bits_of_whole_arrays() {
             "verlet",
             "pefrl",
         ] {
-            let line = Line::new(particles, true);
-            let found = integrate(&line, method(name), &y, 1e-2, 7);
-            let whole = WholeArrays(Line::new(particles, true));
-            let expected = integrate(&whole, method(name), &y, 1e-2, 7);
-            assert!(found == expected, "{name}, {particles} particles");
+            for damped in [false, true] {
+                let line = || {
+                    let line = Line::new(particles, true);
+                    if damped { line.damped() } else { line }
+                };
+                let found = integrate(&line(), method(name), &y, 1e-2, 7);
+                let expected = integrate(&WholeArrays(line()), method(name), &y, 1e-2, 7);
+                assert!(
+                    found == expected,
+                    "{name}, {particles} particles, damped {damped}"
+                );
+            }
         }
     }
 }

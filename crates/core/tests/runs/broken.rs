@@ -80,12 +80,12 @@ fn contradictions_are_named() {
 
 #[test]
 fn rods_that_lose_their_length_are_told_with_the_energy() {
-    let mut coarse = run(BEAD, "verlet", 0.005);
+    let mut coarse = run(BEAD, "verlet", 0.01);
     coarse.advance_to(5.0).unwrap();
     let unmet = coarse.worst_constraint().unwrap();
     assert!(unmet.is_visible() && unmet.share < 0.1, "{unmet:?}");
-    let lost = coarse.energy_change().unwrap();
-    assert!(lost < -0.3 && lost > -1.0, "{lost}");
+    let change = coarse.energy_change().unwrap();
+    assert!((0.1..0.5).contains(&change), "{change}");
     let mut fine = run(BEAD, "rk4", 0.0005);
     fine.advance_to(5.0).unwrap();
     let unmet = fine.worst_constraint().unwrap();

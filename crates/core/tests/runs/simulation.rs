@@ -37,7 +37,7 @@ fn work_is_counted() {
         ("mit", "trapezoid", 2),
         ("mit", "rk4", 4),
         ("mit", "verlet", 1),
-        ("cloth", "verlet", 2),
+        ("cloth", "verlet", 3),
     ] {
         let mut run = simulation(name, method_name, 0.001);
         run.take_steps(7).unwrap();

@@ -11,12 +11,10 @@ use pulp::{Arch, Simd, WithSimd};
 use super::super::finish::Finish;
 use super::super::flow::Flow;
 use super::kernel::{DAMPED, Others, PLAIN, RowOfSprings, Use};
-use super::lanes::{
-    Columns, ColumnsMut, Lanes, Places, PlacesMut, Point, Vectors, pick, plus, put,
-};
+use super::lanes::{ColumnsMut, Lanes, PlacesMut, Point, Vectors, plus, put};
 use super::laws;
 use super::model::Sheet;
-use crate::rows::{Registers, Stage, SweepScratch, Terms, stride};
+use crate::rows::{Next, Registers, Stage, SweepScratch, Terms, stride};
 
 /// Prepares the scratch of a sweep over a sheet, with its laws as they are now.
 pub(crate) fn begin(sheet: &Sheet, scratch: &mut SweepScratch) {
@@ -107,13 +105,10 @@ fn advance<S: Simd, const KIND: u8>(simd: S, job: Advance) {
     };
     springs.find_along::<S, KIND>(simd, lanes, here);
     let combine = Combine::<S> {
-        y: lanes.places::<S>(y.row(row), 0),
+        y: lanes.places_mut::<S>(y.row_mut(row)),
         sum: lanes.places_mut::<S>(sum.row_mut(row)),
         stage: lanes.places_mut::<S>(here),
-        first: stage.first,
-        moves: stage.terms == Terms::Motion,
-        b: simd.splat_f64s(stage.b),
-        c: stage.c.map(|c| simd.splat_f64s(c)),
+        by: stage,
         flow,
     };
     let addends = added.then(|| scratch.addends.row(0));
@@ -121,17 +116,12 @@ fn advance<S: Simd, const KIND: u8>(simd: S, job: Advance) {
     springs.find_below::<S, KIND>(simd, lanes, [next, next2], &others, combine);
 }
 
-/// Takes particles to the next stage by their accelerations: sum + b k, and y + c k, k = \[v | a\].
+/// Takes particles to the next stage by their accelerations, k = \[v | a\].
 struct Combine<'a, S: Simd> {
-    y: Places<'a, S>,
+    y: PlacesMut<'a, S>,
     sum: PlacesMut<'a, S>,
     stage: PlacesMut<'a, S>,
-    first: bool,
-    /// Whether v moves x.
-    moves: bool,
-    b: S::f64s,
-    /// Weight of k in the next stage; `None` in the last one, whose sum is the new state.
-    c: Option<S::f64s>,
+    by: &'a Stage,
     /// The drift that follows.
     flow: Option<Flow>,
 }
@@ -146,12 +136,12 @@ impl<S: Simd> Use<S> for Combine<'_, S> {
 
     #[inline(always)]
     fn put(&mut self, simd: S, i: usize, [_, u, ..]: Point<S>, a: Vectors<S>) {
-        if self.moves {
-            let (y, sum, stage) = (self.y.0, &mut self.sum.0, &mut self.stage.0);
-            combine::<S>(simd, i, (self.first, self.b, self.c), y, sum, stage, u);
+        if self.by.terms == Terms::Motion {
+            let columns = [&mut self.y.0, &mut self.sum.0, &mut self.stage.0];
+            combine::<S>(simd, i, self.by, columns, u);
         }
-        let (y, sum, stage) = (self.y.1, &mut self.sum.1, &mut self.stage.1);
-        combine::<S>(simd, i, (self.first, self.b, self.c), y, sum, stage, a);
+        let columns = [&mut self.y.1, &mut self.sum.1, &mut self.stage.1];
+        combine::<S>(simd, i, self.by, columns, a);
         if let Some(flow) = self.flow {
             let (x, v) = &mut self.stage;
             for axis in 0..3 {
@@ -165,23 +155,29 @@ impl<S: Simd> Use<S> for Combine<'_, S> {
 fn combine<S: Simd>(
     simd: S,
     i: usize,
-    (first, b, c): (bool, S::f64s, Option<S::f64s>),
-    y: Columns<S>,
-    sum: &mut ColumnsMut<S>,
-    stage: &mut ColumnsMut<S>,
+    by: &Stage,
+    [y, sum, stage]: [&mut ColumnsMut<S>; 3],
     k: Vectors<S>,
 ) {
-    let before = if first {
-        [stage[0][i], stage[1][i], stage[2][i]]
-    } else {
-        [sum[0][i], sum[1][i], sum[2][i]]
-    };
-    let after = plus::<S>(simd, before, b, k);
-    match c {
-        None => put::<S>(stage, i, after),
-        Some(c) => {
+    let at = |columns: &ColumnsMut<S>| [columns[0][i], columns[1][i], columns[2][i]];
+    let before = if by.first { at(stage) } else { at(sum) };
+    let after = plus::<S>(simd, before, simd.splat_f64s(by.b), k);
+    match by.next {
+        Next::Sum => put::<S>(stage, i, after),
+        Next::FromY(c) => {
             put::<S>(sum, i, after);
-            put::<S>(stage, i, plus::<S>(simd, pick::<S>(y, i), c, k));
+            put::<S>(stage, i, plus::<S>(simd, at(y), simd.splat_f64s(c), k));
+        }
+        Next::Ahead { keep, add } => {
+            let add = simd.splat_f64s(add);
+            let more = k.map(|k| simd.mul_f64s(add, k));
+            let ahead = if by.first {
+                more
+            } else {
+                plus::<S>(simd, more, simd.splat_f64s(keep), at(y))
+            };
+            put::<S>(y, i, ahead);
+            put::<S>(stage, i, after);
         }
     }
 }
