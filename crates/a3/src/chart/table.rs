@@ -20,7 +20,7 @@ const USEFUL: f64 = 1e-5;
 const SHORTEST: f64 = 0.02;
 
 /// Largest numerator of a step that is written as a fraction.
-const SHORT: f64 = 3.0;
+const SHORT: f64 = 9.0;
 
 /// The cheapest run whose error is at most `error`.
 fn cheapest<'a>(
