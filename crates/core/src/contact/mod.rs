@@ -14,6 +14,7 @@
 mod advance;
 mod approach;
 mod boxes;
+mod bulge;
 mod candidates;
 mod check;
 mod cut;

@@ -277,6 +277,11 @@ impl Surface {
         solid.is_some() && solid == self.solid(b)
     }
 
+    /// Least thickness (m).
+    pub(super) fn thinnest(&self) -> f64 {
+        self.thinnest
+    }
+
     /// Largest thickness (m).
     pub(crate) fn thickest(&self) -> f64 {
         self.thickest

@@ -43,8 +43,8 @@ impl Network {
         energy
     }
 
-    /// Energy (J) of errors of all positions, of up to so much (m), at y at time t (s): elastic, and
-    /// of the motion that corrects a drift off constraints.
+    /// Energy (J) of errors of all positions, of up to so much (m), at y at time t (s): elastic,
+    /// and of the motion that corrects a drift off constraints.
     pub(crate) fn energy_of_errors(&self, t: f64, y: &[f64], error: f64) -> f64 {
         let (mut off, mut random) = (y.to_vec(), SplitMix(1));
         for x in &mut off[..3 * self.particles()] {

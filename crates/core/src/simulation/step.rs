@@ -16,6 +16,7 @@ use super::stepper::Kind;
 use crate::control::Control;
 use crate::error::{Cause, Error};
 use crate::integrators::Adaptive;
+use crate::network::Network;
 use crate::scene::Model;
 use crate::system::ParticleSystem;
 
@@ -27,6 +28,10 @@ pub(super) const MAX_PENETRATION: f64 = 1e-3;
 /// Largest growth of the excess length of a spring in a step of an adaptive method, over the
 /// longest length that a limit of strain allows it: for the same reason.
 const MAX_STRAIN_GROWTH: f64 = 1e-2;
+
+/// Largest distance of a surface's vertex from the straight course on which the guard takes it,
+/// over the least thickness, in a step of an adaptive method that sees forces at its end alone.
+const MAX_BULGE: f64 = 0.5;
 
 /// Least share of a step that is taken again because a spring became too long.
 const MIN_RETRY_SHARE: f64 = 0.1;
@@ -141,7 +146,13 @@ impl Simulation {
                 }
                 _ => {}
             }
-            let (balance, order, t1) = (&self.state.balance, self.state.method.order, part.end);
+            let bulge = self.bulge((t, part.h));
+            if bulge > MAX_BULGE && part.h > MIN_RETRY_STEP {
+                self.take_again(part.h, 0.9 * (MAX_BULGE / bulge).sqrt());
+                continue;
+            }
+            let (y, order, t1) = (&mut self.state.y, self.state.method.order, part.end);
+            let balance = &self.state.balance;
             let end = End { order, t: t1, y };
             if let Some(cause) = self.watch.look_before_guard(&self.model, balance, end) {
                 return Ok(Err(cause));
@@ -158,6 +169,9 @@ impl Simulation {
                     continue;
                 }
                 limit_next(adaptive, &settled, part.h, max_depth);
+                if bulge > 0.0 {
+                    adaptive.try_at_most(part.h * 0.9 * (MAX_BULGE / bulge).sqrt());
+                }
                 if part.is_cut {
                     adaptive.restart();
                 }
@@ -170,6 +184,18 @@ impl Simulation {
             self.state.guarded += settled.met.guarded;
             return Ok(Ok((part, settled)));
         }
+    }
+
+    /// Distance of vertices of surfaces from their chords in a step of h (s) from time t (s), over
+    /// the least thickness; 0 for methods that see forces on the way.
+    fn bulge(&self, (t, h): (f64, f64)) -> f64 {
+        let sees_ends_alone = self.stepper.is_adaptive() && self.state.method.implicit;
+        let layer = self.model.network().and_then(Network::contact_layer);
+        let states = [self.phases.contact.y0(), &self.state.y];
+        let is_known = states[0].len() == states[1].len();
+        layer
+            .filter(|_| sees_ends_alone && is_known)
+            .map_or(0.0, |layer| layer.bulge((t, h), states))
     }
 
     /// Goes back to the beginning of a step of h (s), of which that share is taken next.

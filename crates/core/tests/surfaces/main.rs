@@ -19,6 +19,7 @@ mod resting;
 mod rigid;
 mod scenes;
 mod slope;
+mod swift;
 
 use a3_core::contact::{Obstacle, Shape, Skin};
 use a3_core::{Network, Path, Touch, Vector3};
