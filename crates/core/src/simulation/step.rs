@@ -325,9 +325,10 @@ impl Reach {
     /// Limits of a step from t up to a time `until` (s) at which a motion changes: no evaluation is
     /// at or after that.
     fn up_to(t: f64, until: f64) -> Self {
-        let mut longest = until - t;
+        // The last digits of a short step are lost in the time.
+        let (mut longest, digit) = (until - t, 0.25 * (until - until.next_down()));
         while t + longest >= until && longest > 0.0 {
-            longest = longest.next_down();
+            longest = longest.next_down().min(longest - digit);
         }
         Self {
             longest,

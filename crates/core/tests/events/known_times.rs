@@ -118,3 +118,29 @@ fn longest_steps_stay_what_they_are() {
         assert!((far - 0.3 * (run.time() - 0.3105).max(0.0) / 0.3595).abs() < 1e-12);
     }
 }
+
+/// A motion that takes less time than a step can be long is over at once: the digits of so short a
+/// step are far finer than those of the time.
+#[test]
+fn motions_may_be_as_short_as_digits_tell() {
+    for end in ["1.000000000001", "1.0000000000000002", "1.00000001"] {
+        let toml = format!(
+            "
+            [particles]
+            positions = [[0, 0, 0], [0.5, 0, 0]]
+            mass = 0.1
+            springs = [[0, 1, 40.0, 0.5, 0.3]]
+            [[pin]]
+            particles = [0]
+            shift = {{ by = [1e-3, 0, 0], start = 1, end = {end} }}
+            "
+        );
+        for (name, value) in [("dop853", 1e-6), ("bdf", 1e-4)] {
+            let solver = method(name);
+            let control = solver.control(value);
+            let mut run = Simulation::new(described(&toml), solver, control).unwrap();
+            run.advance_to(1.5).unwrap();
+            assert!((run.position(0).x - 1e-3).abs() < 1e-12, "{name} {end}");
+        }
+    }
+}
