@@ -277,9 +277,10 @@ impl Surface {
         solid.is_some() && solid == self.solid(b)
     }
 
-    /// Least thickness (m).
+    /// Least thickness that is not 0 (m); infinite without any.
     pub(super) fn thinnest(&self) -> f64 {
-        self.thinnest
+        let all = self.skins.iter().map(|skin| skin.thickness);
+        all.filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min)
     }
 
     /// Largest thickness (m).

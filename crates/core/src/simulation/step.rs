@@ -31,7 +31,7 @@ const MAX_STRAIN_GROWTH: f64 = 1e-2;
 
 /// Largest distance of a surface's vertex from the straight course on which the guard takes it,
 /// over the least thickness, in a step of an adaptive method that sees forces at its end alone.
-const MAX_BULGE: f64 = 0.5;
+const MAX_BULGE: f64 = 0.25;
 
 /// Least share of a step that is taken again because a spring became too long.
 const MIN_RETRY_SHARE: f64 = 0.1;
