@@ -18,7 +18,7 @@ const LIMITS: [(&str, [u64; 2]); 9] = [
     ("forces of single springs", [255, 255]),
     ("force differential", [335, 560]),
     ("step of rk4", [970, 1020]),
-    ("step of verlet", [450, 490]),
+    ("step of verlet", [690, 720]),
     ("step of pefrl", [3700, 3900]),
     ("step of dopri5", [1670, 2010]),
     ("step of implicit", [5600, 6700]),
