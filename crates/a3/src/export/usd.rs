@@ -241,7 +241,8 @@ impl Usd {
 }
 
 impl Prim {
-    /// Adds the texts of its attributes at a frame, of which it takes as many as it has.
+    /// Adds the values of its attributes at a frame, in their order. Values of attributes that it
+    /// does not have come last, and are left out.
     fn add(&mut self, frame: usize, texts: impl IntoIterator<Item = String>) -> io::Result<()> {
         for (samples, text) in self.samples.iter_mut().zip(texts) {
             writeln!(samples.file, "            {frame}: {text},")?;

@@ -9,9 +9,9 @@ use super::layer::{ContactLayer, Scratch};
 const BULGE: f64 = 4.0 / 27.0;
 
 impl ContactLayer {
-    /// Largest distance (m) of a vertex from its chord in a step of h (s) from the state y0 at time
-    /// t (s) to y1, over the least thickness: of surfaces that are not rigid, and of obstacles that
-    /// they may meet.
+    /// Largest distance of a vertex from its straight course in a step of h (s) from the state y0
+    /// at time t (s) to y1, over the least thickness that is not 0. Vertices of rigid bodies do
+    /// not count; without any other surface it is 0.
     pub(crate) fn bulge(&self, (t, h): (f64, f64), [y0, y1]: [&[f64]; 2]) -> f64 {
         let (surface, obstacles) = (self.surface(), self.obstacles());
         let is_soft = |vertex: &&u32| surface.solid(**vertex).is_none();
@@ -35,6 +35,6 @@ impl ContactLayer {
             });
             bulges.fold(0.0, f64::max)
         });
-        bulge / surface.thinnest()
+        bulge / surface.least_thickness()
     }
 }

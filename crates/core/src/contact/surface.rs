@@ -278,7 +278,7 @@ impl Surface {
     }
 
     /// Least thickness that is not 0 (m); infinite without any.
-    pub(super) fn thinnest(&self) -> f64 {
+    pub(super) fn least_thickness(&self) -> f64 {
         let all = self.skins.iter().map(|skin| skin.thickness);
         all.filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min)
     }

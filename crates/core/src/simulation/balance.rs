@@ -76,7 +76,8 @@ impl Balance {
     fn scale(&self) -> f64 {
         let put_in = 0.5 * (self.turnover + self.work).max(0.0);
         let had = self.own + self.fall + put_in;
-        // No more than that can be taken out: what is, was gained before.
+        // A run can lose no more energy than it had: losses beyond that are of energy that it
+        // gained from nowhere, and do not widen the scale.
         had + (self.turnover - put_in).max(0.0).min(had)
     }
 

@@ -1,11 +1,12 @@
 //! Particles that rest or slide on flat obstacles while a step is taken.
 //!
-//! A contact that is settled after each step lets a particle sink within it, by the acceleration
-//! times half the square of the step, whatever the tolerance. So in steps that locate events the
-//! obstacle's reaction and its friction are forces at every stage. What sticks does not move. What
-//! slides has no acceleration along the normal, and friction against its velocity. That is so for a
-//! whole step, which ends where it ceases to be: where the obstacle would have to pull, where
-//! friction cannot hold what sticks, where it ends a slide, and at the edge of a face.
+//! Where contact acts after each step, a particle falls freely within the step: it sinks into the
+//! obstacle by half the acceleration times the square of the step, whatever the tolerance. So in
+//! steps that locate events the obstacle's reaction and its friction are forces at every stage.
+//! What sticks does not move. What slides has no acceleration along the normal, and friction
+//! against its velocity. That is so for a whole step, which ends where it ceases to be: where the
+//! obstacle would have to pull, where friction cannot hold what sticks, where it ends a slide, and
+//! at the edge of a face.
 
 use std::ops::Range;
 

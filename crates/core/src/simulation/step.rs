@@ -381,8 +381,9 @@ fn share_of_retry(settled: &Settled, h: f64, max_depth: f64, shallow: f64) -> Op
 }
 
 /// Limits the next step of an adaptive method by the depth and the growth of the last one, of
-/// h (s): under a constant force both grow with the square of the step. What does not, as where no
-/// shortening makes springs short enough, shortens no step below what is retried.
+/// h (s): under a constant force both grow with the square of the step. Where they do not, as where
+/// a limit of strain and an obstacle contradict each other, shorter steps do not help: the limit is
+/// then at least the shortest step that is retried.
 fn limit_next(adaptive: &mut Adaptive, settled: &Settled, h: f64, max_depth: f64) {
     let Settled { met, grown, .. } = settled;
     let mut limit = |allowed: f64| {

@@ -55,9 +55,9 @@ fn friction_stops_an_oscillator_where_its_closed_form_says() {
     }
 }
 
-/// Three masses on springs that fall on a rough floor, slide, lift off and come to rest there or on
-/// a box: adaptive methods agree whatever their order, and fixed steps, which settle contact at
-/// their ends, tend to the same motion.
+/// Three masses on springs fall on a rough floor or a box, slide, lift off and come to rest.
+/// Adaptive methods of any order agree. Fixed steps, at whose ends contact acts, converge to the
+/// same motion.
 #[test]
 fn what_slides_and_sticks_converges_to_one_motion() {
     for obstacle in [

@@ -20,7 +20,7 @@ impl Chance {
         (self.share() * end as f64) as usize
     }
 
-    /// Whether something happens that happens once in so many times.
+    /// True with a probability of 1 / `times`.
     pub fn once_in(&mut self, times: usize) -> bool {
         self.below(times) == 0
     }

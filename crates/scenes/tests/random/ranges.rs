@@ -88,7 +88,7 @@ pub const WORDS: &[(&str, &[&str])] = &[
     ("solver", &["v"]),
 ];
 
-/// Keys of which a table has one, and no more.
+/// Keys that exclude one another: each table has exactly one of its list.
 pub const ONE: &[(&str, &[&str])] = &[
     ("Cloth", &["width", "spacing"]),
     ("Cloth", &["density", "mass"]),
