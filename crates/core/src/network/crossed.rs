@@ -1,7 +1,7 @@
 //! Error messages for surfaces that cross: the first pair, its place, and the connected parts that
 //! the pairs belong to.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use super::Network;
@@ -59,11 +59,16 @@ impl Parts {
         }
     }
 
-    fn name(&self, whole: Whole) -> String {
+    /// Name of a part, with its particles unless it was `told` before.
+    fn name(&self, whole: Whole, told: &mut BTreeSet<Whole>) -> String {
         match whole {
             Whole::Part(first) => {
                 let (number, size) = self.sizes.get(&first).copied().unwrap_or((0, 1));
-                format!("part {number} ({size} particles from {first} on)")
+                if told.insert(whole) {
+                    format!("part {number} ({size} particles from {first} on)")
+                } else {
+                    format!("part {number}")
+                }
             }
             Whole::Body(k) => Vertex::Body(k).to_string(),
             Whole::Obstacle(k) => Vertex::Obstacle(k).to_string(),
@@ -127,14 +132,16 @@ impl fmt::Display for Description<'_> {
             }
         }
         write!(f, "; of {count} connected parts")?;
+        let mut told = BTreeSet::new();
         for (k, ((a, b), times)) in pairs.iter().take(NAMED).enumerate() {
             let before = if k == 0 { "," } else { ";" };
-            let what = if a == b {
+            let a_name = parts.name(*a, &mut told);
+            let b_name = if a == b {
                 "itself".into()
             } else {
-                parts.name(*b)
+                parts.name(*b, &mut told)
             };
-            write!(f, "{before} {} crosses {what} ({times}x)", parts.name(*a))?;
+            write!(f, "{before} {a_name} crosses {b_name} ({times}x)")?;
         }
         match pairs.len() - NAMED.min(pairs.len()) {
             0 => Ok(()),

@@ -3,9 +3,9 @@
 //! Of a fixed step, positions are the polynomial of degree 5 through the positions, velocities and
 //! accelerations at both ends, and velocities are its derivative (Hermite interpolation: Hairer,
 //! Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.6); its error falls as
-//! h^6. Where the accelerations at the ends do not explain the change of the velocity, because
-//! something was hit or the step is long against the fastest motion, the polynomial would swing far
-//! out, and a straight line takes its place.
+//! h^6. Where something was hit, or the step is long against the fastest motion, the polynomial
+//! swings far out: its acceleration in the middle of the step is not that of the system there, and
+//! a straight line takes its place.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -13,9 +13,13 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::system::ParticleSystem;
 
-/// Largest part of the acceleration's own effect by which the change of a velocity may miss the
-/// mean of the accelerations at both ends.
-const EXPLAINED: f64 = 0.25;
+/// Difference between the acceleration of the polynomial and that of the system in the middle of
+/// the step, over the largest acceleration at its ends, above which a straight line is taken.
+const UNEXPLAINED: f64 = 0.375;
+
+/// Number of times that the middle of a step is looked at, at most: what leaves its polynomial
+/// changes the forces on others.
+const ROUNDS: usize = 4;
 
 /// Step that a time shown is within.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,7 +39,11 @@ pub(super) struct Within {
     ends: [Vec<f64>; 2],
     /// Rates of change there, once a state between was shown.
     rates: [Vec<f64>; 2],
-    has_rates: bool,
+    /// Whether each particle, and then each other number, moves on its polynomial; empty until a
+    /// state between is shown.
+    is_smooth: Vec<bool>,
+    /// State and rates of change in the middle.
+    middle: [Vec<f64>; 2],
 }
 
 impl Within {
@@ -70,7 +78,7 @@ impl Within {
         self.ends[1].clear();
         self.ends[1].extend_from_slice(y1);
         self.times = Some(times);
-        self.has_rates = false;
+        self.is_smooth.clear();
     }
 
     /// State at the end of the step, which is left.
@@ -87,25 +95,72 @@ impl Within {
         out: &mut [f64],
     ) {
         let Some([t0, t1]) = self.times else { return };
-        if !self.has_rates {
-            let ends = self.ends.iter().zip([t0, t1]);
-            for ((y, t), rates) in ends.zip(&mut self.rates) {
-                rates.resize(y.len(), 0.0);
-                system.eval_f(t, y, rates);
-            }
-            self.has_rates = true;
+        if self.is_smooth.is_empty() {
+            self.judge(system, n, [t0, t1]);
         }
-        let (h, theta) = (t1 - t0, (time - t0) / (t1 - t0));
+        self.write(n, (time - t0) / (t1 - t0), t1 - t0, out);
+        system.hold(time, out);
+    }
+
+    /// Finds the rates of change at both ends, and what moves on its polynomial.
+    fn judge(&mut self, system: &dyn ParticleSystem, n: usize, [t0, t1]: [f64; 2]) {
+        let ends = self.ends.iter().zip([t0, t1]);
+        for ((y, t), rates) in ends.zip(&mut self.rates) {
+            rates.resize(y.len(), 0.0);
+            system.eval_f(t, y, rates);
+        }
+        let (h, dim) = (t1 - t0, self.ends[0].len());
+        self.is_smooth.resize(n + (dim - 6 * n), true);
+        let [mut y, mut f] = std::mem::take(&mut self.middle);
+        (y.resize(dim, 0.0), f.resize(dim, 0.0));
+        for _ in 0..ROUNDS {
+            self.write(n, 0.5, h, &mut y);
+            system.hold(t0 + 0.5 * h, &mut y);
+            system.eval_f(t0 + 0.5 * h, &y, &mut f);
+            let swings_out = |k: &usize| {
+                self.is_smooth[*k]
+                    && if *k < n {
+                        !self.is_explained((3 * n + k..6 * n).step_by(n), &f, h)
+                    } else {
+                        !self.is_explained(std::iter::once(5 * n + k), &f, h)
+                    }
+            };
+            let out: Vec<_> = (0..self.is_smooth.len()).filter(swings_out).collect();
+            if out.is_empty() {
+                break;
+            }
+            for k in out {
+                self.is_smooth[k] = false;
+            }
+        }
+        self.middle = [y, f];
+    }
+
+    /// Whether the polynomials of some numbers have the rates of change f in the middle of a step
+    /// of h (s).
+    fn is_explained(&self, numbers: impl Iterator<Item = usize>, f: &[f64], h: f64) -> bool {
+        let ([y0, y1], [f0, f1]) = (&self.ends, &self.rates);
+        let [mut missed, mut first, mut last] = [0.0; 3];
+        for k in numbers {
+            // Of both polynomials.
+            let middle = 1.5 * (y1[k] - y0[k]) / h - 0.25 * (f0[k] + f1[k]);
+            missed += (f[k] - middle).powi(2);
+            first += f0[k].powi(2);
+            last += f1[k].powi(2);
+        }
+        missed <= UNEXPLAINED.powi(2) * first.max(last)
+    }
+
+    /// Writes the state at the fraction theta of a step of h (s), without pins.
+    fn write(&self, n: usize, theta: f64, h: f64, out: &mut [f64]) {
         for i in 0..n {
             self.move_particle(n, i, h, theta, out);
         }
         let ([y0, y1], [f0, f1]) = (&self.ends, &self.rates);
         for k in 6 * n..out.len() {
             let (value, slope) = ([y0[k], y1[k]], [h * f0[k], h * f1[k]]);
-            let is_smooth = is_explained(value[1] - value[0], slope[0], slope[1]);
-            out[k] = between(value, slope, theta, is_smooth);
+            out[k] = between(value, slope, theta, self.is_smooth[k - 5 * n]);
         }
-        system.hold(time, out);
     }
 
     /// Writes position and velocity of particle i of n at the fraction theta of a step of h (s).
@@ -115,10 +170,9 @@ impl Within {
         };
         let [x0, x1] = self.ends.each_ref().map(|y| row(y, 0));
         let [v0, v1] = self.ends.each_ref().map(|y| row(y, 3 * n) * h);
-        let [a0, a1] = self.rates.each_ref().map(|f| row(f, 3 * n) * (h * h));
-        let mean = 0.5 * (a0 + a1);
         let d = x1 - x0;
-        let (x, v) = if (v1 - v0 - mean).norm() <= EXPLAINED * a0.norm().max(a1.norm()) {
+        let (x, v) = if self.is_smooth[i] {
+            let [a0, a1] = self.rates.each_ref().map(|f| row(f, 3 * n) * (h * h));
             let c3 = 10.0 * d - 6.0 * v0 - 4.0 * v1 - 1.5 * a0 + 0.5 * a1;
             let c4 = -15.0 * d + 8.0 * v0 + 7.0 * v1 + 1.5 * a0 - a1;
             let c5 = 6.0 * d - 3.0 * (v0 + v1) - 0.5 * a0 + 0.5 * a1;
@@ -170,12 +224,6 @@ impl Within {
         self.enter(*times, &ends[1]);
         Ok(())
     }
-}
-
-/// Whether slopes at both ends, in units of the step, explain a change.
-fn is_explained(change: f64, slope0: f64, slope1: f64) -> bool {
-    let missed = (change - 0.5 * (slope0 + slope1)).abs();
-    missed <= EXPLAINED * slope0.abs().max(slope1.abs())
 }
 
 /// Value at the fraction theta of a step by the polynomial of degree 3, if it is smooth, or on a

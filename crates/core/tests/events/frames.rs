@@ -99,3 +99,37 @@ fn states_within_fixed_steps_are_accurate() {
     assert!((x / half_x).log2() > 5.7 && x < 1e-5, "{x} {half_x}");
     assert!((v / half_v).log2() > 4.7 && v < 1e-3, "{v} {half_v}");
 }
+
+/// Between the ends of steps that are long against stiff springs, states have no more energy than
+/// at the ends: the implicit midpoint method turns such oscillations about in each step, and a
+/// polynomial through its states swings far out.
+#[test]
+fn states_within_stiff_steps_stay_between_their_ends() {
+    let toml = "
+        [[chain]]
+        particles = 6
+        from = [0, 0, 0]
+        to = [1, 0.3, 0]
+        mass = 1
+        stiffness = 1e7
+        [state]
+        positions = [
+            [0, 0, 0], [0.2, 0.06, 0], [0.4, 0.12, 0], [0.6, 0.18, 0], [0.8, 0.24, 0], [1, 0.3, 0],
+        ]
+        velocities = [[1, 0, 0], [0, 1, 0], [0.4, 0, 1], [0, -1, 0], [1, 0, -1], [0, 0.3, 0]]
+    ";
+    for name in ["implicit-midpoint", "implicit", "tr-bdf2", "xpbd", "vbd"] {
+        let most = |frame: f64| {
+            let control = Control::Step(0.01);
+            let mut run = Simulation::new(described(toml), method(name), control).unwrap();
+            let frames = 1..=(0.5 / frame).round() as u32;
+            let energies = frames.map(|k| {
+                run.advance_to(frame * f64::from(k)).unwrap();
+                run.energy().unwrap().total()
+            });
+            energies.fold(3.125, f64::max)
+        };
+        let (ends, within) = (most(0.01), most(0.001));
+        assert!(within < 1.2 * ends, "{name}: {within} J, {ends} J");
+    }
+}

@@ -82,7 +82,10 @@ pub fn run(
         let own = own_energy(&run, begin);
         let gained = end.total() - begin.total();
         if gained.is_nan() || gained > EXPLODED * own {
-            if run.gained().is_some() {
+            let broken = run
+                .worst_constraint()
+                .is_some_and(|unmet| unmet.is_visible());
+            if broken || run.gained().is_some() {
                 return Ok(Ended::Told);
             }
             return Err(format!("{gained:e} J of {own:e} J: {end:?}"));
