@@ -79,7 +79,8 @@ pub fn run(
     }
     let driven = run.swinging() || is_driven(text);
     if let (Some(begin), Some(end), false) = (begin, run.energy(), driven) {
-        let own = own_energy(&run, begin);
+        let fallen = (begin.gravitational - end.gravitational).max(0.0);
+        let own = own_energy(&run, begin) + fallen;
         let gained = end.total() - begin.total();
         if gained.is_nan() || gained > EXPLODED * own {
             let broken = run
@@ -94,12 +95,15 @@ pub fn run(
     Ok(Ended::Well)
 }
 
-/// Takes whole steps, and goes on to a state within one.
+/// Takes whole steps, and goes on to a state within one. Implicit methods end on a whole step: they
+/// can turn a body by half a turn in a step, and no line between its ends keeps its shape.
 fn steps(run: &mut Simulation) -> Result<(), Error> {
     run.take_steps(STEPS - 1)?;
     let before = run.time();
     run.take_steps(1)?;
-    run.advance_to(run.time() + 0.3 * (run.time() - before))?;
+    if !run.method().implicit {
+        run.advance_to(run.time() + 0.3 * (run.time() - before))?;
+    }
     run.conclude()
 }
 
