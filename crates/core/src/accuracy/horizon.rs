@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::GoOn;
 use crate::control::Control;
 use crate::error::Error;
-use crate::integrators::find;
+use crate::integrators::{Method, find};
 use crate::random::SplitMix;
 use crate::scene::Scene;
 use crate::simulation::Simulation;
@@ -17,8 +17,15 @@ const AMPLIFICATION: f64 = 1e4;
 const SHARE: f64 = 1.0 / 6.0;
 /// Least number of steps of the longest run.
 const STEPS: f64 = 600.0;
+/// Least number of steps in which runs may part for good, and number of times that steps are halved
+/// until they take as many: contact that the state at the start does not have may be far stiffer
+/// than all else, and steps that are too long for it part any runs at once.
+const RESOLVED: f64 = 100.0;
+const HALVINGS: u32 = 6;
 /// Largest displacement of a coordinate between the two runs at the start, over the scene's radius.
 const SEPARATION: f64 = 1e-8;
+/// Number of looks at both runs from one of these times to the next.
+const PARTS: u32 = 10;
 /// Horizons to choose from, round numbers (s).
 const ROUND: [f64; 11] = [0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0];
 
@@ -44,7 +51,7 @@ pub struct Horizon {
 /// `until` (s), which may be infinite. `None` if `go_on` returned false.
 ///
 /// Both runs take the same fixed steps, so that their distance is that of the motion and not of two
-/// sequences of steps.
+/// sequences of steps. These are shorter where a hundred of them part the runs.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -59,72 +66,95 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
         10.0
     };
     let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
-    let control = Control::Step((SHARE * limit).min(longest / STEPS));
-    let mut run = Simulation::new(scene.clone(), method, control)?;
-    let n = 3 * run.particles();
-    let mut random = SplitMix(2);
-    let mut beside = scene.clone();
-    let size = SEPARATION * run.extent().1;
-    for (k, x) in beside.state[..n].iter_mut().enumerate() {
-        let pinned = scene
-            .model
-            .network()
-            .is_some_and(|network| network.is_pinned(k % (n / 3)));
-        if !pinned {
-            *x += size * random.between(-1.0, 1.0);
-        }
-    }
-    let mut beside = Simulation::new(beside, method, control)?;
-    let distance = |a: &Simulation, b: &Simulation| {
-        let squares = a.state()[..n].iter().zip(&b.state()[..n]);
-        squares.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
-    };
-    let first = distance(&run, &beside);
-    let start = run.state()[..n].to_vec();
-    let moved = |run: &Simulation| {
-        let squares = run.state()[..n].iter().zip(&start);
-        let sum = squares.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-        (3.0 * sum / n as f64).sqrt()
-    };
-    let mut motion: f64 = 0.0;
+    let mut step = (SHARE * limit).min(longest / STEPS);
     let longest = longest.min(until);
-    let rounds = ROUND.into_iter().filter(|t| *t < longest);
-    let (mut until, mut most, mut grown) = (ROUND[0], 1.0f64, (ROUND[0], 1.0f64));
-    let parts = 10.0;
-    let mut time = 0.0;
-    'rounds: for round in rounds.chain([longest]) {
-        let begin = time;
-        for part in 1..=10 {
-            if !go_on() {
-                return Ok(None);
-            }
-            time = begin + (round - begin) * f64::from(part) / parts;
-            if run.advance_to(time).is_err() || beside.advance_to(time).is_err() {
-                break 'rounds;
-            }
-            most = most.max(distance(&run, &beside) / first);
-            motion = motion.max(moved(&run));
-            if most > AMPLIFICATION {
-                grown = (time, most);
-                break 'rounds;
+    let mut found = Ahead::look(scene, method, step, longest, go_on)?;
+    for _ in 0..HALVINGS {
+        let is_resolved = |ahead: &Ahead| ahead.parted_at.is_none_or(|time| time > RESOLVED * step);
+        if found.as_ref().is_none_or(is_resolved) {
+            break;
+        }
+        step *= 0.5;
+        found = Ahead::look(scene, method, step, longest, go_on)?;
+    }
+    Ok(found.map(|ahead| ahead.horizon))
+}
+
+/// Outcome of two runs that start side by side.
+struct Ahead {
+    horizon: Horizon,
+    /// Time at which they had parted, or could not go on (s).
+    parted_at: Option<f64>,
+}
+
+impl Ahead {
+    /// Runs a scene by steps of that length (s) twice, for up to `longest` (s). `None` if `go_on`
+    /// returned false.
+    fn look(
+        scene: &Scene,
+        method: &'static Method,
+        step: f64,
+        longest: f64,
+        go_on: GoOn,
+    ) -> Result<Option<Self>, Error> {
+        let control = Control::Step(step);
+        let mut run = Simulation::new(scene.clone(), method, control)?;
+        let n = 3 * run.particles();
+        let mut random = SplitMix(2);
+        let mut beside = scene.clone();
+        let size = SEPARATION * run.extent().1;
+        for (k, x) in beside.state[..n].iter_mut().enumerate() {
+            let network = scene.model.network();
+            if !network.is_some_and(|network| network.is_pinned(k % (n / 3))) {
+                *x += size * random.between(-1.0, 1.0);
             }
         }
-        until = round;
-        grown = (time, most);
+        let mut beside = Simulation::new(beside, method, control)?;
+        let distance = |a: &[f64], b: &[f64]| {
+            let squares = a[..n].iter().zip(&b[..n]).map(|(a, b)| (a - b).powi(2));
+            squares.sum::<f64>().sqrt()
+        };
+        let first = distance(run.state(), beside.state());
+        let rounds = ROUND.into_iter().filter(|t| *t < longest);
+        let (mut until, mut motion) = (ROUND[0], 0.0f64);
+        let (mut time, mut most, mut parted_at) = (0.0, 1.0f64, None);
+        let mut grown = (until, most);
+        'rounds: for round in rounds.chain([longest]) {
+            let begin = time;
+            for part in 1..=PARTS {
+                if !go_on() {
+                    return Ok(None);
+                }
+                time = begin + (round - begin) * f64::from(part) / f64::from(PARTS);
+                if run.advance_to(time).is_err() || beside.advance_to(time).is_err() {
+                    parted_at = Some(time);
+                    break 'rounds;
+                }
+                most = most.max(distance(run.state(), beside.state()) / first);
+                let moved = distance(run.state(), &scene.state) / (n as f64 / 3.0).sqrt();
+                motion = motion.max(moved);
+                if most > AMPLIFICATION {
+                    (grown, parted_at) = ((time, most), Some(time));
+                    break 'rounds;
+                }
+            }
+            until = round;
+            grown = (time, most);
+        }
+        // Growth by a small factor is not chaos.
+        let lyapunov = if grown.1 > 30.0 {
+            grown.0 / grown.1.ln()
+        } else {
+            f64::INFINITY
+        };
+        let horizon = Horizon {
+            until,
+            lyapunov,
+            buckles: lyapunov.is_finite() && leaves_plane(&scene.state, &run, &beside),
+            motion,
+        };
+        Ok(Some(Self { horizon, parted_at }))
     }
-    let exponent = grown.1.ln() / grown.0;
-    // Growth by a small factor is not chaos.
-    let lyapunov = if grown.1 > 30.0 {
-        1.0 / exponent
-    } else {
-        f64::INFINITY
-    };
-    Ok(Some(Horizon {
-        until,
-        lyapunov,
-        buckles: lyapunov.is_finite() && leaves_plane(&scene.state, &run, &beside),
-        motion,
-    }))
 }
 
 /// Whether particles start in a plane, with velocities in it, and two runs part mostly out of it.

@@ -10,6 +10,7 @@ mod bdf;
 mod compliant;
 mod ends;
 mod foreign;
+mod horizon;
 mod implicit;
 mod limits;
 mod mixed;

@@ -1,0 +1,44 @@
+//! Time for which motion can be predicted.
+
+use crate::common::{described, scene};
+use a3_core::accuracy::horizon;
+
+/// A planar truss under a load buckles out of its plane; a double pendulum is chaotic in its own.
+#[test]
+fn buckling_out_of_a_plane_is_no_chaos() {
+    let truss = described(
+        "gravity = [0, -9.81, 0]
+        [particles]
+        positions = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]]
+        mass = 0.5
+        springs = [[0, 1, 400, 1, 0], [1, 2, 400, 1, 0], [3, 4, 400, 1, 0], [4, 5, 400, 1, 0],
+            [0, 4, 400, 1.41421356, 0], [1, 3, 400, 1.41421356, 0], [1, 5, 400, 1.41421356, 0],
+            [2, 4, 400, 1.41421356, 0], [1, 4, 400, 1, 0], [2, 5, 400, 1, 0]]
+        pin = [{ particles = [0, 3] }]",
+    );
+    let found = horizon(&truss, f64::INFINITY, &|| true).unwrap().unwrap();
+    assert!(found.buckles && found.lyapunov < 1.0, "{found:?}");
+    let found = horizon(&scene("double-pendulum"), f64::INFINITY, &|| true)
+        .unwrap()
+        .unwrap();
+    assert!(!found.buckles && found.lyapunov.is_finite(), "{found:?}");
+}
+
+/// A box that falls by 3 mm and then rests on a rough slope is predictable: contact, which the
+/// start does not have, needs shorter steps.
+#[test]
+fn contact_to_come_is_no_chaos() {
+    let box_on_slope = described(
+        "gravity = [4.905, -8.496, 0]
+        floor = { height = 0, friction = 0.7 }
+        [[body]]
+        parts = [{ box = [0.4, 0.2, 0.3] }]
+        density = 500
+        at = [0, 0.1035, 0]
+        friction = 0.7",
+    );
+    let found = horizon(&box_on_slope, f64::INFINITY, &|| true).unwrap();
+    let found = found.unwrap();
+    assert!(found.lyapunov.is_infinite(), "{found:?}");
+    assert!(found.until == 10.0 && found.motion < 0.01, "{found:?}");
+}
