@@ -43,7 +43,7 @@ fn memory() -> Option<usize> {
 /// Runs a method for so many steps. Returns the growth of memory (bytes).
 fn soak(method: &'static Method, steps: u64) -> Option<usize> {
     let wind = "[wind]\nvelocity = [3, 0, 1]\n";
-    let text = if method.positions_only {
+    let text = if method.positions_only() {
         SCENE.to_owned()
     } else {
         format!("{SCENE}{wind}")

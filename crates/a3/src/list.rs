@@ -95,7 +95,7 @@ pub fn solvers() -> Result<(), Failure> {
             m.letter.into(),
             m.name.into(),
             m.order.to_string(),
-            if m.implicit && !m.needs_springs {
+            if m.is_implicit() && !m.needs_springs() {
                 format!("{} and linear solves", m.evaluations)
             } else if m.damped_evaluations == m.evaluations {
                 m.evaluations.to_string()
@@ -109,9 +109,9 @@ pub fn solvers() -> Result<(), Failure> {
                 Control::Step(step) => format!("{step} s"),
                 Control::Tolerance(tolerance) => format!("tolerance {tolerance:.0e}"),
             },
-            if m.needs_springs {
+            if m.needs_springs() {
                 "springs"
-            } else if m.needs_mechanics {
+            } else if m.needs_mechanics() {
                 "masses"
             } else {
                 "any system"

@@ -12,15 +12,12 @@ use crate::control::Control;
 pub enum Error {
     /// Invalid value; the message names it and says what would be valid.
     Invalid(String),
-    /// Method that needs forces and masses, applied to a system that has none.
-    NeedsMechanics {
-        /// Name of the method.
-        method: &'static str,
-    },
-    /// Method that serves forces without velocities only, applied to a system with others.
-    ReadsVelocity {
+    /// Method that does not support a system.
+    Unsupported {
         /// Full title of the method.
         method: &'static str,
+        /// What the system lacks, or has.
+        why: Refusal,
     },
     /// State whose length is not that of the system.
     Dimension {
@@ -51,6 +48,30 @@ pub enum Error {
     },
     /// Run that blew up.
     BlowUp(BlowUp),
+}
+
+/// Why a method does not support a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// The system has no forces and masses.
+    LacksMasses,
+    /// Rigid bodies rotate, by equations of first order.
+    Rotates,
+    /// Constraints hold particles.
+    HoldsConstraints,
+    /// Particles act on more others than are listed, as those of fluids.
+    HidesCouplings,
+    /// Forces between particles are no linear springs.
+    LacksSprings,
+    /// Forces depend on the velocity, other than by drag.
+    ReadsVelocity,
+    /// The system is too large for the Jacobian of its f.
+    TooLarge {
+        /// Numbers of its state.
+        numbers: usize,
+        /// Largest number of them.
+        most: usize,
+    },
 }
 
 /// Blow-up of a run: the method, the time and the cause.
@@ -186,9 +207,43 @@ impl fmt::Display for Vertex {
     }
 }
 
-/// What a method says that serves no velocities in forces.
-const SERVES_POSITIONS: &str = "forces must not depend on the velocity, except by drag: with wind, \
-    air, damped springs, viscous fluids or constraints, take another explicit solver";
+/// Advice where forces depend on the velocity.
+const TAKE_ANOTHER: &str = "with wind, air, damped springs, viscous fluids or constraints, take \
+    another explicit solver";
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::LacksMasses => {
+                f.write_str("needs forces and masses, but this system is of first order")
+            }
+            Self::Rotates => f.write_str(
+                "does not support rigid bodies, whose rotation is no x'' = F / m: use another \
+                 solver",
+            ),
+            Self::HoldsConstraints => {
+                f.write_str("does not support constraints: use an explicit solver")
+            }
+            Self::HidesCouplings => f.write_str(
+                "does not support fluids, each of whose particles acts on its neighbours' \
+                 neighbours: use an explicit solver",
+            ),
+            Self::LacksSprings => f.write_str(
+                "solves spring by spring, but here are forces between particles that are no linear \
+                 springs: use another solver",
+            ),
+            Self::ReadsVelocity => write!(
+                f,
+                "serves no forces that depend on the velocity, except drag: {TAKE_ANOTHER}"
+            ),
+            Self::TooLarge { numbers, most } => write!(
+                f,
+                "serves rigid bodies and systems without masses up to a state of {most} numbers, \
+                 and this has {numbers}: use an explicit solver"
+            ),
+        }
+    }
+}
 
 /// Says that an implicit method did not solve the equations of a step.
 fn not_solved(residual: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -235,7 +290,10 @@ impl fmt::Display for BlowUp {
                 )
             }
             Cause::NoConvergence { residual } => not_solved(*residual, f),
-            Cause::ReadsVelocity => write!(f, "{SERVES_POSITIONS}"),
+            Cause::ReadsVelocity => write!(
+                f,
+                "forces must not depend on the velocity, except by drag: {TAKE_ANOTHER}"
+            ),
             Cause::Unmet(unmet) => {
                 write!(f, "{unmet}, is off by {:.0} %", 100.0 * unmet.share)
             }
@@ -255,13 +313,7 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Invalid(what) => f.write_str(what),
-            Self::NeedsMechanics { method } => {
-                write!(
-                    f,
-                    "{method} needs forces and masses, but this system is of first order"
-                )
-            }
-            Self::ReadsVelocity { method } => write!(f, "{method}: {SERVES_POSITIONS}"),
+            Self::Unsupported { method, why } => write!(f, "{method} {why}"),
             Self::Dimension { expected, found } => {
                 write!(
                     f,

@@ -88,7 +88,7 @@ pub use control::Control;
 pub use coupling::{AxialCoupling, BlockCoupling, Coupling, Diagonal, GeneralCoupling, Matrix};
 pub use elements::{Element, Sheet};
 pub use energy::Energy;
-pub use error::{BlowUp, Cause, ConstraintName, Error, Unmet, Vertex};
+pub use error::{BlowUp, Cause, ConstraintName, Error, Refusal, Unmet, Vertex};
 pub use grid::{Grid, MAX_PARTICLES};
 pub use integrators::{Integrator, Method, Work};
 pub use nalgebra::Vector3;

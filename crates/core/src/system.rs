@@ -342,3 +342,11 @@ impl<M: Mechanics> ParticleSystem for M {
         visit(n..2 * n, Measure::Velocity);
     }
 }
+
+/// Whether forces depend on positions and time alone, but for viscous drag.
+pub(crate) fn depends_on_positions(mechanics: &dyn Mechanics) -> bool {
+    let reads_velocity = mechanics
+        .splitting()
+        .is_none_or(Splitting::kick_reads_velocity);
+    !reads_velocity && mechanics.linearized().is_some()
+}

@@ -68,7 +68,7 @@ fn no_step_allocates() {
             // once more where longer steps make another way to solve pay.
             // What works on a scene is listed in the first step after it has changed.
             let is_adaptive = matches!(control, Control::Tolerance(_));
-            let long = is_adaptive && (method.implicit || many_springs);
+            let long = is_adaptive && (method.is_implicit() || many_springs);
             run.take_steps(if long { 60 } else { 1 }).unwrap();
             let count = allocations(|| run.take_steps(20).unwrap());
             assert_eq!(count, 0, "{} on {}", method.name, entry.name);
@@ -80,7 +80,7 @@ fn no_step_allocates() {
 /// later step allocates.
 #[test]
 fn no_step_in_the_air_allocates_but_the_first() {
-    for method in integrators::METHODS.iter().filter(|m| !m.positions_only) {
+    for method in integrators::METHODS.iter().filter(|m| !m.positions_only()) {
         let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         if let Model::Network(network) = &mut scene.model {
             let grid = network.sheets().next().unwrap().grid();
@@ -135,7 +135,7 @@ fn no_step_that_tears_nothing_allocates() {
                 network.set_tear(Some(1e3)).unwrap();
             }
             let Ok(mut run) = Simulation::new(scene, method, method.default_control) else {
-                assert!(method.positions_only && name == "cloth");
+                assert!(method.positions_only() && name == "cloth");
                 continue;
             };
             let count = allocations(|| run.take_steps(20).unwrap());
@@ -147,7 +147,7 @@ fn no_step_that_tears_nothing_allocates() {
 /// Scratch of a method is allocated anew when the scene is adjusted, not during steps.
 #[test]
 fn no_step_after_an_adjustment_allocates() {
-    for method in integrators::METHODS.iter().filter(|m| !m.positions_only) {
+    for method in integrators::METHODS.iter().filter(|m| !m.positions_only()) {
         let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         let own = scene.model.network().unwrap().clone();
         if let Model::Network(network) = &mut scene.model {

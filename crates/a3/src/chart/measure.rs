@@ -311,7 +311,7 @@ impl<'a> Study<'a> {
 
 /// Expected work of a step, in evaluations.
 fn each(method: &Method) -> f64 {
-    if method.implicit && !method.needs_springs {
+    if method.is_implicit() && !method.needs_springs() {
         IMPLICIT
     } else {
         f64::from(method.damped_evaluations.max(method.evaluations))

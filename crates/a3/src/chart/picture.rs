@@ -113,7 +113,7 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: 
 pub fn foot(methods: &[&'static Method]) -> String {
     let errors = "Errors are true ones, against DOP853 at two tolerances and a method of another \
                   family. Those below ten times their disagreement are shaded.";
-    if methods.iter().any(|method| method.needs_springs) {
+    if methods.iter().any(|method| method.needs_springs()) {
         format!(
             "{errors} Methods with a number of iterations stop before implicit Euler is solved: \
              in long steps their springs are softer than the scene's."

@@ -232,7 +232,7 @@ mod tests {
             } else {
                 kept += 1;
             }
-            if session.panes[1].simulation.method().implicit {
+            if session.panes[1].simulation.method().is_implicit() {
                 assert_eq!(implicit.1, 0.02, "{}", implicit.0);
             }
         }

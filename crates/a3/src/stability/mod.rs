@@ -190,7 +190,7 @@ fn each<T: Send>(
     find: impl Fn(&'static Method, &Budget) -> Result<T, Error> + Sync,
 ) -> Result<Vec<T>, Error> {
     let mut places: Vec<_> = (0..methods.len()).collect();
-    places.sort_by_key(|k| !methods[*k].implicit);
+    places.sort_by_key(|k| !methods[*k].is_implicit());
     let measure = |places: Vec<usize>, work: f64| {
         let share = work / places.len() as f64;
         let found = places.into_iter().par_bridge().map(|k| {

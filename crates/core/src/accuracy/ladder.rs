@@ -33,7 +33,7 @@ pub fn ladder(
     most: u64,
 ) -> Result<Vec<Control>, Error> {
     if method.is_adaptive() {
-        let least = TOLERANCES.1[usize::from(method.implicit)];
+        let least = TOLERANCES.1[usize::from(method.is_implicit())];
         return Ok((least..=TOLERANCES.0)
             .rev()
             .map(|half| {

@@ -5,13 +5,15 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::Work;
+use super::arithmetic::scaled_sum;
 use super::error_norm::{BLOCK, ErrorNorm, Tolerance};
+use super::integrator::check_dim;
 use super::trial::{LastStep, Trial};
 use crate::error::{Error, at_least};
 use crate::sums::{OnBlock, add_up};
 use crate::system::ParticleSystem;
 use crate::threads::{Columns, copy, threads};
+use crate::work::Work;
 
 /// Shortest step, as a share of the time at which it begins or of the step that was tried first: an
 /// equation that asks for less has no solution, or a tolerance below what double precision holds.
@@ -173,7 +175,7 @@ impl Adaptive {
         longest: f64,
         y: &mut [f64],
     ) -> Result<Taken, Error> {
-        super::check_dim(self.trial.dim(), y)?;
+        check_dim(self.trial.dim(), y)?;
         self.trial.check(system)?;
         let mut work = Work::default();
         // What contact put right after the last step has another derivative.
@@ -255,7 +257,7 @@ impl Adaptive {
             return FIRST.0;
         }
         let h = (0.01 * slope).min(FIRST.0);
-        super::scaled_sum(y1, y, h, f0);
+        scaled_sum(y1, y, h, f0);
         system.eval_f(t + h, y1, f1);
         for (f1, f0) in f1.iter_mut().zip(f0) {
             *f1 = (*f1 - *f0) / h;

@@ -2,8 +2,8 @@
 //! dense output of order 7 (Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*,
 //! 1993, II.5, II.6 and the appendix).
 
-use super::Method;
 use super::embedded::{EmbeddedPair, Tableau};
+use super::method::{Method, View};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
@@ -15,10 +15,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Tolerance(1e-6),
     evaluations: 12,
     damped_evaluations: 12,
-    implicit: false,
-    needs_mechanics: false,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Derivative,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };

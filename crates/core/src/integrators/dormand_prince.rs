@@ -3,8 +3,8 @@
 //! its error is estimated by a method of order 4. The dense output has order 4 (Hairer, Norsett,
 //! Wanner, *Solving Ordinary Differential Equations I*, 1993, II.6).
 
-use super::Method;
 use super::embedded::{EmbeddedPair, Tableau};
+use super::method::{Method, View};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
@@ -16,10 +16,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Tolerance(1e-3),
     evaluations: 6,
     damped_evaluations: 6,
-    implicit: false,
-    needs_mechanics: false,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Derivative,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };

@@ -6,8 +6,8 @@
 //! meets all conditions up to order 6 and both ends of the step exactly, and those of orders 7 to
 //! 11 in the sense of least squares: its error within a step is of the size of that of the step.
 
-use super::Method;
 use super::dprkn1210_dense::DENSE;
+use super::method::{Method, View};
 use super::nystrom::{NystromPair, NystromTableau};
 use crate::control::Control;
 
@@ -20,10 +20,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Tolerance(1e-9),
     evaluations: 17,
     damped_evaluations: 17,
-    implicit: false,
-    needs_mechanics: true,
-    needs_springs: false,
-    positions_only: true,
+    view: View::Accelerations,
     create: |system| Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim())),
     trial: Some(|system| Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim()))),
 };

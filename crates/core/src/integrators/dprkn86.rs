@@ -6,7 +6,7 @@
 //! order 6 and both ends of the step exactly, and those of orders 7 and 8 in the sense of least
 //! squares: its error within a step is of the size of that of the step.
 
-use super::Method;
+use super::method::{Method, View};
 use super::nystrom::{NystromPair, NystromTableau};
 use crate::control::Control;
 
@@ -19,10 +19,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Tolerance(1e-6),
     evaluations: 8,
     damped_evaluations: 8,
-    implicit: false,
-    needs_mechanics: true,
-    needs_springs: false,
-    positions_only: true,
+    view: View::Accelerations,
     create: |system| Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim())),
     trial: Some(|system| Box::new(NystromPair::new(METHOD.title, &TABLEAU, system.dim()))),
 };

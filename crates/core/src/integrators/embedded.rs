@@ -7,12 +7,13 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::error_norm::{BLOCK, ErrorNorm};
+use super::integrator::{Integrator, check_dim};
 use super::trial::{LastStep, Trial};
-use super::{Integrator, Work, check_dim};
 use crate::error::Error;
 use crate::sums::{OnBlock, add_up, dot};
 use crate::system::ParticleSystem;
 use crate::threads::{Columns, fork, threads};
+use crate::work::Work;
 
 /// Coefficients of a pair. After its stages comes k = f(t + h, y1), the first stage of the next
 /// step, and after that the stages that only the polynomial needs.

@@ -1,6 +1,6 @@
 //! Explicit Euler: y1 = y + h f(t, y). Order 1.
 
-use super::Method;
+use super::method::{Method, View};
 use super::runge_kutta::{EULER, RungeKutta};
 use crate::control::Control;
 
@@ -13,10 +13,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Step(0.0002),
     evaluations: 1,
     damped_evaluations: 1,
-    implicit: false,
-    needs_mechanics: false,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Derivative,
     create: |system| Box::new(RungeKutta::new(EULER, system)),
     trial: None,
 };

@@ -1,7 +1,7 @@
 //! Heun's method, the explicit trapezoid:
 //! f0 = f(t, y), f1 = f(t + h, y + h f0), y1 = y + h/2 (f0 + f1). Order 2.
 
-use super::Method;
+use super::method::{Method, View};
 use super::runge_kutta::{HEUN, RungeKutta};
 use crate::control::Control;
 
@@ -14,10 +14,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Step(0.005),
     evaluations: 2,
     damped_evaluations: 2,
-    implicit: false,
-    needs_mechanics: false,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Derivative,
     create: |system| Box::new(RungeKutta::new(HEUN, system)),
     trial: None,
 };

@@ -1,6 +1,6 @@
 //! Explicit midpoint: y1 = y + h f(t + h/2, y + h/2 f(t, y)). Order 2.
 
-use super::Method;
+use super::method::{Method, View};
 use super::runge_kutta::{MIDPOINT, RungeKutta};
 use crate::control::Control;
 
@@ -13,10 +13,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Step(0.005),
     evaluations: 2,
     damped_evaluations: 2,
-    implicit: false,
-    needs_mechanics: false,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Derivative,
     create: |system| Box::new(RungeKutta::new(MIDPOINT, system)),
     trial: None,
 };

@@ -10,12 +10,14 @@
 
 use std::ops::Range;
 
+use super::arithmetic::add_scaled;
 use super::embedded::{add_to_block, blocks};
 use super::error_norm::ErrorNorm;
+use super::integrator::{Integrator, check_dim};
 use super::trial::{LastStep, Trial};
-use super::{Integrator, Work, add_scaled, check_dim};
-use crate::error::Error;
-use crate::system::{Mechanics, ParticleSystem, Splitting, place_pins};
+use crate::error::{Error, Refusal};
+use crate::system::{Mechanics, ParticleSystem, depends_on_positions, place_pins};
+use crate::work::Work;
 
 /// Coefficients of a pair. After its stages comes the acceleration at the end of the step, the
 /// first of the next step, which error estimate and polynomial may use as a stage.
@@ -57,24 +59,18 @@ pub(super) struct NystromPair {
 /// The drag of a system whose other forces do not depend on the velocity; `None` for other systems.
 fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, Drag<'_>)> {
     let mechanics = system.mechanics()?;
-    let reads_velocity = mechanics
-        .splitting()
-        .is_none_or(Splitting::kick_reads_velocity);
     let drag = Drag {
         coefficient: mechanics.linearized()?.drag_coefficient(),
         inverse_masses: mechanics.inverse_masses(),
     };
-    (!reads_velocity).then_some((mechanics, drag))
+    depends_on_positions(mechanics).then_some((mechanics, drag))
 }
 
-/// `Ok` if forces depend on the velocity by viscous drag at most.
-///
-/// # Errors
-/// They depend on it otherwise, or the system does not say how.
-pub(super) fn check(method: &'static str, system: &dyn ParticleSystem) -> Result<(), Error> {
-    match drag(system) {
-        None => Err(Error::ReadsVelocity { method }),
-        Some(_) => Ok(()),
+/// Error of a method that meets forces which depend on the velocity.
+fn refused(method: &'static str) -> Error {
+    Error::Unsupported {
+        method,
+        why: Refusal::ReadsVelocity,
     }
 }
 
@@ -263,7 +259,10 @@ impl NystromPair {
 
 impl Trial for NystromPair {
     fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
-        check(self.method, system)
+        match drag(system) {
+            Some(_) => Ok(()),
+            None => Err(refused(self.method)),
+        }
     }
 
     fn dim(&self) -> usize {
@@ -377,10 +376,7 @@ impl Integrator for NystromPair {
         y: &mut [f64],
     ) -> Result<Work, Error> {
         check_dim(self.dim(), y)?;
-        let refused = Error::ReadsVelocity {
-            method: self.method,
-        };
-        let step = Self::of(system, t, h).ok_or(refused)?;
+        let step = Self::of(system, t, h).ok_or(refused(self.method))?;
         let mut work = self.begin(system, t, y);
         work += self.stages(&step);
         y.copy_from_slice(&self.last.y1);

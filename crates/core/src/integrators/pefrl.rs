@@ -6,7 +6,7 @@
 //! velocity, as those of damped springs do, each kick is one step of the classical Runge-Kutta
 //! method in v at fixed x. A method of lower order there would reduce the order of the whole.
 
-use super::Method;
+use super::method::{Method, View};
 use super::runge_kutta::{EULER, RK4, Table};
 use super::splitting::{Kicks, Plan};
 use crate::control::Control;
@@ -21,10 +21,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Step(0.005),
     evaluations: 4,
     damped_evaluations: 16,
-    implicit: false,
-    needs_mechanics: true,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Kicks,
     create: |system| PLAN.integrator(system),
     trial: None,
 };

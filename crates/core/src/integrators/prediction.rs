@@ -3,7 +3,7 @@
 //! Drag is that of implicit Euler, so that it is stable at any step; it adds h c to the masses with
 //! which springs are solved. Pinned particles are put in their places at t + h.
 
-use crate::error::Error;
+use crate::error::{Error, Refusal};
 use crate::system::{Compliant, Linearized, Mechanics, ParticleSystem, place_pins};
 use crate::work::Work;
 
@@ -56,7 +56,10 @@ pub(super) fn springs_of<'a>(
     let mechanics = system.mechanics();
     mechanics
         .and_then(Mechanics::compliant)
-        .ok_or(Error::NeedsMechanics { method })
+        .ok_or(Error::Unsupported {
+            method,
+            why: Refusal::LacksSprings,
+        })
 }
 
 /// Work of so many iterations over all springs: each counts as an evaluation, and what it takes

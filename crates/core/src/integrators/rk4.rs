@@ -2,7 +2,7 @@
 //! k1 = f(t, y), k2 = f(t + h/2, y + h/2 k1), k3 = f(t + h/2, y + h/2 k2), k4 = f(t + h, y + h k3),
 //! y1 = y + h/6 (k1 + 2 k2 + 2 k3 + k4). Order 4.
 
-use super::Method;
+use super::method::{Method, View};
 use super::runge_kutta::{RK4, RungeKutta};
 use crate::control::Control;
 
@@ -15,10 +15,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Step(0.01),
     evaluations: 4,
     damped_evaluations: 4,
-    implicit: false,
-    needs_mechanics: false,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Derivative,
     create: |system| Box::new(RungeKutta::new(RK4, system)),
     trial: None,
 };

@@ -6,8 +6,8 @@
 //! the step, and one more derivative at a quarter of it, at the state of the cubic Hermite
 //! polynomial through both ends (Shampine, *Interpolation for Runge-Kutta methods*, 1985).
 
-use super::Method;
 use super::embedded::{EmbeddedPair, Tableau};
+use super::method::{Method, View};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
@@ -19,10 +19,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Tolerance(1e-3),
     evaluations: 6,
     damped_evaluations: 6,
-    implicit: false,
-    needs_mechanics: false,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Derivative,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };

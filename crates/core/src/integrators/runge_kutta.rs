@@ -4,12 +4,13 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use super::integrator::{Integrator, check_dim};
 use super::sweep::Sweeper;
-use super::{Integrator, Work, check_dim};
 use crate::error::Error;
 use crate::fused::mul_adds;
 use crate::rows::{Next, Stage, Terms};
 use crate::system::ParticleSystem;
+use crate::work::Work;
 
 /// Coefficients (c, b) of each stage.
 pub(super) type Table = &'static [(f64, f64)];

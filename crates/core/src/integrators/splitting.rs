@@ -5,14 +5,16 @@
 
 use pulp::Arch;
 
+use super::arithmetic::add_scaled;
+use super::integrator::{Integrator, check_dim};
 use super::runge_kutta::{Combine, Table, stages};
 use super::sweep::Sweeper;
-use super::{Integrator, Work, add_scaled, check_dim};
-use crate::error::Error;
+use crate::error::{Error, Refusal};
 use crate::rows::{Next, Stage, Terms};
 use crate::system::{
     Mechanics, ParticleSystem, Rigid, divide_by_masses, kick_reads_velocity, place_pins,
 };
+use crate::work::Work;
 
 /// Largest number of stages of a sweep through several kicks: with more, the rows no longer fit in
 /// the cache.
@@ -153,7 +155,10 @@ impl Integrator for SplittingMethod {
         check_dim(self.dim, y)?;
         let plan = self.plan;
         if plan.damped.is_none() && reads_velocity(system) {
-            return Err(Error::ReadsVelocity { method: plan.name });
+            return Err(Error::Unsupported {
+                method: plan.name,
+                why: Refusal::ReadsVelocity,
+            });
         }
         let kicks = plan.kicks(system);
         let lead = (t, kicks.steps[0].0 * h);
@@ -170,7 +175,12 @@ impl Integrator for SplittingMethod {
             _ => match (system.rigid(), system.mechanics()) {
                 (Some(rigid), _) => self.rigid(rigid, lead, y),
                 (None, Some(mechanics)) => self.plain(mechanics, lead, y),
-                (None, None) => return Err(Error::NeedsMechanics { method: plan.name }),
+                (None, None) => {
+                    return Err(Error::Unsupported {
+                        method: plan.name,
+                        why: Refusal::LacksMasses,
+                    });
+                }
             },
         }
         Ok(Work::of(self.stages.len() as u64))

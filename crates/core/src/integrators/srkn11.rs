@@ -6,7 +6,7 @@
 //! Each drift is the exact flow under drag and gravity. The order of the sequence rests on kicks
 //! that do not depend on the velocity.
 
-use super::Method;
+use super::method::{Method, View};
 use super::runge_kutta::EULER;
 use super::splitting::{Kicks, Plan};
 use crate::control::Control;
@@ -21,10 +21,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Step(0.01),
     evaluations: 12,
     damped_evaluations: 12,
-    implicit: false,
-    needs_mechanics: true,
-    needs_springs: false,
-    positions_only: true,
+    view: View::Accelerations,
     create: |system| PLAN.integrator(system),
     trial: None,
 };

@@ -1,6 +1,6 @@
 //! Symplectic (semi-implicit) Euler: v1 = v + h M^-1 F(t, x, v), x1 = x + h v1. Order 1.
 
-use super::Method;
+use super::method::{Method, View};
 use super::runge_kutta::EULER;
 use super::splitting::{Kicks, Plan};
 use crate::control::Control;
@@ -15,10 +15,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Step(0.005),
     evaluations: 1,
     damped_evaluations: 1,
-    implicit: false,
-    needs_mechanics: true,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Kicks,
     create: |system| PLAN.integrator(system),
     trial: None,
 };

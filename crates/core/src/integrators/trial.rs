@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Work;
 use super::error_norm::ErrorNorm;
+use super::integrator::check_dim;
 use crate::error::Error;
 use crate::system::ParticleSystem;
+use crate::work::Work;
 
 /// Share of the tolerated error that a step aims at.
 const SAFETY: f64 = 0.8;
@@ -130,7 +131,7 @@ impl LastStep {
         let own = [&self.y0, &self.y1].into_iter().chain(&self.k);
         let others = [&step.y0, &step.y1].into_iter().chain(&step.k);
         for (own, other) in own.zip(others) {
-            super::check_dim(own.len(), other)?;
+            check_dim(own.len(), other)?;
         }
         self.clone_from(step);
         Ok(())

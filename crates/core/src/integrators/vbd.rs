@@ -13,12 +13,14 @@
 //! in a long step, what happens at one end of a chain of springs has not yet reached the other; nor
 //! is momentum conserved, since the ends of a spring see it at different times.
 
+use super::integrator::{Integrator, check_dim};
+use super::method::{Method, View};
 use super::prediction::{Prediction, springs_of, work};
-use super::{Integrator, Method, Work, check_dim};
 use crate::control::Control;
 use crate::error::Error;
 use crate::spring::SpringLaw;
 use crate::system::{Compliant, ParticleSystem};
+use crate::work::Work;
 
 /// Price of an iteration, in evaluations of forces spring by spring: each spring is visited from
 /// both ends. It was measured on cloth of 15 x 15 to 64 x 64 particles and on a jelly (see the
@@ -36,10 +38,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Step(0.02),
     evaluations: ITERATIONS,
     damped_evaluations: ITERATIONS,
-    implicit: true,
-    needs_mechanics: true,
-    positions_only: false,
-    needs_springs: true,
+    view: View::Springs,
     create: |system| Vbd::of(system, ITERATIONS),
     trial: None,
 };

@@ -15,7 +15,7 @@
 //! end of the step, whose mean is that of the middle. The weights 3/5 and 2/5 suit the limit of the
 //! step (docs/methods.md).
 
-use super::Method;
+use super::method::{Method, View};
 use super::runge_kutta::EULER;
 use super::splitting::{Kicks, Plan};
 use crate::control::Control;
@@ -30,10 +30,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Step(0.005),
     evaluations: 1,
     damped_evaluations: 3,
-    implicit: false,
-    needs_mechanics: true,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Kicks,
     create: |system| PLAN.integrator(system),
     trial: None,
 };

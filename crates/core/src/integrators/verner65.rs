@@ -5,8 +5,8 @@
 //! The dense output takes no further stage. Its polynomial has degree 6 and order 4, and meets the
 //! conditions of orders 5 and 6 in the sense of least squares.
 
-use super::Method;
 use super::embedded::{EmbeddedPair, Tableau};
+use super::method::{Method, View};
 use crate::control::Control;
 
 pub(super) const METHOD: Method = Method {
@@ -18,10 +18,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Tolerance(1e-5),
     evaluations: 8,
     damped_evaluations: 8,
-    implicit: false,
-    needs_mechanics: false,
-    needs_springs: false,
-    positions_only: false,
+    view: View::Derivative,
     create: |system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim())),
     trial: Some(|system| Box::new(EmbeddedPair::new(&TABLEAU, system.dim()))),
 };

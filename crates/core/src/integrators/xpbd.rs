@@ -17,12 +17,14 @@
 //! has them; only more iterations make them as stiff. Even without end these do not quite meet
 //! implicit Euler, because springs turn between the corrections that are summed up.
 
+use super::integrator::{Integrator, check_dim};
+use super::method::{Method, View};
 use super::prediction::{Prediction, springs_of, work};
-use super::{Integrator, Method, Work, check_dim};
 use crate::control::Control;
 use crate::error::Error;
 use crate::spring::SpringLaw;
 use crate::system::ParticleSystem;
+use crate::work::Work;
 
 /// Price of an iteration, in evaluations of forces spring by spring: each spring waits for the one
 /// before. It was measured on cloth of 15 x 15 to 64 x 64 particles and on a jelly (see the tests).
@@ -37,10 +39,7 @@ pub(super) const METHOD: Method = Method {
     default_control: Control::Step(0.005),
     evaluations: 1,
     damped_evaluations: 1,
-    implicit: true,
-    needs_mechanics: true,
-    positions_only: false,
-    needs_springs: true,
+    view: View::Springs,
     create: |system| Xpbd::of(system, 1),
     trial: None,
 };

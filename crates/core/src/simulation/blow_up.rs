@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Simulation;
-use crate::error::{BlowUp, Cause, Error};
+use crate::error::{BlowUp, Cause, Error, Refusal};
 use crate::rigid::{Body, ROTATION};
 use crate::scene::Model;
 
@@ -127,7 +127,10 @@ pub(super) fn blow_up_by(error: Error, n: usize) -> Result<Cause, Error> {
         }),
         Error::StepTooSmall { step, .. } => Ok(Cause::StepTooSmall { step }),
         Error::NoConvergence { residual } => Ok(Cause::NoConvergence { residual }),
-        Error::ReadsVelocity { .. } => Ok(Cause::ReadsVelocity),
+        Error::Unsupported {
+            why: Refusal::ReadsVelocity,
+            ..
+        } => Ok(Cause::ReadsVelocity),
         error => Err(error),
     }
 }

@@ -62,7 +62,7 @@ impl Simulation {
     /// Lists the particles that rest on obstacles, for steps that locate events.
     pub(super) fn list_rests(&mut self, t: f64) {
         let method = self.state.method;
-        let serves = !method.implicit && !method.needs_mechanics && !method.positions_only;
+        let serves = !method.is_implicit() && !method.needs_mechanics() && !method.positions_only();
         let network = self.model.network();
         let network = network.filter(|network| serves && resting::may_rest(network));
         let none = NONE * self.radius;

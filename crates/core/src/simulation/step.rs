@@ -189,7 +189,7 @@ impl Simulation {
     /// Distance of vertices of surfaces from their chords in a step of h (s) from time t (s), over
     /// the least thickness; 0 for methods that see forces on the way.
     fn bulge(&self, (t, h): (f64, f64)) -> f64 {
-        let sees_ends_alone = self.stepper.is_adaptive() && self.state.method.implicit;
+        let sees_ends_alone = self.stepper.is_adaptive() && self.state.method.is_implicit();
         let layer = self.model.network().and_then(Network::contact_layer);
         let states = [self.phases.contact.y0(), &self.state.y];
         let is_known = states[0].len() == states[1].len();

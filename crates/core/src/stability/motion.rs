@@ -226,7 +226,7 @@ impl Motion {
         go_on: impl Fn() -> bool,
     ) -> Result<Option<f64>, Error> {
         // A step of a small scene, and one that solves equations, cost more than their particles.
-        let dear = if method.implicit { 30.0 } else { 1.0 };
+        let dear = if method.is_implicit() { 30.0 } else { 1.0 };
         let work = self.scene.model.work().max(20.0);
         let shortest = self.predictable * work * dear / MOST;
         if self.size == 0.0 {

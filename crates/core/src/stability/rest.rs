@@ -119,13 +119,13 @@ impl RestState {
         let by_modes = largest_step(method, &self.modes)?;
         let by_steps = match self.shapes {
             RestShapes::Known(_) => false,
-            RestShapes::Mixed(_) => method.needs_mechanics,
+            RestShapes::Mixed(_) => method.needs_mechanics(),
             RestShapes::Approximate(_) => {
                 let small = self.scene.state.len() <= STEPPED;
                 small && by_modes.is_some_and(|limit| limit.is_sharp())
             }
         };
-        let explicit = !method.implicit && !method.needs_springs;
+        let explicit = !method.is_implicit() && !method.needs_springs();
         let (Some(limit), Some(network), true) =
             (by_modes, self.scene.model.network(), by_steps && explicit)
         else {

@@ -36,7 +36,7 @@ pub fn on_all_cores<T: Send>(items: impl IntoIterator<Item = T>, work: impl Fn(T
 /// differences where many rigid bodies are.
 pub fn takes_minutes(method: &Method, scene: &Scene) -> bool {
     let bodies = scene.model.network().map_or(0, |n| n.bodies().len());
-    method.implicit && bodies > 1
+    method.is_implicit() && bodies > 1
 }
 
 /// Scene described by the text of a scene file.

@@ -229,7 +229,7 @@ impl ParticleSystem for Pole {
 
 #[test]
 fn where_no_step_will_do_it_says_so() {
-    let serving = |m: &&Method| m.is_adaptive() && !m.needs_mechanics;
+    let serving = |m: &&Method| m.is_adaptive() && !m.needs_mechanics();
     for m in integrators::METHODS.iter().filter(serving) {
         let tolerance = Tolerance::new(1e-6).unwrap();
         let mut adaptive = m.adaptive(&Pole, tolerance).unwrap();
@@ -241,7 +241,7 @@ fn where_no_step_will_do_it_says_so() {
             }
         };
         // The pole is as far off as the method's error on the way to it.
-        let off = if m.implicit { 1e-4 } else { 1e-5 };
+        let off = if m.is_implicit() { 1e-4 } else { 1e-5 };
         assert!(
             matches!(error, Error::StepTooSmall { time, .. } if (time - 1.0).abs() < off),
             "{}: {error:?}",
@@ -279,7 +279,7 @@ impl ParticleSystem for Undefined {
 
 #[test]
 fn a_derivative_that_is_no_number_ends_a_run() {
-    let serving = |m: &&Method| !m.needs_mechanics;
+    let serving = |m: &&Method| !m.needs_mechanics();
     for m in integrators::METHODS.iter().filter(serving) {
         for from in [0.0, 0.2] {
             let mut bare = scene("simple");
@@ -297,7 +297,7 @@ fn a_derivative_that_is_no_number_ends_a_run() {
             let named = match lost.cause {
                 Cause::NotFinite { particle: 0 } => true,
                 Cause::StepTooSmall { .. } => m.is_adaptive() && from > 0.0,
-                Cause::NoConvergence { .. } => m.implicit,
+                Cause::NoConvergence { .. } => m.is_implicit(),
                 _ => false,
             };
             assert!(named, "{}: {:?}", m.name, lost.cause);

@@ -12,7 +12,7 @@ use a3_core::{
 };
 
 fn methods() -> impl Iterator<Item = &'static Method> {
-    integrators::METHODS.iter().filter(|m| m.needs_springs)
+    integrators::METHODS.iter().filter(|m| m.needs_springs())
 }
 
 fn spring(i: usize, j: usize, [stiffness, rest_length, damping]: [f64; 3]) -> Spring {

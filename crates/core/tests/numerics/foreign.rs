@@ -1,7 +1,7 @@
 //! A system defined outside the core runs with every method that supports it.
 
 use crate::common::integrate;
-use a3_core::{Error, ParticleSystem, integrators};
+use a3_core::{Error, ParticleSystem, Refusal, integrators};
 
 /// Lotka-Volterra system of prey a and predators b: a' = a (2/3 - 4/3 b), b' = b (a - 1).
 struct LotkaVolterra;
@@ -26,12 +26,13 @@ fn invariant(y: &[f64]) -> f64 {
 fn predators_and_prey() {
     let start = [0.9, 0.9];
     for method in integrators::METHODS {
-        if method.needs_mechanics {
+        if method.needs_mechanics() {
             let refused = method.integrator(&LotkaVolterra).err();
             assert_eq!(
                 refused,
-                Some(Error::NeedsMechanics {
-                    method: method.name
+                Some(Error::Unsupported {
+                    method: method.title,
+                    why: Refusal::LacksMasses
                 })
             );
             continue;
@@ -51,7 +52,7 @@ fn predators_and_prey() {
 
 #[test]
 fn a_state_of_another_length_is_refused() {
-    for method in integrators::METHODS.iter().filter(|m| !m.needs_mechanics) {
+    for method in integrators::METHODS.iter().filter(|m| !m.needs_mechanics()) {
         let mut integrator = method.integrator(&LotkaVolterra).unwrap();
         let refused = integrator.step(&LotkaVolterra, 0.0, 0.1, &mut [1.0; 3]);
         assert_eq!(

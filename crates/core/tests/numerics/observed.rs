@@ -92,9 +92,9 @@ fn limits_are_seen_on_the_cloth() {
     let cloth = scene_with_grid("cloth", 8, 8);
     let rest = rest(&cloth, || true).unwrap().unwrap();
     let motion = Motion::of(&cloth, || true).unwrap().unwrap();
-    for m in integrators::METHODS.iter().filter(|m| !m.positions_only) {
+    for m in integrators::METHODS.iter().filter(|m| !m.positions_only()) {
         let predicted = largest_step(m, &rest.modes).unwrap().unwrap();
-        if m.needs_springs {
+        if m.needs_springs() {
             // With every step the cloth hangs elsewhere, and going there is no growth.
             assert!(predicted.step.is_infinite(), "{}", m.name);
             continue;
@@ -102,7 +102,7 @@ fn limits_are_seen_on_the_cloth() {
         let seen = observe_at_rest(&rest, m, Some(&predicted), &Budget::unlimited(), || true)
             .unwrap()
             .unwrap();
-        if m.implicit {
+        if m.is_implicit() {
             assert!(predicted.step.is_infinite() && seen.is_open());
             continue;
         }

@@ -305,7 +305,7 @@ fn a_system_without_views_is_served_too() {
     let line = Line::new(7, true);
     let y = line.state();
     let expected = integrate(&line, method("dop853"), &y, 1e-3, 200);
-    for m in integrators::METHODS.iter().filter(|m| !m.needs_springs) {
+    for m in integrators::METHODS.iter().filter(|m| !m.needs_springs()) {
         let error = |line: &Line, steps: u64| {
             let found = integrate(line, m, &y, 0.2 / steps as f64, steps);
             distance(&found, &expected) / size(&expected)
@@ -313,7 +313,7 @@ fn a_system_without_views_is_served_too() {
         for has_views in [true, false] {
             let line = Line::new(7, has_views);
             // A system without views does not say that its forces do not depend on the velocity.
-            assert_eq!(m.check(&line).is_ok(), has_views || !m.positions_only);
+            assert_eq!(m.check(&line).is_ok(), has_views || !m.positions_only());
             if m.check(&line).is_err() {
                 continue;
             }
@@ -383,6 +383,6 @@ fn constraints_in_the_forces_are_refused_by_implicit_methods() {
     let system = Constrained(Line::new(3, true));
     for m in integrators::METHODS {
         let refused = matches!(m.integrator(&system), Err(Error::Invalid(_)));
-        assert_eq!(refused, m.implicit, "{}", m.name);
+        assert_eq!(refused, m.is_implicit(), "{}", m.name);
     }
 }

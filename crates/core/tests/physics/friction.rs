@@ -54,7 +54,7 @@ fn block(mu: f64) -> Scene {
 
 /// Fixed steps (s) that are stable on all of the scenes above, or tolerances of an adaptive method.
 fn settings(method: &Method) -> [f64; 2] {
-    if method.is_adaptive() && method.implicit {
+    if method.is_adaptive() && method.is_implicit() {
         // Each contact begins anew at order 1, in steps that a fine tolerance makes tiny.
         [1e-2, 1e-3]
     } else if method.is_adaptive() {

@@ -35,7 +35,7 @@ fn run(scene: &str, name: &str, value: f64) -> Simulation {
 #[test]
 fn a_straight_chain_between_pins_stays() {
     for method in integrators::METHODS {
-        if method.implicit || method.positions_only {
+        if method.is_implicit() || method.positions_only() {
             continue;
         }
         let value = match method.name {

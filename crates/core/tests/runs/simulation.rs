@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::common::{method, scene, simulation};
 use a3_core::contact::{Obstacle, Shape};
 use a3_core::{
-    Cause, Control, Error, Model, Network, ParticleSystem, Path, Scene, Simulation, Vector3,
+    Cause, Control, Error, Model, Network, ParticleSystem, Path, Refusal, Scene, Simulation,
+    Vector3,
 };
 use approx::assert_relative_eq;
 
@@ -86,7 +87,10 @@ fn method_and_step_change_on_the_way() {
     let mut circle = simulation("simple", "rk4", 0.01);
     assert_eq!(
         circle.set_method(method("verlet"), Control::Step(0.01)),
-        Err(Error::NeedsMechanics { method: "verlet" })
+        Err(Error::Unsupported {
+            method: method("verlet").title,
+            why: Refusal::LacksMasses
+        })
     );
     assert_eq!(circle.method().name, "rk4");
     circle.take_steps(1).unwrap();

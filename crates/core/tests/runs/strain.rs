@@ -14,7 +14,7 @@ fn limited(method_name: &str, value: f64, limit: Option<f64>) -> Simulation {
     if let Model::Network(network) = &mut scene.model {
         let all = 0..network.particles();
         network.set_strain_limit(all, limit).unwrap();
-        if method.positions_only {
+        if method.positions_only() {
             network.scale_springs(1.0, 0.0).unwrap();
         }
     }

@@ -110,7 +110,7 @@ fn work_of_pins_is_that_of_the_exact_motion() {
             let Some(method) = a3_core::integrators::find(name) else {
                 panic!("no method {name}")
             };
-            if method.positions_only && shaken.damping > 0.0 {
+            if method.positions_only() && shaken.damping > 0.0 {
                 continue;
             }
             let scene = described(&shaken.scene());

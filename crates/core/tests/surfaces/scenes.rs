@@ -117,7 +117,7 @@ fn undamped(text: &str) -> String {
 fn values(name: &str, method: &Method) -> [f64; 2] {
     if method.is_adaptive() {
         [1e-2, 1e-3]
-    } else if method.implicit || method.needs_springs {
+    } else if method.is_implicit() || method.needs_springs() {
         [1.0 / 60.0, 1.0 / 120.0]
     } else if name == "knot" {
         [1.0 / 720.0, 1.0 / 1440.0]

@@ -101,7 +101,7 @@ fn steps(run: &mut Simulation) -> Result<(), Error> {
     run.take_steps(STEPS - 1)?;
     let before = run.time();
     run.take_steps(1)?;
-    if !run.method().implicit {
+    if !run.method().is_implicit() {
         run.advance_to(run.time() + 0.3 * (run.time() - before))?;
     }
     run.conclude()

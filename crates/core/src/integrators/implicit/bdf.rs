@@ -6,15 +6,17 @@
 //! new places. Stiff motion is damped out. A step of a given length, which has none before it, is
 //! one of TR-BDF2.
 
+use super::super::arithmetic::{add_scaled, scaled_sum};
 use super::super::error_norm::ErrorNorm;
+use super::super::method::{Method, View};
 use super::super::trial::{LastStep, Trial};
-use super::super::{Method, Work};
 use super::formulas::{KAPPA, error_factor, harmonic};
 use super::kept::{KeptSolver, Tangent};
 use super::{differences, tr_bdf2};
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
+use crate::work::Work;
 
 pub(in super::super) const METHOD: Method = Method {
     name: "bdf",
@@ -25,10 +27,7 @@ pub(in super::super) const METHOD: Method = Method {
     default_control: Control::Tolerance(1e-3),
     evaluations: 3,
     damped_evaluations: 3,
-    implicit: true,
-    needs_mechanics: false,
-    needs_springs: false,
-    positions_only: false,
+    view: View::Tangent,
     create: tr_bdf2::METHOD.create,
     trial: Some(|system| Box::new(Bdf::new(system))),
 };
@@ -113,8 +112,8 @@ impl Bdf {
         self.predicted.copy_from_slice(&self.step.y0);
         self.base.copy_from_slice(&self.step.y0);
         for (j, d) in self.step.k[..order].iter().enumerate() {
-            super::super::add_scaled(&mut self.predicted, 1.0, d);
-            super::super::add_scaled(&mut self.base, 1.0 - harmonic(j + 1) / divisor, d);
+            add_scaled(&mut self.predicted, 1.0, d);
+            add_scaled(&mut self.base, 1.0 - harmonic(j + 1) / divisor, d);
         }
     }
 
@@ -149,7 +148,7 @@ impl Bdf {
         half.iter_mut()
             .zip(&*second)
             .for_each(|(half, d)| *half = 0.5 * d);
-        super::super::scaled_sum(&mut self.predicted, half, 1.0, first);
+        scaled_sum(&mut self.predicted, half, 1.0, first);
         if norm.of(y0, y0, half) > norm.of(y0, y0, &self.predicted) {
             first.copy_from_slice(&self.predicted);
             (self.orders.last, self.orders.next) = (1, 1);
@@ -263,7 +262,7 @@ impl Trial for Bdf {
         let [first, second, ..] = &mut k[..] else {
             return work;
         };
-        super::super::scaled_sum(&mut self.predicted, y0, moment, first);
+        scaled_sum(&mut self.predicted, y0, moment, first);
         system.eval_f(t + moment, &self.predicted, second);
         for (first, second) in first.iter_mut().zip(second) {
             *second = (*second - *first) / moment;
@@ -282,7 +281,7 @@ impl Trial for Bdf {
     fn derivative(&self, _: &dyn ParticleSystem, out: &mut [f64]) {
         out.fill(0.0);
         for (j, d) in self.step.k[..self.orders.last].iter().enumerate() {
-            super::super::add_scaled(out, 1.0 / ((j + 1) as f64 * self.step.h), d);
+            add_scaled(out, 1.0 / ((j + 1) as f64 * self.step.h), d);
         }
     }
 
@@ -338,7 +337,7 @@ impl Trial for Bdf {
         let mut factor = 1.0;
         for (j, d) in self.step.k[..self.orders.last].iter().enumerate() {
             factor *= (theta - 1.0 + j as f64) / (j + 1) as f64;
-            super::super::add_scaled(out, factor, d);
+            add_scaled(out, factor, d);
         }
         Work::default()
     }

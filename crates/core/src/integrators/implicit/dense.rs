@@ -2,13 +2,13 @@
 //! the Jacobian J from central differences.
 
 use super::changes::Changes;
-use super::{MOST, Newton, dot};
+use super::newton::{MOST, Newton, dot};
 use crate::error::Error;
-use crate::integrators::{Work, check_dim};
+use crate::integrators::arithmetic::add_scaled;
+use crate::integrators::integrator::check_dim;
+use crate::integrators::method::MAX_DENSE;
 use crate::system::{Measure, ParticleSystem};
-
-/// Largest number of unknowns; the Jacobian of a larger system takes too long.
-pub(super) const LARGEST: usize = 1024;
+use crate::work::Work;
 
 /// Half the length of a difference, over the unit of what is changed.
 const DIFFERENCE: f64 = 1e-6;
@@ -46,7 +46,7 @@ impl Dense {
     pub fn new(system: &dyn ParticleSystem) -> Self {
         let (dim, unknowns) = (system.dim(), unknowns(system));
         // A system that is too large is refused.
-        let room = Some(unknowns.len()).filter(|count| *count <= LARGEST);
+        let room = Some(unknowns.len()).filter(|count| *count <= MAX_DENSE);
         let room = room.unwrap_or(0);
         Self {
             dim,
@@ -232,7 +232,7 @@ impl Dense {
         for (change, &i) in change.iter().zip(&self.unknowns) {
             self.change[i] = *change;
         }
-        super::super::add_scaled(y, 1.0, &self.change);
+        add_scaled(y, 1.0, &self.change);
         Work {
             solves: 1,
             ..Work::of(1)

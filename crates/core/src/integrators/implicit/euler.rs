@@ -2,11 +2,14 @@
 //! *Large Steps in Cloth Simulation*, 1998). Any step is stable, and longer steps damp the motion
 //! more. Order 1.
 
-use super::super::{Integrator, Method, Work, check_dim};
-use super::{Newton, StageSolver};
+use super::super::integrator::{Integrator, check_dim};
+use super::super::method::{Method, View};
+use super::newton::Newton;
+use super::stage::StageSolver;
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
+use crate::work::Work;
 
 pub(in super::super) const METHOD: Method = Method {
     name: "implicit",
@@ -17,10 +20,7 @@ pub(in super::super) const METHOD: Method = Method {
     default_control: Control::Step(0.02),
     evaluations: 1,
     damped_evaluations: 1,
-    implicit: true,
-    needs_mechanics: false,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Tangent,
     create: |system| {
         Box::new(ImplicitEuler {
             stage: StageSolver::new(system),

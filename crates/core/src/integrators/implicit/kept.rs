@@ -3,10 +3,12 @@
 //! Differential Equations II*, 1996, IV.8). They end where the rate at which they converge says
 //! that the error of the equations is a small part of the error that a step may make.
 
+use super::super::arithmetic::add_scaled;
 use super::super::error_norm::ErrorNorm;
-use super::super::{Work, add_scaled};
-use super::{Mechanical, StageSolver};
+use super::mechanical::Mechanical;
+use super::stage::StageSolver;
 use crate::system::{Linearized, Mechanics, ParticleSystem};
+use crate::work::Work;
 
 /// Part of the tolerated error that may remain in the equations.
 const CLOSE: f64 = 0.1;

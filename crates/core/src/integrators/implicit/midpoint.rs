@@ -2,11 +2,14 @@
 //! rounding. The method is symplectic, so that the energy error stays bounded, and any step is
 //! stable for which the equations have a solution. Order 2.
 
-use super::super::{Integrator, Method, Work, check_dim};
-use super::{Newton, StageSolver};
+use super::super::integrator::{Integrator, check_dim};
+use super::super::method::{Method, View};
+use super::newton::Newton;
+use super::stage::StageSolver;
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
+use crate::work::Work;
 
 pub(in super::super) const METHOD: Method = Method {
     name: "implicit-midpoint",
@@ -17,10 +20,7 @@ pub(in super::super) const METHOD: Method = Method {
     default_control: Control::Step(0.01),
     evaluations: 3,
     damped_evaluations: 3,
-    implicit: true,
-    needs_mechanics: false,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Tangent,
     create: |system| {
         Box::new(ImplicitMidpoint {
             stage: StageSolver::new(system),

@@ -4,8 +4,8 @@
 //! an implicit step: Liu, Bouaziz, Kavan, *Quasi-Newton methods for real-time simulation of
 //! hyperelastic materials*, 2017).
 
-use super::super::add_scaled;
-use super::dot;
+use super::super::arithmetic::add_scaled;
+use super::newton::dot;
 
 /// Number of secants that are kept.
 const KEPT: usize = 8;

@@ -6,11 +6,14 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use super::super::{Integrator, Method, Work, check_dim};
-use super::{Newton, StageSolver};
+use super::super::integrator::{Integrator, check_dim};
+use super::super::method::{Method, View};
+use super::newton::Newton;
+use super::stage::StageSolver;
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
+use crate::work::Work;
 
 pub(in super::super) const METHOD: Method = Method {
     name: "tr-bdf2",
@@ -21,10 +24,7 @@ pub(in super::super) const METHOD: Method = Method {
     default_control: Control::Step(0.01),
     evaluations: 7,
     damped_evaluations: 7,
-    implicit: true,
-    needs_mechanics: false,
-    positions_only: false,
-    needs_springs: false,
+    view: View::Tangent,
     create: |system| {
         let zeros = || vec![0.0; system.dim()];
         Box::new(TrBdf2 {

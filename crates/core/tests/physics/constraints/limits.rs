@@ -156,7 +156,7 @@ fn methods_that_do_not_serve_constraints_refuse_in_one_line() {
     let free = network(&[1.0], &[]);
     for m in integrators::METHODS {
         assert!(m.check(&free).is_ok());
-        let refuses = m.implicit || m.positions_only;
+        let refuses = m.is_implicit() || m.positions_only();
         assert_eq!(m.check(&constrained).is_err(), refuses, "{}", m.name);
         if let Err(refused) = m.integrator(&constrained) {
             let line = refused.to_string();

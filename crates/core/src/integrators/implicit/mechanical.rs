@@ -1,0 +1,295 @@
+//! Implicit stages of a mechanical system with masses M, drag C, damping D and stiffness K, solved by
+//! Newton's method.
+//!
+//! The guess (x, v) and
+//! base = (bx, bv), an iteration solves
+//! A dv = M (bv - v) + a F(t, x, v) - a K g, with the gap g = bx + a v - x and
+//! A = M + a (C + D) + a^2 K, and adds dv to v and dx = g + a dv to x. Pinned particles are put in
+//! their places first and are filtered out of the equations (Baraff, Witkin, *Large Steps in Cloth
+//! Simulation*, 1998).
+
+use super::changes::{CLOSE, Changes};
+use super::newton::{MOST, Newton, dot, norm};
+use super::secants::Secants;
+use crate::error::Error;
+use crate::integrators::arithmetic::add_scaled;
+use crate::linear::Solver;
+use crate::system::{Linearized, place_pins};
+use crate::work::Work;
+
+/// Most iterations where contact acts, whose tangent is not exact.
+const MOST_IN_CONTACT: u32 = 150;
+/// Change relative to the state that counts as none where contact acts, if several in a row are so
+/// small: where a vertex is caught between forces that jump, as those of two surfaces do where they
+/// meet, no force solves the equations, but the state is found.
+const SETTLED: f64 = 1e-6;
+/// Number of such changes in a row at which the iteration ends.
+const STAYS: u32 = 6;
+/// Share of the power of the residual along a change that may be left, with the other sign, after
+/// it: a change that overshoots by more is shortened.
+const OVERSHOT: f64 = 0.5;
+/// Most times that a change is shortened.
+const SHORTENED: u32 = 12;
+/// Gap relative to positions that is rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Solver of the implicit stages of a mechanical system, with its scratch.
+pub(super) struct Mechanical {
+    pub(super) solver: Solver,
+    f: Vec<f64>,
+    pub(super) rhs: Vec<f64>,
+    /// Gap bx + a v - x (m).
+    pub(super) gap: Vec<f64>,
+    dv: Vec<f64>,
+    /// Change of x by an iteration (m).
+    dx: Vec<f64>,
+    /// Right-hand side at the beginning of an iteration.
+    before: Vec<f64>,
+    /// Corrections of the tangent, where it is not exact.
+    secants: Secants,
+    /// Whether the forces were evaluated where the next iteration begins.
+    evaluated: bool,
+}
+
+impl Mechanical {
+    pub(super) fn new(mechanics: &dyn Linearized) -> Self {
+        let n = mechanics.inverse_masses().len();
+        let zeros = || vec![0.0; 3 * n];
+        Self {
+            solver: Solver::new(mechanics),
+            f: zeros(),
+            rhs: zeros(),
+            gap: zeros(),
+            dv: zeros(),
+            dx: zeros(),
+            before: zeros(),
+            secants: Secants::new(if mechanics.reach().is_finite() {
+                3 * n
+            } else {
+                0
+            }),
+            evaluated: false,
+        }
+    }
+
+    pub(super) fn solve(
+        &mut self,
+        mechanics: &dyn Linearized,
+        t: f64,
+        a: f64,
+        base: &[f64],
+        y: &mut [f64],
+        newton: Newton,
+    ) -> Result<Work, Error> {
+        let (bx, bv) = base.split_at(base.len() / 2);
+        let (x, v) = y.split_at_mut(bx.len());
+        place_pins(mechanics, t, x, v);
+        let mut work = Work::default();
+        let searches = newton == Newton::Full && mechanics.reach().is_finite();
+        let mut changes = Changes::new(!searches);
+        let most = if searches { MOST_IN_CONTACT } else { MOST };
+        self.evaluated = false;
+        self.secants.clear();
+        if searches {
+            // The guess of x counts, where nothing has passed through anything: no gap is left.
+            for ((v, x), bx) in v.iter_mut().zip(&*x).zip(bx) {
+                *v = (x - bx) / a;
+            }
+            place_pins(mechanics, t, x, v);
+        }
+        let mut settled = 0;
+        for iteration in 0..most {
+            let gathers = searches || !changes.shrink_fast().unwrap_or(false);
+            let how = (newton, gathers, changes.forcing());
+            let (mut change, residual) =
+                self.iterate(mechanics, t, a, [bx, bv], [x, v], how, &mut work)?;
+            if searches {
+                let share = self.search(mechanics, t, a, [bx, bv], [x, v], &mut work);
+                self.secants.add(&self.dv, share, &self.before, &self.rhs);
+                change *= share;
+            }
+            if newton == Newton::Once {
+                return Ok(work);
+            }
+            let size = norm(v) + norm(x) / a.abs();
+            changes.add(change, size, residual);
+            if changes.are_over(1e3 * CLOSE) {
+                return Ok(work);
+            }
+            if !changes.are_finite() {
+                break;
+            }
+            settled = if change <= SETTLED * size {
+                settled + 1
+            } else {
+                0
+            };
+            if searches && (settled == STAYS || iteration + 1 == most && settled > 0) {
+                return Ok(work);
+            }
+        }
+        Err(changes.failure())
+    }
+
+    /// One iteration of Newton's method. Returns the norm of the change of v, and the relative
+    /// residual to which the linear system was solved.
+    #[expect(clippy::too_many_arguments, reason = "the stage's equation has them")]
+    pub(super) fn iterate(
+        &mut self,
+        mechanics: &dyn Linearized,
+        t: f64,
+        a: f64,
+        [bx, bv]: [&[f64]; 2],
+        [x, v]: [&mut [f64]; 2],
+        (newton, gathers, forcing): (Newton, bool, f64),
+        work: &mut Work,
+    ) -> Result<(f64, f64), Error> {
+        if !std::mem::take(&mut self.evaluated) {
+            *work += self.evaluate(mechanics, t, a, bx, [x, v]);
+        }
+        let mut clamped = newton == Newton::Once;
+        let mut gathers = gathers;
+        let residual = loop {
+            if gathers {
+                *work += self.solver.gather(mechanics, (t, a), x, clamped);
+            }
+            self.reduce(mechanics, a, bv, v);
+            let tolerance = match newton {
+                Newton::Full => forcing,
+                // Short steps are solved more closely, so that errors fall with the step to the
+                // method's order.
+                Newton::Once => 1e-4 * self.solver.stiffness().clamp(1e-2, 1.0).powi(4),
+            };
+            self.before.copy_from_slice(&self.rhs);
+            self.secants.reduce(&mut self.rhs);
+            let (cost, solved) = self
+                .solver
+                .solve(mechanics, &self.rhs, &mut self.dv, tolerance);
+            self.secants.complete(&mut self.dv);
+            *work += cost;
+            match solved {
+                Some(residual) => break residual,
+                // Compressed springs can make the matrix indefinite. With these clamped, Newton's
+                // method converges more slowly.
+                None if !clamped => (clamped, gathers) = (true, true),
+                None => return Err(Error::NoConvergence { residual: 1.0 }),
+            }
+        };
+        let changes = self.gap.iter().zip(&self.dv);
+        for ((x, v), (gap, dv)) in x.iter_mut().zip(v.iter_mut()).zip(changes) {
+            *x += gap + a * dv;
+            *v += dv;
+        }
+        Ok((norm(&self.dv), residual))
+    }
+
+    /// Takes back a share of the change that an iteration made, if it overshot: until the power of
+    /// the residual along the change, r . dv, is small enough against that at its beginning
+    /// (Matthies, Strang, *The solution of nonlinear finite element equations*, 1979). Evaluates
+    /// the forces where it ends. Returns the share of the change that is left.
+    pub(super) fn search(
+        &mut self,
+        mechanics: &dyn Linearized,
+        t: f64,
+        a: f64,
+        [bx, bv]: [&[f64]; 2],
+        [x, v]: [&mut [f64]; 2],
+        work: &mut Work,
+    ) -> f64 {
+        self.dx.copy_from_slice(&self.gap);
+        add_scaled(&mut self.dx, a, &self.dv);
+        let begin = dot(&self.before, &self.dv);
+        let longest = mechanics.reach() / spread(&self.dx);
+        let mut share = longest.min(1.0);
+        if share < 1.0 {
+            add_scaled(x, share - 1.0, &self.dx);
+            add_scaled(v, share - 1.0, &self.dv);
+        }
+        // Shares of the change with the powers there: positive, and negative.
+        let (mut low, mut high) = ((0.0, begin), (share, 0.0));
+        for _ in 0..SHORTENED {
+            *work += self.evaluate(mechanics, t, a, bx, [x, v]);
+            self.evaluated = true;
+            self.reduce(mechanics, a, bv, v);
+            let power = dot(&self.rhs, &self.dv);
+            if power.abs() <= OVERSHOT * begin || share == high.0 && power > 0.0 {
+                break;
+            }
+            if power > 0.0 {
+                low = (share, power);
+            } else {
+                high = (share, power.max(f64::MIN));
+            }
+            let part = (low.1 / (low.1 - high.1)).clamp(0.1, 0.9);
+            let next = low.0 + (high.0 - low.0) * part;
+            add_scaled(x, next - share, &self.dx);
+            add_scaled(v, next - share, &self.dv);
+            share = next;
+            self.evaluated = false;
+        }
+        share
+    }
+
+    /// Evaluates the forces at (x, v), and the gap: none where it is rounding everywhere. Returns
+    /// the cost.
+    pub(super) fn evaluate(
+        &mut self,
+        mechanics: &dyn Linearized,
+        t: f64,
+        a: f64,
+        bx: &[f64],
+        [x, v]: [&[f64]; 2],
+    ) -> Work {
+        mechanics.forces(t, x, v, &mut self.f);
+        let mut most: f64 = 0.0;
+        for (((gap, bx), x), v) in self.gap.iter_mut().zip(bx).zip(x).zip(v) {
+            *gap = bx + a * v - x;
+            most = most.max(gap.abs() - ROUNDING * (bx.abs() + x.abs()));
+        }
+        // After an iteration there is no gap: its rounding is not worth a product.
+        if most <= 0.0 {
+            self.gap.fill(0.0);
+        }
+        Work::of(1)
+    }
+
+    /// Writes M (bv - v) + a F - a K g for free particles to the right-hand side, with the K that
+    /// was gathered last.
+    pub(super) fn reduce(&mut self, mechanics: &dyn Linearized, a: f64, bv: &[f64], v: &[f64]) {
+        let Self {
+            solver,
+            f,
+            rhs,
+            gap,
+            ..
+        } = self;
+        solver.tangent.filter(gap);
+        let inverse_masses = mechanics.inverse_masses();
+        let n = inverse_masses.len();
+        for start in (0..rhs.len()).step_by(n) {
+            let column = start..start + n;
+            let [bv, v, f] = [bv, v, f].map(|a| &a[column.clone()]);
+            let rhs = &mut rhs[column];
+            for ((((rhs, bv), v), f), w) in rhs.iter_mut().zip(bv).zip(v).zip(f).zip(inverse_masses)
+            {
+                *rhs = if *w == 0.0 { 0.0 } else { (bv - v) / w + a * f };
+            }
+        }
+        if gap.iter().any(|gap| *gap != 0.0) {
+            solver.tangent.subtract_stiffness(mechanics, a, gap, rhs);
+        }
+        solver.tangent.filter(rhs);
+    }
+}
+
+/// Most by which a row of an n x 3 matrix differs from their mean.
+fn spread(a: &[f64]) -> f64 {
+    let n = a.len() / 3;
+    let columns = [0, 1, 2].map(|axis| &a[axis * n..(axis + 1) * n]);
+    let means = columns.map(|column| column.iter().sum::<f64>() / n as f64);
+    let square = |i: usize| -> f64 {
+        let parts = columns.iter().zip(means);
+        parts.map(|(column, mean)| (column[i] - mean).powi(2)).sum()
+    };
+    (0..n).map(square).fold(0.0, f64::max).sqrt()
+}

@@ -1,0 +1,23 @@
+//! Newton's method: its iterations, and products of vectors.
+
+/// Largest number of iterations of Newton's method.
+pub(super) const MOST: u32 = 30;
+
+/// Number of iterations of Newton's method.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Newton {
+    /// One iteration, with compressed springs clamped.
+    Once,
+    /// Iterations until the state no longer changes.
+    Full,
+}
+
+/// Euclidean norm.
+pub(super) fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Scalar product.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,47 @@
+//! The solver of the implicit stages of a system, by the kind of the system.
+
+use super::dense::Dense;
+use super::mechanical::Mechanical;
+use super::newton::Newton;
+use crate::error::{Error, Refusal};
+use crate::system::{Mechanics, ParticleSystem};
+use crate::work::Work;
+
+/// Solver of the implicit stages of one system.
+pub(super) enum StageSolver {
+    /// Solver for a linearised mechanical system.
+    Mechanical(Box<Mechanical>),
+    /// Solver for any other system, of a small dimension.
+    Dense(Box<Dense>),
+}
+
+impl StageSolver {
+    pub(super) fn new(system: &dyn ParticleSystem) -> Self {
+        match system.mechanics().and_then(Mechanics::linearized) {
+            Some(linearized) => Self::Mechanical(Box::new(Mechanical::new(linearized))),
+            None => Self::Dense(Box::new(Dense::new(system))),
+        }
+    }
+
+    /// Takes y from a guess to the solution of y = base + a f(t, y).
+    pub(super) fn solve(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        a: f64,
+        base: &[f64],
+        y: &mut [f64],
+        newton: Newton,
+    ) -> Result<Work, Error> {
+        match (self, system.mechanics().and_then(Mechanics::linearized)) {
+            (Self::Mechanical(stage), Some(linearized)) => {
+                stage.solve(linearized, t, a, base, y, newton)
+            }
+            (Self::Dense(stage), _) => stage.solve(system, t, a, base, y, newton),
+            (Self::Mechanical(_), None) => Err(Error::Unsupported {
+                method: "the implicit method",
+                why: Refusal::LacksMasses,
+            }),
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! A method of the table: its name, its order, the view of a system by which it takes its steps, and
+//! its constructor.
+
+use super::adaptive::Adaptive;
+use super::error_norm::Tolerance;
+use super::integrator::Integrator;
+use super::trial::Trial;
+use crate::control::Control;
+use crate::error::{Error, Refusal, positive};
+use crate::system::{Linearized, ParticleSystem, depends_on_positions};
+
+/// Largest state (numbers) for which implicit methods compute the Jacobian of f.
+pub(super) const MAX_DENSE: usize = 1024;
+
+/// Creates an integrator for a system.
+type Create<T> = fn(system: &dyn ParticleSystem) -> Box<T>;
+
+/// View of a system by which a method takes its steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// The derivative f(t, y) of any system.
+    Derivative,
+    /// The derivative and how it changes with the state: a step solves equations.
+    Tangent,
+    /// Kicks of the velocities by forces, and drifts of the positions.
+    Kicks,
+    /// Accelerations that depend on positions and time alone, but for viscous drag.
+    Accelerations,
+    /// Springs one by one, solved by a fixed number of iterations in a step. The springs are then
+    /// softer than they should be in a long step, even where the motion is slow.
+    Springs,
+}
+
+/// Row of the table of methods.
+#[derive(Debug)]
+pub struct Method {
+    /// Name, as typed on the command line.
+    pub name: &'static str,
+    /// Short name, of one letter.
+    pub letter: char,
+    /// Other names of the method.
+    pub aliases: &'static [&'static str],
+    /// Full title.
+    pub title: &'static str,
+    /// Order: the global error falls as h to this power.
+    pub order: u32,
+    /// Step, or tolerance of an adaptive method, that is stable on every built-in scene.
+    pub default_control: Control,
+    /// Number of evaluations in a step; a typical number for an implicit method.
+    pub evaluations: u32,
+    /// Number of evaluations in a step where springs are damped.
+    pub damped_evaluations: u32,
+    /// View of a system by which the method takes its steps.
+    pub view: View,
+    /// Creates the method's integrator.
+    pub(super) create: Create<dyn Integrator>,
+    /// Creates what an adaptive method, which chooses its steps to a tolerance, tries them by;
+    /// `None` for other methods.
+    pub(super) trial: Option<Create<dyn Trial>>,
+}
+
+impl Method {
+    /// Whether a step solves equations, by linear algebra in addition to the evaluations.
+    #[must_use]
+    pub fn is_implicit(&self) -> bool {
+        matches!(self.view, View::Tangent | View::Springs)
+    }
+
+    /// Whether the method needs forces and masses, and does not support an arbitrary f(t, y).
+    #[must_use]
+    pub fn needs_mechanics(&self) -> bool {
+        !matches!(self.view, View::Derivative | View::Tangent)
+    }
+
+    /// Whether the method serves only forces that depend on positions and time, drag aside.
+    #[must_use]
+    pub fn positions_only(&self) -> bool {
+        self.view == View::Accelerations
+    }
+
+    /// Whether the method solves spring by spring, and supports no other couplings of particles.
+    #[must_use]
+    pub fn needs_springs(&self) -> bool {
+        self.view == View::Springs
+    }
+
+    /// Checks that the method supports a system.
+    ///
+    /// # Errors
+    /// The system lacks the method's view, see [`Refusal`].
+    pub fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
+        match self.refusal(system) {
+            None => Ok(()),
+            Some(why) => Err(Error::Unsupported {
+                method: self.title,
+                why,
+            }),
+        }
+    }
+
+    /// Why the method does not support a system; `None` if it does.
+    fn refusal(&self, system: &dyn ParticleSystem) -> Option<Refusal> {
+        let Some(mechanics) = system.mechanics() else {
+            return match self.view {
+                View::Derivative => None,
+                View::Tangent => refusal_by_size(system),
+                View::Kicks if system.rigid().is_some() => None,
+                _ if system.rigid().is_some() => Some(Refusal::Rotates),
+                _ => Some(Refusal::LacksMasses),
+            };
+        };
+        let linearized = mechanics.linearized();
+        let holds_constraints =
+            linearized.is_some_and(|linearized| linearized.baumgarte_frequency().is_some());
+        let lists_all_couplings = linearized.is_none_or(Linearized::lists_all_couplings);
+        match self.view {
+            View::Tangent | View::Springs if holds_constraints => Some(Refusal::HoldsConstraints),
+            View::Tangent | View::Springs if !lists_all_couplings => Some(Refusal::HidesCouplings),
+            View::Springs if mechanics.compliant().is_none() => Some(Refusal::LacksSprings),
+            View::Accelerations if !depends_on_positions(mechanics) => Some(Refusal::ReadsVelocity),
+            View::Tangent if linearized.is_none() => refusal_by_size(system),
+            _ => None,
+        }
+    }
+
+    /// Creates an integrator, with scratch, for this system.
+    ///
+    /// # Errors
+    /// The method does not support the system, see [`check`](Self::check).
+    pub fn integrator(&self, system: &dyn ParticleSystem) -> Result<Box<dyn Integrator>, Error> {
+        self.check(system)?;
+        Ok((self.create)(system))
+    }
+
+    /// Whether both methods use the same integrator for fixed steps.
+    #[must_use]
+    pub fn shares_integrator(&self, other: &Self) -> bool {
+        std::ptr::fn_addr_eq(self.create, other.create)
+    }
+
+    /// Integrator that chooses its steps to this tolerance; `None` if the method estimates no
+    /// error.
+    #[must_use]
+    pub fn adaptive(&self, system: &dyn ParticleSystem, tolerance: Tolerance) -> Option<Adaptive> {
+        self.trial
+            .map(|create| Adaptive::new(create(system), tolerance))
+    }
+
+    /// Whether the method can choose its steps by itself, to a tolerance.
+    #[must_use]
+    pub fn is_adaptive(&self) -> bool {
+        self.trial.is_some()
+    }
+
+    /// `Ok` if the method can be controlled like this.
+    ///
+    /// # Errors
+    /// The value is not a finite number above 0, or it is a tolerance and the method estimates no
+    /// error.
+    pub fn check_control(&self, control: Control) -> Result<(), Error> {
+        match control {
+            Control::Step(step) => positive("the step", step),
+            Control::Tolerance(relative) if self.is_adaptive() => {
+                Tolerance::new(relative).map(|_| ())
+            }
+            Control::Tolerance(_) => Err(Error::Invalid(format!(
+                "{} estimates no error: it takes a step, not a tolerance",
+                self.title
+            ))),
+        }
+    }
+
+    /// Control from a number that a user types: the tolerance of an adaptive method, the step (s)
+    /// of any other.
+    #[must_use]
+    pub fn control(&self, value: f64) -> Control {
+        if self.is_adaptive() {
+            Control::Tolerance(value)
+        } else {
+            Control::Step(value)
+        }
+    }
+}
+
+/// Methods are equal if their names are.
+impl PartialEq for Method {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+/// Refusal of a system that is too large for the Jacobian of its f.
+fn refusal_by_size(system: &dyn ParticleSystem) -> Option<Refusal> {
+    let mut numbers = 0;
+    system.measures(&mut |of, _| numbers += of.len());
+    (numbers > MAX_DENSE).then_some(Refusal::TooLarge {
+        numbers,
+        most: MAX_DENSE,
+    })
+}
