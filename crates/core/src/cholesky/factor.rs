@@ -8,7 +8,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use super::{Pattern, Place};
+use super::pattern::{Pattern, Place};
 use crate::fused::mul_add;
 
 /// Columns of a matrix of B x B numbers, each of P, of which those beyond B are zero.

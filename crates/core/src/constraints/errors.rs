@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::{Constraint, Constraints, Moved, Row, Scratch, vector};
+use super::constraint::Constraint;
+use super::row::Row;
+use super::set::{Constraints, Moved, vector};
+use super::solve::Scratch;
 use crate::error::{ConstraintName, Unmet};
 use crate::random::SplitMix;
 

@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::Turning;
 use super::direct::{Factor, Pattern};
 use super::row::Row;
+use super::turning::Turning;
 use crate::threads::each;
 
 /// Number of rows from which on a factorisation takes less time than conjugate residuals.

@@ -10,7 +10,8 @@
 
 use nalgebra::{Quaternion, Vector3};
 
-use super::{Body, Rotation, turn};
+use super::body::Body;
+use super::rotation::{Rotation, turn};
 
 /// Shares of a step of a symmetric composition of order 6 (Kahan, Li, *Composition constants for
 /// raising the orders of unconventional schemes for ordinary differential equations*, 1997): the
@@ -33,7 +34,7 @@ impl Body {
             (1.0, h)
         };
         if rotation.momentum != Vector3::zeros() {
-            let i = &self.inertia;
+            let i = &self.inertia();
             if i.x == i.y && i.y == i.z {
                 rotation.q = turn(rotation.momentum * (span / i.x)) * rotation.q;
             } else {
@@ -50,7 +51,7 @@ impl Body {
         for (axis, share) in [(0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5)] {
             let own = rotation.matrix().tr_mul(&rotation.momentum);
             let mut about = Vector3::zeros();
-            about[axis] = share * h * own[axis] / self.inertia[axis];
+            about[axis] = share * h * own[axis] / self.inertia()[axis];
             let by: Quaternion<f64> = turn(about);
             rotation.q *= by;
         }

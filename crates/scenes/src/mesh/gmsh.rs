@@ -1,7 +1,7 @@
 //! Tetrahedra from Gmsh's text files, versions 2.2 and 4.1: `$Nodes` and `$Elements`. All other
 //! sections are passed over, and so are elements of other kinds.
 
-use super::Mesh;
+use super::data::Mesh;
 use super::tetrahedra::{Numbered, lines, position, whole};
 
 /// Kinds of elements that are tetrahedra: of 4, 10, 20, 35 and 56 points, of which the first four

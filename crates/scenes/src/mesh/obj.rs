@@ -1,7 +1,7 @@
 //! Meshes from Wavefront OBJ files: points (`v`) and faces (`f`). All else is passed over.
 
+use super::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use super::polygon::Cutter;
-use super::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use crate::text::{Lines, words};
 
 /// Faces of a file, as numbers of points.

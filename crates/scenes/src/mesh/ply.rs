@@ -1,8 +1,8 @@
 //! Meshes from PLY files (Turk, *The PLY Polygon File Format*, 1994), text or binary: the elements
 //! `vertex` and `face`. All others are passed over.
 
+use super::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use super::polygon::Cutter;
-use super::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use crate::text::{Lines, words};
 
 /// What says that the head ends.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{MAX_POINTS, MAX_TRIANGLES, Mesh};
+use super::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use crate::text::{Lines, unmarked, words};
 
 /// Lengths of what a binary file begins with, and of a triangle (bytes).

@@ -1,6 +1,6 @@
 //! Tetrahedra from a pair of `TetGen`'s text files: points (`.node`) and tetrahedra (`.ele`).
 
-use super::Mesh;
+use super::data::Mesh;
 use super::tetrahedra::{Numbered, lines, position, whole};
 
 /// The mesh in a pair of files. The first points of tetrahedra of ten are their corners.

@@ -2,7 +2,7 @@
 
 use a3_core::Vector3;
 
-use super::{MAX_POINTS, MAX_TETRAHEDRA, Mesh};
+use super::data::{MAX_POINTS, MAX_TETRAHEDRA, Mesh};
 use crate::description::Triple;
 use crate::text::Lines;
 

@@ -1,7 +1,6 @@
 //! Points that are at the same place, since files have several there where normals, textures or
 //! nodes change: one for all of them.
 
-use super::Mesh;
 use crate::description::Triple;
 
 /// Distance of points that are at the same place, as a share of the mesh's longest side: what the
@@ -11,33 +10,8 @@ const SAME: f64 = 1e-6;
 /// Sides of the cells in which points are sorted, in that distance: a point is near to few.
 const CELL: f64 = 4.0;
 
-impl Mesh {
-    /// The mesh with points at the same place made one. Triangles with two equal corners and points
-    /// without triangles are left out.
-    #[must_use]
-    pub fn welded(&self) -> Self {
-        let same = places(&self.positions);
-        let mut new = vec![u32::MAX; self.positions.len()];
-        let mut mesh = Self::default();
-        let mut corner = |i: u32| {
-            let place = &mut new[same[i as usize] as usize];
-            if *place == u32::MAX {
-                *place = mesh.positions.len() as u32;
-                mesh.positions.push(self.positions[i as usize]);
-                mesh.numbers.push(self.number(i as usize));
-            }
-            *place
-        };
-        let corners = self.triangles.iter().map(|t| t.map(&mut corner));
-        mesh.triangles = corners
-            .filter(|[a, b, c]| a != b && b != c && c != a)
-            .collect();
-        mesh
-    }
-}
-
 /// For each point the first one that is at the same place.
-fn places(positions: &[Triple]) -> Vec<u32> {
+pub(super) fn places(positions: &[Triple]) -> Vec<u32> {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for p in positions {
         for axis in 0..3 {

@@ -8,10 +8,11 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use super::body::Solid;
 use super::material::Material;
 use super::matrix::{Matrix, dot, scaled, three};
 use super::number::{Dual, Number, Vector};
-use super::{Block, Corners, LANES, Solid, deformation};
+use super::tetrahedra::{Block, Corners, Deformed, LANES, deformation};
 use crate::coupling::Coupling;
 use crate::elements::force::{At, Cost, Force, check_particle};
 use crate::energy::Energy;
@@ -51,11 +52,12 @@ impl Force for Solid {
     }
 
     fn couplings(&self, _t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
-        self.visit_couplings(x, clamped, visit);
+        self.pairs
+            .visit_couplings(&self.material, self.deformed(x), clamped, visit);
     }
 
     fn energy(&self, at: &At) -> Energy {
-        let of_one = |t: super::Deformed| t.volume * self.material.energy(&t.deformation);
+        let of_one = |t: Deformed| t.volume * self.material.energy(&t.deformation);
         Energy {
             elastic: self.deformed(at.x).map(of_one).sum(),
             ..Energy::default()

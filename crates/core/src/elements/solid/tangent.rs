@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use super::material::{Hyperelastic, Material};
 use super::matrix::{Matrix, cofactors, dot};
 use super::principal::{Principal, eigen};
-use super::{Deformed, Solid};
+use super::tetrahedra::Deformed;
 use crate::coupling::{Coupling, GeneralCoupling};
 
 /// Pairs of corners of a tetrahedron.
@@ -57,31 +57,29 @@ impl Pairs {
     pub fn len(&self) -> usize {
         self.ends.len()
     }
-}
 
-impl Solid {
-    /// Visits the couplings of all pairs in their order.
+    /// Visits the couplings of all pairs, in their order, of tetrahedra of a material.
     pub(super) fn visit_couplings(
         &self,
-        x: &[f64],
+        material: &Material,
+        tetrahedra: impl Iterator<Item = Deformed>,
         clamped: bool,
         visit: &mut dyn FnMut(Coupling),
     ) {
-        let pairs = &self.pairs;
-        let mut own = pairs.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut own = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
         own.clear();
-        own.resize(pairs.ends.len(), Sums::default());
-        for (tetrahedron, places) in self.deformed(x).zip(&pairs.places) {
-            let hessian = Hessian::new(&self.material, &tetrahedron, clamped);
+        own.resize(self.ends.len(), Sums::default());
+        for (tetrahedron, places) in tetrahedra.zip(&self.places) {
+            let hessian = Hessian::new(material, &tetrahedron, clamped);
             for ([k, l], place) in CORNERS.into_iter().zip(places) {
                 // The pair has the lower number first.
                 let swapped = tetrahedron.corners[k] > tetrahedron.corners[l];
                 let pair = if swapped { [l, k] } else { [k, l] };
                 let sums = &mut own[*place as usize];
-                hessian.add(&self.material, &tetrahedron, pair, sums);
+                hessian.add(material, &tetrahedron, pair, sums);
             }
         }
-        for ([i, j], [stiffness, damping]) in pairs.ends.iter().zip(&*own) {
+        for ([i, j], [stiffness, damping]) in self.ends.iter().zip(&*own) {
             visit(Coupling::General(GeneralCoupling {
                 i: *i as usize,
                 j: *j as usize,

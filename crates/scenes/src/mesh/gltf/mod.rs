@@ -8,12 +8,13 @@ mod document;
 mod primitive;
 mod skin;
 
-use super::Mesh;
+use super::data::Mesh;
 use crate::budget;
 use crate::fault::Fault;
 use accessor::Buffers;
 use container::{decoded, parts, unescaped};
 use document::{Document, Head, Text, item};
+use primitive::Reader;
 use skin::Skins;
 
 /// Beginnings of the names of extensions that do not touch geometry, and of one that is read.
@@ -115,36 +116,5 @@ fn document(json: &[u8]) -> Result<Document<'_>, String> {
             let fault = Fault::of_json(&String::from_utf8_lossy(json), &error);
             Err(format!("it is no glTF 2.0 file: {fault}"))
         }
-    }
-}
-
-/// The mesh so far.
-struct Reader<'a> {
-    document: &'a Document<'a>,
-    buffers: Buffers<'a>,
-    mesh: Mesh,
-    skins: Skins<'a>,
-    /// Number of primitives that were looked at.
-    primitives: usize,
-    /// Number of points that were read, or moved by targets.
-    shifts: usize,
-}
-
-impl Reader<'_> {
-    /// Adds the triangles of nodes and of those below them, in the order of the file.
-    fn add(&mut self, roots: &[usize]) -> Result<(), String> {
-        let document = self.document;
-        for (k, matrix) in document.placed(roots)? {
-            let node = &document.nodes[k];
-            let Some(mesh) = node.mesh else {
-                continue;
-            };
-            let shapes = item(&document.meshes, mesh, "mesh")?;
-            let weights = node.weights.as_ref().unwrap_or(&shapes.weights);
-            for primitive in &shapes.primitives {
-                self.add_primitive(primitive, weights, node.skin, matrix)?;
-            }
-        }
-        Ok(())
     }
 }

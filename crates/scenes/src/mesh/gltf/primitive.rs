@@ -1,18 +1,48 @@
-//! Primitives: triangles of a mesh, with the targets that move their points.
+//! A mesh that is read node by node, and primitives: triangles of a mesh, with the targets that move
+//! their points.
 
 use nalgebra::{Matrix4, Point3};
 
-use super::Reader;
-use super::document::{Primitive, Target, item};
-use super::skin::Carrier;
-use crate::mesh::{MAX_POINTS, MAX_TRIANGLES};
+use super::accessor::Buffers;
+use super::document::{Document, Primitive, Target, item};
+use super::skin::{Carrier, Skins};
+use crate::mesh::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 
 /// How many times points are read and moved by targets, at most.
 const MOST_SHIFTS: usize = 16 * MAX_POINTS;
 
+/// The mesh so far.
+pub(super) struct Reader<'a> {
+    pub(super) document: &'a Document<'a>,
+    pub(super) buffers: Buffers<'a>,
+    pub(super) mesh: Mesh,
+    pub(super) skins: Skins<'a>,
+    /// Number of primitives that were looked at.
+    pub(super) primitives: usize,
+    /// Number of points that were read, or moved by targets.
+    pub(super) shifts: usize,
+}
+
 impl Reader<'_> {
+    /// Adds the triangles of nodes and of those below them, in the order of the file.
+    pub(super) fn add(&mut self, roots: &[usize]) -> Result<(), String> {
+        let document = self.document;
+        for (k, matrix) in document.placed(roots)? {
+            let node = &document.nodes[k];
+            let Some(mesh) = node.mesh else {
+                continue;
+            };
+            let shapes = item(&document.meshes, mesh, "mesh")?;
+            let weights = node.weights.as_ref().unwrap_or(&shapes.weights);
+            for primitive in &shapes.primitives {
+                self.add_primitive(primitive, weights, node.skin, matrix)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Adds the triangles of a primitive; points and lines have none.
-    pub(super) fn add_primitive(
+    fn add_primitive(
         &mut self,
         primitive: &Primitive,
         weights: &[f32],

@@ -1,0 +1,155 @@
+//! Where a factor has blocks: the pattern of a sparse matrix, eliminated in an order that keeps it
+//! sparse.
+
+use std::ops::Range;
+
+use super::order;
+
+/// Pattern of a factor.
+#[derive(Debug)]
+pub(crate) struct Pattern {
+    /// Column of each row of the matrix.
+    pub(super) ranks: Vec<u32>,
+    /// First block below the diagonal of each column, and their number.
+    pub(super) starts: Vec<u32>,
+    /// Row of each of these blocks, as the number of a column.
+    pub(super) rows: Vec<u32>,
+}
+
+/// Place of a block of the matrix in the factor.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub block: u32,
+    /// Whether it is there transposed.
+    pub transposed: bool,
+}
+
+impl Pattern {
+    /// Pattern for a matrix of n rows of blocks, with blocks at these rows and columns, each once
+    /// or several times, in either triangle; `None` if the factor would have more than so many
+    /// blocks below its diagonal.
+    pub fn new(n: usize, pairs: impl Iterator<Item = [u32; 2]>, most: usize) -> Option<Self> {
+        let mut meets = vec![vec![]; n];
+        for [i, j] in pairs.filter(|[i, j]| i != j) {
+            meets[i as usize].push(j);
+            meets[j as usize].push(i);
+        }
+        for others in &mut meets {
+            others.sort_unstable();
+            others.dedup();
+        }
+        let order = order::order(meets.clone(), most)?;
+        let (ranks, columns) = columns(&order, &meets);
+        let sorted = children_first(&columns);
+        let (mut starts, mut rows) = (vec![0], vec![]);
+        let mut places = vec![0; n];
+        for (place, column) in sorted.iter().zip(0..) {
+            places[*place as usize] = column;
+        }
+        for column in &sorted {
+            let from = rows.len();
+            rows.extend(
+                columns[*column as usize]
+                    .iter()
+                    .map(|row| places[*row as usize]),
+            );
+            rows[from..].sort_unstable();
+            starts.push(rows.len() as u32);
+        }
+        Some(Self {
+            ranks: ranks.iter().map(|rank| places[*rank as usize]).collect(),
+            starts,
+            rows,
+        })
+    }
+
+    /// Number of rows of the matrix.
+    pub fn len(&self) -> usize {
+        self.ranks.len()
+    }
+
+    /// Number of blocks below the diagonal of the factor.
+    pub fn size(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Number of products of blocks in a factorisation.
+    pub fn products(&self) -> f64 {
+        let lengths = self
+            .starts
+            .windows(2)
+            .map(|ends| f64::from(ends[1] - ends[0]));
+        lengths.map(|m| 0.5 * m * (m + 3.0)).sum()
+    }
+
+    /// Place of the block in row i and column j of the matrix, which is one of its pairs.
+    pub fn place(&self, i: u32, j: u32) -> Place {
+        let [row, column] = [i, j].map(|i| self.ranks[i as usize]);
+        let (low, high) = (row.min(column), row.max(column));
+        let own = self.column(low as usize);
+        let first = own.start as u32;
+        Place {
+            block: first + self.rows[own].partition_point(|row| *row < high) as u32,
+            transposed: row < column,
+        }
+    }
+
+    /// Blocks of a column below the diagonal.
+    fn column(&self, column: usize) -> Range<usize> {
+        self.starts[column] as usize..self.starts[column + 1] as usize
+    }
+}
+
+/// Rank of each row in an order, and the rows below the diagonal in each column of the factor, by
+/// their ranks.
+fn columns(order: &[u32], meets: &[Vec<u32>]) -> (Vec<u32>, Vec<Vec<u32>>) {
+    let n = order.len();
+    let mut ranks = vec![0; n];
+    for (row, rank) in order.iter().zip(0..) {
+        ranks[*row as usize] = rank;
+    }
+    let mut columns: Vec<Vec<u32>> = Vec::with_capacity(n);
+    // What a column hands on to that of its first row, its parent.
+    let mut children: Vec<Vec<u32>> = vec![vec![]; n];
+    let mut seen = vec![u32::MAX; n];
+    for (row, rank) in order.iter().zip(0u32..) {
+        let mut column = vec![];
+        let own = meets[*row as usize]
+            .iter()
+            .map(|other| ranks[*other as usize]);
+        let from_children = children[rank as usize].iter();
+        let inherited = from_children.flat_map(|child| columns[*child as usize].iter().copied());
+        for other in own.chain(inherited) {
+            if other > rank && seen[other as usize] != rank {
+                seen[other as usize] = rank;
+                column.push(other);
+            }
+        }
+        if let Some(parent) = column.iter().min() {
+            children[*parent as usize].push(rank);
+        }
+        columns.push(column);
+    }
+    (ranks, columns)
+}
+
+/// Columns in an order that changes nothing but where they lie: those of which one is made come
+/// just before it.
+fn children_first(columns: &[Vec<u32>]) -> Vec<u32> {
+    let mut children = vec![vec![]; columns.len()];
+    let mut stack = vec![];
+    for (column, rows) in columns.iter().enumerate().rev() {
+        match rows.iter().min() {
+            Some(parent) => children[*parent as usize].push(column as u32),
+            None => stack.push(column as u32),
+        }
+    }
+    // Parents before children, and turned round at the end.
+    let mut order = vec![];
+    while let Some(column) = stack.pop() {
+        order.push(column);
+        stack.append(&mut children[column as usize]);
+    }
+    order.reverse();
+    order
+}

@@ -1,0 +1,243 @@
+//! All constraints of a network, and the forces by which they hold its particles.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+use nalgebra::Vector3;
+
+use super::constraint::Constraint;
+use super::direct::Pattern;
+use super::pool::Pool;
+use super::row::Row;
+use super::solve::Scratch;
+use super::turning::{Lever, Turning};
+use crate::error::{Error, positive};
+use crate::threads::each;
+
+/// A particle that is held, with the places of what moves it among all that is: its own motion or
+/// that of its body's centre, and the rotation of the body, or 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Held {
+    particle: usize,
+    pub(super) place: usize,
+    turn: usize,
+}
+
+/// What moves as one: a particle, or the rotation of a body. Place 0 is one that nothing moves.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Moved {
+    Nothing,
+    Particle(usize),
+    Body(usize),
+}
+
+/// All constraints of a network.
+#[derive(Clone, Debug)]
+pub(crate) struct Constraints {
+    pub(super) all: Vec<Constraint>,
+    /// What constraints move: evaluations take time by its number, not by that of all particles.
+    pub(super) moved: Vec<Moved>,
+    /// Places of particles and of rotations among it.
+    pub(super) particles: BTreeMap<usize, usize>,
+    pub(super) rotations: BTreeMap<usize, usize>,
+    /// The particles that each constraint holds.
+    pub(super) ends: Vec<[Held; 2]>,
+    /// The constraint of each equation, and its number among those of the constraint.
+    pub(super) owners: Vec<(usize, usize)>,
+    /// Natural frequency (1/s) with which errors are taken back.
+    baumgarte_frequency: f64,
+    /// Which equations share what they move, once it is asked for.
+    pub(super) pattern: OnceLock<Arc<Pattern>>,
+    /// Scratch of evaluations, no part of the value.
+    pub(super) scratch: Pool,
+}
+
+impl Default for Constraints {
+    fn default() -> Self {
+        Self {
+            all: vec![],
+            moved: vec![Moved::Nothing],
+            particles: BTreeMap::new(),
+            rotations: BTreeMap::new(),
+            ends: vec![],
+            owners: vec![],
+            baumgarte_frequency: 10.0,
+            pattern: OnceLock::new(),
+            scratch: Pool::default(),
+        }
+    }
+}
+
+impl Constraints {
+    /// Adds a constraint whose particles exist. `carrier` gives the centre and the number of the
+    /// body that carries a particle.
+    pub fn add(
+        &mut self,
+        constraint: Constraint,
+        carrier: impl Fn(usize) -> Option<(usize, usize)>,
+    ) -> Result<(), Error> {
+        let constraint = constraint.checked()?;
+        let (first, second) = constraint.ends();
+        let moved = &mut self.moved;
+        let mut place = |places: &mut BTreeMap<usize, usize>, of: usize, what| {
+            *places.entry(of).or_insert_with(|| {
+                moved.push(what);
+                moved.len() - 1
+            })
+        };
+        let mut hold = |particle: usize| {
+            let body = carrier(particle);
+            let mover = body.map_or(particle, |(center, _)| center);
+            Held {
+                particle,
+                place: place(&mut self.particles, mover, Moved::Particle(mover)),
+                turn: body.map_or(0, |(_, k)| place(&mut self.rotations, k, Moved::Body(k))),
+            }
+        };
+        let nothing = Held {
+            particle: first,
+            place: 0,
+            turn: 0,
+        };
+        self.ends.push([hold(first), second.map_or(nothing, hold)]);
+        let (own, owners) = (self.all.len(), &mut self.owners);
+        let before = owners.len();
+        constraint.equations(Vector3::zeros(), Vector3::zeros(), |_| {
+            owners.push((own, owners.len() - before));
+        });
+        self.all.push(constraint);
+        self.pattern = OnceLock::new();
+        self.scratch.reserve(self.owners.len(), self.moved.len());
+        Ok(())
+    }
+
+    /// All constraints, in the order in which they were added.
+    pub fn all(&self) -> &[Constraint] {
+        &self.all
+    }
+
+    /// Natural frequency (1/s) with which errors are taken back.
+    pub fn baumgarte_frequency(&self) -> f64 {
+        self.baumgarte_frequency
+    }
+
+    /// Sets the natural frequency (1/s) with which errors are taken back.
+    pub fn set_baumgarte_frequency(&mut self, w: f64) -> Result<(), Error> {
+        positive("the feedback of constraints", w)?;
+        self.baumgarte_frequency = w;
+        Ok(())
+    }
+
+    /// The largest error |C| (m).
+    pub fn error(&self, x: &[f64]) -> Option<f64> {
+        let mut largest = None;
+        for (k, constraint) in self.all.iter().enumerate() {
+            constraint.equations(self.relative(k, x), Vector3::zeros(), |equation| {
+                largest = Some(equation.value.abs().max(largest.unwrap_or(0.0)));
+            });
+        }
+        largest
+    }
+
+    /// Adds J^T lambda (N) to all other forces f: on pinned particles too. `motion` gives the
+    /// inverse mass (1/kg) of a particle that no body carries and its acceleration (m/s2) without
+    /// constraints, and `turning` how a body turns, both under the forces f. Returns whether the
+    /// constraints are too near to a singular state for exact multipliers.
+    pub fn add_forces(
+        &self,
+        motion: impl Fn(usize, &[f64]) -> (f64, Vector3<f64>),
+        turning: impl Fn(usize, &[f64]) -> Turning,
+        [x, v]: [&[f64]; 2],
+        f: &mut [f64],
+    ) -> bool {
+        self.scratch.lend(|scratch| {
+            scratch.clear();
+            for moved in &self.moved {
+                let (weight, vector, turning) = match *moved {
+                    Moved::Nothing => (Vector3::zeros(), Vector3::zeros(), None),
+                    Moved::Particle(i) => {
+                        let (weight, acceleration) = motion(i, f);
+                        (Vector3::repeat(weight), acceleration, None)
+                    }
+                    Moved::Body(k) => {
+                        let turning = turning(k, f);
+                        let own = turning.rotation.tr_mul(&turning.acceleration);
+                        (turning.inverse_inertia, own, Some(turning))
+                    }
+                };
+                scratch.weights.push(weight);
+                scratch.vectors.push(vector);
+                scratch.turnings.push(turning);
+            }
+            let w = self.baumgarte_frequency;
+            let (ks, kd) = (w * w, 2.0 * w);
+            let Scratch {
+                weights,
+                vectors,
+                turnings,
+                rows,
+                ..
+            } = scratch;
+            rows.resize_with(self.owners.len(), Row::default);
+            each(rows, &|k, row| {
+                let (owner, number) = self.owners[k];
+                let (constraint, ends) = (self.all[owner], self.ends[owner]);
+                let relative = |a: &[f64]| match constraint.ends() {
+                    (i, Some(j)) => vector(a, i) - vector(a, j),
+                    (i, None) => vector(a, i),
+                };
+                let v_relative = relative(v);
+                let (mut count, mut own) = (0, None);
+                constraint.equations(relative(x), v_relative, |equation| {
+                    if count == number {
+                        own = Some(equation);
+                    }
+                    count += 1;
+                });
+                let Some(equation) = own else {
+                    return;
+                };
+                let (gradient, mut bend) = (equation.gradient, equation.bend);
+                *row = Row::default();
+                for (end, sign) in ends.iter().zip([1.0, -1.0]) {
+                    row.add(end.place, gradient * sign);
+                    if let Some(turning) = &turnings[end.turn] {
+                        let lever = Lever::new(turning, vector(x, end.particle));
+                        row.add(end.turn, lever.of(gradient) * sign);
+                        bend += gradient.dot(&lever.inwards) * sign;
+                    }
+                }
+                let a = row.product(vectors);
+                let back = ks * equation.value + kd * gradient.dot(&v_relative);
+                row.want(-bend - a - back, weights);
+            });
+            let soft = scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
+            let n = f.len() / 3;
+            for (row, (owner, _)) in scratch.rows.iter().zip(&self.owners) {
+                let ([first, second], force) = (self.ends[*owner], row.force());
+                for axis in 0..3 {
+                    f[axis * n + first.particle] += force[axis];
+                    if second.place != 0 {
+                        f[axis * n + second.particle] -= force[axis];
+                    }
+                }
+            }
+            soft
+        })
+    }
+
+    /// What each equation moves.
+    pub(super) fn find_pattern(&self) -> Pattern {
+        let rows = self.owners.iter().map(|(owner, _)| {
+            let [a, b] = self.ends[*owner];
+            [a.place, a.turn, b.place, b.turn]
+        });
+        Pattern::new(&rows.collect::<Vec<_>>(), self.moved.len())
+    }
+}
+
+/// The row of particle i.
+pub(super) fn vector(a: &[f64], i: usize) -> Vector3<f64> {
+    let n = a.len() / 3;
+    Vector3::new(a[i], a[n + i], a[2 * n + i])
+}

@@ -1,0 +1,192 @@
+//! Rigid bodies: their parts, their mass, and where their points are.
+
+use std::ops::Range;
+
+use nalgebra::{Matrix3, Quaternion, Vector3};
+
+use super::rotation::Rotation;
+use crate::error::{Error, positive};
+use crate::geometry::Shape;
+use crate::path::{Orientation, Place, Pose};
+
+/// Share of a moment of inertia that rounding may add.
+const ROUNDING: f64 = 1e-9;
+
+/// Part of a body, seen from its centre along the principal axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// Shape.
+    pub shape: Shape,
+    /// Its place (m).
+    pub at: Vector3<f64>,
+}
+
+/// Rigid body of a network.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    center: usize,
+    points: Range<usize>,
+    /// Places of the points, seen from the centre along the principal axes (m).
+    anchors: Vec<Vector3<f64>>,
+    inertia: Vector3<f64>,
+    radius: f64,
+    parts: Vec<Part>,
+}
+
+/// Body as it moves: its rotation matrix and angular velocity (rad/s).
+#[derive(Clone, Copy)]
+pub(crate) struct Moving {
+    pub rotation: Matrix3<f64>,
+    pub spin: Vector3<f64>,
+    momentum: Vector3<f64>,
+}
+
+impl Body {
+    /// Body with these principal moments of inertia (kg m2), whose centre of mass is the particle
+    /// `center`. It carries as many particles, from number `first` on, as its parts have
+    /// [points](Shape::simplices).
+    ///
+    /// # Errors
+    /// It has no parts or one that is a floor; or no body can have these moments: each is a finite
+    /// number above 0, and none is larger than the sum of the other two.
+    pub fn new(
+        center: usize,
+        first: usize,
+        inertia: Vector3<f64>,
+        parts: Vec<Part>,
+    ) -> Result<Self, Error> {
+        for moment in &inertia {
+            positive("a moment of inertia", *moment)?;
+        }
+        let largest = inertia.max();
+        if largest > (inertia.sum() - largest) * (1.0 + ROUNDING) {
+            return Err(Error::Invalid(format!(
+                "no body has the moments of inertia {}, {} and {}: none may be larger than the \
+                 sum of the other two",
+                inertia.x, inertia.y, inertia.z
+            )));
+        }
+        let (mut anchors, mut radius) = (vec![], 0.0f64);
+        for part in &parts {
+            part.shape.check()?;
+            let simplices = part.shape.simplices();
+            for point in simplices.points {
+                let anchor = part.at + point;
+                radius = radius.max(anchor.norm() + simplices.radius);
+                anchors.push(anchor);
+            }
+        }
+        if anchors.is_empty() {
+            return Err(Error::Invalid(
+                "a body needs a part that is no floor".into(),
+            ));
+        }
+        Ok(Self {
+            center,
+            points: first..first + anchors.len(),
+            anchors,
+            inertia,
+            radius,
+            parts,
+        })
+    }
+
+    /// Particle that is its centre of mass, and has its mass.
+    #[must_use]
+    pub fn center(&self) -> usize {
+        self.center
+    }
+
+    /// Particles that it carries, which have no mass: the points of its parts.
+    #[must_use]
+    pub fn points(&self) -> Range<usize> {
+        self.points.clone()
+    }
+
+    /// The points with their places, seen from the centre along the principal axes (m).
+    pub(crate) fn anchors(&self) -> impl Iterator<Item = (usize, &Vector3<f64>)> {
+        self.points.clone().zip(&self.anchors)
+    }
+
+    /// Principal moments of inertia (kg m2).
+    #[must_use]
+    pub fn inertia(&self) -> Vector3<f64> {
+        self.inertia
+    }
+
+    /// Distance of its farthest point from the centre (m).
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Speed of its surface for each unit of angular momentum, at most (1/(kg m)).
+    pub(crate) fn speed(&self) -> f64 {
+        self.radius / self.inertia.min()
+    }
+
+    /// Parts.
+    #[must_use]
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The body as it moves.
+    pub(crate) fn moving(&self, rotation: &Rotation) -> Moving {
+        let (matrix, momentum) = (rotation.matrix(), rotation.momentum);
+        Moving {
+            rotation: matrix,
+            spin: matrix * matrix.tr_mul(&momentum).component_div(&self.inertia),
+            momentum,
+        }
+    }
+
+    /// Energy of the rotation (J).
+    #[must_use]
+    pub fn energy(&self, rotation: &Rotation) -> f64 {
+        0.5 * rotation.momentum.dot(&self.moving(rotation).spin)
+    }
+
+    /// Angular momentum (kg m2/s) at which the body turns with that angular velocity (rad/s).
+    #[must_use]
+    pub fn momentum(&self, q: Quaternion<f64>, spin: Vector3<f64>) -> Vector3<f64> {
+        let momentum = Vector3::zeros();
+        let matrix = Rotation { q, momentum }.matrix();
+        matrix * matrix.tr_mul(&spin).component_mul(&self.inertia)
+    }
+
+    /// Place and orientation of a body whose centre is at x and moves with v, both n x 3.
+    #[must_use]
+    pub fn pose(&self, rotation: &Rotation, x: &[f64], v: &[f64]) -> Pose {
+        let Moving { rotation, spin, .. } = self.moving(rotation);
+        let row = |a: &[f64]| {
+            let n = a.len() / 3;
+            Vector3::new(a[self.center], a[n + self.center], a[2 * n + self.center])
+        };
+        Pose {
+            place: Place {
+                position: row(x),
+                velocity: row(v),
+                acceleration: Vector3::zeros(),
+            },
+            orientation: Some(Orientation { rotation, spin }),
+        }
+    }
+}
+
+impl Moving {
+    /// Rate of the quaternion, w q / 2.
+    pub fn rate(&self, q: Quaternion<f64>) -> Quaternion<f64> {
+        Quaternion::from_imag(self.spin) * q * 0.5
+    }
+
+    /// Angular acceleration (rad/s2) under a torque (N m).
+    pub fn angular_acceleration(
+        &self,
+        inertia: &Vector3<f64>,
+        torque: Vector3<f64>,
+    ) -> Vector3<f64> {
+        let change = torque - self.spin.cross(&self.momentum);
+        self.rotation * self.rotation.tr_mul(&change).component_div(inertia)
+    }
+}

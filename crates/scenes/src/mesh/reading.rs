@@ -1,0 +1,103 @@
+//! Meshes from the bytes of files, one function a format.
+
+use super::data::Mesh;
+use super::{gltf, gmsh, obj, ply, stl, tetgen};
+use crate::check::{BOUNDS, within};
+use crate::description::Triple;
+use crate::text::unmarked;
+
+impl Mesh {
+    /// The triangles of all objects in a Wavefront OBJ file.
+    ///
+    /// # Errors
+    /// A point or a face is wrong, there is no triangle, or there are too many.
+    pub fn from_obj(bytes: &[u8]) -> Result<Self, String> {
+        obj::read(unmarked(bytes)?)?.checked(1)
+    }
+
+    /// The triangles of the first scene of a glTF file, or of the scene that it names; `file` reads
+    /// another file that it names.
+    ///
+    /// # Errors
+    /// The file is no glTF 2.0 or needs an extension of it, there is no triangle, or there are too
+    /// many.
+    pub fn from_gltf(
+        bytes: &[u8],
+        file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, String> {
+        gltf::read(bytes, file)?.checked(0)
+    }
+
+    /// The triangles of an STL file, binary or text.
+    ///
+    /// # Errors
+    /// A triangle is wrong, there is none, or there are too many.
+    pub fn from_stl(bytes: &[u8]) -> Result<Self, String> {
+        stl::read(bytes)?.checked(0)
+    }
+
+    /// The triangles of the faces in a PLY file, text or binary.
+    ///
+    /// # Errors
+    /// The head or an element is wrong, there is no face, or there are too many.
+    pub fn from_ply(bytes: &[u8]) -> Result<Self, String> {
+        ply::read(unmarked(bytes)?)?.checked(0)
+    }
+
+    /// The tetrahedra in a text file of Gmsh, version 2.2 or 4.1.
+    ///
+    /// # Errors
+    /// A point or an element is wrong, there is no tetrahedron, or there are too many.
+    pub fn from_gmsh(bytes: &[u8]) -> Result<Self, String> {
+        gmsh::read(unmarked(bytes)?)?.checked(0)
+    }
+
+    /// The tetrahedra in a pair of `TetGen`'s files, `.node` and `.ele`.
+    ///
+    /// # Errors
+    /// A point or an element is wrong, there is no tetrahedron, or there are too many.
+    pub fn from_tetgen(node: &[u8], ele: &[u8]) -> Result<Self, String> {
+        tetgen::read(unmarked(node)?, unmarked(ele)?)?.checked(0)
+    }
+
+    /// The mesh without points that are in nothing, if it has triangles, and its points are where
+    /// they can be. The file numbers points from `first` on, if it does not say their numbers.
+    fn checked(self, first: u64) -> Result<Self, String> {
+        if self.triangles.is_empty() {
+            return Err("the file has no triangles".into());
+        }
+        let mesh = self.in_use(first);
+        let far = |p: &Triple| p.iter().any(|x| !within(*x));
+        if let Some(i) = mesh.positions.iter().position(far) {
+            let [x, y, z] = mesh.positions[i];
+            let number = mesh.number(i);
+            return Err(format!(
+                "point {number} is at ({x:e}, {y:e}, {z:e}): {BOUNDS}"
+            ));
+        }
+        Ok(mesh)
+    }
+
+    /// The mesh without points that are in nothing, with the numbers of the others.
+    fn in_use(self, first: u64) -> Self {
+        let mut is_used = vec![false; self.positions.len()];
+        let corners = self.triangles.iter().flatten();
+        for i in corners.chain(self.tetrahedra.iter().flatten()) {
+            is_used[*i as usize] = true;
+        }
+        let kept = || (0..self.positions.len()).filter(|i| is_used[*i]);
+        let mut place = vec![0; self.positions.len()];
+        for (k, i) in kept().enumerate() {
+            place[i] = k as u32;
+        }
+        let number = |i: usize| self.numbers.get(i).copied().unwrap_or(first + i as u64);
+        let at = |i: u32| place[i as usize];
+        Self {
+            positions: kept().map(|i| self.positions[i]).collect(),
+            triangles: self.triangles.iter().map(|t| t.map(at)).collect(),
+            tetrahedra: self.tetrahedra.iter().map(|t| t.map(at)).collect(),
+            numbers: kept().map(number).collect(),
+            tetrahedron_numbers: self.tetrahedron_numbers,
+        }
+    }
+}
