@@ -4,7 +4,7 @@
 use a3_scenes::Description;
 
 libfuzzer_sys::fuzz_target!(|text: &str| {
-    if let Ok(description) = Description::parse_json(text) {
+    if let Ok(description) = a3_scenes::parse_json(text) {
         let _ = description.build(None, &mut |_| Err("there are no files here".into()));
     }
 });

@@ -30,39 +30,37 @@ struct Listed {
     _states: Option<IgnoredAny>,
 }
 
-impl Description {
-    /// Reads a description from JSON: a list of particles and springs.
-    ///
-    /// # Errors
-    /// The text is not JSON, a key is unknown or missing, or a value is of the wrong kind.
-    pub fn parse_json(text: &str) -> Result<Self, Fault> {
-        let listed: Listed =
-            serde_json::from_str(text).map_err(|error| Fault::of_json(text, &error))?;
-        let pin = Pin {
-            particles: listed.pinned,
-            ..Pin::default()
-        };
-        Ok(Self {
-            name: listed.name,
-            summary: listed.note,
-            gravity: listed.gravity,
-            drag: listed.drag,
-            particles: Some(Particles {
-                positions: listed.positions,
-                velocities: listed.velocities,
-                mass: None,
-                masses: listed.mass,
-                springs: listed.springs,
-                thickness: None,
-                friction: 0.0,
-                restitution: 0.0,
-                pin: if pin.particles.is_empty() {
-                    vec![]
-                } else {
-                    vec![pin]
-                },
-            }),
-            ..Self::default()
-        })
-    }
+/// Reads a description from JSON: a list of particles and springs.
+///
+/// # Errors
+/// The text is not JSON, a key is unknown or missing, or a value is of the wrong kind.
+pub fn parse_json(text: &str) -> Result<Description, Fault> {
+    let listed: Listed =
+        serde_json::from_str(text).map_err(|error| Fault::of_json(text, &error))?;
+    let pin = Pin {
+        particles: listed.pinned,
+        ..Pin::default()
+    };
+    Ok(Description {
+        name: listed.name,
+        summary: listed.note,
+        gravity: listed.gravity,
+        drag: listed.drag,
+        particles: Some(Particles {
+            positions: listed.positions,
+            velocities: listed.velocities,
+            mass: None,
+            masses: listed.mass,
+            springs: listed.springs,
+            thickness: None,
+            friction: 0.0,
+            restitution: 0.0,
+            pin: if pin.particles.is_empty() {
+                vec![]
+            } else {
+                vec![pin]
+            },
+        }),
+        ..Description::default()
+    })
 }

@@ -10,236 +10,243 @@ use crate::description::{
     SpringSpec, State, Triple, Turn,
 };
 
-impl Description {
-    /// Multiplies the stiffness and the damping of the springs of every body by these factors, and
-    /// likewise those of fluids: the square of the speed of sound, and the viscosity.
-    pub fn scale_springs(&mut self, stiffness: f64, damping: f64) {
-        // Factors of damping over stiffness, and of damping over the critical one, which grows with
-        // the root of the stiffness.
-        let (time, ratio) = (damping / stiffness, damping / stiffness.sqrt());
-        let scale = |number: &mut Option<f64>, factor: f64| {
-            *number = number.map(|number| number * factor);
-        };
-        let scale_strips = |buckling: &mut Option<BucklingSpec>| {
-            if let Some(BucklingSpec {
-                bending,
-                compression,
-            }) = buckling
-            {
-                *bending *= stiffness;
-                *compression *= stiffness;
-            }
-        };
-        let scale_list = |springs: &mut Vec<SpringSpec>| {
-            for (_, _, k, _, c) in springs {
-                *k *= stiffness;
-                *c *= damping;
-            }
-        };
-        for cloth in &mut self.cloth {
-            cloth.stiffness = cloth.stiffness.map(|k| k * stiffness);
-            scale_strips(&mut cloth.buckling);
-            scale(&mut cloth.damping, time);
-            scale(&mut cloth.damping_ratio, ratio);
+/// Multiplies the stiffness and the damping of the springs of every body by these factors, and
+/// likewise those of fluids: the square of the speed of sound, and the viscosity.
+pub fn scale_springs(description: &mut Description, stiffness: f64, damping: f64) {
+    // Factors of damping over stiffness, and of damping over the critical one, which grows with
+    // the root of the stiffness.
+    let (time, ratio) = (damping / stiffness, damping / stiffness.sqrt());
+    let scale = |number: &mut Option<f64>, factor: f64| {
+        *number = number.map(|number| number * factor);
+    };
+    let scale_strips = |buckling: &mut Option<BucklingSpec>| {
+        if let Some(BucklingSpec {
+            bending,
+            compression,
+        }) = buckling
+        {
+            *bending *= stiffness;
+            *compression *= stiffness;
         }
-        for jelly in &mut self.jelly {
-            jelly.stiffness = jelly.stiffness.map(|k| k * stiffness);
-            scale(&mut jelly.damping, time);
-            scale(&mut jelly.damping_ratio, ratio);
+    };
+    let scale_list = |springs: &mut Vec<SpringSpec>| {
+        for (_, _, k, _, c) in springs {
+            *k *= stiffness;
+            *c *= damping;
         }
-        for mesh in &mut self.mesh {
-            mesh.stiffness = mesh.stiffness.map(|k| k * stiffness);
-            scale(&mut mesh.damping, time);
-            scale(&mut mesh.damping_ratio, ratio);
-        }
-        for solid in &mut self.solid {
-            solid.young *= stiffness;
-            solid.damping *= time;
-        }
-        for chain in &mut self.chain {
-            scale_strips(&mut chain.buckling);
-            chain.stiffness *= stiffness;
-            chain.damping *= damping;
-        }
-        if let Some(particles) = &mut self.particles {
-            scale_list(&mut particles.springs);
-        }
-        for fluid in &mut self.fluid {
-            fluid.sound *= stiffness.sqrt();
-            fluid.viscosity *= damping;
-        }
-        scale_list(&mut self.springs);
+    };
+    for cloth in &mut description.cloth {
+        cloth.stiffness = cloth.stiffness.map(|k| k * stiffness);
+        scale_strips(&mut cloth.buckling);
+        scale(&mut cloth.damping, time);
+        scale(&mut cloth.damping_ratio, ratio);
     }
+    for jelly in &mut description.jelly {
+        jelly.stiffness = jelly.stiffness.map(|k| k * stiffness);
+        scale(&mut jelly.damping, time);
+        scale(&mut jelly.damping_ratio, ratio);
+    }
+    for mesh in &mut description.mesh {
+        mesh.stiffness = mesh.stiffness.map(|k| k * stiffness);
+        scale(&mut mesh.damping, time);
+        scale(&mut mesh.damping_ratio, ratio);
+    }
+    for solid in &mut description.solid {
+        solid.young *= stiffness;
+        solid.damping *= time;
+    }
+    for chain in &mut description.chain {
+        scale_strips(&mut chain.buckling);
+        chain.stiffness *= stiffness;
+        chain.damping *= damping;
+    }
+    if let Some(particles) = &mut description.particles {
+        scale_list(&mut particles.springs);
+    }
+    for fluid in &mut description.fluid {
+        fluid.sound *= stiffness.sqrt();
+        fluid.viscosity *= damping;
+    }
+    scale_list(&mut description.springs);
+}
 
-    /// Multiplies the force or velocity of the wind by this factor, if there is wind.
-    pub fn scale_wind(&mut self, factor: f64) {
-        if let Some(wind) = &mut self.wind {
-            for mean in [
-                &mut wind.force,
-                &mut wind.force_per_mass,
-                &mut wind.velocity,
-            ] {
-                *mean = mean.map(|mean| mean.map(|x| x * factor));
-            }
+/// Multiplies the force or velocity of the wind by this factor, if there is wind.
+pub fn scale_wind(description: &mut Description, factor: f64) {
+    if let Some(wind) = &mut description.wind {
+        for mean in [
+            &mut wind.force,
+            &mut wind.force_per_mass,
+            &mut wind.velocity,
+        ] {
+            *mean = mean.map(|mean| mean.map(|x| x * factor));
         }
     }
+}
 
-    /// Makes the description begin with a run as it is `now`: its method, state, pins, obstacles,
-    /// wind, gravity and drag. Springs stay as they are described, except for those that have
-    /// broken. A particle in a hand is let go of.
-    pub fn begin_with(&mut self, model: &Model, now: &Checkpoint) {
-        let (n, t) = (model.particles(), now.time());
-        self.solver = Some(now.run.method.name.into());
-        self.step = Some(now.run.control.value());
-        let rows = |part: &[f64]| {
-            (0..n)
-                .map(|i| [part[i], part[n + i], part[2 * n + i]])
-                .collect()
-        };
-        let mut parts = now.run.y.chunks_exact(3 * n);
-        let rotations = || {
-            let network = model.network().into_iter();
-            network.flat_map(|network| {
-                (0..network.bodies().len()).map(|k| network.rotation(k, &now.run.y))
-            })
-        };
-        self.state = Some(State {
-            positions: parts.next().map(rows).unwrap_or_default(),
-            velocities: parts.next().map(rows).unwrap_or_default(),
-            orientations: rotations().map(|r| [r.q.w, r.q.i, r.q.j, r.q.k]).collect(),
-            angular_momenta: rotations().map(|r| r.momentum.into()).collect(),
-        });
-        let Some(network) = model.network() else {
-            return;
-        };
-        self.gravity = network.gravity().map(Into::into);
-        (self.drag, self.drag_per_mass) = (network.drag(), None);
-        self.torn.clone_from(&now.torn);
-        self.self_collision = now.touching;
-        if let Some(wind) = &mut self.wind {
-            wind.on = now.wind.is_some();
-            wind.ahead += t;
-        }
-        self.write_obstacles(network, t);
-        self.write_strain_limits(network);
-        for pins in self.body_pins() {
-            pins.clear();
-        }
-        self.pin = pins(now);
+/// Makes the description begin with a run as it is `now`: its method, state, pins, obstacles,
+/// wind, gravity and drag. Springs stay as they are described, except for those that have
+/// broken. A particle in a hand is let go of.
+pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint) {
+    let (n, t) = (model.particles(), now.time());
+    description.solver = Some(now.run.method.name.into());
+    description.step = Some(now.run.control.value());
+    let rows = |part: &[f64]| {
+        (0..n)
+            .map(|i| [part[i], part[n + i], part[2 * n + i]])
+            .collect()
+    };
+    let mut parts = now.run.y.chunks_exact(3 * n);
+    let rotations = || {
+        let network = model.network().into_iter();
+        network.flat_map(|network| {
+            (0..network.bodies().len()).map(|k| network.rotation(k, &now.run.y))
+        })
+    };
+    description.state = Some(State {
+        positions: parts.next().map(rows).unwrap_or_default(),
+        velocities: parts.next().map(rows).unwrap_or_default(),
+        orientations: rotations().map(|r| [r.q.w, r.q.i, r.q.j, r.q.k]).collect(),
+        angular_momenta: rotations().map(|r| r.momentum.into()).collect(),
+    });
+    let Some(network) = model.network() else {
+        return;
+    };
+    description.gravity = network.gravity().map(Into::into);
+    (description.drag, description.drag_per_mass) = (network.drag(), None);
+    description.torn.clone_from(&now.torn);
+    description.self_collision = now.touching;
+    if let Some(wind) = &mut description.wind {
+        wind.on = now.wind.is_some();
+        wind.ahead += t;
     }
+    write_obstacles(description, network, t);
+    write_strain_limits(description, network);
+    for pins in body_pins(description) {
+        pins.clear();
+    }
+    description.pin = pins(now);
+}
 
-    /// Describes the obstacles as they are at time t (s). Those of each kind are in the order in
-    /// which they were added; the floor may have been removed.
-    fn write_obstacles(&mut self, network: &Network, t: f64) {
-        let mut spheres = self.sphere.iter_mut();
-        let mut boxes = self.boxes.iter_mut();
-        let mut capsules = self.capsule.iter_mut();
-        let mut solids = self.obstacle.iter_mut();
-        self.floor = None;
-        for obstacle in network.obstacles() {
-            let pose = obstacle.at(t);
-            let here = pose.place.position;
-            let Motion { sine, shift, about } = motion(&obstacle.path, t);
-            let turn = obstacle.turn.and_then(|turn| going_on(turn, about, t));
-            let (friction, restitution) = (obstacle.friction, obstacle.restitution);
-            match &obstacle.shape {
-                &Shape::Sphere { radius } => {
-                    if let Some(described) = spheres.next() {
-                        *described = SphereSpec {
-                            center: here.into(),
-                            radius,
-                            friction,
-                            restitution,
-                            thickness: described.thickness,
-                            sine,
-                            shift,
-                            turn,
-                        };
-                    }
-                }
-                Shape::Box { .. } => {
-                    if let Some(described) = boxes.next() {
-                        described.center = here.into();
-                        described.rotation = turned(described.rotation, &pose);
-                        (described.friction, described.restitution) = (friction, restitution);
-                        (described.sine, described.shift) = (sine, shift);
-                        described.turn = turn;
-                    }
-                }
-                &Shape::Capsule { ends, radius } => {
-                    if let Some(described) = capsules.next() {
-                        *described = CapsuleSpec {
-                            from: pose.of(ends[0]).position.into(),
-                            to: pose.of(ends[1]).position.into(),
-                            radius,
-                            friction,
-                            restitution,
-                            thickness: described.thickness,
-                            sine,
-                            shift,
-                            turn,
-                        };
-                    }
-                }
-                Shape::Mesh(_) => {
-                    if let Some(described) = solids.next() {
-                        described.at = Some(here.into());
-                        described.rotation = turned(described.rotation, &pose);
-                        (described.friction, described.restitution) = (friction, restitution);
-                        (described.sine, described.shift) = (sine, shift);
-                        described.turn = turn;
-                    }
-                }
-                Shape::Floor if [friction, restitution, obstacle.thickness] == [0.0; 3] => {
-                    self.floor = Some(Floor::Height(here.y));
-                }
-                Shape::Floor => {
-                    let height = here.y;
-                    let thickness = Some(obstacle.thickness).filter(|d| *d > 0.0);
-                    self.floor = Some(Floor::Table(FloorSpec {
-                        height,
+/// Describes the obstacles as they are at time t (s). Those of each kind are in the order in
+/// which they were added; the floor may have been removed.
+fn write_obstacles(description: &mut Description, network: &Network, t: f64) {
+    let mut spheres = description.sphere.iter_mut();
+    let mut boxes = description.boxes.iter_mut();
+    let mut capsules = description.capsule.iter_mut();
+    let mut solids = description.obstacle.iter_mut();
+    description.floor = None;
+    for obstacle in network.obstacles() {
+        let pose = obstacle.at(t);
+        let here = pose.place.position;
+        let Motion { sine, shift, about } = motion(&obstacle.path, t);
+        let turn = obstacle.turn.and_then(|turn| going_on(turn, about, t));
+        let (friction, restitution) = (obstacle.friction, obstacle.restitution);
+        match &obstacle.shape {
+            &Shape::Sphere { radius } => {
+                if let Some(described) = spheres.next() {
+                    *described = SphereSpec {
+                        center: here.into(),
+                        radius,
                         friction,
                         restitution,
-                        thickness,
-                    }));
+                        thickness: described.thickness,
+                        sine,
+                        shift,
+                        turn,
+                    };
                 }
+            }
+            Shape::Box { .. } => {
+                if let Some(described) = boxes.next() {
+                    described.center = here.into();
+                    described.rotation = turned(described.rotation, &pose);
+                    (described.friction, described.restitution) = (friction, restitution);
+                    (described.sine, described.shift) = (sine, shift);
+                    described.turn = turn;
+                }
+            }
+            &Shape::Capsule { ends, radius } => {
+                if let Some(described) = capsules.next() {
+                    *described = CapsuleSpec {
+                        from: pose.of(ends[0]).position.into(),
+                        to: pose.of(ends[1]).position.into(),
+                        radius,
+                        friction,
+                        restitution,
+                        thickness: described.thickness,
+                        sine,
+                        shift,
+                        turn,
+                    };
+                }
+            }
+            Shape::Mesh(_) => {
+                if let Some(described) = solids.next() {
+                    described.at = Some(here.into());
+                    described.rotation = turned(described.rotation, &pose);
+                    (described.friction, described.restitution) = (friction, restitution);
+                    (described.sine, described.shift) = (sine, shift);
+                    described.turn = turn;
+                }
+            }
+            Shape::Floor if [friction, restitution, obstacle.thickness] == [0.0; 3] => {
+                description.floor = Some(Floor::Height(here.y));
+            }
+            Shape::Floor => {
+                let height = here.y;
+                let thickness = Some(obstacle.thickness).filter(|d| *d > 0.0);
+                description.floor = Some(Floor::Table(FloorSpec {
+                    height,
+                    friction,
+                    restitution,
+                    thickness,
+                }));
             }
         }
     }
+}
 
-    /// Describes the limits of strain as they are: those of the bodies that had one, or else, if
-    /// limits were set since, those of the cloths.
-    fn write_strain_limits(&mut self, network: &Network) {
-        let cloths = self.cloth.iter_mut().map(|body| &mut body.strain_limit);
-        let jellies = self.jelly.iter_mut().map(|body| &mut body.strain_limit);
-        let meshes = self.mesh.iter_mut().map(|body| &mut body.strain_limit);
-        let mut bodies: Vec<_> = cloths.chain(jellies).chain(meshes).collect();
-        if bodies.iter().any(|limit| limit.is_some()) {
-            bodies.retain(|limit| limit.is_some());
-        }
-        let mut limits = network.strain_limits().iter().map(|(_, limit)| *limit);
-        for body in bodies {
-            *body = limits.next();
-        }
+/// Describes the limits of strain as they are: those of the bodies that had one, or else, if
+/// limits were set since, those of the cloths.
+fn write_strain_limits(description: &mut Description, network: &Network) {
+    let cloths = description
+        .cloth
+        .iter_mut()
+        .map(|body| &mut body.strain_limit);
+    let jellies = description
+        .jelly
+        .iter_mut()
+        .map(|body| &mut body.strain_limit);
+    let meshes = description
+        .mesh
+        .iter_mut()
+        .map(|body| &mut body.strain_limit);
+    let mut bodies: Vec<_> = cloths.chain(jellies).chain(meshes).collect();
+    if bodies.iter().any(|limit| limit.is_some()) {
+        bodies.retain(|limit| limit.is_some());
     }
+    let mut limits = network.strain_limits().iter().map(|(_, limit)| *limit);
+    for body in bodies {
+        *body = limits.next();
+    }
+}
 
-    /// Pins of each body.
-    fn body_pins(&mut self) -> impl Iterator<Item = &mut Vec<Pin>> {
-        let cloths = self.cloth.iter_mut().map(|body| &mut body.pin);
-        let rigid = self.body.iter_mut().map(|body| &mut body.pin);
-        let jellies = self.jelly.iter_mut().map(|body| &mut body.pin);
-        let meshes = self.mesh.iter_mut().map(|body| &mut body.pin);
-        let solids = self.solid.iter_mut().map(|body| &mut body.pin);
-        let chains = self.chain.iter_mut().map(|body| &mut body.pin);
-        let particles = self.particles.iter_mut().map(|body| &mut body.pin);
-        cloths
-            .chain(jellies)
-            .chain(meshes)
-            .chain(solids)
-            .chain(chains)
-            .chain(particles)
-            .chain(rigid)
-    }
+/// Pins of each body.
+fn body_pins(description: &mut Description) -> impl Iterator<Item = &mut Vec<Pin>> {
+    let cloths = description.cloth.iter_mut().map(|body| &mut body.pin);
+    let rigid = description.body.iter_mut().map(|body| &mut body.pin);
+    let jellies = description.jelly.iter_mut().map(|body| &mut body.pin);
+    let meshes = description.mesh.iter_mut().map(|body| &mut body.pin);
+    let solids = description.solid.iter_mut().map(|body| &mut body.pin);
+    let chains = description.chain.iter_mut().map(|body| &mut body.pin);
+    let particles = description.particles.iter_mut().map(|body| &mut body.pin);
+    cloths
+        .chain(jellies)
+        .chain(meshes)
+        .chain(solids)
+        .chain(chains)
+        .chain(particles)
+        .chain(rigid)
 }
 
 /// Pins as they go on from now, with those that move alike put together. A particle in a hand stays

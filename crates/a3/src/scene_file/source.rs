@@ -64,7 +64,7 @@ impl Source {
             _ => return Err(unknown(typed)),
         };
         let parsed = if json {
-            Description::parse_json(&text)
+            a3_scenes::parse_json(&text)
         } else {
             Description::parse(&text)
         };
@@ -99,7 +99,7 @@ impl Source {
         change(&mut table)?;
         let (text, parsed) = if json {
             let text = table.to_string();
-            (text.clone(), Description::parse_json(&text))
+            (text.clone(), a3_scenes::parse_json(&text))
         } else {
             let text = toml::to_string(&table).map_err(|e| e.to_string())?;
             (text.clone(), Description::parse(&text))

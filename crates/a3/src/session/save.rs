@@ -4,7 +4,7 @@ use std::fmt::{Debug, Write};
 use std::path::{Path, PathBuf};
 
 use a3_core::Simulation;
-use a3_scenes::{Camera, Description};
+use a3_scenes::{Camera, Description, snapshot};
 
 use super::origin::Origin;
 use super::state::Session;
@@ -70,9 +70,9 @@ impl Session {
         if let (Some(grid), Some(cloth)) = (grid, description.cloth.first_mut()) {
             cloth.grid = [grid.rows(), grid.cols()];
         }
-        description.scale_springs(self.tuning.stiffness, self.tuning.damping);
-        description.scale_wind(self.tuning.gusts);
-        description.begin_with(run.model(), &run.moment());
+        snapshot::scale_springs(&mut description, self.tuning.stiffness, self.tuning.damping);
+        snapshot::scale_wind(&mut description, self.tuning.gusts);
+        snapshot::begin_with(&mut description, run.model(), &run.moment());
         let triple = |p: nalgebra::Point3<f32>| [p.x, p.y, p.z].map(f64::from);
         description.camera = Some(Camera {
             eye: triple(self.camera.eye()),

@@ -3,7 +3,7 @@
 use crate::common::scene;
 use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Network, Scene, Simulation, Vector3, integrators};
-use a3_scenes::Description;
+use a3_scenes::{Description, snapshot};
 
 fn start(scene: Scene, method: &str, step: f64) -> Simulation {
     let method = integrators::find(method).unwrap();
@@ -186,9 +186,9 @@ fn a_run_goes_on_from_its_description() {
         run.advance_to(1.0).unwrap();
 
         let mut description = entry.description().unwrap();
-        description.scale_springs(stiffness, damping);
-        description.scale_wind(gusts);
-        description.begin_with(run.model(), &run.moment());
+        snapshot::scale_springs(&mut description, stiffness, damping);
+        snapshot::scale_wind(&mut description, gusts);
+        snapshot::begin_with(&mut description, run.model(), &run.moment());
         let text = description.to_toml().unwrap();
         let read = Description::parse(&text).unwrap();
         assert_eq!(read, description, "{}", entry.name);
@@ -226,7 +226,7 @@ fn what_was_freed_is_described_as_free() {
     run.set_pinned(false);
     run.advance_to(0.1).unwrap();
     let mut description = a3_scenes::find("cloth").unwrap().description().unwrap();
-    description.begin_with(run.model(), &run.moment());
+    snapshot::begin_with(&mut description, run.model(), &run.moment());
     let scene = description
         .build(None, &mut |_| Err("none".into()))
         .unwrap()
@@ -253,7 +253,7 @@ fn paths_go_on_from_where_they_are() {
         let mut run = start(build(&description), "rk4", 0.01);
         run.advance_to(time).unwrap();
         let mut now = description.clone();
-        now.begin_with(run.model(), &run.moment());
+        snapshot::begin_with(&mut now, run.model(), &run.moment());
         let again = build(&Description::parse(&now.to_toml().unwrap()).unwrap());
         let again = start(again, "rk4", 0.01);
         for later in [0.0, 0.1, 0.4, 0.9, 3.0] {
@@ -296,8 +296,8 @@ buckling = { bending = 0.0001, compression = 10 }
     );
     run.adjust(|network| network.scale_springs(3.0, 1.0).unwrap());
     run.advance_to(1.5).unwrap();
-    description.scale_springs(3.0, 1.0);
-    description.begin_with(run.model(), &run.moment());
+    snapshot::scale_springs(&mut description, 3.0, 1.0);
+    snapshot::begin_with(&mut description, run.model(), &run.moment());
     let again = start(
         description.build(None, no_files).unwrap().scene,
         "rk4",

@@ -1,7 +1,7 @@
 //! Turning pins and obstacles in runs: in descriptions, in checkpoints and in the hand.
 
 use a3_core::{Control, Network, Place, Scene, Simulation, Vector3};
-use a3_scenes::{Description, Mesh};
+use a3_scenes::{Description, Mesh, snapshot};
 
 use crate::common::method;
 
@@ -44,7 +44,7 @@ obstacle = [{ file = 'solid', scale = 2, at = [0, 9, 0], rotation = [0.5, 0, 0],
         let mut run = build(text);
         run.advance_to(time).unwrap();
         let mut now = Description::parse(text).unwrap();
-        now.begin_with(run.model(), &run.moment());
+        snapshot::begin_with(&mut now, run.model(), &run.moment());
         let again = build(&now.to_toml().unwrap());
         for later in [0.0, 0.3, 0.9, 3.0] {
             let places = |run: &Simulation, t: f64| -> Vec<Place> {

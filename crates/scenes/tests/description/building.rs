@@ -2,7 +2,7 @@
 
 use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Model, Path, Scene, SpringKind, Vector3};
-use a3_scenes::{Description, SCENES};
+use a3_scenes::{Description, SCENES, snapshot};
 
 use super::*;
 
@@ -223,7 +223,7 @@ strain_limit = 1.5
     let step = a3_core::Control::Step(0.01);
     let run = a3_core::Simulation::new(scene, method, step).unwrap();
     let mut description = Description::parse(&text).unwrap();
-    description.begin_with(run.model(), &run.checkpoint());
+    snapshot::begin_with(&mut description, run.model(), &run.checkpoint());
     let limits = |d: &Description| {
         [
             d.cloth[0].strain_limit,

@@ -97,7 +97,7 @@ const PAIR: &str = "{\n\"mass\": [1, 1],\n\"positions\": [[0, 0, 0], [1, 0, 0]],
 #[test]
 fn json_is_refused_in_plain_english() {
     let read = |text: &str| {
-        let built = Description::parse_json(text).and_then(|d| d.build(None, &mut mesh));
+        let built = a3_scenes::parse_json(text).and_then(|d| d.build(None, &mut mesh));
         built.map_err(|fault| fault.locate(text).to_string())
     };
     assert!(read(PAIR).is_ok());

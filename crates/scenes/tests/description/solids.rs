@@ -1,7 +1,7 @@
 //! Solids: their boxes, their files, and what is wrong with them.
 
 use a3_core::{Element, Network, Vector3};
-use a3_scenes::{Description, Mesh, Setup};
+use a3_scenes::{Description, Mesh, Setup, snapshot};
 
 use crate::{build, said};
 
@@ -56,7 +56,7 @@ fn a_box_is_filled_with_tetrahedra() {
     assert_eq!(network.forces_in_use(), ["solid"]);
     let mut description =
         Description::parse(&BOX.replace("poisson", "damping = 0.5\npoisson")).unwrap();
-    description.scale_springs(4.0, 2.0);
+    snapshot::scale_springs(&mut description, 4.0, 2.0);
     assert_eq!(
         (description.solid[0].young, description.solid[0].damping),
         (4e5, 0.25)

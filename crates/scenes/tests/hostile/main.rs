@@ -111,7 +111,7 @@ fn lists_of_particles_are_taken_or_refused() {
         let Ok(text) = str::from_utf8(bytes) else {
             return false;
         };
-        let parsed = Description::parse_json(text).map_err(|fault| said(&fault.to_string()));
+        let parsed = a3_scenes::parse_json(text).map_err(|fault| said(&fault.to_string()));
         parsed.is_ok_and(|description| is_scene(&description, ""))
     });
     assert!(taken > INPUTS / 25, "{taken}");
