@@ -322,7 +322,9 @@ fn each(method: &Method) -> f64 {
 pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
     let mut scene = scene.clone();
     match &mut scene.model {
-        Model::Network(network) => network.scale_stiffness(factor).map_err(Failure::usage)?,
+        Model::Network(network) => network
+            .scale_springs(factor, factor.sqrt())
+            .map_err(Failure::usage)?,
         Model::FirstOrder(_) if factor == 1.0 => {}
         Model::FirstOrder(_) => {
             return Err(Failure::usage(format!(

@@ -111,6 +111,21 @@ impl Constraints {
         Ok(())
     }
 
+    /// The same constraints, where other bodies carry what they hold.
+    pub fn with_carriers(
+        &self,
+        carrier: impl Fn(usize) -> Option<(usize, usize)>,
+    ) -> Result<Self, Error> {
+        let mut constraints = Self {
+            baumgarte_frequency: self.baumgarte_frequency,
+            ..Self::default()
+        };
+        for constraint in &self.all {
+            constraints.add(*constraint, &carrier)?;
+        }
+        Ok(constraints)
+    }
+
     /// All constraints, in the order in which they were added.
     pub fn all(&self) -> &[Constraint] {
         &self.all

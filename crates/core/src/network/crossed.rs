@@ -4,13 +4,40 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use super::Network;
+use super::build::Network;
 use crate::contact::Crossed;
-use crate::error::Vertex;
+use crate::error::{Error, Vertex};
 use crate::sets::Sets;
 
 /// Most pairs of parts that a message names.
 const NAMED: usize = 3;
+
+/// Checks that no surfaces pass through one another at time t (s) at x (m), n x 3.
+pub(super) fn check_apart(network: &Network, t: f64, x: &[f64]) -> Result<(), Error> {
+    if let Some(layer) = network.contact_layer() {
+        let thickest = layer.surface().thickest();
+        if layer.is_crowded(t, x, 0.0) {
+            let why = "too many surfaces are at the same place for contact: move them apart";
+            return Err(Error::Invalid(why.into()));
+        }
+        if layer.is_crowded(t, x, thickest) {
+            return Err(Error::Invalid(format!(
+                "too many surfaces are within their thickness of one another for contact: it is up to {thickest} m, \
+                 and a smaller one would do"
+            )));
+        }
+    }
+    let crossed = network.crossed(t, x);
+    if crossed.is_empty() {
+        return Ok(());
+    }
+    let description = Description {
+        network,
+        x,
+        crossed: &crossed,
+    };
+    Err(Error::Invalid(description.to_string()))
+}
 
 /// Connected part, body or obstacle that a surface belongs to.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -77,10 +104,10 @@ impl Parts {
 }
 
 /// Surfaces of a network that pass through one another at positions x (m), n x 3, in words.
-pub(super) struct Description<'a> {
-    pub network: &'a Network,
-    pub x: &'a [f64],
-    pub crossed: &'a [Crossed],
+struct Description<'a> {
+    network: &'a Network,
+    x: &'a [f64],
+    crossed: &'a [Crossed],
 }
 
 impl Description<'_> {

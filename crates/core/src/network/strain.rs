@@ -2,31 +2,38 @@
 
 use std::ops::Range;
 
-use super::Network;
+use super::elements::Elements;
 use crate::contact::StrainLimit;
 use crate::error::Error;
 use crate::spring::SpringKind;
 
-impl Network {
-    /// Limits the length over rest length of structural and shear springs among some particles, in
-    /// place of limits of any of these; or lets them be as long as they may. Springs of rest length
-    /// 0 are not limited. Integrators know nothing of it: a [`Simulation`](crate::Simulation)
-    /// shortens what is too long after each step.
-    ///
-    /// # Errors
-    /// The limit is not a finite number above 1, or there are no such particles; or springs that
-    /// break at that stretch or above would never be stretched so far.
-    pub fn set_strain_limit(
+/// Limits of strain, and the springs that they apply to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct StrainLimits {
+    /// Particles among which springs are limited, and the limits of length over rest length.
+    all: Vec<(Range<usize>, f64)>,
+    /// The springs that are limited, unless springs or pins have changed since they were listed.
+    listed: Option<StrainLimit>,
+}
+
+impl StrainLimits {
+    pub fn all(&self) -> &[(Range<usize>, f64)] {
+        &self.all
+    }
+
+    /// Sets or removes the limit among some of n particles, where springs break at `tear` rest
+    /// lengths.
+    pub fn set(
         &mut self,
         particles: Range<usize>,
         limit: Option<f64>,
+        n: usize,
+        tear: Option<f64>,
     ) -> Result<(), Error> {
-        if particles.is_empty() || particles.end > self.particles() {
+        if particles.is_empty() || particles.end > n {
             return Err(Error::Invalid(format!(
-                "there are no particles {} to {}: the network has {}",
-                particles.start,
-                particles.end,
-                self.particles()
+                "there are no particles {} to {}: the network has {n}",
+                particles.start, particles.end,
             )));
         }
         if let Some(limit) = limit {
@@ -35,60 +42,56 @@ impl Network {
                     "the limit of strain must be a finite number above 1, such as 1.1, not {limit}"
                 )));
             }
-            check_tear(limit, self.tear)?;
+            check_tear(limit, tear)?;
         }
         let apart =
             |other: &Range<usize>| other.end <= particles.start || particles.end <= other.start;
-        self.strain_limits.retain(|(other, _)| apart(other));
+        self.all.retain(|(other, _)| apart(other));
         if let Some(limit) = limit {
             let before = |(other, _): &(Range<usize>, f64)| other.end <= particles.start;
-            let place = self.strain_limits.partition_point(before);
-            self.strain_limits.insert(place, (particles, limit));
+            let place = self.all.partition_point(before);
+            self.all.insert(place, (particles, limit));
         }
-        self.strained = None;
+        self.forget();
         Ok(())
     }
 
-    /// Limits of the length over rest length of springs, each with the particles among which it
-    /// applies.
-    #[must_use]
-    pub fn strain_limits(&self) -> &[(Range<usize>, f64)] {
-        &self.strain_limits
-    }
-
-    /// `Ok` if springs can be stretched so far that they break at `tear` rest lengths.
-    ///
-    /// # Errors
-    /// They are limited to that or less.
-    pub(super) fn check_tear(&self, tear: Option<f64>) -> Result<(), Error> {
-        let mut limits = self.strain_limits.iter();
+    /// Checks that springs can be stretched so far that they break at `tear` rest lengths.
+    pub fn check_tear(&self, tear: Option<f64>) -> Result<(), Error> {
+        let mut limits = self.all.iter();
         limits.try_for_each(|(_, limit)| check_tear(*limit, tear))
     }
 
+    /// Forgets the list of springs: springs or pins have changed.
+    pub fn forget(&mut self) {
+        self.listed = None;
+    }
+
     /// Lists the springs that are limited, if any are and if they are not listed yet.
-    pub(crate) fn list_strained(&mut self) {
-        if self.strained.is_some() || self.strain_limits.is_empty() {
+    pub fn list(&mut self, elements: &Elements, inverse_masses: &[f64]) {
+        if self.listed.is_some() || self.all.is_empty() {
             return;
         }
         let longest = |i: usize, j: usize| {
-            let limits = &self.strain_limits;
+            let limits = &self.all;
             let (particles, limit) = limits.get(limits.partition_point(|(p, _)| p.end <= i))?;
             (particles.contains(&i) && particles.contains(&j)).then_some(limit)
         };
-        let springs = self.springs().filter_map(|s| {
+        let springs = elements.springs().filter_map(|s| {
             let limit = longest(s.i, s.j)?;
             let is_limited = s.kind != SpringKind::Bend && s.law.rest_length > 0.0;
             is_limited.then_some(([s.i, s.j], limit * s.law.rest_length))
         });
-        self.strained = Some(StrainLimit::new(springs, &self.inverse_masses));
+        self.listed = Some(StrainLimit::new(springs, inverse_masses));
     }
 
     /// The springs that are limited, as they were last listed.
-    pub(crate) fn strained(&self) -> Option<&StrainLimit> {
-        self.strained.as_ref()
+    pub fn listed(&self) -> Option<&StrainLimit> {
+        self.listed.as_ref()
     }
 }
 
+/// Checks that springs limited to that stretch can reach the one at which they break.
 fn check_tear(limit: f64, tear: Option<f64>) -> Result<(), Error> {
     match tear.filter(|tear| limit <= *tear) {
         Some(tear) => Err(Error::Invalid(format!(

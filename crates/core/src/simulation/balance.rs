@@ -11,7 +11,7 @@ use super::Simulation;
 use super::drive::{Drive, End, energy_of, fastest, fastest_particle};
 use crate::contact::{Obstacle, Statistics};
 use crate::error::{Cause, Error, Unmet};
-use crate::network::Network;
+use crate::network::{Network, energy_of_errors, is_conservative, is_nearly_singular};
 use crate::scene::Model;
 
 /// Time from one look at the energy to the next (s), at least.
@@ -128,7 +128,7 @@ impl Balance {
             });
         }
         let (x, v) = network.halves(y);
-        self.singular |= network.is_nearly_singular(t, x, v, f);
+        self.singular |= is_nearly_singular(network, t, x, v, f);
         (self.share > LOST).then(|| {
             let (particle, speed) = fastest_particle(v);
             Cause::Gained {
@@ -313,7 +313,7 @@ impl Simulation {
         {
             let error = self.scene.limits.absolute.unwrap_or(relative * self.radius);
             let (t, y) = self.last_end();
-            let errors = network.energy_of_errors(t, y, error);
+            let errors = energy_of_errors(network, t, y, error);
             self.state.balance.own = self.state.balance.own.max(errors);
         }
     }
@@ -360,7 +360,7 @@ impl Simulation {
     /// the energy, if contact, tears or hands may have changed it, or if nothing moves.
     #[must_use]
     pub fn energy_change(&self) -> Option<f64> {
-        let conserves = |network: &&Network| network.is_conservative();
+        let conserves = |network: &&Network| is_conservative(network);
         self.model.network().filter(conserves)?;
         let balance = self.balance_now().0;
         let motion = balance.moving + balance.fall;

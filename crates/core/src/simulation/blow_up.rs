@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::Simulation;
 use crate::error::{BlowUp, Cause, Error, Refusal};
+use crate::network::contradiction;
 use crate::rigid::{Body, ROTATION};
 use crate::scene::Model;
 
@@ -67,7 +68,7 @@ impl Simulation {
         // Constraints that contradict one another are lost in many ways.
         if let Some(network) = self.model.network() {
             let (x, _) = network.halves(&self.state.y);
-            let contradiction = network.contradiction(time, x, self.radius);
+            let contradiction = contradiction(network, time, x, self.radius);
             blow_up.cause = contradiction.map_or(cause, Cause::Contradiction);
         }
         self.blow_up = Some(blow_up);

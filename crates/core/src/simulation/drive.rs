@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use crate::contact::Obstacle;
 use crate::elements::Element;
 use crate::energy::Energy;
-use crate::network::Network;
+use crate::network::{Network, add_wind};
 use crate::path::Path;
 use crate::spring::Spring;
 use crate::system::{Mechanics, ParticleSystem};
@@ -246,7 +246,7 @@ impl Breeze {
     fn new(network: &Network, t: f64, y: &[f64]) -> Self {
         let (x, v) = network.halves(y);
         let mut f = vec![0.0; x.len()];
-        network.add_wind(t, x, v, &mut f);
+        add_wind(network, t, x, v, &mut f);
         let (x, scratch) = (x.to_vec(), vec![0.0; f.len()]);
         Self { t, x, f, scratch }
     }
@@ -259,7 +259,7 @@ impl Breeze {
         let (x, v) = network.halves(y);
         let (free, n) = (network.inverse_masses(), network.particles());
         self.scratch.fill(0.0);
-        network.add_wind(t, x, v, &mut self.scratch);
+        add_wind(network, t, x, v, &mut self.scratch);
         let mut work = 0.0;
         for (k, (x1, x0)) in x.iter().zip(&self.x).enumerate() {
             if free[k % n] > 0.0 {

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::{Grabbed, Simulation};
 use crate::contact::Shape;
 use crate::error::Error;
-use crate::network::Network;
+use crate::network::{Network, attract, let_go, mass_behind};
 use crate::path::Path;
 use crate::scene::{Model, Swing};
 use crate::system::ParticleSystem;
@@ -50,7 +50,7 @@ impl Grabbed {
         if self.is_attracted(network) {
             let own = network.springs_of(self.particle);
             let stiffness: f64 = own.map(|s| s.law.stiffness).sum();
-            let own = (stiffness / network.mass_behind(self.particle)).sqrt();
+            let own = (stiffness / mass_behind(network, self.particle)).sqrt();
             let free = !network.is_held(self.particle);
             let least = 1.0 / PULL_TIME;
             let frequency = if free {
@@ -58,7 +58,7 @@ impl Grabbed {
             } else {
                 least
             };
-            network.attract(self.particle, self.path, frequency);
+            attract(network, self.particle, self.path, frequency);
         }
     }
 }
@@ -254,7 +254,7 @@ impl Simulation {
         let i = grabbed.particle;
         if let Some(network) = self.network_mut() {
             network.unpin(i);
-            network.let_go();
+            let_go(network);
         }
         if grabbed.was_pinned {
             self.leave_pin(i);

@@ -310,7 +310,7 @@ fn strips_are_springs_to_those_who_ask() {
     network.add_buckling(damped).unwrap();
     assert!(network.kick_reads_velocity());
     assert_eq!(network.forces_in_use(), ["buckling", "spring damping"]);
-    network.scale_stiffness(4.0).unwrap();
+    network.scale_springs(4.0, 2.0).unwrap();
     let stiffer = network.buckling().next().unwrap();
     assert_eq!(stiffer.bending, 4.0 * STRIP.bending);
     assert_eq!(pull(stiffer, 0.3), 4.0 * pull(STRIP, 0.3));

@@ -1,0 +1,285 @@
+//! Elements of a network: the forces that a scene asks for, in the order of their kinds.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use crate::contact::ContactLayer;
+use crate::elements::force::{At, ByParticle, Carried, Force, GATHERING};
+use crate::elements::sheet::{Quantity, set};
+use crate::elements::{Airflow, Drag, Element, Finish, Fluid, Gravity, Sheet, Solid, Wind};
+use crate::error::Error;
+
+/// Elements in the order of their kinds, and those of one kind as they were added.
+#[derive(Clone, Debug)]
+pub(super) struct Elements {
+    all: Vec<Element>,
+    /// Number of particles.
+    particles: usize,
+    /// The particles that are in no sheet.
+    single: Vec<Range<usize>>,
+}
+
+impl Elements {
+    /// Creates no elements, for n particles.
+    pub fn new(n: usize) -> Self {
+        Self {
+            all: vec![],
+            particles: n,
+            single: std::iter::once(0..n).collect(),
+        }
+    }
+
+    /// Number of particles.
+    pub fn particles(&self) -> usize {
+        self.particles
+    }
+
+    pub fn all(&self) -> &[Element] {
+        &self.all
+    }
+
+    pub fn all_mut(&mut self) -> &mut [Element] {
+        &mut self.all
+    }
+
+    /// Adds an element after those of its kind, if its particles exist and are in no other sheet.
+    pub fn add(&mut self, element: Element) -> Result<(), Error> {
+        element.force().check(self.particles)?;
+        if let Element::Sheet(sheet) = &element {
+            let new = sheet.particles();
+            let overlaps = |old: Range<usize>| old.start < new.end && new.start < old.end;
+            if self.sheets().any(|sheet| overlaps(sheet.particles())) {
+                return Err(Error::Invalid(format!(
+                    "particles {} to {} cannot all be in a new sheet: some are in one already",
+                    new.start,
+                    new.end - 1
+                )));
+            }
+        }
+        self.insert(element);
+        Ok(())
+    }
+
+    /// Adds an element after those of its kind.
+    pub fn insert(&mut self, element: Element) {
+        let rank = element.rank();
+        let place = self.all.partition_point(|e| e.rank() <= rank);
+        self.all.insert(place, element);
+        let mut sheets: Vec<_> = self.sheets().map(Sheet::particles).collect();
+        sheets.sort_by_key(|particles| particles.start);
+        let ends = sheets.iter().map(|particles| particles.end);
+        let starts = sheets.iter().map(|particles| particles.start);
+        let (from, to) = (
+            std::iter::once(0).chain(ends),
+            starts.chain([self.particles]),
+        );
+        let between = from.zip(to).map(|(from, to)| from..to);
+        self.single = between.filter(|particles| !particles.is_empty()).collect();
+    }
+
+    /// Removes all elements of a kind, and adds one in their place.
+    pub fn replace(&mut self, is: impl Fn(&Element) -> bool, by: Option<Element>) {
+        self.all.retain(|element| !is(element));
+        if let Some(element) = by {
+            self.insert(element);
+        }
+    }
+
+    /// Sets gravity g (m/s2); zero means none.
+    pub fn set_gravity(&mut self, g: Vector3<f64>) {
+        let gravity = (g != Vector3::zeros()).then_some(Gravity(g).into());
+        self.replace(|element| matches!(element, Element::Gravity(_)), gravity);
+    }
+
+    /// Sets the coefficient c (kg/s) of viscous drag; zero means none.
+    pub fn set_drag(&mut self, c: f64) {
+        let drag = (c > 0.0).then_some(Drag(c).into());
+        self.replace(|element| matches!(element, Element::Drag(_)), drag);
+    }
+
+    /// Sets the wind on particles or on triangles, or none.
+    pub fn set_wind(&mut self, wind: Option<Wind>) {
+        let element = wind.map(|wind| match wind.air() {
+            Some(air) => Airflow { wind, air }.into(),
+            None => wind.into(),
+        });
+        let is = |element: &Element| matches!(element, Element::Wind(_) | Element::Airflow(_));
+        self.replace(is, element);
+    }
+
+    /// Removes the springs between pairs of particles.
+    pub fn remove_springs(&mut self, torn: &[[usize; 2]]) {
+        for element in &mut self.all {
+            element.force_mut().remove_springs(torn);
+        }
+        // What is empty would still keep sweeps away.
+        let is_left = |e: &Element| e.sheet().is_some() || !e.is_elastic() || !e.is_empty();
+        self.all.retain(is_left);
+    }
+
+    pub fn sheets(&self) -> impl Iterator<Item = &Sheet> + Clone {
+        self.all.iter().filter_map(Element::sheet)
+    }
+
+    pub fn solids(&self) -> impl Iterator<Item = &Solid> {
+        self.all.iter().filter_map(Element::solid)
+    }
+
+    pub fn elastic(&self) -> impl Iterator<Item = &Element> + Clone {
+        self.all.iter().filter(|element| element.is_elastic())
+    }
+
+    pub fn fluid(&self) -> Option<&Fluid> {
+        self.all.iter().find_map(Element::fluid)
+    }
+
+    pub fn contact_layer(&self) -> Option<&ContactLayer> {
+        self.all.iter().find_map(Element::contact_layer)
+    }
+
+    pub fn gravity(&self) -> Option<Vector3<f64>> {
+        self.all.iter().find_map(|element| match element {
+            Element::Gravity(Gravity(g)) => Some(*g),
+            _ => None,
+        })
+    }
+
+    pub fn drag(&self) -> Option<f64> {
+        self.all.iter().find_map(|element| match element {
+            Element::Drag(Drag(c)) => Some(*c),
+            _ => None,
+        })
+    }
+
+    pub fn wind(&self) -> Option<&Wind> {
+        self.all.iter().find_map(|element| match element {
+            Element::Wind(wind) | Element::Airflow(Airflow { wind, .. }) => Some(wind),
+            _ => None,
+        })
+    }
+
+    /// Names of the forces: springs and solids, their damping, and then others.
+    pub fn names(&self) -> Vec<&'static str> {
+        let mut names = vec![];
+        let mut list = |used: bool, name| {
+            if used && !names.contains(&name) {
+                names.push(name);
+            }
+        };
+        for element in self.elastic() {
+            list(!element.is_empty(), element.force().name());
+        }
+        for element in self.elastic() {
+            let damping = element.solid().map_or("spring damping", |_| "viscosity");
+            list(element.force().reads_velocity(), damping);
+        }
+        for element in self.all.iter().filter(|element| !element.is_elastic()) {
+            list(true, element.force().name());
+        }
+        names
+    }
+
+    /// The forces on each particle by itself.
+    pub fn by_particle(&self) -> impl Iterator<Item = &dyn ByParticle> {
+        self.all.iter().filter_map(|e| e.force().by_particle())
+    }
+
+    /// Whether nothing but sheets acts on more than one particle.
+    pub fn are_in_rows(&self) -> bool {
+        let in_rows = |element: &Element| {
+            let force = element.force();
+            element.sheet().is_some() || force.carried().is_some() || force.by_particle().is_some()
+        };
+        self.single.is_empty() && self.all.iter().all(in_rows)
+    }
+
+    /// Whether springs of one stiffness and damping each are all that couples particles.
+    pub fn are_springs(&self) -> bool {
+        let is_no_spring = |e: &Element| {
+            matches!(e, Element::BucklingSprings(_) | Element::Solid(_)) && !e.is_empty()
+        };
+        self.fluid().is_none() && !self.all.iter().any(is_no_spring)
+    }
+
+    /// Gravity and drag together.
+    pub fn carried(&self) -> Carried {
+        let all = self.all.iter().filter_map(|e| e.force().carried());
+        all.fold(Carried::default(), |a, b| Carried {
+            gravity: a.gravity + b.gravity,
+            drag: a.drag + b.drag,
+        })
+    }
+
+    /// Sets f to the finished sum of all forces but gravity and drag.
+    pub fn evaluate(&self, at: &At, f: &mut [f64], finish: &Finish) {
+        let is_other = |e: &&Element| e.force().carried().is_none();
+        self.sum(self.all.iter().filter(is_other), at, f, finish);
+    }
+
+    /// Sets f to the finished sum of some elements: first those that are no sheets, in their order;
+    /// on top of these each sheet, which finishes its own particles, so that nothing passes through
+    /// memory twice.
+    pub fn sum<'a>(
+        &'a self,
+        elements: impl Iterator<Item = &'a Element> + Clone,
+        at: &At,
+        f: &mut [f64],
+        finish: &Finish,
+    ) {
+        let is_other = |element: &&Element| element.sheet().is_none();
+        let mut others = elements.clone().filter(is_other).peekable();
+        let added = others.peek().is_some();
+        if added {
+            f.fill(0.0);
+        } else {
+            self.clear_single(f);
+        }
+        others.for_each(|element| element.force().add_forces(at, f));
+        for sheet in elements.filter_map(Element::sheet) {
+            set(Quantity::Forces, sheet, &[at.x, at.v], f, added, finish);
+        }
+        self.finish_single(at.v, f, finish);
+    }
+
+    /// Sets f to zero on the particles of no sheet.
+    pub fn clear_single(&self, f: &mut [f64]) {
+        for column in f.chunks_exact_mut(self.particles) {
+            for particles in &self.single {
+                column[particles.clone()].fill(0.0);
+            }
+        }
+    }
+
+    /// Finishes f on the particles of no sheet.
+    pub fn finish_single(&self, v: &[f64], f: &mut [f64], finish: &Finish) {
+        for particles in &self.single {
+            finish.apply(particles, v, f);
+        }
+    }
+
+    /// Sum over the elements of a number of each.
+    fn sum_of(&self, number: impl Fn(&dyn Force) -> f64) -> f64 {
+        self.all.iter().map(|element| number(element.force())).sum()
+    }
+
+    /// Time that the forces would take coupling by coupling over the time that they take.
+    pub fn speed(&self) -> f64 {
+        let couplings = self.sum_of(|force| force.cost().couplings);
+        if couplings > 0.0 {
+            couplings / self.sum_of(|force| force.cost().price)
+        } else {
+            1.0
+        }
+    }
+
+    /// Price of gathering the couplings, in evaluations of the forces.
+    pub fn gathering(&self) -> f64 {
+        let price = self.sum_of(|force| force.cost().price);
+        if price > 0.0 {
+            self.sum_of(|force| force.gathering()) / price
+        } else {
+            GATHERING
+        }
+    }
+}

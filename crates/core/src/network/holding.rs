@@ -1,0 +1,89 @@
+//! Constraints of a network: the forces by which they hold its particles.
+
+use nalgebra::Vector3;
+
+use super::build::Network;
+use super::evaluation::other_forces;
+use crate::constraints::Turning;
+use crate::error::Unmet;
+
+/// Time in which a contradiction counts as one that is already there, over that in which errors are
+/// taken back.
+const SOON: f64 = 0.1;
+
+/// A constraint that cannot be met near x (m) at time t (s), when pins are in their places, or soon
+/// after, because it contradicts others or the pins. Not known for those of rigid bodies.
+pub(crate) fn contradiction(network: &Network, t: f64, x: &[f64], radius: f64) -> Option<Unmet> {
+    let n = network.particles();
+    let constraints = &network.constraints;
+    let soon = SOON / constraints.baumgarte_frequency();
+    [t, t + soon].into_iter().find_map(|t| {
+        let mut x = x.to_vec();
+        for (i, path) in network.pins() {
+            let place = path.at(t).position;
+            for axis in 0..3 {
+                x[axis * n + i] = place[axis];
+            }
+        }
+        let masses = network.particles.inverse_masses();
+        constraints.contradiction(masses, &mut x, radius)
+    })
+}
+
+/// Whether the constraints at the state (x, v) at time t (s) are nearly singular, as those of a
+/// chain that is stretched straight between two pins: no force holds it there. Not known for those
+/// of rigid bodies. Writes the forces to f.
+pub(crate) fn is_nearly_singular(
+    network: &Network,
+    t: f64,
+    x: &[f64],
+    v: &[f64],
+    f: &mut Vec<f64>,
+) -> bool {
+    if !network.is_constrained() || !network.bodies().is_empty() {
+        return false;
+    }
+    f.resize(x.len(), 0.0);
+    other_forces(network, t, x, v, f);
+    hold_particles(network, t, [x, v], f)
+}
+
+/// Adds the forces of the constraints, if there are any, to all others, where there are no rigid
+/// bodies: positions and velocities alone do not say how these turn. Returns whether the
+/// constraints are nearly singular.
+pub(super) fn hold_particles(network: &Network, t: f64, state: [&[f64]; 2], f: &mut [f64]) -> bool {
+    let none = |_, _: &[f64]| unreachable!("there are no bodies");
+    network.bodies().is_empty() && hold(network, t, state, none, f)
+}
+
+/// Adds the forces of the constraints, if there are any, to all others. `bodies` gives how a body
+/// turns and the acceleration of its centre, under given forces. Returns whether the constraints
+/// are nearly singular.
+pub(super) fn hold(
+    network: &Network,
+    t: f64,
+    [x, v]: [&[f64]; 2],
+    bodies: impl Fn(usize, &[f64]) -> (Turning, Vector3<f64>),
+    f: &mut [f64],
+) -> bool {
+    if !network.is_constrained() {
+        return false;
+    }
+    let particles = &network.particles;
+    let motion = |i: usize, f: &[f64]| {
+        let (n, w) = (particles.len(), particles.inverse_masses()[i]);
+        let centered = || network.bodies().iter().position(|body| body.center() == i);
+        let acceleration = if w == 0.0 {
+            let pin = particles.pins_of(i..i + 1).first();
+            pin.map_or_else(Vector3::zeros, |pin| pin.path.at(t).acceleration)
+        } else if let Some(k) = centered() {
+            bodies(k, f).1
+        } else {
+            Vector3::new(f[i], f[n + i], f[2 * n + i]) * w
+        };
+        (w, acceleration)
+    };
+    network
+        .constraints
+        .add_forces(motion, |k, f| bodies(k, f).0, [x, v], f)
+}

@@ -1,0 +1,399 @@
+//! What a network says of itself and of its states.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::build::Network;
+use super::evaluation::{at, prescribed};
+use super::surfaces::Touch;
+use super::{crossed, energies};
+use crate::constraints::Constraint;
+use crate::contact::{ContactLayer, Crossed, Obstacle, StrainLimit};
+use crate::elements::{Buckling, Element, Finish, Fluid, Sheet, Wind};
+use crate::energy::Energy;
+use crate::error::{Error, Unmet};
+use crate::path::{Path, Pose};
+use crate::rigid::{Body, Rotation};
+use crate::spring::Spring;
+
+impl Network {
+    /// Number of particles.
+    #[must_use]
+    pub fn particles(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// Mass of each particle (kg), of pinned ones too; 0 for a point of a rigid body.
+    #[must_use]
+    pub fn masses(&self) -> &[f64] {
+        self.particles.masses()
+    }
+
+    /// Checks that particle i exists.
+    ///
+    /// # Errors
+    /// There is no particle i.
+    pub fn check_particle(&self, i: usize) -> Result<(), Error> {
+        self.particles.check(i)
+    }
+
+    /// The pinned particles and their paths.
+    pub fn pins(&self) -> impl Iterator<Item = (usize, Path)> {
+        let pins = self.particles.pins().iter();
+        pins.map(|pin| (pin.particle, pin.path))
+    }
+
+    /// Whether particle i is pinned.
+    #[must_use]
+    pub fn is_pinned(&self, i: usize) -> bool {
+        self.particles.is_pinned(i)
+    }
+
+    /// Whether particle i is a point that a body carries.
+    #[must_use]
+    pub fn is_carried(&self, i: usize) -> bool {
+        self.particles.is_carried(i)
+    }
+
+    /// The elements, in the order of their kinds.
+    #[must_use]
+    pub fn elements(&self) -> &[Element] {
+        self.elements.all()
+    }
+
+    /// Names of the forces and obstacles in use.
+    #[must_use]
+    pub fn forces_in_use(&self) -> Vec<&'static str> {
+        let shapes = self
+            .obstacles()
+            .iter()
+            .map(|obstacle| obstacle.shape.name());
+        let shapes: Vec<_> = shapes.collect();
+        let shown = ["sphere", "box", "capsule", "floor"].into_iter();
+        let constraints = self.is_constrained().then_some("constraints");
+        let tearing = self.tear_limit().map(|_| "tearing");
+        let limits = (!self.strain_limits().is_empty()).then_some("strain limit");
+        let others = constraints
+            .into_iter()
+            .chain(shown.filter(|name| shapes.contains(name)))
+            .chain(tearing)
+            .chain(limits);
+        self.elements.names().into_iter().chain(others).collect()
+    }
+
+    /// The sheets.
+    pub fn sheets(&self) -> impl Iterator<Item = &Sheet> {
+        self.elements.sheets()
+    }
+
+    /// Gravity g (m/s2), if there is any.
+    #[must_use]
+    pub fn gravity(&self) -> Option<Vector3<f64>> {
+        self.elements.gravity()
+    }
+
+    /// Coefficient c (kg/s) of viscous drag, if there is any.
+    #[must_use]
+    pub fn drag(&self) -> Option<f64> {
+        self.elements.drag()
+    }
+
+    /// The wind, if it blows.
+    #[must_use]
+    pub fn wind(&self) -> Option<&Wind> {
+        self.elements.wind()
+    }
+
+    /// The fluid, if there is one.
+    #[must_use]
+    pub fn fluid(&self) -> Option<&Fluid> {
+        self.elements.fluid()
+    }
+
+    /// Whether particle i is in a wall: pinned, and of the fluid.
+    #[must_use]
+    pub fn is_wall(&self, i: usize) -> bool {
+        self.is_pinned(i) && self.fluid().is_some_and(|fluid| fluid.contains(i))
+    }
+
+    /// The bend springs that buckle.
+    pub fn buckling(&self) -> impl Iterator<Item = Buckling> {
+        self.elements.buckling()
+    }
+
+    /// Every spring by itself, those of sheets first; none that buckles.
+    pub fn springs(&self) -> impl Iterator<Item = Spring> {
+        self.elements.springs()
+    }
+
+    /// Every spring by itself, those that buckle as they are while straight.
+    pub fn all_springs(&self) -> impl Iterator<Item = Spring> {
+        self.elements.all_springs()
+    }
+
+    /// The springs attached to particle i, those that buckle as they are while straight.
+    pub fn springs_of(&self, i: usize) -> impl Iterator<Item = Spring> {
+        self.all_springs().filter(move |s| s.i == i || s.j == i)
+    }
+
+    /// Each neighbour of particle i in a solid, with its distance at rest (m).
+    pub(crate) fn neighbours_in_solids(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        let solids = self.elements.solids();
+        solids.flat_map(move |solid| solid.neighbours(i))
+    }
+
+    /// Whether there are springs or solids.
+    #[must_use]
+    pub fn is_elastic(&self) -> bool {
+        self.elements.elastic().any(|element| !element.is_empty())
+    }
+
+    /// Whether springs or solids are damped.
+    #[must_use]
+    pub fn is_damped(&self) -> bool {
+        let mut elastic = self.elements.elastic();
+        elastic.any(|element| element.force().reads_velocity())
+    }
+
+    /// Writes the forces (N) of all springs to f, in the state (x, v).
+    pub fn spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
+        let springs = self.elements.elastic();
+        self.elements
+            .sum(springs, &at(self, 0.0, x, v), f, &Finish::default());
+    }
+
+    /// The strain at each particle at x (m), n x 3: the most by which the length of one of its
+    /// springs over that at rest, or a principal stretch of one of its tetrahedra, differs from 1;
+    /// NaN where there are neither. Springs of rest length 0 have none.
+    #[must_use]
+    pub fn strains(&self, x: &[f64]) -> Vec<f64> {
+        self.elements.strains(x)
+    }
+
+    /// Length over rest length of the structural spring that is stretched most, or the largest
+    /// principal stretch of a solid, if there is any.
+    #[must_use]
+    pub fn largest_stretch(&self, x: &[f64]) -> Option<f64> {
+        self.elements.largest_stretch(x)
+    }
+
+    /// The length over rest length at which springs break, if they do.
+    #[must_use]
+    pub fn tear_limit(&self) -> Option<f64> {
+        self.tears.limit()
+    }
+
+    /// Number of pairs of particles between which springs have broken.
+    #[must_use]
+    pub fn tears(&self) -> usize {
+        self.tears.torn().len()
+    }
+
+    /// Pairs of particles between which springs have broken, the lower number of each first, in
+    /// order.
+    #[must_use]
+    pub fn torn(&self) -> &[[usize; 2]] {
+        self.tears.torn()
+    }
+
+    /// Whether a spring between particles i and j has broken.
+    #[must_use]
+    pub fn is_torn(&self, i: usize, j: usize) -> bool {
+        self.tears.is_torn(i, j)
+    }
+
+    /// Whether a triangle has all its sides: whoever draws leaves out the others.
+    #[must_use]
+    pub fn is_whole(&self, corners: [usize; 3]) -> bool {
+        self.tears.is_whole(corners)
+    }
+
+    /// Whether springs at x (m) are so long that they break, or lack no more than that share of
+    /// their length.
+    pub(crate) fn is_overstretched(&self, x: &[f64], share: f64) -> bool {
+        self.tears.is_overstretched(&self.elements, x, share)
+    }
+
+    /// Limits of the length over rest length of springs, each with the particles among which it
+    /// applies.
+    #[must_use]
+    pub fn strain_limits(&self) -> &[(Range<usize>, f64)] {
+        self.strain_limits.all()
+    }
+
+    /// The springs that are limited, as they were last listed.
+    pub(crate) fn strained(&self) -> Option<&StrainLimit> {
+        self.strain_limits.listed()
+    }
+
+    /// The constraints, their directions of length 1.
+    #[must_use]
+    pub fn constraints(&self) -> &[Constraint] {
+        self.constraints.all()
+    }
+
+    pub(crate) fn is_constrained(&self) -> bool {
+        !self.constraints.all().is_empty()
+    }
+
+    /// Whether constraints hold particle i.
+    #[must_use]
+    pub fn is_held(&self, i: usize) -> bool {
+        let mut ends = self.constraints().iter().map(Constraint::ends);
+        ends.any(|(a, b)| a == i || b == Some(i))
+    }
+
+    /// The other end and the length (m) of each rod attached to particle i.
+    pub fn rods_of(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        self.constraints().iter().filter_map(move |c| match *c {
+            Constraint::Rod { i: a, j: b, length } if a == i || b == i => Some((a + b - i, length)),
+            _ => None,
+        })
+    }
+
+    /// The largest error |C| (m) of the constraints at x. `None` without constraints.
+    #[must_use]
+    pub fn constraint_error(&self, x: &[f64]) -> Option<f64> {
+        self.constraints.error(x)
+    }
+
+    /// The constraint that is farthest from being met at x, in a scene of that radius (m).
+    #[must_use]
+    pub fn worst_constraint(&self, x: &[f64], radius: f64) -> Option<Unmet> {
+        self.constraints.worst(x, radius)
+    }
+
+    /// The rigid bodies, in the order in which they were added.
+    #[must_use]
+    pub fn bodies(&self) -> &[Body] {
+        self.bodies.all()
+    }
+
+    /// The body to which particle i belongs, as its centre or as a point.
+    #[must_use]
+    pub fn body_of(&self, i: usize) -> Option<usize> {
+        self.bodies.body_of(i)
+    }
+
+    /// Rotation of body k in the state y.
+    #[must_use]
+    pub fn rotation(&self, k: usize, y: &[f64]) -> Rotation {
+        self.bodies.rotation(k, y)
+    }
+
+    /// Writes the rotation of body k to the state y. Its points follow at the next step.
+    pub fn set_rotation(&self, k: usize, rotation: &Rotation, y: &mut [f64]) {
+        rotation.write(&mut y[self.bodies.numbers(k)]);
+    }
+
+    /// Place and orientation of body k in the state y.
+    #[must_use]
+    pub fn pose(&self, k: usize, y: &[f64]) -> Pose {
+        let (x, v) = self.halves(y);
+        self.bodies()[k].pose(&self.rotation(k, y), x, v)
+    }
+
+    /// Positions and velocities, n x 3 each, of a state.
+    #[must_use]
+    pub fn halves<'a>(&self, y: &'a [f64]) -> (&'a [f64], &'a [f64]) {
+        let n = 3 * self.particles();
+        (&y[..n], &y[n..2 * n])
+    }
+
+    /// The triangles.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.surfaces.triangles
+    }
+
+    /// Obstacles in the order in which they were added.
+    #[must_use]
+    pub fn obstacles(&self) -> &[Obstacle] {
+        self.surfaces.obstacles()
+    }
+
+    /// Checks that obstacle k exists.
+    ///
+    /// # Errors
+    /// There is no obstacle k.
+    pub fn check_obstacle(&self, k: usize) -> Result<(), Error> {
+        self.surfaces.check_obstacle(k)
+    }
+
+    /// Whether pins or obstacles are on their way, now or at some time.
+    #[must_use]
+    pub fn moves_by_itself(&self) -> bool {
+        prescribed(self).moves()
+    }
+
+    /// First time after t (s) at which a path or a turn begins or ends; infinite if there is none.
+    pub(crate) fn next_known_time(&self, t: f64) -> f64 {
+        prescribed(self).next_known_time(t)
+    }
+
+    /// Longest step (s) from time t (s) to `end` (s) that shows the prescribed motion and the wind:
+    /// a quarter of the shortest period.
+    pub(crate) fn quarter_period(&self, t: f64, end: f64) -> f64 {
+        prescribed(self).quarter_period(t, end)
+    }
+
+    /// What can touch, if surfaces do.
+    #[must_use]
+    pub fn touch(&self) -> Option<&Touch> {
+        self.surfaces.touch()
+    }
+
+    /// Whether anything can touch: particles obstacles, or surfaces one another.
+    #[must_use]
+    pub fn can_touch(&self) -> bool {
+        !self.obstacles().is_empty() || self.touch().is_some_and(|touch| touch.bodies)
+    }
+
+    /// The contact of surfaces, if they touch.
+    #[must_use]
+    pub fn contact_layer(&self) -> Option<&ContactLayer> {
+        self.elements.contact_layer()
+    }
+
+    /// The surfaces that pass through one another at time t (s) at x (m), n x 3, also where nothing
+    /// keeps them from it, because surfaces do not touch.
+    #[must_use]
+    pub fn crossed(&self, t: f64, x: &[f64]) -> Vec<Crossed> {
+        match self.contact_layer() {
+            Some(layer) => layer.crossed(t, x),
+            None => self
+                .surfaces
+                .layer_of_all(self.bodies(), self.particles())
+                .crossed(t, x),
+        }
+    }
+
+    /// Checks that no surfaces pass through one another at time t (s) at x (m), n x 3.
+    ///
+    /// # Errors
+    /// Surfaces cross: the message names the first pair of triangles or edges, its place, and the
+    /// connected parts that cross. Or too many are at one place to be tested pair by pair.
+    pub fn check_apart(&self, t: f64, x: &[f64]) -> Result<(), Error> {
+        crossed::check_apart(self, t, x)
+    }
+
+    /// The energy in the state (x, v) at time 0, and at all times if no obstacle moves. Drag,
+    /// damping and wind have none.
+    #[must_use]
+    pub fn energy(&self, x: &[f64], v: &[f64]) -> Energy {
+        self.energy_at(0.0, x, v)
+    }
+
+    /// The energy in the state (x, v) at time t (s), where obstacles are then.
+    #[must_use]
+    pub fn energy_at(&self, t: f64, x: &[f64], v: &[f64]) -> Energy {
+        energies::energy_at(self, t, x, v)
+    }
+
+    /// Energy of the state y at time t (s), that of rotations included.
+    #[must_use]
+    pub fn energy_of(&self, t: f64, y: &[f64]) -> Energy {
+        energies::energy_of(self, t, y)
+    }
+}

@@ -1,0 +1,261 @@
+//! A network with rigid bodies as integrators see it: its state is [x | v | q, L of each body].
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use super::build::Network;
+use super::evaluation::{at, drifts_carry};
+use super::holding::hold;
+use crate::constraints::Turning;
+use crate::elements::Finish;
+use crate::elements::force::Carried;
+use crate::rigid::{Body, ROTATION, Rotation};
+use crate::rows::Terms;
+use crate::system::{Measure, Mechanics, Rigid, Splitting, place_pins};
+
+/// Force (N) and torque about the centre (N m) on a body.
+#[derive(Clone, Copy, Default)]
+struct Wrench {
+    force: Vector3<f64>,
+    torque: Vector3<f64>,
+}
+
+/// Evaluates forces (N), n x 3, in the state y at time t (s) with all points in their places,
+/// and uses them with these positions and velocities.
+fn with_forces<T>(
+    network: &Network,
+    t: f64,
+    terms: Terms,
+    y: &[f64],
+    run: impl FnOnce(&[f64], &[f64], &[f64]) -> T,
+) -> T {
+    network
+        .bodies
+        .scratch
+        .lend(network.particles(), |[x, v, f]| {
+            let (own_x, own_v) = network.halves(y);
+            x.copy_from_slice(own_x);
+            v.copy_from_slice(own_v);
+            network.bodies.place_points(y, x, v);
+            let at = at(network, t, x, v);
+            network.elements.evaluate(&at, f, &Finish::default());
+            if !drifts_carry(network, terms) {
+                let Carried { gravity, drag } = network.elements.carried();
+                let n = network.particles();
+                for (k, (f, v)) in f.iter_mut().zip(&*v).enumerate() {
+                    let mass = network.masses()[k % n];
+                    *f += mass * gravity[k / n] - if mass > 0.0 { drag * v } else { 0.0 };
+                }
+                let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, x, f);
+                hold(network, t, [x, v], bodies, f);
+            }
+            run(x, v, f)
+        })
+}
+
+/// Force and torque on a body at x, of the forces f on its particles. Drag acts on a rotation
+/// as it does on the motion of the centre: at the rate c / m.
+fn wrench(
+    network: &Network,
+    body: &Body,
+    rotation: &Rotation,
+    terms: Terms,
+    x: &[f64],
+    f: &[f64],
+) -> Wrench {
+    let center = row(x, body.center());
+    let mut wrench = Wrench {
+        force: row(f, body.center()),
+        torque: Vector3::zeros(),
+    };
+    for i in body.points() {
+        let force = row(f, i);
+        wrench.force += force;
+        wrench.torque += (row(x, i) - center).cross(&force);
+    }
+    if !drifts_carry(network, terms) {
+        wrench.torque -= rotation.momentum * decay(network, body);
+    }
+    wrench
+}
+
+/// How body k turns, and the acceleration of its centre (m/s2), under the forces f, with y and
+/// all points at x.
+fn turning(
+    network: &Network,
+    k: usize,
+    y: &[f64],
+    terms: Terms,
+    x: &[f64],
+    f: &[f64],
+) -> (Turning, Vector3<f64>) {
+    let (body, rotation) = (&network.bodies()[k], network.rotation(k, y));
+    let moving = body.moving(&rotation);
+    let wrench = wrench(network, body, &rotation, terms, x, f);
+    let turning = Turning {
+        center: row(x, body.center()),
+        rotation: moving.rotation,
+        spin: moving.spin,
+        acceleration: moving.angular_acceleration(&body.inertia(), wrench.torque),
+        inverse_inertia: body.inertia().map(|moment| 1.0 / moment),
+    };
+    (
+        turning,
+        wrench.force * network.particles.inverse_masses()[body.center()],
+    )
+}
+
+/// Rate (1/s) at which drag takes from the motion of a body.
+fn decay(network: &Network, body: &Body) -> f64 {
+    network.elements.carried().drag / network.masses()[body.center()]
+}
+
+/// Writes accelerations (m/s2) of particles that no body carries to a, n x 3.
+fn accelerate(network: &Network, f: &[f64], a: &mut [f64]) {
+    let n = network.particles();
+    for (k, (a, f)) in a.iter_mut().zip(f).enumerate() {
+        *a = network.particles.inverse_masses()[k % n] * f;
+    }
+}
+
+/// The row of particle i.
+fn row(a: &[f64], i: usize) -> Vector3<f64> {
+    let n = a.len() / 3;
+    Vector3::new(a[i], a[n + i], a[2 * n + i])
+}
+
+impl Rigid for Network {
+    fn length(&self) -> usize {
+        6 * self.particles() + ROTATION * self.bodies().len()
+    }
+
+    fn rates(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
+        let n = self.particles();
+        with_forces(self, t, Terms::AllForces, y, |x, v, f| {
+            let (halves, tail) = dydt.split_at_mut(6 * n);
+            let (dx, dv) = halves.split_at_mut(3 * n);
+            dx.copy_from_slice(v);
+            accelerate(self, f, dv);
+            Mechanics::pins(self, t, &mut |i, place| {
+                for axis in 0..3 {
+                    dx[axis * n + i] = place.velocity[axis];
+                    dv[axis * n + i] = place.acceleration[axis];
+                }
+            });
+            for ((_, body, rotation, moving), tail) in
+                self.bodies.each(y).zip(tail.chunks_exact_mut(ROTATION))
+            {
+                let wrench = wrench(self, body, &rotation, Terms::AllForces, x, f);
+                let (c, w) = (
+                    body.center(),
+                    self.particles.inverse_masses()[body.center()],
+                );
+                for axis in 0..3 {
+                    if w > 0.0 {
+                        dv[axis * n + c] = w * wrench.force[axis];
+                    }
+                }
+                let rate = Rotation {
+                    q: moving.rate(rotation.q),
+                    momentum: wrench.torque,
+                };
+                rate.write(tail);
+                let turning = moving.angular_acceleration(&body.inertia(), wrench.torque);
+                for (i, anchor) in body.anchors() {
+                    let arm = moving.rotation * anchor;
+                    let along = moving.spin.cross(&arm);
+                    let change = turning.cross(&arm) + moving.spin.cross(&along);
+                    for axis in 0..3 {
+                        dx[axis * n + i] = dx[axis * n + c] + along[axis];
+                        dv[axis * n + i] = dv[axis * n + c] + change[axis];
+                    }
+                }
+            }
+        });
+    }
+
+    fn kick(&self, t: f64, terms: Terms, y: &[f64], rates: &mut [f64]) {
+        let n = self.particles();
+        with_forces(self, t, terms, y, |x, _, f| {
+            rates.fill(0.0);
+            accelerate(self, f, &mut rates[3 * n..6 * n]);
+            for (k, body, rotation, _) in self.bodies.each(y) {
+                let wrench = wrench(self, body, &rotation, terms, x, f);
+                let w = self.particles.inverse_masses()[body.center()];
+                for axis in 0..3 {
+                    rates[(3 + axis) * n + body.center()] = w * wrench.force[axis];
+                }
+                let momentum = self.bodies.numbers(k).end - 3..self.bodies.numbers(k).end;
+                rates[momentum].copy_from_slice(wrench.torque.as_slice());
+            }
+        });
+    }
+
+    fn kick_reads_velocity(&self) -> bool {
+        Splitting::kick_reads_velocity(self)
+    }
+
+    fn drift(&self, t: f64, h: f64, terms: Terms, y: &mut [f64]) {
+        let n = self.particles();
+        let (halves, tail) = y.split_at_mut(6 * n);
+        let (x, v) = halves.split_at_mut(3 * n);
+        let carries = drifts_carry(self, terms);
+        if carries {
+            Splitting::drift(self, t, h, x, v);
+        } else {
+            for (x, v) in x.iter_mut().zip(v) {
+                *x += h * *v;
+            }
+        }
+        for (body, tail) in self.bodies().iter().zip(tail.chunks_exact_mut(ROTATION)) {
+            let mut rotation = Rotation::read(tail);
+            let decay = if carries { decay(self, body) } else { 0.0 };
+            body.fly(&mut rotation, decay, h);
+            rotation.write(tail);
+        }
+        self.place(t + h, y);
+    }
+
+    fn is_carried(&self, k: usize) -> bool {
+        let n = self.particles();
+        k < 6 * n && Self::is_carried(self, k % n)
+    }
+
+    fn place(&self, t: f64, y: &mut [f64]) {
+        let n = self.particles();
+        let (x, rest) = y.split_at_mut(3 * n);
+        let (v, _) = rest.split_at_mut(3 * n);
+        place_pins(self, t, x, v);
+        self.bodies.scratch.lend(n, |[px, pv, _]| {
+            px.copy_from_slice(&y[..3 * n]);
+            pv.copy_from_slice(&y[3 * n..6 * n]);
+            self.bodies.place_points(y, px, pv);
+            y[..3 * n].copy_from_slice(px);
+            y[3 * n..6 * n].copy_from_slice(pv);
+        });
+    }
+
+    fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
+        for axis in 0..6 {
+            let measure = if axis < 3 {
+                Measure::Position
+            } else {
+                Measure::Velocity
+            };
+            let mut start = axis * self.particles();
+            for run in self.masses().chunk_by(|a, b| (*a > 0.0) == (*b > 0.0)) {
+                if run[0] > 0.0 {
+                    visit(start..start + run.len(), measure);
+                }
+                start += run.len();
+            }
+        }
+        for (k, body) in self.bodies().iter().enumerate() {
+            let Range { start, end } = self.bodies.numbers(k);
+            let (radius, speed) = (body.radius(), body.speed());
+            visit(start..end - 3, Measure::Rotation { radius });
+            visit(end - 3..end, Measure::Momentum { speed });
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Surfaces of a network: triangles, obstacles, and what of them touches.
+
+use std::sync::Arc;
+
+use super::particles::Particles;
+use super::tearing::Tears;
+use crate::contact::{ContactLayer, Obstacle, Shape, Skin, Surface};
+use crate::elements::Wind;
+use crate::error::Error;
+use crate::path::{Path, Turn};
+use crate::rigid::Body;
+
+/// What of a network can touch, beside its triangles and obstacles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Touch {
+    /// Skin of each particle.
+    pub skins: Vec<Skin>,
+    /// Edges that are in no triangle, such as those of a rope. An edge with equal ends is a point.
+    pub edges: Vec<[u32; 2]>,
+    /// Whether bodies touch one another and themselves, or obstacles alone.
+    pub bodies: bool,
+}
+
+/// Triangles, obstacles, and what can touch, if surfaces do.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Surfaces {
+    pub triangles: Arc<[[u32; 3]]>,
+    touch: Option<Touch>,
+    obstacles: Vec<Obstacle>,
+}
+
+impl Surfaces {
+    pub fn touch(&self) -> Option<&Touch> {
+        self.touch.as_ref()
+    }
+
+    pub fn obstacles(&self) -> &[Obstacle] {
+        &self.obstacles
+    }
+
+    pub fn set_touch(&mut self, touch: Option<Touch>, particles: &Particles) -> Result<(), Error> {
+        if let Some(touch) = &touch {
+            if touch.skins.len() != particles.len() {
+                return Err(Error::Dimension {
+                    expected: particles.len(),
+                    found: touch.skins.len(),
+                });
+            }
+            touch.skins.iter().try_for_each(Skin::check)?;
+            for i in touch.edges.iter().flatten() {
+                particles.check(*i as usize)?;
+            }
+        }
+        self.touch = touch;
+        Ok(())
+    }
+
+    pub fn add_obstacle(&mut self, obstacle: Obstacle) -> Result<(), Error> {
+        obstacle.check()?;
+        self.obstacles.push(obstacle);
+        Ok(())
+    }
+
+    pub fn remove_obstacle(&mut self, k: usize) -> Result<Obstacle, Error> {
+        self.check_obstacle(k)?;
+        Ok(self.obstacles.remove(k))
+    }
+
+    pub fn lead_obstacle(&mut self, k: usize, path: Path) -> Result<&Obstacle, Error> {
+        self.check_obstacle(k)?;
+        self.obstacles[k].path = path;
+        Ok(&self.obstacles[k])
+    }
+
+    pub fn reshape_obstacle(&mut self, k: usize, shape: Shape) -> Result<(), Error> {
+        self.check_obstacle(k)?;
+        shape.check()?;
+        self.obstacles[k].shape = shape;
+        Ok(())
+    }
+
+    /// Checks that obstacle k exists.
+    pub fn check_obstacle(&self, k: usize) -> Result<(), Error> {
+        match self.obstacles.len() {
+            count if k < count => Ok(()),
+            0 => Err(Error::Invalid("there is no obstacle here".into())),
+            count => Err(Error::Invalid(format!(
+                "there is no obstacle {k}: they are numbered 0 to {}",
+                count - 1
+            ))),
+        }
+    }
+
+    /// Leaves out triangles that have lost a side.
+    pub fn leave_out_holes(&mut self, tears: &Tears) {
+        let whole = |corners: &&[u32; 3]| tears.is_whole(corners.map(|i| i as usize));
+        self.triangles = self.triangles.iter().filter(whole).copied().collect();
+    }
+
+    /// Creates the contact of these surfaces and bodies, if they touch.
+    pub fn layer(&self, bodies: &[Body], tears: &Tears) -> Option<ContactLayer> {
+        self.touch.as_ref().map(|touch| {
+            let is_whole = |[a, b]: &[u32; 2]| !tears.is_torn(*a as usize, *b as usize);
+            let edges: Vec<_> = touch.edges.iter().copied().filter(is_whole).collect();
+            self.contact(&touch.skins, &edges, bodies, touch.bodies)
+        })
+    }
+
+    /// Creates the contact of all surfaces of n particles and of bodies, whether they touch or not.
+    pub fn layer_of_all(&self, bodies: &[Body], n: usize) -> ContactLayer {
+        self.contact(&vec![Skin::default(); n], &[], bodies, true)
+    }
+
+    fn contact(
+        &self,
+        skins: &[Skin],
+        edges: &[[u32; 2]],
+        bodies: &[Body],
+        touches_itself: bool,
+    ) -> ContactLayer {
+        let obstacles = &self.obstacles;
+        let surface = Surface::new(
+            skins,
+            &self.triangles,
+            edges,
+            bodies,
+            obstacles,
+            touches_itself,
+        );
+        ContactLayer::new(surface, obstacles.clone())
+    }
+}
+
+/// Motion that a scene prescribes: that of pins, obstacles and wind.
+pub(super) struct Prescribed<'a> {
+    pub particles: &'a Particles,
+    pub obstacles: &'a [Obstacle],
+    pub wind: Option<&'a Wind>,
+}
+
+impl Prescribed<'_> {
+    fn paths(&self) -> impl Iterator<Item = &Path> {
+        let obstacles = self.obstacles.iter().map(|obstacle| &obstacle.path);
+        let pins = self.particles.pins().iter().map(|pin| &pin.path);
+        pins.chain(obstacles)
+    }
+
+    fn turns(&self) -> impl Iterator<Item = Turn> {
+        self.obstacles.iter().filter_map(|obstacle| obstacle.turn)
+    }
+
+    /// Whether pins or obstacles move, now or at some time.
+    pub fn moves(&self) -> bool {
+        let moves = |path: &Path| !matches!(path, Path::Still(_));
+        self.paths().any(moves) || self.turns().next().is_some()
+    }
+
+    /// First time after t (s) at which a path or a turn begins or ends; infinite if there is none.
+    pub fn next_known_time(&self, t: f64) -> f64 {
+        let of_paths = self.paths().flat_map(Path::known_times);
+        let all = of_paths.chain(self.turns().flat_map(|turn| turn.known_times()));
+        all.filter(|time| *time > t).fold(f64::INFINITY, f64::min)
+    }
+
+    /// A quarter of the shortest period from time t (s) to `end` (s).
+    pub fn quarter_period(&self, t: f64, end: f64) -> f64 {
+        let times = [t, end];
+        let of_paths = self.paths().map(|path| path.quarter_period(times));
+        let of_turns = self.turns().filter(|turn| turn.is_on(times));
+        let of_turns = of_turns.map(|turn| 0.5 * std::f64::consts::PI / turn.rate.abs());
+        let of_wind = self.wind.map(Wind::quarter_period);
+        let all = of_paths.chain(of_turns).chain(of_wind);
+        all.fold(f64::INFINITY, f64::min)
+    }
+}
