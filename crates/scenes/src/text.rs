@@ -1,19 +1,47 @@
 //! Texts as programs of all systems write them: byte order marks, and ends of lines.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Byte order mark of UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
+/// What other files begin with, and what to do with them.
+const OTHERS: [(&[u8], &str); 5] = [
+    (b"\x1f\x8b", "it is compressed by gzip: unpack it"),
+    (b"PK\x03\x04", "it is a zip archive: unpack it"),
+    (
+        b"version https://git-lfs",
+        "it is a pointer of Git LFS and not the file itself: fetch it by `git lfs pull`",
+    ),
+    (b"<!DOCTYPE", "it is a web page: download the file itself"),
+    (b"<html", "it is a web page: download the file itself"),
+];
+
 /// The text without its byte order mark, if it has one.
 ///
 /// # Errors
-/// The text is UTF-16.
+/// The text is UTF-16 or UTF-32, or it is no text but an archive, say.
 pub fn unmarked(text: &[u8]) -> Result<&[u8], String> {
-    let is_wide = matches!(text, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]);
-    // Without a mark, every second byte of what is ASCII is 0.
-    let is_half_empty = matches!(text, [a, b, ..] if (*a == 0) != (*b == 0));
-    if is_wide || is_half_empty {
+    if let Some((_, why)) = OTHERS.iter().find(|(begins, _)| text.starts_with(begins)) {
+        return Err((*why).into());
+    }
+    // Without a mark, most bytes of what is ASCII are 0.
+    let is_ascii = |b: &u8| b.is_ascii_graphic() || b.is_ascii_whitespace();
+    let begin = text.get(..8).unwrap_or_default();
+    let is_wide_by = |size: usize| {
+        let is_letter = |unit: &[u8]| match unit {
+            [letter, zeros @ ..] if is_ascii(letter) => zeros.iter().all(|b| *b == 0),
+            [zeros @ .., letter] => is_ascii(letter) && zeros.iter().all(|b| *b == 0),
+            [] => false,
+        };
+        !begin.is_empty() && begin.chunks_exact(size).all(is_letter)
+    };
+    let is_marked_32 = matches!(text, [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..]);
+    if is_marked_32 || is_wide_by(4) {
+        return Err("it is UTF-32 text: save it as UTF-8".into());
+    }
+    if matches!(text, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) || is_wide_by(2) {
         return Err("it is UTF-16 text: save it as UTF-8".into());
     }
     Ok(text.strip_prefix(MARK).unwrap_or(text))
@@ -79,6 +107,11 @@ impl<'a> Iterator for Lines<'a> {
     fn next(&mut self) -> Option<Self::Item> {
         self.statement(|_| false)
     }
+}
+
+/// The beginning of a word, for a message.
+pub(crate) fn brief(word: &[u8]) -> Cow<'_, str> {
+    String::from_utf8_lossy(&word[..word.len().min(40)])
 }
 
 /// Words of a statement: what is between spaces, ends of lines and the backslashes before these.

@@ -4,11 +4,15 @@
 use super::data::Mesh;
 use super::tetrahedra::{Numbered, lines, position, whole};
 
-/// Kinds of elements that are tetrahedra: of 4, 10, 20, 35 and 56 points, of which the first four
-/// are the corners.
-const TETRAHEDRA: [u64; 5] = [4, 11, 29, 30, 31];
-/// Kinds of other solid elements: hexahedra, prisms and pyramids.
-const OTHER_SOLIDS: [u64; 9] = [5, 6, 7, 12, 13, 14, 17, 18, 19];
+/// Whether a kind of elements is a tetrahedron, of whatever order: its first points are its corners.
+fn is_simplex(kind: u64) -> bool {
+    matches!(kind, 4 | 11 | 29..=33 | 71..=75 | 79..=83 | 87 | 137 | 139)
+}
+
+/// Whether a kind of elements is another solid: a hexahedron, a prism, a pyramid or a polyhedron.
+fn is_other_solid(kind: u64) -> bool {
+    matches!(kind, 5..=7 | 12..=14 | 17..=19 | 35 | 88..=132 | 140)
+}
 
 /// Lines with their numbers, of which the last that was read is known.
 struct Reader<I> {
@@ -58,8 +62,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
         reader.line = line;
         match (words[0], version) {
             ("$MeshFormat", _) => version = Some(format(&reader.next("$MeshFormat")?)?),
-            ("$Nodes" | "$Elements", None) => return Err(NO_FORMAT.into()),
-            ("$Nodes", Some(Version::Two)) => nodes_2(&mut reader, &mut numbered)?,
+            ("$NOD" | "$ELM", None) => return Err(refused("1")),
+            ("$Nodes" | "$ParametricNodes" | "$Elements", None) => return Err(NO_FORMAT.into()),
+            ("$Nodes" | "$ParametricNodes", Some(Version::Two)) => {
+                nodes_2(&mut reader, &mut numbered)?
+            }
             ("$Nodes", Some(Version::Four)) => nodes_4(&mut reader, &mut numbered)?,
             ("$Elements", Some(Version::Two)) => elements_2(&mut reader, &mut numbered)?,
             ("$Elements", Some(Version::Four)) => elements_4(&mut reader, &mut numbered)?,
@@ -85,11 +92,17 @@ fn format(words: &[&str]) -> Result<Version, String> {
     match words {
         ["2.2", "0", ..] => Ok(Version::Two),
         ["4.1", "0", ..] => Ok(Version::Four),
-        _ => Err(
-            "only Gmsh's text formats 2.2 and 4.1 are read: save with `-format msh41` or `msh22`"
-                .into(),
-        ),
+        [version, "1", ..] => Err(refused(&format!("{version}, binary"))),
+        [version, ..] => Err(refused(version)),
+        [] => Err(NO_FORMAT.into()),
     }
+}
+
+/// Refusal of a format of Gmsh.
+fn refused(format: &str) -> String {
+    format!(
+        "it is Gmsh's format {format}, and only the text formats 2.2 and 4.1 are read: save with `-format msh41` or `msh22`"
+    )
 }
 
 fn nodes_2<'a>(
@@ -112,18 +125,17 @@ fn elements_2<'a>(
 ) -> Result<(), String> {
     let count = reader.numbers("$Elements", 1)?[0];
     for _ in 0..count {
-        let numbers = reader.numbers("$Elements", 3)?;
-        if is_tetrahedron(numbers[1]).map_err(|why| reader.wrong(&why))? {
-            let first = numbers[2].saturating_add(3);
-            let corners = usize::try_from(first)
-                .ok()
-                .and_then(|first| numbers.get(first..));
-            add(
-                reader.line,
-                numbers[0],
-                corners.unwrap_or_default(),
-                numbered,
-            )?;
+        let words = reader.next("$Elements")?;
+        let head = words
+            .get(..3)
+            .ok_or_else(|| reader.wrong("3 whole numbers are needed here"))?;
+        let head = whole(head).map_err(|why| reader.wrong(&why))?;
+        if is_tetrahedron(head[1]).map_err(|why| reader.wrong(&why))? {
+            // Tags, which may be negative, come before the corners.
+            let first = usize::try_from(head[2].saturating_add(3)).unwrap_or(usize::MAX);
+            let corners = whole(words.get(first..).unwrap_or_default());
+            let corners = corners.map_err(|why| reader.wrong(&why))?;
+            add(reader.line, head[0], &corners, numbered)?;
         }
     }
     Ok(())
@@ -171,12 +183,12 @@ fn elements_4<'a>(
 /// Whether elements of this kind are tetrahedra. Other solid ones are refused, lest a body has
 /// holes where they were.
 fn is_tetrahedron(kind: u64) -> Result<bool, String> {
-    if OTHER_SOLIDS.contains(&kind) {
+    if is_other_solid(kind) {
         return Err(format!(
             "an element of type {kind} is a hexahedron, a prism or a pyramid: of solid elements only tetrahedra are read"
         ));
     }
-    Ok(TETRAHEDRA.contains(&kind))
+    Ok(is_simplex(kind))
 }
 
 /// Adds the tetrahedron of a line, which has that number.

@@ -2,7 +2,8 @@
 
 use super::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 use super::polygon::Cutter;
-use crate::text::{Lines, words};
+use crate::description::Triple;
+use crate::text::{Lines, brief, words};
 
 /// Faces of a file, as numbers of points.
 #[derive(Default)]
@@ -31,12 +32,7 @@ pub(super) fn read(text: &[u8]) -> Result<Mesh, String> {
                 if mesh.positions.len() == MAX_POINTS {
                     return Err(wrong(format!("there are more than {MAX_POINTS} points")));
                 }
-                let mut coordinate = || str::from_utf8(words.next()?).ok()?.parse::<f32>().ok();
-                let point = [coordinate(), coordinate(), coordinate()];
-                let [Some(x), Some(y), Some(z)] = point.map(|x| x.filter(|x| x.is_finite())) else {
-                    return Err(wrong("a point has three numbers, as in `v 0 0.5 1`".into()));
-                };
-                mesh.positions.push([x, y, z].map(f64::from));
+                mesh.positions.push(point(words).map_err(wrong)?);
             }
             Some(b"f") => faces
                 .add(words, mesh.positions.len(), line)
@@ -46,6 +42,20 @@ pub(super) fn read(text: &[u8]) -> Result<Mesh, String> {
     }
     faces.cut(&mut mesh)?;
     Ok(mesh)
+}
+
+/// The point that has these coordinates.
+fn point<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<Triple, String> {
+    let mut point = [0.0; 3];
+    for x in &mut point {
+        let of_three = "a point has three finite numbers, as in `v 0 0.5 1`";
+        let word = words.next().ok_or(of_three)?;
+        let number = str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+        *x = number
+            .filter(|x: &f64| x.is_finite())
+            .ok_or_else(|| format!("`{}` is none: {of_three}", brief(word)))?;
+    }
+    Ok(point)
 }
 
 impl Faces {
@@ -62,7 +72,7 @@ impl Faces {
                 format!(
                     "`{}` is no corner: a corner is the number of a point, counted from 1, or from -1 \
                      backwards, among the {count} points before it",
-                    String::from_utf8_lossy(&word[..word.len().min(40)])
+                    brief(word)
                 )
             })?;
             self.last = self.last.max((corner, line));
@@ -100,7 +110,7 @@ impl Faces {
             cut.ok_or_else(|| {
                 let count = face.len();
                 format!(
-                    "line {line}: a face that is not convex has too many corners, {count}: split it"
+                    "line {line}: faces that are not convex have too many corners, {count} in this one: split them"
                 )
             })?;
             first = end as usize;

@@ -57,6 +57,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
     {
         for k in 0..element.count {
             let read = faces.add(element, &mut numbers);
+            numbers.end_line();
             read.map_err(|why| format!("{} {k}, counted from 0: {why}", element.name))?;
         }
     }
@@ -67,7 +68,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
 fn head(bytes: &[u8]) -> Result<(Form, Vec<Element>, &[u8]), String> {
     let no_ply = "it is no PLY file: one begins with the lines `ply` and `format`";
     let end = bytes.windows(END.len()).position(|window| window == END);
-    let end = end.filter(|_| bytes.starts_with(b"ply")).ok_or(no_ply)?;
+    if !bytes.starts_with(b"ply") {
+        return Err(no_ply.into());
+    }
+    let end = end.ok_or("its head does not end: the line `end_header` is missing")?;
     let after = &bytes[end + END.len()..];
     // One end of a line, lest a byte of the numbers is taken for another.
     let body = after.strip_prefix(b"\r\n").or(after.strip_prefix(b"\n"));
@@ -139,6 +143,15 @@ struct Numbers<'a> {
 }
 
 impl Numbers<'_> {
+    /// Passes over what a line of text has beside its element.
+    fn end_line(&mut self) {
+        if self.form == Form::Text {
+            let is_end = |b: &u8| matches!(b, b'\n' | b'\r');
+            let end = self.rest.iter().position(is_end);
+            self.rest = &self.rest[end.unwrap_or(self.rest.len())..];
+        }
+    }
+
     /// The next number, of that type.
     fn next(&mut self, kind: Kind) -> Result<f64, String> {
         if self.form == Form::Text {
@@ -248,9 +261,11 @@ impl Faces {
     /// The mesh, with all faces cut into triangles.
     fn cut(mut self) -> Result<Mesh, String> {
         let count = self.mesh.positions.len();
-        if let Some(corner) = self.corners.iter().find(|i| **i as usize >= count) {
+        if let Some(k) = self.corners.iter().position(|i| *i as usize >= count) {
+            let face = self.ends.partition_point(|end| *end as usize <= k);
             return Err(format!(
-                "a face has corner {corner}, but there are {count} points"
+                "face {face}, counted from 0, has corner {}, but there are {count} points",
+                self.corners[k]
             ));
         }
         let (mut cutter, mut first) = (Cutter::default(), 0);
@@ -263,7 +278,7 @@ impl Faces {
             let face = &self.corners[first..*end as usize];
             cutter.cut(face, positions, triangles).ok_or_else(|| {
                 let count = face.len();
-                format!("face {k}, counted from 0, is not convex and has too many corners, {count}: split it")
+                format!("faces that are not convex have too many corners, {count} in face {k}, counted from 0: split them")
             })?;
             first = *end as usize;
         }

@@ -27,8 +27,9 @@ enum Asked {
 pub(super) struct Cutter {
     /// Tests in all faces so far.
     tests: usize,
-    /// Corners of the face in its plane, in which it is anticlockwise.
+    /// Corners of the face in its plane, in which it is anticlockwise, and in space.
     corners: Vec<Coord<f64>>,
+    places: Vec<Triple>,
     /// Corners beside each one, of those that are left.
     beside: Vec<[u32; 2]>,
     /// Corners where the face is not convex.
@@ -62,8 +63,9 @@ impl Cutter {
         self.clip(|ear| triangles.push(ear.map(|k| face[k])))
     }
 
-    /// Finds the corners in the plane of the axes across which the face is largest. Returns whether
-    /// it has an area.
+    /// Finds the corners in the plane of the axes across which the face is largest; of those across
+    /// which it is half as large, one in which no two corners that are apart in space fall on one
+    /// place is taken before others. Returns whether the face has an area.
     fn flatten(&mut self, face: &[u32], positions: &[Triple]) -> bool {
         let at = |k: usize| positions[face[k] as usize];
         let (origin, mut normal) = (at(0), [0.0; 3]);
@@ -75,26 +77,41 @@ impl Cutter {
                 *sum += a[u] * b[v] - a[v] * b[u];
             }
         }
-        let larger = |k: usize, other: usize| {
-            if normal[other].abs() > normal[k].abs() {
-                other
-            } else {
-                k
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|a, b| normal[*b].abs().total_cmp(&normal[*a].abs()));
+        let least = 0.5 * normal[axes[0]].abs();
+        self.places.clear();
+        self.places.extend((0..face.len()).map(at));
+        for axis in axes.into_iter().filter(|axis| normal[*axis].abs() >= least) {
+            self.project(axis, normal[axis] > 0.0);
+            if !self.falls_together() {
+                return least > 0.0;
             }
-        };
-        let axis = (1..3).fold(0, larger);
-        let (u, v) = match normal[axis] {
-            area if area > 0.0 => ((axis + 1) % 3, (axis + 2) % 3),
-            area if area < 0.0 => ((axis + 2) % 3, (axis + 1) % 3),
-            _ => return false,
+        }
+        self.project(axes[0], normal[axes[0]] > 0.0);
+        least > 0.0
+    }
+
+    /// Leaves out the coordinates along an axis.
+    fn project(&mut self, axis: usize, is_up: bool) {
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (u, v) = if is_up { (next, last) } else { (last, next) };
+        let flat = |place: &Triple| Coord {
+            x: place[u],
+            y: place[v],
         };
         self.corners.clear();
-        let flat = |k| Coord {
-            x: at(k)[u],
-            y: at(k)[v],
+        self.corners.extend(self.places.iter().map(flat));
+    }
+
+    /// Whether corners beside one another, or next but one, fall on one place in the plane but not
+    /// in space.
+    fn falls_together(&self) -> bool {
+        let n = self.corners.len();
+        let together = |a: usize, b: usize| {
+            self.corners[a] == self.corners[b] && self.places[a] != self.places[b]
         };
-        self.corners.extend((0..face.len()).map(flat));
-        true
+        (0..n).any(|k| together(k, (k + 1) % n) || together(k, (k + 2) % n))
     }
 
     /// Twice the area of a triangle of corners, or a number of the same sign.
@@ -179,7 +196,7 @@ impl Cutter {
 
     /// Whether a corner is where one beside it is, or the end of a line there and back.
     fn is_nothing(&self, [a, b, c]: [usize; 3]) -> bool {
-        let [a, b, c] = [a, b, c].map(|k| self.corners[k]);
+        let [a, b, c] = [a, b, c].map(|k| self.places[k]);
         a == b || b == c || a == c
     }
 

@@ -66,7 +66,7 @@ impl Mesh {
         if self.triangles.is_empty() {
             return Err("the file has no triangles".into());
         }
-        let mesh = self.in_use(first);
+        let mesh = self.with_areas()?.in_use(first);
         let far = |p: &Triple| p.iter().any(|x| !within(*x));
         if let Some(i) = mesh.positions.iter().position(far) {
             let [x, y, z] = mesh.positions[i];
@@ -76,6 +76,20 @@ impl Mesh {
             ));
         }
         Ok(mesh)
+    }
+
+    /// The mesh without triangles at points around which none has an area, unless it has
+    /// tetrahedra.
+    fn with_areas(mut self) -> Result<Self, String> {
+        if self.tetrahedra.is_empty() {
+            let areas = self.areas();
+            let has_area = |t: &[u32; 3]| t.iter().all(|i| areas[*i as usize] != 0.0);
+            self.triangles.retain(has_area);
+            if self.triangles.is_empty() {
+                return Err("the triangles of the file have no area".into());
+            }
+        }
+        Ok(self)
     }
 
     /// The mesh without points that are in nothing, with the numbers of the others.

@@ -13,28 +13,28 @@ const TRIANGLE: usize = 50;
 #[derive(Default)]
 struct Corners {
     mesh: Mesh,
-    known: HashMap<[u32; 3], u32>,
+    known: HashMap<[u64; 3], u32>,
 }
 
 impl Corners {
     /// The point at that place.
-    fn point(&mut self, at: [f32; 3]) -> Result<u32, String> {
+    fn point(&mut self, at: [f64; 3]) -> Result<u32, String> {
         if !at.iter().all(|x| x.is_finite()) {
             return Err("a corner has three finite coordinates".into());
         }
         let positions = &mut self.mesh.positions;
         let next = positions.len() as u32;
-        let point = *self.known.entry(at.map(f32::to_bits)).or_insert(next);
+        let point = *self.known.entry(at.map(f64::to_bits)).or_insert(next);
         if point == next {
             if positions.len() == MAX_POINTS {
                 return Err(format!("there are more than {MAX_POINTS} points"));
             }
-            positions.push(at.map(f64::from));
+            positions.push(at);
         }
         Ok(point)
     }
 
-    fn triangle(&mut self, corners: [[f32; 3]; 3]) -> Result<(), String> {
+    fn triangle(&mut self, corners: [[f64; 3]; 3]) -> Result<(), String> {
         if self.mesh.triangles.len() == MAX_TRIANGLES {
             return Err(format!("there are more than {MAX_TRIANGLES} triangles"));
         }
@@ -49,12 +49,21 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
     let count = bytes.get(HEAD - 4..HEAD).and_then(|n| n.try_into().ok());
     let count = count.map(|n| u32::from_le_bytes(n) as usize);
     let length = count.and_then(|count| count.checked_mul(TRIANGLE)?.checked_add(HEAD));
-    let text = unmarked(bytes).unwrap_or_default().trim_ascii_start();
-    match length {
-        Some(length) if length == bytes.len() => binary(&bytes[HEAD..]),
-        _ if text.starts_with(b"solid") => lines(text),
-        Some(length) if length < bytes.len() => binary(&bytes[HEAD..length]),
-        _ => Err("it is no STL file, or cut short: one begins with `solid`, or has 84 bytes and 50 more for each triangle".into()),
+    let is_text = |bytes: &[u8]| {
+        let begin = bytes.trim_ascii_start().get(..5);
+        begin.is_some_and(|begin| begin.eq_ignore_ascii_case(b"solid"))
+    };
+    let fits = length.filter(|length| *length <= bytes.len());
+    match (unmarked(bytes), fits) {
+        (_, Some(length)) if length == bytes.len() => binary(&bytes[HEAD..]),
+        (Ok(text), fits) if is_text(text) => match (lines(text), fits) {
+            // Some binary files begin like text, and have more bytes after their triangles.
+            (Ok(mesh), Some(length)) if mesh.triangles.is_empty() => binary(&bytes[HEAD..length]),
+            (read, _) => read,
+        },
+        (_, Some(length)) => binary(&bytes[HEAD..length]),
+        (Err(why), None) => Err(why),
+        (Ok(_), None) => Err("it is no STL file, or cut short: one begins with `solid`, or has 84 bytes and 50 more for each triangle".into()),
     }
 }
 
@@ -64,7 +73,7 @@ fn binary(triangles: &[u8]) -> Result<Mesh, String> {
         // A normal comes first.
         let (numbers, _) = triangle[12..48].as_chunks::<4>();
         let (points, _) = numbers.as_chunks::<3>();
-        let [a, b, c] = [0, 1, 2].map(|k| points[k].map(f32::from_le_bytes));
+        let [a, b, c] = [0, 1, 2].map(|k| points[k].map(|x| f64::from(f32::from_le_bytes(x))));
         let added = corners.triangle([a, b, c]);
         added.map_err(|why| format!("triangle {k}, counted from 0: {why}"))?;
     }
@@ -73,19 +82,25 @@ fn binary(triangles: &[u8]) -> Result<Mesh, String> {
 
 fn lines(text: &[u8]) -> Result<Mesh, String> {
     let (mut corners, mut loop_of) = (Corners::default(), vec![]);
+    let (mut is_in_facet, mut has_ended) = (false, false);
     for (line, statement) in Lines::new(text) {
         let wrong = |why: String| format!("line {line}: {why}");
         let mut words = words(statement);
-        match words.next() {
-            Some(b"vertex") => {
-                let mut coordinate = || str::from_utf8(words.next()?).ok()?.parse::<f32>().ok();
+        let key = words.next().unwrap_or_default().to_ascii_lowercase();
+        match &key[..] {
+            b"solid" => has_ended = false,
+            b"endsolid" => has_ended = true,
+            b"facet" => is_in_facet = true,
+            b"endfacet" => is_in_facet = false,
+            b"vertex" => {
+                let mut coordinate = || str::from_utf8(words.next()?).ok()?.parse::<f64>().ok();
                 let [Some(x), Some(y), Some(z)] = [coordinate(), coordinate(), coordinate()] else {
                     let why = "a corner has three numbers, as in `vertex 0 0.5 1`";
                     return Err(wrong(why.into()));
                 };
                 loop_of.push([x, y, z]);
             }
-            Some(b"endloop") => {
+            b"endloop" => {
                 let [a, b, c] = loop_of[..] else {
                     return Err(wrong("a triangle has three corners".into()));
                 };
@@ -97,6 +112,9 @@ fn lines(text: &[u8]) -> Result<Mesh, String> {
         if loop_of.len() > 3 {
             return Err(wrong("a triangle has three corners".into()));
         }
+    }
+    if is_in_facet || !has_ended && !corners.mesh.triangles.is_empty() {
+        return Err("the file ends before `endsolid`: it is cut short".into());
     }
     Ok(corners.mesh)
 }

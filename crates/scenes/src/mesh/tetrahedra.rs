@@ -1,5 +1,7 @@
 //! Tetrahedra of a mesh, from whichever file, and the triangles around them.
 
+use std::collections::HashSet;
+
 use a3_core::Vector3;
 
 use super::data::{MAX_POINTS, MAX_TETRAHEDRA, Mesh};
@@ -99,6 +101,20 @@ impl Numbered {
         if tetrahedra.is_empty() {
             return Err("the file has no tetrahedra".into());
         }
+        // Gmsh writes what is in two groups twice.
+        let mut seen = HashSet::new();
+        let mut is_new: Vec<_> = tetrahedra
+            .iter()
+            .map(|t: &[u32; 4]| {
+                let mut corners = *t;
+                corners.sort_unstable();
+                seen.insert(corners)
+            })
+            .collect();
+        let mut kept = is_new.iter();
+        tetrahedra.retain(|_| *kept.next().unwrap_or(&true));
+        let mut kept = is_new.drain(..);
+        self.tetrahedra.retain(|_| kept.next().unwrap_or(true));
         let positions: Vec<_> = self.points.iter().map(|(_, position)| *position).collect();
         let is_turned = |t: &[u32; 4]| {
             let [a, b, c, d] = t.map(|i| Vector3::from(positions[i as usize]));

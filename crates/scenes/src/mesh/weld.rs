@@ -24,12 +24,15 @@ pub(super) fn places(positions: &[Triple]) -> Vec<u32> {
     // Where a point is among the cells: of sides 1, from 0 on.
     let scaled = |i: usize| [0, 1, 2].map(|axis| (positions[i][axis] - low[axis]) / (CELL * near));
     let cell = |i: usize| scaled(i).map(|x| x.floor() as u32);
-    let mut sorted: Vec<_> = (0..positions.len()).map(|i| (cell(i), i as u32)).collect();
-    sorted.sort_unstable();
+    let mut cells: Vec<_> = (0..positions.len()).map(cell).collect();
+    cells.sort_unstable();
+    cells.dedup();
     let is_near = |i: usize, k: usize| {
         let apart = [0, 1, 2].map(|axis| positions[i][axis] - positions[k][axis]);
         apart.iter().map(|x| x * x).sum::<f64>() <= near * near
     };
+    // Of the points in a cell, those that are the first at their place: few, as they are apart.
+    let mut firsts = vec![vec![]; cells.len()];
     let mut same: Vec<_> = (0..positions.len() as u32).collect();
     for i in 0..positions.len() {
         // The cells within reach: one or two along each axis.
@@ -39,20 +42,19 @@ pub(super) fn places(positions: &[Triple]) -> Vec<u32> {
             from..=to
         });
         let [xs, ys, zs] = span;
-        let cells = xs.flat_map(|x| {
+        let around = xs.flat_map(|x| {
             let (ys, zs) = (ys.clone(), zs.clone());
             ys.flat_map(move |y| zs.clone().map(move |z| [x, y, z]))
         });
-        let first = cells.filter_map(|cell| {
-            let from = sorted.partition_point(|(other, _)| *other < cell);
-            let there = sorted[from..]
-                .iter()
-                .take_while(|(other, _)| *other == cell);
-            let mut there = there.map(|(_, k)| *k).take_while(|k| (*k as usize) < i);
-            there.find(|k| same[*k as usize] == *k && is_near(i, *k as usize))
-        });
-        if let Some(first) = first.min() {
-            same[i] = first;
+        let there = around.filter_map(|cell| cells.binary_search(&cell).ok());
+        let known = there.flat_map(|cell| &firsts[cell]).copied();
+        match known.filter(|k| is_near(i, *k as usize)).min() {
+            Some(first) => same[i] = first,
+            None => {
+                if let Ok(own) = cells.binary_search(&cell(i)) {
+                    firsts[own].push(i as u32);
+                }
+            }
         }
     }
     same

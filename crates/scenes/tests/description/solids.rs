@@ -203,7 +203,7 @@ fn what_is_wrong_with_a_file_is_said() {
             "$Elements\n5\n",
             "line 22: $Elements ends early",
         ),
-        ("2.2 0 8", "2.2 1 8", "only Gmsh's text formats"),
+        ("2.2 0 8", "2.2 1 8", "is Gmsh's format 2.2, binary"),
         ("$MeshFormat", "$Mesh", "no Gmsh file"),
         (
             "3 4 2",

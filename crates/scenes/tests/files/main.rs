@@ -2,6 +2,7 @@
 //! read.
 
 mod faces;
+mod foreign;
 mod gltf;
 mod solids;
 mod texts;

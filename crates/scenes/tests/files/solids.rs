@@ -142,7 +142,7 @@ fn ply_is_text_or_binary_of_either_order() {
         (
             "4 0 2 3 1",
             "4 0 2 3 8",
-            "a face has corner 8, but there are 8 points",
+            "face 0, counted from 0, has corner 8, but there are 8 points",
         ),
         (
             "4 0 2 3 1",

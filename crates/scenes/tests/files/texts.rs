@@ -150,7 +150,8 @@ fn seams_are_welded() {
     let fine = "v 0 0 0\nv 1000 0 0\nv 0 1000 0\nv 0.01 0 5\nv 0.02 0 5\nv 0.02 0.01 5\nf 1 2 3\nf 4 5 6\n";
     assert_eq!(obj(fine).welded().triangles.len(), 2);
     let same = "v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n";
-    assert!(obj(same).welded().triangles.is_empty());
+    let refused = Mesh::from_obj(same.as_bytes()).unwrap_err();
+    assert_eq!(refused, "the triangles of the file have no area");
     // -0 is 0.
     let zero = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv -0 -0 0\nv 0 1 0\nf 1 2 3\nf 4 3 5\n";
     assert_eq!(obj(zero).welded().positions.len(), 4);

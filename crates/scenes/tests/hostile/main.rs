@@ -228,7 +228,10 @@ fn what_is_too_much_is_refused() {
             format!("$MeshFormat\n4.1 0 8\n$Elements\n{many} 1 1 1\n3 0 4 {many}\n1 2"),
             "four corners",
         ),
-        ("$MeshFormat\n4.1 1 8\n".into(), "only Gmsh's text formats"),
+        (
+            "$MeshFormat\n4.1 1 8\n".into(),
+            "it is Gmsh's format 4.1, binary",
+        ),
         (String::new(), "no Gmsh file"),
     ] {
         refused(expected, || Mesh::from_gmsh(text.as_bytes()).map(|_| ()));

@@ -30,6 +30,11 @@ pub(super) struct Accessor {
 }
 
 impl Accessor {
+    /// Whether its numbers are in a buffer; else they are 0, or an extension has them.
+    pub fn is_stored(&self) -> bool {
+        self.buffer_view.is_some() || self.sparse.is_some()
+    }
+
     /// The first elements of it, of which there are enough.
     pub fn first(&self, count: usize) -> Self {
         Self {

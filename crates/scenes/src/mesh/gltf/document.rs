@@ -1,7 +1,7 @@
 //! The parts of a glTF document that say where triangles are.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Matrix4;
 use serde::Deserialize;
@@ -15,6 +15,8 @@ pub(super) struct Document<'a> {
     pub asset: Asset<'a>,
     #[serde(default)]
     pub extensions_required: Vec<String>,
+    #[serde(default)]
+    extensions_used: Vec<String>,
     pub scene: Option<usize>,
     #[serde(default)]
     pub scenes: Vec<Scene>,
@@ -32,11 +34,15 @@ pub(super) struct Document<'a> {
     pub buffers: Vec<Buffer<'a>>,
 }
 
-/// What every glTF file has, of any version.
+/// Part of a glTF file of any version.
 #[derive(Deserialize)]
-pub(super) struct Head<'a> {
-    #[serde(borrow)]
-    pub asset: Asset<'a>,
+pub(super) struct Head {
+    pub asset: HeadAsset,
+}
+
+#[derive(Deserialize)]
+pub(super) struct HeadAsset {
+    pub version: serde_json::Value,
 }
 
 #[derive(Deserialize)]
@@ -111,6 +117,19 @@ pub(super) struct Buffer<'a> {
 pub(super) struct Text<'a>(#[serde(borrow)] pub Cow<'a, str>);
 
 impl Document<'_> {
+    /// The extension that compressed geometry, if one did.
+    pub fn compression(&self) -> Option<&str> {
+        let mut used = self.extensions_used.iter().map(String::as_str);
+        used.find(|name| name.contains("compression"))
+    }
+
+    /// The nodes that are below no other.
+    pub fn roots(&self) -> Vec<usize> {
+        let below: BTreeSet<_> = self.nodes.iter().flat_map(|node| &node.children).collect();
+        let all = 0..self.nodes.len();
+        all.filter(|k| !below.contains(k)).collect()
+    }
+
     /// The nodes of trees with these roots, in the order of the file, with the matrix of each that
     /// all above it make.
     pub fn placed(&self, roots: &[usize]) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
@@ -131,6 +150,11 @@ impl Document<'_> {
         }
         Ok(placed)
     }
+}
+
+/// Refusal of a file that an extension compressed.
+pub(super) fn compressed(extension: &str) -> String {
+    format!("it needs the extension {extension}, which is not read: save it without compression")
 }
 
 /// Item k of a list of the document.

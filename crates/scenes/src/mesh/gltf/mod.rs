@@ -13,12 +13,12 @@ use crate::budget;
 use crate::fault::Fault;
 use accessor::Buffers;
 use container::{decoded, parts, unescaped};
-use document::{Document, Head, Text, item};
+use document::{Document, Head, Text, compressed, item};
 use primitive::Reader;
 use skin::Skins;
 
 /// Beginnings of the names of extensions that do not touch geometry, and of one that is read.
-const HARMLESS: [&str; 10] = [
+const HARMLESS: [&str; 20] = [
     "KHR_materials_",
     "KHR_texture_",
     "KHR_lights_",
@@ -29,6 +29,16 @@ const HARMLESS: [&str; 10] = [
     "EXT_lights_",
     "EXT_materials_",
     "MSFT_texture_",
+    "MSFT_packing_",
+    "KHR_technique",
+    "KHR_audio",
+    "KHR_node_visibility",
+    "ADOBE_materials_",
+    "FB_ngon_encoding",
+    "EXT_mesh_features",
+    "EXT_structural_metadata",
+    "EXT_instance_features",
+    "VRM",
 ];
 
 /// The mesh in a glTF file. `file` reads a file that it names.
@@ -42,13 +52,11 @@ pub(super) fn read(
     let is_harmless = |name: &&String| HARMLESS.iter().any(|known| name.starts_with(known));
     let mut needed = document.extensions_required.iter();
     if let Some(extension) = needed.find(|name| !is_harmless(name)) {
-        let advice = if extension.contains("compression") {
-            ": save it without compression"
-        } else {
-            ""
-        };
+        if extension.contains("compression") {
+            return Err(compressed(extension));
+        }
         return Err(format!(
-            "it needs the extension {extension}, which is not read{advice}"
+            "it needs the extension {extension}, which is not read"
         ));
     }
     let mut buffers = Buffers {
@@ -57,7 +65,11 @@ pub(super) fn read(
     };
     for buffer in &document.buffers {
         let Some(Text(uri)) = &buffer.uri else {
-            let inside = binary.ok_or("its binary part is missing")?;
+            let missing = || match document.compression() {
+                Some(extension) => compressed(extension),
+                None => "its binary part is missing".into(),
+            };
+            let inside = binary.ok_or_else(missing)?;
             buffers.buffers.push(inside.into());
             continue;
         };
@@ -71,7 +83,8 @@ pub(super) fn read(
         Some(k) => Some(item(&document.scenes, k, "scene")?),
         None => document.scenes.first(),
     };
-    let roots = scene.map_or(&[][..], |scene| &scene.nodes);
+    let all = document.roots();
+    let roots = scene.map_or(&all[..], |scene| &scene.nodes);
     let mut reader = Reader {
         document: &document,
         skins: Skins::new(&document),
@@ -107,11 +120,13 @@ fn document(json: &[u8]) -> Result<Document<'_>, String> {
         Ok(document) if document.asset.version.0.starts_with("2.") => Ok(document),
         Ok(document) => Err(only(&document.asset.version.0)),
         Err(error) => {
-            // Version 1.0 has other lists.
-            if let Ok(Head { asset }) = serde_json::from_slice(json)
-                && asset.version.0.starts_with('1')
+            // Version 1.0 has other lists, and its number is not always a text.
+            let head = serde_json::from_slice::<Head>(json).ok();
+            let version = head.map(|head| head.asset.version.to_string());
+            if let Some(version) =
+                version.filter(|version| version.trim_matches('"').starts_with('1'))
             {
-                return Err(only(&asset.version.0));
+                return Err(only(version.trim_matches('"')));
             }
             let fault = Fault::of_json(&String::from_utf8_lossy(json), &error);
             Err(format!("it is no glTF 2.0 file: {fault}"))

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix4, Point3};
 
 use super::accessor::Buffers;
-use super::document::{Document, Primitive, Target, item};
+use super::document::{Document, Primitive, Target, compressed, item};
 use super::skin::{Carrier, Skins};
 use crate::mesh::data::{MAX_POINTS, MAX_TRIANGLES, Mesh};
 
@@ -61,8 +61,19 @@ impl Reader<'_> {
         }
         let accessor = |k: usize| item(&self.document.accessors, k, "accessor");
         let position = primitive.attributes.get("POSITION");
-        let position = *position.ok_or("a mesh has no positions")?;
-        let count = accessor(position)?.count;
+        // What has no positions is not drawn.
+        let Some(&position) = position else {
+            return Ok(());
+        };
+        let positions = accessor(position)?;
+        let count = positions.count;
+        if let Some(extension) = self
+            .document
+            .compression()
+            .filter(|_| !positions.is_stored())
+        {
+            return Err(compressed(extension));
+        }
         if count > MAX_POINTS {
             return Err(too_many());
         }
@@ -87,7 +98,10 @@ impl Reader<'_> {
             }
         };
         if let Some(corner) = corners.iter().find(|corner| **corner >= count) {
-            return Err(format!("a triangle has corner {corner} of {count} points"));
+            return Err(format!(
+                "a triangle of primitive {}, counted from 0, has corner {corner} of {count} points",
+                self.primitives - 1
+            ));
         }
         let triangles: Vec<[u32; 3]> = match mode {
             4 => corners

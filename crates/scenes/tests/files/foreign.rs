@@ -1,0 +1,196 @@
+//! Files of other programs, each with what was once read wrongly or refused without its cause.
+
+use a3_scenes::Mesh;
+
+use crate::{area, obj};
+
+/// Corners that fall on one place in the plane of a face, but not in space, keep their triangles.
+#[test]
+fn bent_faces_keep_all_triangles() {
+    let mesh = obj("v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 1 0\nf 1 2 3 4\n");
+    assert_eq!((mesh.positions.len(), mesh.triangles.len()), (4, 2));
+    assert!(area(&mesh) > 1.0, "{}", area(&mesh));
+    // All bent faces with whole corners: two triangles each.
+    let place = |k: usize| [k % 3, k / 3 % 3, k / 9];
+    for k in 0..27 * 27 {
+        let corners = [[0, 0, 0], [2, 0, 0], place(k % 27), place(k / 27)];
+        let is_apart = (0..4).all(|a| (0..a).all(|b| corners[a] != corners[b]));
+        let text: String = corners
+            .iter()
+            .map(|[x, y, z]| format!("v {x} {y} {z}\n"))
+            .collect();
+        let Ok(mesh) = Mesh::from_obj(format!("{text}f 1 2 3 4\n").as_bytes()) else {
+            continue;
+        };
+        let on_a_line = |k: usize| {
+            let [a, b, c] = [k, k + 1, k + 2].map(|k| corners[k % 4].map(|x| x as i32));
+            let side = |to: [i32; 3]| [0, 1, 2].map(|axis| to[axis] - a[axis]);
+            let (u, v) = (side(b), side(c));
+            (0..3).all(|i| u[i] * v[(i + 1) % 3] == u[(i + 1) % 3] * v[i])
+        };
+        if is_apart && !(0..4).any(on_a_line) {
+            assert_eq!(mesh.triangles.len(), 2, "{text}");
+        }
+    }
+}
+
+/// Coordinates far from the origin keep their digits.
+#[test]
+fn coordinates_are_read_with_all_digits() {
+    let far = obj("v 500000.125 4000000.03 7.3\nv 500001 4000000 7\nv 500000 4000001 7\nf 1 2 3\n");
+    assert_eq!(far.positions[0], [500_000.125, 4_000_000.03, 7.3]);
+}
+
+/// A tetrahedron that is there twice, as Gmsh 2.2 writes one in two groups, counts once; tags may
+/// be negative.
+#[test]
+fn tetrahedra_count_once() {
+    let nodes = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n\
+                 4 0 0 1\n$EndNodes\n";
+    let twice = "$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 4 2 1 1 -2 3 1 2 4\n$EndElements\n";
+    let mesh = Mesh::from_gmsh(format!("{nodes}{twice}").as_bytes()).unwrap();
+    assert_eq!((mesh.tetrahedra.len(), mesh.triangles.len()), (1, 4));
+    assert_eq!(mesh.tetrahedron_numbers, [1]);
+    let parametric = format!("{nodes}{twice}").replace("Nodes", "ParametricNodes");
+    let same = Mesh::from_gmsh(parametric.as_bytes()).unwrap();
+    assert_eq!(same.positions, mesh.positions);
+    for (text, why) in [
+        (
+            twice.replace("2 4 4", "2 92 4"),
+            "line 14: an element of type 92 is a hexahedron",
+        ),
+        (
+            twice.replace("2 4 4", "2 118 4"),
+            "line 14: an element of type 118 is a hexahedron",
+        ),
+    ] {
+        let refused = Mesh::from_gmsh(format!("{nodes}{text}").as_bytes()).unwrap_err();
+        assert!(refused.starts_with(why), "{refused}");
+    }
+    for (text, why) in [
+        (
+            "$NOD\n1\n",
+            "it is Gmsh's format 1, and only the text formats 2.2 and 4.1",
+        ),
+        ("$MeshFormat\n4 0 8\n", "it is Gmsh's format 4, and only"),
+        (
+            "$MeshFormat\n4.1 1 8\n",
+            "it is Gmsh's format 4.1, binary, and only",
+        ),
+    ] {
+        let refused = Mesh::from_gmsh(text.as_bytes()).unwrap_err();
+        assert!(refused.starts_with(why), "{refused}");
+    }
+}
+
+/// What has no area is left out, and only that.
+#[test]
+fn what_has_no_area_is_left_out() {
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    let mesh = obj(format!("{square}v 5 5 5\nv 6 6 6\nv 7 7 7\nf 5 6 7\n"));
+    assert_eq!((mesh.positions.len(), mesh.triangles.len()), (4, 2));
+    let nothing = Mesh::from_obj(b"v 5 5 5\nv 6 6 6\nv 7 7 7\nf 1 2 3\n").unwrap_err();
+    assert_eq!(nothing, "the triangles of the file have no area");
+}
+
+/// Text STL in capitals is read; a text or a binary file that is cut short is not.
+#[test]
+fn stl_in_capitals_and_cut_short() {
+    let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n\
+                vertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+    for text in [text.to_uppercase(), text.replace("vertex 1", "Vertex 1")] {
+        let mesh = Mesh::from_stl(text.as_bytes()).unwrap();
+        assert_eq!((mesh.positions.len(), mesh.triangles.len()), (3, 1));
+    }
+    for cut in ["endfacet", "endsolid"] {
+        let short = &text[..text.find(cut).unwrap()];
+        let refused = Mesh::from_stl(short.as_bytes()).unwrap_err();
+        assert_eq!(refused, "the file ends before `endsolid`: it is cut short");
+    }
+    let wide: Vec<u8> = text.bytes().flat_map(|b| [b, 0]).collect();
+    let refused = Mesh::from_stl(&wide).unwrap_err();
+    assert!(refused.starts_with("it is UTF-16"), "{refused}");
+    // A binary file that begins like text and has more bytes after its triangles.
+    let mut binary = [b"solid".as_slice(), &[b' '; 75], &1u32.to_le_bytes()].concat();
+    binary.extend([0; 12]);
+    for x in [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        binary.extend(x.to_le_bytes());
+    }
+    binary.extend([0; 2 + 7]);
+    assert_eq!(Mesh::from_stl(&binary).unwrap().triangles.len(), 1);
+}
+
+/// What a line of a PLY file has beside its element is passed over; the face that is wrong is
+/// named.
+#[test]
+fn lines_of_ply_may_have_more() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+                property float z\nelement face 1\nproperty list uchar int vertex_indices\n\
+                end_header\n0 0 0 9 9\n1 0 0 9\n0 1 0\n3 0 1 2 0.5 0.25\n";
+    assert_eq!(
+        Mesh::from_ply(text.as_bytes()).unwrap().triangles,
+        [[0, 1, 2]]
+    );
+    let beyond = text.replace("3 0 1 2", "3 0 1 7");
+    let refused = Mesh::from_ply(beyond.as_bytes()).unwrap_err();
+    assert_eq!(
+        refused,
+        "face 0, counted from 0, has corner 7, but there are 3 points"
+    );
+    let endless = Mesh::from_ply(text.replace("end_header", "").as_bytes()).unwrap_err();
+    assert!(endless.contains("`end_header` is missing"), "{endless}");
+}
+
+/// Files that are no meshes say so.
+#[test]
+fn other_files_are_named() {
+    for (bytes, why) in [
+        (b"\x1f\x8b\x08\0".as_slice(), "it is compressed by gzip"),
+        (b"PK\x03\x04", "it is a zip archive"),
+        (
+            b"version https://git-lfs.github.com/spec/v1\n",
+            "it is a pointer of Git LFS",
+        ),
+        (b"<!DOCTYPE html>", "it is a web page"),
+        (b"v\0\0\0 \0\0\0", "it is UTF-32"),
+        (
+            b"v nan 0 0\n",
+            "line 1: `nan` is none: a point has three finite numbers",
+        ),
+        (b"v 0,5 0 0\n", "line 1: `0,5` is none"),
+    ] {
+        let refused = Mesh::from_obj(bytes).unwrap_err();
+        assert!(refused.starts_with(why), "{refused}");
+    }
+    // Numbers of a binary file are no text in UTF-32.
+    let refused = Mesh::from_gmsh(&[200, 0, 0, 0, 1, 0, 0, 0]).unwrap_err();
+    assert!(refused.starts_with("it is no Gmsh file"), "{refused}");
+}
+
+/// A hundred thousand points within a few millionths of the longest side take no longer than
+/// others.
+#[test]
+fn crowds_of_points_are_welded_at_once() {
+    let mut positions = vec![[1e6, 0.0, 0.0]];
+    let mut state = 1u64;
+    let mut random = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 40) as f64 / f64::from(1 << 24)
+    };
+    positions.extend((0..100_000).map(|_| [random(), random(), random()].map(|x| 4.0 * x)));
+    let triangles = (0..positions.len() as u32 / 3).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
+    let mesh = Mesh {
+        triangles: triangles.collect(),
+        positions,
+        ..Mesh::default()
+    };
+    // Each point is kept or within the tolerance, 1 m, of one that is: a hundred of them fit.
+    let welded = mesh.welded();
+    assert!(
+        (5..150).contains(&welded.positions.len()),
+        "{}",
+        welded.positions.len()
+    );
+}
