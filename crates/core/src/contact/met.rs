@@ -53,6 +53,9 @@ pub(super) struct Met<'a> {
     /// Their velocities there (m/s).
     pub v0: Option<&'a [f64]>,
     pub inverse_masses: &'a [f64],
+    /// Particles that were struck at the end of the step, in order: up to there they met nothing,
+    /// and their velocities there are no longer those of their courses.
+    pub struck: &'a [usize],
     pub obstacle: &'a Obstacle,
     pub friction: f64,
     /// Time at the beginning of the step, and its length (s).
@@ -89,11 +92,12 @@ impl Met<'_> {
             let d = Vector3::new(x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
             let inside = surface(d);
             let at = row(x, n, i);
-            let may_pass = x0.is_some_and(|x0| self.may_pass(row(x0, n, i), at));
+            let is_struck = self.struck.binary_search(&i).is_ok();
+            let may_pass = !is_struck && x0.is_some_and(|x0| self.may_pass(row(x0, n, i), at));
             if inside.is_none() && !may_pass || self.inverse_masses[i] == 0.0 {
                 continue;
             }
-            let touch = (may_pass || self.obstacle.restitution > 0.0)
+            let touch = (may_pass || !is_struck && self.obstacle.restitution > 0.0)
                 .then(|| self.touch(i, [at, row(v, n, i)]))
                 .flatten();
             let passed = touch

@@ -31,9 +31,9 @@ pub struct Contact {
     last: Statistics,
     /// Impulses of the last step, and its length (s).
     impulses: (Impulses, f64),
-    /// Sum of the magnitudes of the impulses that were given at the end of a step before its other
-    /// contacts are resolved (N s).
-    struck: f64,
+    /// Particles that were struck at the end of a step before its other contacts are resolved, and
+    /// the sum of the magnitudes of their impulses (N s).
+    struck: (Vec<usize>, f64),
 }
 
 impl Contact {
@@ -44,7 +44,7 @@ impl Contact {
             y0: Vec::with_capacity(dim),
             last: Statistics::default(),
             impulses: (Impulses::with_room_for(dim / 6), 0.0),
-            struck: 0.0,
+            struck: (Vec::with_capacity(dim / 6), 0.0),
         }
     }
 
@@ -101,8 +101,15 @@ impl Contact {
         let step = Step { t, h, y0: &self.y0 };
         let (impulses, length) = &mut self.impulses;
         *length = h;
-        self.last = resolve_noting(obstacles, inverse_masses, &step, y1, impulses);
-        self.last.impulse += std::mem::take(&mut self.struck);
+        let (struck, impulse) = &mut self.struck;
+        struck.sort_unstable();
+        let masses = Masses {
+            inverse: inverse_masses,
+            struck,
+        };
+        self.last = resolve_noting(obstacles, &masses, &step, y1, impulses);
+        self.last.impulse += std::mem::take(impulse);
+        struck.clear();
         self.last
     }
 
@@ -158,7 +165,8 @@ impl Contact {
                 set_row(x, n, i, pose.place.position + point);
                 set_row(v, n, i, row(v, n, i) + change);
                 let impulse = change / inverse_masses[i];
-                self.struck += impulse.norm();
+                self.struck.0.push(i);
+                self.struck.1 += impulse.norm();
             }
         }
     }
@@ -196,32 +204,38 @@ pub fn resolve(
     step: &Step,
     y1: &mut [f64],
 ) -> Statistics {
-    resolve_noting(
-        obstacles,
-        inverse_masses,
-        step,
-        y1,
-        &mut Impulses::default(),
-    )
+    let masses = Masses {
+        inverse: inverse_masses,
+        struck: &[],
+    };
+    resolve_noting(obstacles, &masses, step, y1, &mut Impulses::default())
+}
+
+/// Particles of a step.
+struct Masses<'a> {
+    /// Inverse masses (1/kg).
+    inverse: &'a [f64],
+    /// Particles that have been struck at the end of the step, in order.
+    struck: &'a [usize],
 }
 
 /// Does the same, and notes the impulses.
 fn resolve_noting(
     obstacles: &[Obstacle],
-    inverse_masses: &[f64],
+    masses: &Masses,
     step: &Step,
     y1: &mut [f64],
     impulses: &mut Impulses,
 ) -> Statistics {
+    let n = masses.inverse.len();
     impulses.clear();
     let mut statistics = Statistics::default();
     for obstacle in obstacles {
         let met = Met {
-            x0: step.y0.get(..3 * inverse_masses.len()),
-            v0: step
-                .y0
-                .get(3 * inverse_masses.len()..6 * inverse_masses.len()),
-            inverse_masses,
+            x0: step.y0.get(..3 * n),
+            v0: step.y0.get(3 * n..6 * n),
+            inverse_masses: masses.inverse,
+            struck: masses.struck,
             obstacle,
             friction: obstacle.friction,
             span: (step.t, step.h),

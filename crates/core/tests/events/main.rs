@@ -5,6 +5,7 @@ mod common;
 
 mod frames;
 mod known_times;
+mod rebounds;
 mod resting;
 mod tears;
 mod thin;

@@ -82,14 +82,12 @@ fn binary(triangles: &[u8]) -> Result<Mesh, String> {
 
 fn lines(text: &[u8]) -> Result<Mesh, String> {
     let (mut corners, mut loop_of) = (Corners::default(), vec![]);
-    let (mut is_in_facet, mut has_ended) = (false, false);
+    let mut is_in_facet = false;
     for (line, statement) in Lines::new(text) {
         let wrong = |why: String| format!("line {line}: {why}");
         let mut words = words(statement);
         let key = words.next().unwrap_or_default().to_ascii_lowercase();
         match &key[..] {
-            b"solid" => has_ended = false,
-            b"endsolid" => has_ended = true,
             b"facet" => is_in_facet = true,
             b"endfacet" => is_in_facet = false,
             b"vertex" => {
@@ -113,8 +111,8 @@ fn lines(text: &[u8]) -> Result<Mesh, String> {
             return Err(wrong("a triangle has three corners".into()));
         }
     }
-    if is_in_facet || !has_ended && !corners.mesh.triangles.is_empty() {
-        return Err("the file ends before `endsolid`: it is cut short".into());
+    if is_in_facet {
+        return Err("the file ends within a facet: it is cut short".into());
     }
     Ok(corners.mesh)
 }
