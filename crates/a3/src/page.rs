@@ -62,7 +62,7 @@ pub fn run_steps(words: &str, steps: u32) -> String {
         .and_then(|cli| begin::window(&cli.window).map_err(Failure::message));
     let begun = Instant::now();
     let run = session.and_then(|session| {
-        let first = session.first();
+        let first = session.runs.first();
         let mut run = Simulation::new(first.scene().clone(), first.method(), first.control())
             .map_err(|why| why.to_string())?;
         let until = f64::from(steps) * first.control().value();

@@ -44,7 +44,7 @@ impl App {
             return;
         };
         if self.outside.recorder.is_some() {
-            self.session.say("Another film is being made.");
+            self.session.readings.say("Another film is being made.");
             return;
         }
         let scale = graphics.scale();
@@ -55,7 +55,7 @@ impl App {
         };
         match begin(self, format) {
             Some(Ok(recorder)) => self.outside.recorder = Some(recorder),
-            Some(Err(why)) => self.session.warn(why.message()),
+            Some(Err(why)) => self.session.readings.warn(why.message()),
             None => {}
         }
         self.tell_film();
@@ -72,7 +72,7 @@ impl App {
             Ok(false) => self.end_film(),
             Err(why) => {
                 self.outside.recorder = None;
-                self.session.warn(why.message());
+                self.session.readings.warn(why.message());
             }
         }
         self.tell_film();
@@ -106,8 +106,8 @@ impl App {
             return;
         };
         match recorder.finish() {
-            Ok(said) => self.session.say(said),
-            Err(why) => self.session.warn(why.message()),
+            Ok(said) => self.session.readings.say(said),
+            Err(why) => self.session.readings.warn(why.message()),
         }
         self.tell_film();
     }

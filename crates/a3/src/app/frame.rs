@@ -25,15 +25,15 @@ impl App {
             let tile = self.tile(self.mouse.pane);
             let place = tile.place(self.mouse.pointer);
             let [x, y, z] = grip
-                .target(&self.session.camera, place, tile.aspect())
+                .target(&self.session.view.camera, place, tile.aspect())
                 .map(f64::from);
-            self.session.pull(Vector3::new(x, y, z));
+            self.session.runs.pull(Vector3::new(x, y, z));
         }
         self.session.tick(self.pace(real));
-        self.session.go_along();
+        self.session.view.go_along(&self.session.runs.panes);
         self.session.read_state();
         self.look_under_pointer();
-        let message_ends = self.session.message_ends();
+        let message_ends = self.session.readings.message_ends();
         let Some(graphics) = &mut self.graphics else {
             return;
         };

@@ -75,7 +75,7 @@ impl Graphics {
             Some(gpu.largest_side() as usize),
         );
         Ok(Self {
-            renderer: Renderer::new(&gpu, format, samples, &session.panes[0].topology()),
+            renderer: Renderer::new(&gpu, format, samples, &session.runs.panes[0].topology()),
             targets: Targets::new(&gpu, size, format, samples),
             transfer: transfer(&gpu, &config),
             layer: Layer::new(&gpu, &config),
@@ -100,7 +100,7 @@ impl Graphics {
     /// The parts of the window that the panes fill.
     pub fn tiles(&self, session: &Session) -> Vec<Tile> {
         let size = panel::leaves(session, self.size(), self.scale());
-        layout::tiles(session.panes.len(), size, self.scale())
+        layout::tiles(session.runs.panes.len(), size, self.scale())
     }
 
     /// Pixels per point.
@@ -147,14 +147,14 @@ impl Graphics {
     /// Takes the topology of another scene.
     pub fn set_scene(&mut self, session: &Session) {
         self.renderer
-            .set_topology(&self.gpu, &session.panes[0].topology());
+            .set_topology(&self.gpu, &session.runs.panes[0].topology());
         self.tears.clear();
     }
 
     /// Leaves torn springs and triangles out of the topology.
     fn tear(&mut self, session: &Session) {
-        self.tears.resize(session.panes.len(), 0);
-        for (k, (pane, tears)) in session.panes.iter().zip(&mut self.tears).enumerate() {
+        self.tears.resize(session.runs.panes.len(), 0);
+        for (k, (pane, tears)) in session.runs.panes.iter().zip(&mut self.tears).enumerate() {
             let now = pane.simulation.tears();
             if *tears != now {
                 *tears = now;
@@ -222,13 +222,14 @@ impl Graphics {
             }
         };
         self.tear(session);
-        for pane in &mut session.panes {
+        for pane in &mut session.runs.panes {
             pane.show.compose(&pane.simulation);
         }
         let pictures: Vec<_> = session
+            .runs
             .panes
             .iter()
-            .map(|pane| pane.show.picture(session.camera, self.scale()))
+            .map(|pane| pane.show.picture(session.view.camera, self.scale()))
             .zip(self.tiles(session))
             .collect();
         self.renderer.prepare(&self.gpu, &pictures);
@@ -309,7 +310,7 @@ impl Graphics {
         }));
         let mut request = None;
         let mut output = self.overlay.lay_out(&self.gpu, input, |ctx| {
-            hud::show(ctx, &session.panes, &session.readings);
+            hud::show(ctx, &session.runs.panes, &session.readings);
             request = panel::show(ctx, session).or(request);
             request = hud::show_list(ctx, session).or(request);
         });
@@ -324,7 +325,7 @@ impl Graphics {
             .map(|viewport| viewport.repaint_delay);
         let again = again.filter(|delay| *delay < Duration::from_mins(1));
         let size = (self.config.width, self.config.height);
-        self.overlay.dark = session.panes[0].show.dark;
+        self.overlay.dark = session.runs.panes[0].show.dark;
         let target = (view, below);
         let before = self.overlay.paint(&self.gpu, encoder, target, size, output);
         (before, again, request)

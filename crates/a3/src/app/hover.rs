@@ -32,7 +32,7 @@ impl App {
         };
         let mut changed = self.cursor != cursor;
         self.cursor = cursor;
-        for (k, pane) in self.session.panes.iter_mut().enumerate() {
+        for (k, pane) in self.session.runs.panes.iter_mut().enumerate() {
             let hovered = hovered.filter(|_| k == at);
             changed |= pane.show.hovered != hovered;
             pane.show.hovered = hovered;

@@ -7,7 +7,7 @@ use super::pick::{self, Grip};
 use super::pointer::Drag;
 use super::state::App;
 use crate::hud::layout;
-use crate::session::Selection;
+use crate::session::{Selection, looks};
 use crate::show::{self, Target};
 
 /// Distance from the pointer within which a particle is hit (points).
@@ -49,11 +49,11 @@ impl App {
                     Target::Obstacle(_) => None,
                 });
                 if double {
-                    session.show_springs_of(particle);
+                    looks::show_springs_of(&mut session.runs.panes, particle);
                 }
                 match hit {
-                    Some((Target::Particle(i), grip)) if session.grab(i) => Drag::Pull(grip),
-                    Some((Target::Obstacle(k), grip)) if session.grab_obstacle(k) => {
+                    Some((Target::Particle(i), grip)) if session.runs.grab(i) => Drag::Pull(grip),
+                    Some((Target::Obstacle(k), grip)) if session.runs.grab_obstacle(k) => {
                         Drag::Pull(grip)
                     }
                     _ => Drag::Orbit,
@@ -67,11 +67,11 @@ impl App {
 
     /// The particle or the obstacle under the pointer in a pane. A lost run cannot be pulled.
     pub(super) fn hit(&self, pane: usize) -> Option<(Target, Grip)> {
-        let (tile, pane) = (self.tile(pane), &self.session.panes[pane]);
+        let (tile, pane) = (self.tile(pane), &self.session.runs.panes[pane]);
         let reach = REACH * self.scale() / tile.height as f32;
         let place = tile.place(self.mouse.pointer);
         let run = Some(&pane.simulation).filter(|_| pane.alive())?;
-        pick::pick(run, &self.session.camera, place, tile.aspect(), reach)
+        pick::pick(run, &self.session.view.camera, place, tile.aspect(), reach)
     }
 
     /// The share of the timeline at which the pointer is, if the timeline is shown and the pointer
@@ -104,13 +104,13 @@ impl App {
             return vec![];
         };
         let (tile, to) = (self.tile(self.mouse.pane), self.mouse.pointer);
-        let run = &self.session.panes[self.mouse.pane].simulation;
+        let run = &self.session.runs.panes[self.mouse.pane].simulation;
         let (a, b) = (tile.place(from), tile.place(to));
         let inside =
             |at: [f32; 2]| (0..2).all(|k| (a[k].min(b[k])..=a[k].max(b[k])).contains(&at[k]));
         let network = run.model().network();
         let is_wall = |i: usize| network.is_some_and(|network| network.is_wall(i));
-        let project = self.session.camera.projection(tile.aspect());
+        let project = self.session.view.camera.projection(tile.aspect());
         (0..run.particles())
             .filter(|i| {
                 let seen = project(show::to_f32(run.position(*i)));
@@ -154,7 +154,7 @@ impl App {
     pub fn move_to(&mut self, position: PhysicalPosition<f64>) {
         let pointer = [position.x as f32, position.y as f32];
         if self.session.panel.open {
-            let panes = 0..self.session.panes.len();
+            let panes = 0..self.session.runs.panes.len();
             let under = panes.into_iter().find(|k| self.tile(*k).contains(pointer));
             self.session.panel.pane = under.unwrap_or(self.session.panel.pane);
             // The row under the pointer is drawn in another colour.
@@ -170,8 +170,12 @@ impl App {
         let (dx, dy, aspect) = (x - was_x, y - was_y, tile.aspect());
         self.mouse.pointer = pointer;
         match self.mouse.drag {
-            Drag::Orbit => self.session.camera.orbit(-TURN * dx * aspect, TURN * dy),
-            Drag::Pan => self.session.camera.pan(-dx * aspect, dy),
+            Drag::Orbit => self
+                .session
+                .view
+                .camera
+                .orbit(-TURN * dx * aspect, TURN * dy),
+            Drag::Pan => self.session.view.camera.pan(-dx * aspect, dy),
             Drag::Scrub => {
                 if let Some(share) = self.timeline_share(f32::INFINITY) {
                     self.session.scrub_to(share);
@@ -192,6 +196,6 @@ impl App {
         let tile = self.tile(self.pointed());
         let at = tile.place(self.mouse.pointer);
         let factor = 0.9f32.powf(notches);
-        self.session.camera.zoom_at(factor, at, tile.aspect());
+        self.session.view.camera.zoom_at(factor, at, tile.aspect());
     }
 }

@@ -97,10 +97,10 @@ impl App {
             no_error: session.readings.no_error,
             ..Readings::default()
         };
-        let (panes, scale) = (&mut session.panes, graphics.scale());
+        let (panes, scale) = (&mut session.runs.panes, graphics.scale());
         let mut studio = Studio::new(gpu, offscreen, panes);
-        let pixels = studio.draw(gpu, panes, session.camera, scale, &readings)?;
-        let scene = &session.first().scene().name;
+        let pixels = studio.draw(gpu, panes, session.view.camera, scale, &readings)?;
+        let scene = &session.runs.first().scene().name;
         let path = output::write_new("".as_ref(), scene, "png", &output::png(&pixels, size)?)?;
         Ok(path.display().to_string())
     }

@@ -102,7 +102,7 @@ impl App {
     /// A page is closed by the browser. What is remembered is kept now.
     pub fn quit(&mut self, _: &ActiveEventLoop) {
         self.remember();
-        self.session.say("The browser closes the page.");
+        self.session.readings.say("The browser closes the page.");
     }
 
     /// Saves the next frame as a picture, and returns what is said of it.
@@ -131,6 +131,7 @@ impl App {
     /// Films are for the program.
     pub fn record(&mut self) {
         self.session
+            .readings
             .say("The program makes films: y copies the command line for it.");
     }
 
@@ -143,7 +144,7 @@ impl App {
     /// is needed for it.
     pub fn film(&mut self) -> bool {
         if std::mem::take(&mut self.outside.picture) {
-            let scene = &self.session.first().scene().name;
+            let scene = &self.session.runs.first().scene().name;
             browser::download_picture(format!("a3-{scene}.png"));
         }
         false

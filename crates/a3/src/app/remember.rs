@@ -19,6 +19,7 @@ impl App {
         }
         let percent = (100.0 * self.zoom).round();
         self.session
+            .readings
             .say(format!("Text and panel have {percent} % of their size."));
         self.redraw();
     }
@@ -33,14 +34,14 @@ impl App {
         let mut now = Settings {
             interface_scale: self.zoom,
             full_screen: window.is_some_and(|window| window.fullscreen().is_some()),
-            dark: session.panes[0].show.dark,
+            dark: session.runs.panes[0].show.dark,
             panel: session.panel.open,
             frame_limit: session.panel.frame_limit,
             film: session.panel.film,
             film_seconds: session.panel.film_of,
             recent: before.recent.clone(),
         };
-        now.remember(session.files());
+        now.remember(session.library.files());
         if now == *before {
             return;
         }

@@ -113,7 +113,7 @@ impl App {
 
     /// The pane under the pointer, or else the first.
     pub fn pointed(&self) -> usize {
-        (0..self.session.panes.len())
+        (0..self.session.runs.panes.len())
             .find(|k| self.tile(*k).contains(self.mouse.pointer))
             .unwrap_or(0)
     }
@@ -141,7 +141,7 @@ impl App {
             Action::Quit => self.quit(event_loop),
             Action::Picture => {
                 let message = self.save_picture();
-                self.session.say(message);
+                self.session.readings.say(message);
             }
             Action::FullScreen => {
                 if let Some(window) = &self.window {
@@ -159,14 +159,16 @@ impl App {
                     Target::Particle(i) => Some(i),
                     Target::Obstacle(_) => None,
                 });
-                self.session.follow(pane, hit);
+                let session = &mut self.session;
+                let said = session.view.follow(&session.runs.panes, pane, hit);
+                session.readings.say(said);
             }
             Action::WritePlots => {
                 let message = match self.write_plots() {
                     Ok(path) => format!("wrote {}", path.display()),
                     Err(failure) => failure.message(),
                 };
-                self.session.say(message);
+                self.session.readings.say(message);
             }
             Action::Record => self.record(),
             Action::FilmLast => self.film_last(),
@@ -175,7 +177,7 @@ impl App {
                     Ok(line) => self.copy(&line),
                     Err(failure) => failure.message(),
                 };
-                self.session.say(message);
+                self.session.readings.say(message);
             }
             Action::Keep => {
                 let at = self.pointed();
@@ -183,23 +185,23 @@ impl App {
                     Ok(path) => format!("kept in {}", path.display()),
                     Err(failure) => failure.message(),
                 };
-                self.session.say(message);
+                self.session.readings.say(message);
             }
             Action::TakeUp => {
                 self.mouse.let_go();
-                let message = match self.session.kept.clone() {
+                let message = match self.session.library.kept.clone() {
                     None => "Nothing was kept: k keeps the run in a file.".into(),
                     Some(path) => match keep::take_up(&mut self.session, &path) {
                         Ok(()) => format!("loaded {}", path.display()),
                         Err(failure) => failure.message(),
                     },
                 };
-                self.session.say(message);
+                self.session.readings.say(message);
                 self.scene_changed();
             }
             Action::Lessons => {
                 let message = Self::open_lessons();
-                self.session.say(message);
+                self.session.readings.say(message);
             }
             action => {
                 // No steps are due for the time in which nothing moved.
@@ -216,8 +218,8 @@ impl App {
 
     /// Writes the samples of all panes under the first name that is free.
     fn write_plots(&self) -> Result<PathBuf, Failure> {
-        let table = panel::csv(&self.session.panes).map_err(Failure::run)?;
-        let scene = &self.session.first().scene().name;
+        let table = panel::csv(&self.session.runs.panes).map_err(Failure::run)?;
+        let scene = &self.session.runs.first().scene().name;
         output::write_new("".as_ref(), scene, "csv", &table)
     }
 
@@ -234,7 +236,7 @@ impl App {
     /// Puts the scene's name into the title of the window.
     pub fn title(&self) {
         if let Some(window) = &self.window {
-            window.set_title(&format!("a3: {}", self.session.first().scene().name));
+            window.set_title(&format!("a3: {}", self.session.runs.first().scene().name));
         }
     }
 }

@@ -31,15 +31,15 @@ impl Status {
         visible: bool,
         devices: u32,
     ) {
-        let run = session.first();
+        let run = session.runs.first();
         let readings = &session.readings;
-        let panes = &session.panes;
+        let panes = &session.runs.panes;
         let grabbed = run.grabbed().map_or("-".into(), |i| i.to_string());
         // Position of the grabbed particle in the window (px).
         let place = |pane: &Pane, tile: Tile| {
             let p = pane.simulation.position(pane.simulation.grabbed()?);
             let point = [p.x as f32, p.y as f32, p.z as f32];
-            let ([x, y], _) = session.camera.project(point, tile.aspect())?;
+            let ([x, y], _) = session.view.camera.project(point, tile.aspect())?;
             let (x, y) = (x * tile.width as f32, y * tile.height as f32);
             Some(format!("{:.0},{:.0}", tile.x as f32 + x, tile.y as f32 + y))
         };
@@ -66,8 +66,11 @@ impl Status {
             session.panel.open,
             session.list.is_some(),
             readings.film.is_some(),
-            session.followed().map_or("-".into(), |i| i.to_string()),
-            session.camera.is_parallel(),
+            session
+                .view
+                .followed()
+                .map_or("-".into(), |i| i.to_string()),
+            session.view.camera.is_parallel(),
             graphics.scale(),
             panes[0].show.dark,
             run.blow_up().is_some(),

@@ -156,7 +156,7 @@ mod tests {
         };
         assert!(panel::apply(&mut session, Request::Take(number)));
         let name = a3_scenes::SCENES[number].name;
-        assert_eq!(session.first().scene().name, name);
+        assert_eq!(session.runs.first().scene().name, name);
         session.act(Action::Scenes, 0);
         let corner = Pos2::new(4.0, 4.0);
         for _ in 0..2 {

@@ -51,7 +51,7 @@ pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
 
 /// The number of the pane that the panel is about.
 pub fn pane(session: &Session) -> usize {
-    session.panel.pane.min(session.panes.len() - 1)
+    session.panel.pane.min(session.runs.panes.len() - 1)
 }
 
 /// Does what a key means while the panel is seen, and says whether it means something there. With
@@ -122,7 +122,7 @@ pub fn press_text(session: &mut Session, key: TextKey) -> bool {
                 Ok(value) => {
                     apply(session, Request::Turn(row, Turn::Exactly(value)));
                 }
-                Err(why) => session.say(format!("{}: {why}", KNOBS[row].name)),
+                Err(why) => session.readings.say(format!("{}: {why}", KNOBS[row].name)),
             }
         }
     }

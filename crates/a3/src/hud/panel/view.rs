@@ -102,7 +102,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                 pos2(inner.left(), top + 12.0),
                 pos2(inner.right(), inner.bottom() - FOOT),
             );
-            let pane = &session.panes[request::pane(session)];
+            let pane = &session.runs.panes[request::pane(session)];
             let pointer = ui.ctx().pointer_latest_pos();
             plots::draw(ui.painter(), room, &pane.samples, pointer);
         });
@@ -113,7 +113,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
 fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
     let painter = ui.painter();
     let line = inner.top() + 19.0;
-    let words = match session.panes.len() {
+    let words = match session.runs.panes.len() {
         1 => "Tuning".into(),
         count => format!(
             "Tuning  pane {} of {count}",

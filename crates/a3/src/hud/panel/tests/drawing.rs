@@ -12,7 +12,7 @@ const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
 #[test]
 fn the_mouse_turns_every_row_and_that_only() {
     for mut session in every_scene() {
-        let name = session.first().scene().name.clone();
+        let name = session.runs.first().scene().name.clone();
         let mut screen = Screen::new(SIZES[0]);
         for (k, knob, dial) in rows(&session) {
             let before = dials(&session);
@@ -56,7 +56,7 @@ fn nothing_is_cut_or_overlaps() {
     let several = ["mit-sphere", "simple"].map(compared);
     let mut screens = SIZES.map(Screen::new);
     for mut session in every_scene().chain(several) {
-        let name = session.first().scene().name.clone();
+        let name = session.runs.first().scene().name.clone();
         for k in 1..=4 {
             session.run_to(0.1 * f64::from(k));
         }

@@ -44,7 +44,7 @@ impl Screen {
         };
         let mut request = None;
         let mut output = self.ctx.run_ui(input, |ui| {
-            hud::show(ui.ctx(), &session.panes, &session.readings);
+            hud::show(ui.ctx(), &session.runs.panes, &session.readings);
             request = show(ui.ctx(), session).or(request);
         });
         output.textures_delta.set.clear();

@@ -12,7 +12,7 @@ use crate::session::{Action, Session, TextKey, compared};
 #[test]
 fn keys_reach_every_row_and_turn_that_only() {
     for mut session in every_scene() {
-        let name = session.first().scene().name.clone();
+        let name = session.runs.first().scene().name.clone();
         let count = dials(&session).len();
         for (k, (row, value)) in dials(&session).into_iter().enumerate() {
             let before = dials(&session);
@@ -49,7 +49,7 @@ fn keys_reach_every_row_and_turn_that_only() {
 #[test]
 fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     let forces = |session: &Session| {
-        let run = session.first();
+        let run = session.runs.first();
         let mut f = vec![0.0; run.state().len()];
         run.model().system().eval_f(run.time(), run.state(), &mut f);
         f
@@ -88,7 +88,7 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     assert_ne!(forces(&damped), before);
     turn(&mut damped, "damping", Turn::Own);
     assert_eq!(forces(&damped), before);
-    let network = |session: &Session| session.first().model().network().unwrap().clone();
+    let network = |session: &Session| session.runs.first().model().network().unwrap().clone();
     turn(&mut damped, "strain limit", Turn::To(1.2));
     assert_eq!(network(&damped).strain_limits(), [(0..400, 1.2)]);
     turn(&mut damped, "strain limit", Turn::Own);
@@ -112,7 +112,7 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     turn(&mut session, "pins", Turn::Toggle);
     assert_eq!(network(&session).pins().count(), 0);
     turn(&mut session, "springs of", Turn::To(7.0));
-    assert_eq!(session.panes[0].show.springs_of, Some(7));
+    assert_eq!(session.runs.panes[0].show.springs_of, Some(7));
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn another_scene_is_not_tuned() {
 fn the_limit_follows_the_stiffness() {
     let mut session = opened(&["r", "0.005", "--scene", "mit", "--paused"]);
     session.read_state();
-    let limit = |session: &Session| session.panes[0].limit.limit().unwrap().step;
+    let limit = |session: &Session| session.runs.panes[0].limit.limit().unwrap().step;
     let before = limit(&session);
     let k = KNOBS.iter().position(|k| k.name == "stiffness").unwrap();
     apply(&mut session, Request::Turn(k, Turn::To(4.0)));
@@ -161,15 +161,18 @@ fn every_pane_and_the_reference_are_tuned_alike() {
     for _ in 0..60 {
         session.tick(1.0 / 60.0);
     }
-    for pane in &session.panes {
+    for pane in &session.runs.panes {
         let error = pane.error.unwrap();
         assert!(error < 1e-3, "{error}");
     }
     // The step is that of one pane.
     session.panel.pane = 1;
     apply(&mut session, Request::Turn(1, Turn::To(0.002)));
-    assert_eq!(session.first().control(), Control::Step(0.005));
-    assert_eq!(session.panes[1].simulation.control(), Control::Step(0.002));
+    assert_eq!(session.runs.first().control(), Control::Step(0.005));
+    assert_eq!(
+        session.runs.panes[1].simulation.control(),
+        Control::Step(0.002)
+    );
 }
 
 #[test]
@@ -222,10 +225,15 @@ fn values_are_typed() {
         typing
     };
     assert!(!type_value(&mut session, "gravity", "3.21"));
-    let gravity = session.first().model().network().and_then(Network::gravity);
+    let gravity = session
+        .runs
+        .first()
+        .model()
+        .network()
+        .and_then(Network::gravity);
     assert_eq!(gravity.unwrap().y, -3.21);
     assert!(!type_value(&mut session, "step", "1/120"));
-    assert_eq!(session.first().control(), Control::Step(1.0 / 120.0));
+    assert_eq!(session.runs.first().control(), Control::Step(1.0 / 120.0));
     // Numbers that cannot be are refused, and may be mended.
     for (words, why) in [
         ("1,5", "stiffness: use a decimal point: 1.5"),
@@ -243,7 +251,7 @@ fn values_are_typed() {
 #[test]
 fn turns_are_undone_and_done_again() {
     for mut session in every_scene() {
-        let name = session.first().scene().name.clone();
+        let name = session.runs.first().scene().name.clone();
         for (row, _, dial) in rows(&session) {
             // A solver that takes a tolerance has another step.
             if ["solver", "step"].contains(&KNOBS[row].name) {
