@@ -39,7 +39,7 @@ pub fn open(
     event_loop.run_app(&mut app).map_err(Failure::run)?;
     match app.failure {
         None => Ok(End::Closed),
-        Some(Failure::Run(why)) if app.devices == 0 => {
+        Some(Failure::Run(why)) if app.screen.devices == 0 => {
             app.session.readings.in_window = false;
             Ok(End::NoWindow(why, Box::new(app.session)))
         }

@@ -5,7 +5,7 @@ use web_time::{Duration, Instant};
 use a3_render::Tile;
 use egui::CursorIcon;
 
-use super::graphics::Graphics;
+use super::screen::Screen;
 use crate::output;
 use crate::session::{Pane, Session};
 use crate::show::{Arrows, Quantity};
@@ -22,15 +22,12 @@ pub struct Status {
 }
 
 impl Status {
-    /// Writes a line, unless nothing has changed and the last one is too recent.
-    pub fn say(
-        &mut self,
-        session: &Session,
-        graphics: &Graphics,
-        cursor: CursorIcon,
-        visible: bool,
-        devices: u32,
-    ) {
+    /// Writes a line once there are graphics, unless nothing has changed and the last one is too
+    /// recent.
+    pub fn say(&mut self, session: &Session, screen: &Screen, cursor: CursorIcon) {
+        let Some(graphics) = &screen.graphics else {
+            return;
+        };
         let run = session.runs.first();
         let readings = &session.readings;
         let panes = &session.runs.panes;
@@ -85,8 +82,8 @@ impl Status {
                 .map_or("-".into(), |i| i.to_string()),
             graphics.size().0,
             graphics.size().1,
-            visible,
-            devices,
+            screen.visible,
+            screen.devices,
         );
         let now = Instant::now();
         let quiet = self

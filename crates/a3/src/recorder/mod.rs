@@ -59,14 +59,10 @@ impl Recorder {
         Self::new(gpu, session, format, Source::Session { next, interval })
     }
 
-    /// Films the last seconds that the session has kept.
-    pub fn of_kept(
-        gpu: &Gpu,
-        session: &Session,
-        format: Format,
-        seconds: f64,
-    ) -> Result<Self, Failure> {
-        let moments = session.timeline.last(seconds, 1.0 / format.ending.rate());
+    /// Films the last seconds that the session has kept, as many as its panel says.
+    pub fn of_kept(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
+        let (seconds, interval) = (session.panel.film_of, 1.0 / format.ending.rate());
+        let moments = session.timeline.last(seconds, interval);
         if moments.len() < 2 {
             return Err(Failure::run("Nothing is kept yet that could be filmed."));
         }

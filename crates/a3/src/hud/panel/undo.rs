@@ -20,6 +20,7 @@ pub fn undo(session: &mut Session, again: bool) {
             }
         }
         Change::Push { obstacle, paths } => {
+            // Where surfaces would cross, the obstacle stays where it is.
             let _ = session.runs.put_back(obstacle, paths[usize::from(again)]);
             "push".into()
         }
