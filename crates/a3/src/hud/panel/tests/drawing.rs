@@ -1,7 +1,7 @@
 use egui::vec2;
 
+use super::opened::{changed, dials, every_scene, opened};
 use super::screen::Screen;
-use super::{changed, dials, every_scene, opened};
 use crate::hud::panel::dial::DialScale;
 use crate::hud::panel::request::rows;
 use crate::hud::panel::view::{leaves, width};

@@ -1,8 +1,8 @@
 use a3_core::contact::Shape;
 use a3_core::{Control, Network, Path, Vector3};
 
+use super::opened::{changed, dials, every_scene, opened, type_key};
 use super::screen::Screen;
-use super::{changed, dials, every_scene, opened, type_key};
 use crate::hud::panel::dial::Turn;
 use crate::hud::panel::knobs::KNOBS;
 use crate::hud::panel::request::{PanelKey, Request, apply, press, press_text, rows};
