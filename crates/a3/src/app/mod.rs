@@ -1,5 +1,6 @@
 //! The window: events in, frames out. Nothing else knows winit.
 
+mod adapter;
 mod events;
 #[cfg(not(target_arch = "wasm32"))]
 mod filming;

@@ -12,8 +12,9 @@ use winit::event_loop::ActiveEventLoop;
 use winit::platform::wayland::WindowAttributesExtWayland;
 use winit::window::{Window, WindowAttributes};
 
+use super::adapter;
 use super::filming::Films;
-use super::graphics::{self, Graphics};
+use super::graphics::Graphics;
 use super::screen::Screen;
 use super::watch::Watch;
 use crate::failure::Failure;
@@ -66,7 +67,7 @@ impl Outside {
         self.films.end(session);
         // The old surface has to go before the window can have another.
         screen.graphics = None;
-        let opened = pollster::block_on(graphics::open(window.clone(), screen.display.clone()));
+        let opened = pollster::block_on(adapter::open(window.clone(), screen.display.clone()));
         Some(opened.and_then(|(gpu, surface)| Graphics::new(gpu, surface, window, session)))
     }
 

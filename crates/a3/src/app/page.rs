@@ -10,7 +10,8 @@ use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::platform::web::WindowAttributesExtWebSys;
 use winit::window::{Window, WindowAttributes};
 
-use super::graphics::{self, Graphics};
+use super::adapter;
+use super::graphics::Graphics;
 use super::screen::Screen;
 use crate::browser;
 use crate::output;
@@ -78,7 +79,7 @@ impl Outside {
             self.opening = true;
             let display = screen.display.clone();
             wasm_bindgen_futures::spawn_local(async move {
-                send(Event::Opened(graphics::open(window, display).await));
+                send(Event::Opened(adapter::open(window, display).await));
             });
         }
         None
