@@ -148,7 +148,7 @@ fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Action, compared, frames, session};
+    use crate::session::{RunAction, compared, frames, session};
 
     /// The words of a command line that has no quotes.
     fn again(line: &str) -> Session {
@@ -217,7 +217,7 @@ mod tests {
         assert_eq!(made.runs.panes.len(), 2);
         let begun = beginning(several.runs.first()).unwrap();
         assert_eq!(made.runs.first().state(), begun.state());
-        several.act(Action::Reset, 0);
+        several.act(RunAction::Reset, 0);
         assert!(of(&several, 0).ok().unwrap().contains("a3-flag-3"));
     }
 

@@ -44,7 +44,7 @@ pub fn take_up(session: &mut Session, path: &Path) -> Result<(), Failure> {
 mod tests {
     use super::*;
     use crate::hud::panel::{PanelKey, press};
-    use crate::session::{Action, frames, session};
+    use crate::session::{RunAction, frames, session};
 
     #[test]
     fn a_tuned_run_goes_on_from_its_file() {
@@ -55,7 +55,7 @@ mod tests {
         let words = ["r", "0.002", "--scene", scene.to_str().unwrap()];
         let mut first = session(&words);
         first.readings.in_window = true;
-        first.act(Action::Panel, 0);
+        first.act(RunAction::Panel, 0);
         // Every row, solver and step too.
         for _ in 0..20 {
             press(&mut first, PanelKey::Down, false);

@@ -15,7 +15,7 @@ use crate::cli::{self, Cli, Command};
 use crate::failure::Failure;
 use crate::progress;
 use crate::scene_file::Hash;
-use crate::session::Action;
+use crate::session::{Action, RunAction};
 use crate::settings::Settings;
 
 /// Begins what the address asks for; where that is not possible, the page says why.
@@ -89,7 +89,7 @@ pub fn run_steps(words: &str, steps: u32) -> String {
 
 /// Does what key Tab does, which leaves a page.
 pub fn toggle_panel() {
-    app::send(app::Event::Act(Action::Panel));
+    app::send(app::Event::Act(Action::Run(RunAction::Panel)));
 }
 
 /// Opens a file that was dropped on the page.

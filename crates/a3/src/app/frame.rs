@@ -45,7 +45,9 @@ impl App {
                 };
                 match request {
                     Some(Request::Act(action)) => self.act(event_loop, action),
-                    Some(request) if panel::apply(session, request) => self.scene_changed(),
+                    Some(Request::Change(change)) if panel::apply(session, change) => {
+                        self.scene_changed();
+                    }
                     _ => {}
                 }
                 if let Some(status) = &mut self.status {

@@ -312,7 +312,9 @@ impl Graphics {
         let mut output = self.overlay.lay_out(&self.gpu, input, |ctx| {
             hud::show(ctx, &session.runs.panes, &session.readings);
             request = panel::show(ctx, session).or(request);
-            request = hud::show_list(ctx, session).or(request);
+            request = hud::show_list(ctx, session)
+                .map(Request::Change)
+                .or(request);
         });
         let mut answer = std::mem::take(&mut output.platform_output);
         if answer.cursor_icon == CursorIcon::Default {

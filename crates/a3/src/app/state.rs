@@ -17,7 +17,7 @@ use super::screen::Screen;
 use super::status::Status;
 use crate::failure::Failure;
 use crate::hud::panel;
-use crate::session::{Action, Session};
+use crate::session::{Action, RunAction, Session, WindowAction};
 use crate::settings::Settings;
 use crate::{command_line, keep, output};
 
@@ -128,7 +128,12 @@ impl App {
         };
         let repeats = matches!(
             action,
-            Action::Step | Action::LongerStep | Action::ShorterStep | Action::Scrub(_)
+            Action::Run(
+                RunAction::Step
+                    | RunAction::LongerStep
+                    | RunAction::ShorterStep
+                    | RunAction::Scrub(_)
+            )
         );
         if !event.repeat || repeats {
             self.act(event_loop, action);
@@ -138,46 +143,63 @@ impl App {
     /// Does an action of the keys.
     pub fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
         let pane = self.mouse.pointer.pane(&self.session, &self.screen);
+        match action {
+            Action::Run(action) => {
+                // No steps are due for the time in which nothing moved.
+                if !self.session.animated() {
+                    self.last = Instant::now();
+                }
+                if self.session.act(action, pane) {
+                    self.scene_changed();
+                }
+            }
+            Action::Window(action) => self.act_in_window(event_loop, action, pane),
+        }
+        self.screen.redraw();
+    }
+
+    /// Does an action that needs the window. The pointer is over `pane`.
+    fn act_in_window(&mut self, event_loop: &ActiveEventLoop, action: WindowAction, pane: usize) {
         let (session, graphics) = (&mut self.session, self.screen.graphics.as_ref());
         let message = match action {
-            Action::Quit => {
+            WindowAction::Quit => {
                 let stays = platform::quit(event_loop);
                 if stays.is_some() {
                     self.remember();
                 }
                 stays.map(Into::into)
             }
-            Action::Picture => Some(self.outside.save_picture(session, graphics)),
-            Action::FullScreen => {
+            WindowAction::Picture => Some(self.outside.save_picture(session, graphics)),
+            WindowAction::FullScreen => {
                 self.screen.toggle_full();
                 None
             }
-            Action::Undo | Action::Redo => {
-                let again = action == Action::Redo || self.held.shift_key();
+            WindowAction::Undo | WindowAction::Redo => {
+                let again = action == WindowAction::Redo || self.held.shift_key();
                 panel::undo(session, again);
                 None
             }
-            Action::Follow => {
+            WindowAction::Follow => {
                 let hit = self.mouse.pointer.hit(session, &self.screen, pane);
                 let particle = hit.and_then(|(target, _)| target.particle());
                 let panes = &session.runs.panes;
                 Some(session.view.follow(panes, pane, particle))
             }
-            Action::WritePlots => Some(said("wrote", write_plots(session))),
-            Action::Record => {
+            WindowAction::WritePlots => Some(said("wrote", write_plots(session))),
+            WindowAction::Record => {
                 self.outside.films.record(session, graphics);
                 None
             }
-            Action::FilmLast => {
+            WindowAction::FilmLast => {
                 self.outside.films.record_last(session, graphics);
                 None
             }
-            Action::CommandLine => Some(match command_line::of(session, pane) {
+            WindowAction::CommandLine => Some(match command_line::of(session, pane) {
                 Ok(line) => self.outside.copy(&line),
                 Err(failure) => failure.message(),
             }),
-            Action::Keep => Some(said("kept in", keep::keep(session, pane))),
-            Action::TakeUp => {
+            WindowAction::Keep => Some(said("kept in", keep::keep(session, pane))),
+            WindowAction::TakeUp => {
                 let loaded = match session.library.kept.clone() {
                     None => "Nothing was kept: k keeps the run in a file.".into(),
                     Some(path) => {
@@ -189,22 +211,11 @@ impl App {
                 self.scene_changed();
                 None
             }
-            Action::Lessons => Some(platform::open_lessons()),
-            action => {
-                // No steps are due for the time in which nothing moved.
-                if !session.animated() {
-                    self.last = Instant::now();
-                }
-                if session.act(action, pane) {
-                    self.scene_changed();
-                }
-                None
-            }
+            WindowAction::Lessons => Some(platform::open_lessons()),
         };
         if let Some(message) = message {
             self.session.readings.say(message);
         }
-        self.screen.redraw();
     }
 
     /// Shows another scene.

@@ -5,8 +5,8 @@ use std::path::Path;
 use a3_core::{Network, integrators};
 use a3_scenes::Setup;
 
+use super::actions::RunAction;
 use super::history::Change;
-use super::keys::Action;
 use super::list::{List, TextKey, Topic, solvers};
 use super::looks;
 use super::runs::KEY_BUDGET;
@@ -19,51 +19,55 @@ use crate::show;
 const SLOWEST: i32 = 6;
 
 impl Session {
-    /// Does an action, except those that need the window, and returns whether another scene is
-    /// shown. A solver is for the pane `at`, all else for every pane.
-    pub fn act(&mut self, action: Action, at: usize) -> bool {
+    /// Does an action, and returns whether another scene is shown. A solver is for the pane `at`,
+    /// all else for every pane.
+    pub fn act(&mut self, action: RunAction, at: usize) -> bool {
         match action {
-            Action::NextScene | Action::PreviousScene => {
-                let by = if action == Action::NextScene { 1 } else { -1 };
+            RunAction::NextScene | RunAction::PreviousScene => {
+                let by = if action == RunAction::NextScene {
+                    1
+                } else {
+                    -1
+                };
                 self.show_scene(self.library.beside(by));
                 return true;
             }
-            Action::Scenes => self.toggle_list(Topic::Scenes),
-            Action::Solvers => self.toggle_list(Topic::Solvers { pane: at }),
-            Action::Reset => self.reset(),
-            Action::Swing if self.runs.first().scene().swing.is_none() => {
+            RunAction::Scenes => self.toggle_list(Topic::Scenes),
+            RunAction::Solvers => self.toggle_list(Topic::Solvers { pane: at }),
+            RunAction::Reset => self.reset(),
+            RunAction::Swing if self.runs.first().scene().swing.is_none() => {
                 self.readings.say("There is nothing to swing here.");
             }
-            Action::Swing => {
+            RunAction::Swing => {
                 let on = !self.runs.first().swinging();
                 self.runs.align();
                 self.runs.all_mut().for_each(|run| run.set_swinging(on));
             }
-            Action::Wind if self.runs.first().scene().wind.is_none() => {
+            RunAction::Wind if self.runs.first().scene().wind.is_none() => {
                 self.readings.say("There is no wind here.");
             }
-            Action::Wind => {
+            RunAction::Wind => {
                 let on = !self.runs.first().windy();
                 self.runs.align();
                 self.runs.all_mut().for_each(|run| run.set_wind(on));
             }
-            Action::Touch => {
+            RunAction::Touch => {
                 let done = self.runs.toggle_touch();
                 self.tell(done);
             }
-            Action::Wireframe => looks::next_style(&mut self.runs.panes),
-            Action::Colour => self.readings.say(looks::next_colour(&mut self.runs.panes)),
-            Action::Arrows => self.readings.say(looks::next_arrows(&mut self.runs.panes)),
-            Action::Pause => {
+            RunAction::Wireframe => looks::next_style(&mut self.runs.panes),
+            RunAction::Colour => self.readings.say(looks::next_colour(&mut self.runs.panes)),
+            RunAction::Arrows => self.readings.say(looks::next_arrows(&mut self.runs.panes)),
+            RunAction::Pause => {
                 self.readings.paused = !self.readings.paused;
                 self.start_anew();
             }
-            Action::Step if self.readings.rewound.is_some() => self.scrub(1),
-            Action::Scrub(by) => self.scrub(by),
-            Action::Slower => self.readings.slowness = (self.readings.slowness + 1).min(SLOWEST),
-            Action::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
-            Action::Step => self.step(),
-            Action::Solver(i) => match integrators::METHODS.get(i) {
+            RunAction::Step if self.readings.rewound.is_some() => self.scrub(1),
+            RunAction::Scrub(by) => self.scrub(by),
+            RunAction::Slower => self.readings.slowness = (self.readings.slowness + 1).min(SLOWEST),
+            RunAction::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
+            RunAction::Step => self.step(),
+            RunAction::Solver(i) => match integrators::METHODS.get(i) {
                 Some(method) => {
                     let done = self.runs.set_method(method, at, &self.tuning.defaults);
                     self.tell(done);
@@ -72,23 +76,23 @@ impl Session {
                     .readings
                     .say(format!("There are {} solvers.", integrators::METHODS.len())),
             },
-            Action::LongerStep | Action::ShorterStep => {
-                let done = self.runs.set_steps(action == Action::LongerStep);
+            RunAction::LongerStep | RunAction::ShorterStep => {
+                let done = self.runs.set_steps(action == RunAction::LongerStep);
                 self.tell(done);
             }
-            Action::Camera => {
+            RunAction::Camera => {
                 self.view.see_from(self.runs.panes[0].show.camera());
                 self.view.stay();
             }
-            Action::FreeAll => {
+            RunAction::FreeAll => {
                 let all: Vec<_> = (0..self.runs.first().particles()).collect();
                 self.pin_all(&all, false);
             }
-            Action::Projection => self.readings.say(self.view.toggle_projection()),
-            Action::SeeAll => self.view.see_all(&self.runs.panes),
-            Action::NextView => self.readings.say(self.view.next_view()),
-            Action::Panel => self.panel.open = !self.panel.open,
-            Action::WriteScene => {
+            RunAction::Projection => self.readings.say(self.view.toggle_projection()),
+            RunAction::SeeAll => self.view.see_all(&self.runs.panes),
+            RunAction::NextView => self.readings.say(self.view.next_view()),
+            RunAction::Panel => self.panel.open = !self.panel.open,
+            RunAction::WriteScene => {
                 let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
                 let said = match save::write_scene(self, &pane.simulation) {
                     Ok(name) => format!("wrote {name}"),
@@ -96,20 +100,7 @@ impl Session {
                 };
                 self.readings.say(said);
             }
-            Action::Help => self.readings.help = !self.readings.help,
-            Action::Picture
-            | Action::CommandLine
-            | Action::Follow
-            | Action::Undo
-            | Action::Redo
-            | Action::FullScreen
-            | Action::WritePlots
-            | Action::Record
-            | Action::FilmLast
-            | Action::Keep
-            | Action::TakeUp
-            | Action::Lessons
-            | Action::Quit => {}
+            RunAction::Help => self.readings.help = !self.readings.help,
         }
         false
     }
@@ -229,7 +220,7 @@ impl Session {
                 self.show_scene(number);
                 true
             }
-            Some(Topic::Solvers { pane }) => self.act(Action::Solver(number), pane),
+            Some(Topic::Solvers { pane }) => self.act(RunAction::Solver(number), pane),
             None => false,
         }
     }

@@ -208,7 +208,7 @@ impl Runs {
 
 #[cfg(test)]
 mod tests {
-    use crate::session::{Action, Session, compared, frames, session, times};
+    use crate::session::{RunAction, Session, compared, frames, session, times};
 
     use super::*;
     use a3_core::contact::Shape;
@@ -243,7 +243,7 @@ mod tests {
             touching.extend(session.runs.reference.as_ref().map(|r| r.any().touching()));
             touching
         };
-        session.act(Action::Touch, 0);
+        session.act(RunAction::Touch, 0);
         assert_eq!(touching(&session), [true; 3]);
         assert_eq!(session.readings.message, None);
         // A sphere that would reach into the cloth stays as it is.
@@ -260,13 +260,13 @@ mod tests {
         assert!(said.starts_with("Surfaces would cross: "), "{said}");
         assert!(said.contains("obstacle 0"), "{said}");
         assert_eq!(radius(&session), own);
-        session.act(Action::Touch, 0);
+        session.act(RunAction::Touch, 0);
         assert_eq!(touching(&session), [false; 3]);
         // Where one crosses, all stay as they are.
         let shape = Shape::Sphere { radius: 4.5 };
         let last = &mut session.runs.panes[1].simulation;
         last.adjust(|network| network.reshape_obstacle(0, shape.clone()).unwrap());
-        session.act(Action::Touch, 0);
+        session.act(RunAction::Touch, 0);
         let said = session.readings.message.clone().unwrap();
         assert!(
             said.starts_with("surfaces that cross cannot begin to touch: "),
@@ -274,7 +274,7 @@ mod tests {
         );
         assert_eq!(touching(&session), [false; 3]);
         let mut session = crate::session::session(&["e", "0.01", "--scene", "simple"]);
-        session.act(Action::Touch, 0);
+        session.act(RunAction::Touch, 0);
         let said = session.readings.message.unwrap();
         assert_eq!(said, "There are no surfaces here that could touch.");
     }
@@ -318,12 +318,12 @@ mod tests {
             );
         };
         small(&session, "still");
-        session.act(Action::Swing, 0);
+        session.act(RunAction::Swing, 0);
         let aligned = times(&session);
         assert_eq!(aligned[0], aligned[1]);
         frames(&mut session, 0.5);
         small(&session, "swinging");
-        session.act(Action::Wind, 0);
+        session.act(RunAction::Wind, 0);
         frames(&mut session, 0.5);
         small(&session, "in the wind");
         assert!(session.runs.grab(399));
@@ -351,7 +351,7 @@ mod tests {
                 .iter()
                 .all(|pane| pane.error.unwrap() < 0.1)
         );
-        session.act(Action::Reset, 0);
+        session.act(RunAction::Reset, 0);
         assert_eq!(times(&session), [0.0, 0.0]);
         frames(&mut session, 0.5);
         small(&session, "again");

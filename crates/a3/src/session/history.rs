@@ -98,7 +98,7 @@ impl History {
 mod tests {
     use super::*;
     use crate::hud::panel;
-    use crate::session::{Action, compared, frames, session};
+    use crate::session::{RunAction, compared, frames, session};
 
     #[test]
     fn a_drag_is_one_change_and_a_new_change_ends_what_was_undone() {
@@ -149,7 +149,7 @@ mod tests {
             (pins(&session), &*said),
             (vec![5, 5], "3 particles are pinned now.")
         );
-        session.act(Action::FreeAll, 0);
+        session.act(RunAction::FreeAll, 0);
         assert_eq!(pins(&session), [0, 0]);
         frames(&mut session, 0.1);
         for expected in [5, 2] {
@@ -164,7 +164,7 @@ mod tests {
         panel::undo(&mut session, true);
         assert_eq!(pins(&session), [5, 5]);
         // Another scene knows of none of that.
-        session.act(Action::NextScene, 0);
+        session.act(RunAction::NextScene, 0);
         panel::undo(&mut session, false);
         assert_eq!(
             session.readings.message.as_deref(),
@@ -180,7 +180,7 @@ mod tests {
             circle.readings.message.as_deref(),
             Some("There is nothing here that could be pinned.")
         );
-        circle.act(Action::FreeAll, 0);
+        circle.act(RunAction::FreeAll, 0);
         assert_eq!(
             circle.readings.message.as_deref(),
             Some("There are no pins here.")

@@ -33,7 +33,7 @@ pub fn next_step(step: f64, longer: bool) -> f64 {
 mod tests {
     use super::*;
     use crate::bounds::{LARGEST_STEP, SMALLEST_STEP};
-    use crate::session::{Action, session};
+    use crate::session::{RunAction, session};
 
     #[test]
     fn steps_climb_the_ladder() {
@@ -45,9 +45,9 @@ mod tests {
         let ends = |solver, end: f64, longer| {
             let mut session = session(&[solver, &end.to_string(), "--scene", "chain"]);
             let action = if longer {
-                Action::LongerStep
+                RunAction::LongerStep
             } else {
-                Action::ShorterStep
+                RunAction::ShorterStep
             };
             session.act(action, 0);
             session.runs.first().control().value() == end

@@ -189,7 +189,7 @@ mod tests {
     use a3_core::Simulation;
 
     use super::*;
-    use crate::session::{Action, compared, session};
+    use crate::session::{RunAction, compared, session};
 
     #[test]
     fn scenes_come_round_and_the_solver_comes_back() {
@@ -200,7 +200,7 @@ mod tests {
                 session.runs.panes[0].simulation.scene().name.clone(),
                 session.runs.panes[0].simulation.method().name,
             ));
-            assert!(session.act(Action::NextScene, 0));
+            assert!(session.act(RunAction::NextScene, 0));
         }
         let expected: Vec<_> = a3_scenes::SCENES.iter().map(|entry| entry.name).collect();
         assert_eq!(
@@ -228,7 +228,7 @@ mod tests {
     fn the_grid_asked_for_comes_back() {
         let mut session = session(&["t", "0.005", "--grid", "30x25"]);
         for _ in 0..a3_scenes::SCENES.len() {
-            session.act(Action::NextScene, 0);
+            session.act(RunAction::NextScene, 0);
         }
         assert_eq!(session.runs.panes[0].simulation.particles(), 750);
     }
@@ -241,7 +241,7 @@ mod tests {
         let (mut shortened, mut kept) = (0, 0);
         for _ in 0..a3_scenes::SCENES.len() {
             session.readings.message = None;
-            assert!(session.act(Action::NextScene, 0));
+            assert!(session.act(RunAction::NextScene, 0));
             let [heun, implicit] = [0, 1].map(|k| {
                 let run = &session.runs.panes[k].simulation;
                 (run.scene().name.clone(), run.control().step().unwrap())
@@ -267,9 +267,9 @@ mod tests {
         assert!(shortened > 2 && kept > 2, "{shortened} {kept}");
         // A step that is set by hand is wanted from then on.
         while session.runs.panes[0].wanted_step.is_none() {
-            session.act(Action::NextScene, 0);
+            session.act(RunAction::NextScene, 0);
         }
-        session.act(Action::ShorterStep, 0);
+        session.act(RunAction::ShorterStep, 0);
         assert_eq!(session.runs.panes[0].wanted_step, None);
     }
 
@@ -297,10 +297,10 @@ mod tests {
         );
         assert_eq!(session.runs.first().scene().name, name);
         // It is one of the scenes from now on.
-        session.act(Action::NextScene, 0);
+        session.act(RunAction::NextScene, 0);
         assert_eq!(session.runs.first().scene().name, a3_scenes::SCENES[0].name);
         for _ in 0..a3_scenes::SCENES.len() {
-            session.act(Action::NextScene, 0);
+            session.act(RunAction::NextScene, 0);
         }
         assert_eq!(session.runs.first().scene().name, name);
     }

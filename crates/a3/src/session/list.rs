@@ -132,7 +132,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::session::{Action, Session, compared, session};
+    use crate::session::{RunAction, Session, compared, session};
 
     const STRIP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/strip.toml");
 
@@ -150,25 +150,25 @@ mod tests {
     fn a_scene_is_found_by_typing_and_by_arrows() {
         let mut session = session(&["v", "0.005"]);
         let name = |session: &Session| session.runs.first().scene().name.clone();
-        session.act(Action::Scenes, 0);
+        session.act(RunAction::Scenes, 0);
         type_words(&mut session, "Jel");
         assert!(keys(&mut session, &[TextKey::Take]));
         assert!(session.list.is_none());
         assert_eq!(name(&session), "jelly");
         // The list begins at what is shown.
-        session.act(Action::Scenes, 0);
+        session.act(RunAction::Scenes, 0);
         assert!(keys(&mut session, &[TextKey::Move(1), TextKey::Take]));
         assert_eq!(name(&session), a3_scenes::SCENES[9].name);
-        session.act(Action::PreviousScene, 0);
+        session.act(RunAction::PreviousScene, 0);
         assert_eq!(name(&session), "jelly");
-        session.act(Action::Scenes, 0);
+        session.act(RunAction::Scenes, 0);
         assert!(keys(&mut session, &[TextKey::Move(-99), TextKey::Take]));
         assert_eq!(name(&session), "cloth");
         // Before the first comes the last.
-        session.act(Action::PreviousScene, 0);
+        session.act(RunAction::PreviousScene, 0);
         assert_eq!(name(&session), a3_scenes::SCENES.last().unwrap().name);
         // Nothing matches: Enter does nothing, and Esc closes the list.
-        session.act(Action::Scenes, 0);
+        session.act(RunAction::Scenes, 0);
         type_words(&mut session, "zz");
         assert!(!keys(&mut session, &[TextKey::Take]) && session.list.is_some());
         keys(&mut session, &[TextKey::Erase, TextKey::Erase]);
@@ -182,9 +182,9 @@ mod tests {
         let mut session = session(&["v", "0.005"]);
         for _ in 0..2 {
             assert!(session.open(Path::new(STRIP)));
-            session.act(Action::NextScene, 0);
+            session.act(RunAction::NextScene, 0);
         }
-        session.act(Action::Scenes, 0);
+        session.act(RunAction::Scenes, 0);
         let list = session.list.as_ref().unwrap();
         let names: Vec<_> = list.entries().map(|entry| entry.name.clone()).collect();
         assert_eq!(names[..2], [STRIP, "cloth"]);
@@ -196,7 +196,7 @@ mod tests {
     fn files_of_earlier_windows_come_last_and_can_be_opened() {
         let mut session = session(&["v", "0.005"]);
         session.library.recent = ["/nowhere/gone.toml", STRIP].map(Into::into).to_vec();
-        session.act(Action::Scenes, 0);
+        session.act(RunAction::Scenes, 0);
         type_words(&mut session, "strip.toml");
         let list = session.list.as_ref().unwrap();
         assert_eq!(list.entries().count(), 1);
@@ -214,7 +214,7 @@ mod tests {
     #[test]
     fn every_solver_that_serves_can_be_had() {
         let mut session = compared(&["e:0.01", "r:0.01", "--scene", "chain"], 0.1);
-        session.act(Action::Solvers, 1);
+        session.act(RunAction::Solvers, 1);
         type_words(&mut session, "dop853");
         keys(&mut session, &[TextKey::Take]);
         let names: Vec<_> = session
@@ -224,15 +224,15 @@ mod tests {
             .map(|pane| pane.simulation.method().name)
             .collect();
         assert_eq!(names, ["euler", "dop853"]);
-        session.act(Action::Solvers, 0);
+        session.act(RunAction::Solvers, 0);
         let count = session.list.as_ref().unwrap().entries().count();
         assert_eq!(count, integrators::METHODS.len());
         // The same key again closes it.
-        session.act(Action::Solvers, 0);
+        session.act(RunAction::Solvers, 0);
         assert!(session.list.is_none());
         // The circle is no system of masses.
         let mut circle = crate::session::session(&["t", "0.01", "--scene", "simple"]);
-        circle.act(Action::Solvers, 0);
+        circle.act(RunAction::Solvers, 0);
         let list = circle.list.as_ref().unwrap();
         assert!(list.entries().count() < count && list.entries().all(|e| e.name != "verlet"));
     }

@@ -93,24 +93,24 @@ fn after<T: Copy + PartialEq>(all: &[T], now: Option<T>) -> Option<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Action, compared, session};
+    use crate::session::{RunAction, compared, session};
 
     #[test]
     fn colours_and_arrows_come_round_as_far_as_the_scene_has_them() {
         let mut cloth = session(&["v", "0.005"]);
         let colours = [0; 5].map(|_| {
-            cloth.act(Action::Colour, 0);
+            cloth.act(RunAction::Colour, 0);
             cloth.runs.panes[0].show.colouring.quantity
         });
         let [speed, strain, force, contact, _] = Quantity::ALL.map(Some);
         assert_eq!(colours, [speed, strain, force, contact, None]);
         let mut circle = session(&["t", "0.01", "--scene", "simple"]);
         let colours = [0; 2].map(|_| {
-            circle.act(Action::Colour, 0);
+            circle.act(RunAction::Colour, 0);
             circle.runs.panes[0].show.colouring.quantity
         });
         assert_eq!(colours, [Some(Quantity::Speed), None]);
-        circle.act(Action::Arrows, 0);
+        circle.act(RunAction::Arrows, 0);
         assert_eq!(
             circle.runs.panes[0].show.field.arrows,
             Some(Arrows::Velocity)
@@ -123,11 +123,11 @@ mod tests {
         assert!(
             !has(&flag.runs.panes, Quantity::Contact) && !has(&flag.runs.panes, Quantity::Error)
         );
-        flag.act(Action::Touch, 0);
+        flag.act(RunAction::Touch, 0);
         assert!(has(&flag.runs.panes, Quantity::Contact));
         let mut two = compared(&["e:0.0005", "r:0.01", "--scene", "mit"], 0.0);
         for _ in 0..4 {
-            two.act(Action::Colour, 0);
+            two.act(RunAction::Colour, 0);
         }
         assert_eq!(
             two.runs.panes[1].show.colouring.quantity,
@@ -149,7 +149,7 @@ mod tests {
         assert!((worse..10.0 * most).contains(&ends[0]), "{ends:?} {worse}");
         let share = |k: usize| two.runs.panes[k].show.colouring.share(5).unwrap();
         assert!(share(0) > share(1) + 0.2 && share(1) > 0.0);
-        two.act(Action::Reset, 0);
+        two.act(RunAction::Reset, 0);
         let pane = &mut two.runs.panes[0];
         pane.show.compose(&pane.simulation);
         assert_eq!(pane.show.colouring.shown(), None);
@@ -160,7 +160,7 @@ mod tests {
         let styles = |scene: &str| {
             let mut session = session(&["t", "0.001", "--scene", scene]);
             [0; 3].map(|_| {
-                session.act(Action::Wireframe, 0);
+                session.act(RunAction::Wireframe, 0);
                 session.runs.panes[0].show.style
             })
         };

@@ -1,6 +1,7 @@
 //! Runs that keep up with real time, without a window: one run or several side by side, their
 //! common time, the hands that pull at them, the reference, the timeline, and the actions of keys.
 
+mod actions;
 mod acts;
 mod ending;
 mod hands;
@@ -25,9 +26,10 @@ mod timeline;
 mod tuning;
 mod view;
 
+pub use actions::{Action, RunAction, WindowAction};
 pub use ending::Ending;
 pub use history::Change;
-pub use keys::{Action, KEYS, MOUSE, action};
+pub use keys::{KEYS, MOUSE, action};
 pub use list::{Entry, TextKey, Topic};
 pub use origin::Origin;
 pub use pane::Pane;

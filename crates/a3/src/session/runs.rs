@@ -224,13 +224,13 @@ mod tests {
     use a3_core::Vector3;
 
     use super::*;
-    use crate::session::{Action, compared, session, times};
+    use crate::session::{RunAction, compared, session, times};
 
     #[test]
     fn a_digit_is_for_one_pane_and_plus_for_all() {
         let mut session = compared(&["e:0.05", "r:0.01", "--scene", "chain"], 0.1);
-        session.act(Action::Solver(1), 1);
-        session.act(Action::LongerStep, 1);
+        session.act(RunAction::Solver(1), 1);
+        session.act(RunAction::LongerStep, 1);
         let methods: Vec<_> = session
             .runs
             .panes
@@ -245,8 +245,8 @@ mod tests {
             ]
         );
         // One step of the longest.
-        session.act(Action::Reset, 0);
-        session.act(Action::Step, 0);
+        session.act(RunAction::Reset, 0);
+        session.act(RunAction::Step, 0);
         let steps: Vec<_> = session
             .runs
             .panes

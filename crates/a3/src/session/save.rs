@@ -93,8 +93,8 @@ fn write_rows(text: &mut String, key: &str, rows: &[impl Debug]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::keys::Action;
     use super::*;
+    use crate::session::RunAction;
     use crate::session::session;
     use a3_core::contact::Shape;
     use a3_core::{Network, Vector3};
@@ -181,8 +181,8 @@ mod tests {
                     run.change_wind(wind.scaled(2.0));
                 }
             });
-            session.act(Action::Wind, 0);
-            session.act(Action::Swing, 0);
+            session.act(RunAction::Wind, 0);
+            session.act(RunAction::Swing, 0);
             session.view.camera.orbit(0.4, 0.2);
             run_on(&mut session);
             check(&session, &written(&session, folder.path()));
@@ -201,7 +201,7 @@ mod tests {
             let network = scene.model.network();
             assert!(network.is_none_or(|network| !network.is_pinned(last)));
             session.release();
-            session.act(Action::NextScene, 0);
+            session.act(RunAction::NextScene, 0);
         }
     }
 
@@ -223,7 +223,7 @@ mod tests {
              pin = [{ at = ['left'] }, { at = ['right'], shift = { by = [0.9, 0, 0], start = 0.1, end = 0.7 } }]\n";
         std::fs::write(&path, rag).unwrap();
         let mut session = session(&["r", "0.002", "--scene", path.to_str().unwrap()]);
-        session.act(Action::Wind, 0);
+        session.act(RunAction::Wind, 0);
         run_on(&mut session);
         let torn = session
             .runs

@@ -236,7 +236,7 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Action, compared, frames, session, times};
+    use crate::session::{RunAction, compared, frames, session, times};
     #[test]
     fn time_keeps_up_whatever_the_frame_rate() {
         for rate in [17.0, 60.0, 144.0] {
@@ -274,9 +274,9 @@ mod tests {
         let mut session = session(&["t", "0.01", "--paused"]);
         session.tick(0.05);
         assert_eq!(session.runs.panes[0].simulation.steps(), 0);
-        session.act(Action::Step, 0);
+        session.act(RunAction::Step, 0);
         assert_eq!(session.runs.panes[0].simulation.steps(), 1);
-        session.act(Action::Pause, 0);
+        session.act(RunAction::Pause, 0);
         session.tick(0.05);
         assert_eq!(session.runs.panes[0].simulation.steps(), 6);
     }
@@ -285,7 +285,7 @@ mod tests {
     fn a_lost_run_leaves_no_line_across_the_picture() {
         let mut session = session(&["e", "2", "--scene", "simple"]);
         while session.runs.panes[0].simulation.blow_up().is_none() {
-            session.act(Action::Step, 0);
+            session.act(RunAction::Step, 0);
         }
         let radius = |p: &[f32; 3]| p[0].hypot(p[1]);
         assert!(
@@ -295,7 +295,7 @@ mod tests {
                 .all(|p| radius(p) <= 100.0)
         );
         let last = session.runs.panes[0].show.trail().last().copied();
-        session.act(Action::Step, 0);
+        session.act(RunAction::Step, 0);
         assert_eq!(session.runs.panes[0].show.trail().last().copied(), last);
     }
 
@@ -303,18 +303,18 @@ mod tests {
     fn slow_motion_is_slow_and_its_steps_are_the_same() {
         let mut session = session(&["t", "0.001", "--scene", "chain"]);
         for _ in 0..2 {
-            session.act(Action::Slower, 0);
+            session.act(RunAction::Slower, 0);
         }
         frames(&mut session, 2.0);
         let run = session.runs.first();
         assert!((run.time() - 0.5).abs() < 2e-3, "{}", run.time());
         assert!((run.time() - 1e-3 * run.steps() as f64).abs() < 1e-9);
         for _ in 0..9 {
-            session.act(Action::Slower, 0);
+            session.act(RunAction::Slower, 0);
         }
         assert_eq!(session.readings.slowness, 6);
         for _ in 0..9 {
-            session.act(Action::Faster, 0);
+            session.act(RunAction::Faster, 0);
         }
         frames(&mut session, 1.0);
         assert!((session.runs.first().time() - 1.5).abs() < 3e-3);
@@ -326,7 +326,7 @@ mod tests {
         assert!(!session.runs.panes[0].alive() && session.runs.panes[0].error.is_none());
         assert!(session.animated() && session.runs.panes[1].error.unwrap() < 1e-3);
         assert!((times(&session)[1] - session.runs.clock).abs() < 0.011);
-        session.act(Action::Reset, 0);
+        session.act(RunAction::Reset, 0);
         assert!(session.runs.panes[0].alive());
     }
 }

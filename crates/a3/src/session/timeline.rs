@@ -156,7 +156,7 @@ impl Timeline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Action, frames, session};
+    use crate::session::{RunAction, frames, session};
     use a3_core::{Control, integrators};
 
     fn run(rows: usize) -> Simulation {
@@ -272,7 +272,7 @@ mod tests {
             session.runs.first().time(),
             session.runs.first().state().to_vec(),
         );
-        session.act(Action::Scrub(-10), 0);
+        session.act(RunAction::Scrub(-10), 0);
         let place = session.readings.rewound.unwrap();
         assert!(
             session.readings.paused && (place.back - 1.0 / 6.0).abs() < 0.02,
@@ -284,16 +284,16 @@ mod tests {
         // Nothing goes on by itself.
         session.tick(0.1);
         assert_eq!(session.runs.first().state(), then);
-        session.act(Action::Step, 0);
-        session.act(Action::Scrub(10), 0);
+        session.act(RunAction::Step, 0);
+        session.act(RunAction::Scrub(10), 0);
         assert_eq!(session.readings.rewound, None);
         assert_eq!(
             (session.runs.first().time(), session.runs.first().state()),
             (newest.0, &newest.1[..])
         );
-        session.act(Action::Scrub(-10), 0);
+        session.act(RunAction::Scrub(-10), 0);
         assert_eq!(session.runs.first().state(), then);
-        session.act(Action::Pause, 0);
+        session.act(RunAction::Pause, 0);
         while session.runs.first().time() < newest.0 - 1e-9 {
             session.tick(0.01);
         }
@@ -301,8 +301,8 @@ mod tests {
             (session.runs.first().state(), session.readings.rewound),
             (&newest.1[..], None)
         );
-        session.act(Action::Reset, 0);
-        session.act(Action::Scrub(-1), 0);
+        session.act(RunAction::Reset, 0);
+        session.act(RunAction::Scrub(-1), 0);
         assert_eq!(
             (session.runs.first().time(), session.readings.rewound),
             (0.0, None)
@@ -316,7 +316,7 @@ mod tests {
         while session.runs.panes[0].alive() {
             session.tick(1.0 / 60.0);
         }
-        session.act(Action::Scrub(-10), 0);
+        session.act(RunAction::Scrub(-10), 0);
         assert!(session.runs.panes[0].alive() && session.readings.rewound.is_some());
     }
 }

@@ -131,7 +131,7 @@ impl View {
 
 #[cfg(test)]
 mod tests {
-    use crate::session::{Action, Session, frames, session};
+    use crate::session::{RunAction, Session, frames, session};
 
     #[test]
     fn the_camera_follows_a_particle_forth_and_back() {
@@ -152,7 +152,7 @@ mod tests {
         assert!(
             near(offset(&session), before) && (session.view.camera.target() - begun).norm() > 0.1
         );
-        session.act(Action::Scrub(-20), 0);
+        session.act(RunAction::Scrub(-20), 0);
         session.view.go_along(&session.runs.panes);
         assert!(near(offset(&session), before));
         // The same particle again, or none, ends it; and so does another scene.
@@ -160,7 +160,7 @@ mod tests {
         assert_eq!(session.view.followed(), None);
         session.view.follow(&session.runs.panes, 0, Some(0));
         assert_eq!(session.view.followed(), Some(0));
-        session.act(Action::NextScene, 0);
+        session.act(RunAction::NextScene, 0);
         assert_eq!(session.view.followed(), None);
     }
 
@@ -168,12 +168,12 @@ mod tests {
     fn the_projection_stays_with_another_scene_and_when_the_camera_goes_home() {
         let mut session = session(&["v", "0.005", "--orthographic"]);
         assert!(session.view.camera.is_parallel());
-        for action in [Action::NextScene, Action::Camera] {
+        for action in [RunAction::NextScene, RunAction::Camera] {
             session.act(action, 0);
             assert!(session.view.camera.is_parallel());
         }
-        session.act(Action::Projection, 0);
-        session.act(Action::NextScene, 0);
+        session.act(RunAction::Projection, 0);
+        session.act(RunAction::NextScene, 0);
         assert!(!session.view.camera.is_parallel());
     }
 
@@ -181,9 +181,9 @@ mod tests {
     fn all_is_seen_from_every_side() {
         let mut session = session(&["v", "0.005", "--scene", "mit"]);
         for _ in 0..4 {
-            session.act(Action::NextView, 0);
+            session.act(RunAction::NextView, 0);
             session.view.camera.pan(30.0, 5.0);
-            session.act(Action::SeeAll, 0);
+            session.act(RunAction::SeeAll, 0);
             let run = session.runs.first();
             for i in 0..run.particles() {
                 let p = run.position(i);

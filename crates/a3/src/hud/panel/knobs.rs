@@ -9,7 +9,7 @@ use super::values::{
     damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
     stiffness, strain_limit, strain_limits, switch,
 };
-use crate::session::{Action, Change, Ending, Session, Tuning, looks};
+use crate::session::{Change, Ending, RunAction, Session, Tuning, looks};
 use crate::show::{Arrows, Quantity, Show};
 
 /// A knob: a row of the table.
@@ -64,7 +64,7 @@ const fn tunes(knob: Knob) -> Knob {
 /// All knobs, from top to bottom.
 pub static KNOBS: &[Knob] = &[
     knob("solver", "The integrator.", solver, |session, at, i| {
-        session.act(Action::Solver(i as usize), at);
+        session.act(RunAction::Solver(i as usize), at);
     }),
     knob(
         "step",
@@ -147,7 +147,7 @@ pub static KNOBS: &[Knob] = &[
             Some(switch(session.runs.first().windy(), false))
         },
         |session, at, _| {
-            session.act(Action::Wind, at);
+            session.act(RunAction::Wind, at);
         },
     )),
     tunes(knob(
@@ -171,7 +171,7 @@ pub static KNOBS: &[Knob] = &[
             Some(switch(session.runs.first().swinging(), false))
         },
         |session, at, _| {
-            session.act(Action::Swing, at);
+            session.act(RunAction::Swing, at);
         },
     ),
     knob(
@@ -193,7 +193,7 @@ pub static KNOBS: &[Knob] = &[
             Some(switch(session.runs.first().touching(), own))
         },
         |session, at, _| {
-            session.act(Action::Touch, at);
+            session.act(RunAction::Touch, at);
         },
     ),
     tunes(knob(

@@ -5,7 +5,7 @@ use super::screen::Screen;
 use crate::hud::panel::dial::DialScale;
 use crate::hud::panel::request::rows;
 use crate::hud::panel::view::{leaves, width};
-use crate::session::Action;
+use crate::session::RunAction;
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
 
@@ -106,7 +106,7 @@ fn the_help_stands_alone() {
     let mut session = opened(&["r", "0.005"]);
     assert_eq!(leaves(&session, (1280, 720), 1.0), (976, 720));
     assert_eq!(leaves(&session, (2560, 1440), 2.0), (1952, 1440));
-    session.act(Action::Help, 0);
+    session.act(RunAction::Help, 0);
     assert_eq!(leaves(&session, (1280, 720), 1.0), (1280, 720));
     assert!(
         !Screen::new(SIZES[0])

@@ -1,11 +1,11 @@
 //! Sessions whose panel is open, and what its rows say.
 
 use crate::hud::panel::request::{PanelKey, press, rows};
-use crate::session::{Action, Session, session};
+use crate::session::{RunAction, Session, session};
 
 pub fn opened(words: &[&str]) -> Session {
     let mut session = session(words);
-    session.act(Action::Panel, 0);
+    session.act(RunAction::Panel, 0);
     session
 }
 

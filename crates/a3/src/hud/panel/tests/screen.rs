@@ -95,7 +95,7 @@ impl Screen {
             vec![button(to, false)],
             vec![],
         ] {
-            if let (_, Some(request)) = self.frame(session, event) {
+            if let (_, Some(Request::Change(request))) = self.frame(session, event) {
                 apply(session, request);
             }
         }

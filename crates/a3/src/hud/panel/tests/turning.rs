@@ -5,9 +5,9 @@ use super::opened::{changed, dials, every_scene, opened, type_key};
 use super::screen::Screen;
 use crate::hud::panel::dial::Turn;
 use crate::hud::panel::knobs::KNOBS;
-use crate::hud::panel::request::{PanelKey, Request, apply, press, press_text, rows};
+use crate::hud::panel::request::{PanelKey, PanelRequest, apply, press, press_text, rows};
 use crate::hud::panel::undo;
-use crate::session::{Action, Session, TextKey, compared};
+use crate::session::{RunAction, Session, TextKey, compared};
 
 #[test]
 fn keys_reach_every_row_and_turn_that_only() {
@@ -40,7 +40,7 @@ fn keys_reach_every_row_and_turn_that_only() {
         type_key(&mut session, PanelKey::Up, false);
         assert_eq!(rows(&session)[count - 1].0, session.panel.row);
         // A closed panel takes no keys.
-        session.act(Action::Panel, 0);
+        session.act(RunAction::Panel, 0);
         assert!(!press(&mut session, PanelKey::Up, false));
     }
 }
@@ -58,7 +58,7 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     session.tick(0.1);
     let turn = |session: &mut Session, name: &str, turn| {
         let k = KNOBS.iter().position(|knob| knob.name == name).unwrap();
-        apply(session, Request::Turn(k, turn));
+        apply(session, PanelRequest::Turn(k, turn));
     };
     let before = forces(&session);
     for (name, value) in [
@@ -70,14 +70,14 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
         turn(&mut session, name, Turn::To(value));
         assert_ne!(forces(&session), before, "{name}");
         // What a reset goes back to is tuned too.
-        session.act(Action::Reset, 0);
+        session.act(RunAction::Reset, 0);
         let k = KNOBS.iter().find(|knob| knob.name == name).unwrap();
         assert_eq!((k.read)(&session, 0).unwrap().value, value);
         for _ in 0..6 {
             session.tick(1.0 / 60.0);
         }
         turn(&mut session, name, Turn::Own);
-        session.act(Action::Reset, 0);
+        session.act(RunAction::Reset, 0);
         session.tick(0.1);
         assert_eq!(forces(&session), before, "{name}");
     }
@@ -121,7 +121,7 @@ fn another_scene_is_not_tuned() {
     for k in 2..=5 {
         apply(
             &mut session,
-            Request::Turn(
+            PanelRequest::Turn(
                 k,
                 Turn::By {
                     up: true,
@@ -130,8 +130,8 @@ fn another_scene_is_not_tuned() {
             ),
         );
     }
-    session.act(Action::NextScene, 0);
-    session.act(Action::NextScene, 0);
+    session.act(RunAction::NextScene, 0);
+    session.act(RunAction::NextScene, 0);
     for (_, knob, dial) in rows(&session).iter().skip(2) {
         assert_eq!(dial.value, dial.own, "{}", knob.name);
     }
@@ -144,7 +144,7 @@ fn the_limit_follows_the_stiffness() {
     let limit = |session: &Session| session.runs.panes[0].limit.limit().unwrap().step;
     let before = limit(&session);
     let k = KNOBS.iter().position(|k| k.name == "stiffness").unwrap();
-    apply(&mut session, Request::Turn(k, Turn::To(4.0)));
+    apply(&mut session, PanelRequest::Turn(k, Turn::To(4.0)));
     session.read_state();
     let after = limit(&session);
     assert!((before / after - 2.0).abs() < 0.05, "{before} {after}");
@@ -153,10 +153,10 @@ fn the_limit_follows_the_stiffness() {
 #[test]
 fn every_pane_and_the_reference_are_tuned_alike() {
     let mut session = compared(&["r:0.005", "v:0.005", "--scene", "pendulum"], 0.3);
-    session.act(Action::Panel, 0);
+    session.act(RunAction::Panel, 0);
     for (name, value) in [("stiffness", 2.0), ("gravity", 20.0), ("drag", 0.02)] {
         let k = KNOBS.iter().position(|k| k.name == name).unwrap();
-        apply(&mut session, Request::Turn(k, Turn::To(value)));
+        apply(&mut session, PanelRequest::Turn(k, Turn::To(value)));
     }
     for _ in 0..60 {
         session.tick(1.0 / 60.0);
@@ -167,7 +167,7 @@ fn every_pane_and_the_reference_are_tuned_alike() {
     }
     // The step is that of one pane.
     session.panel.pane = 1;
-    apply(&mut session, Request::Turn(1, Turn::To(0.002)));
+    apply(&mut session, PanelRequest::Turn(1, Turn::To(0.002)));
     assert_eq!(session.runs.first().control(), Control::Step(0.005));
     assert_eq!(
         session.runs.panes[1].simulation.control(),
@@ -261,7 +261,7 @@ fn turns_are_undone_and_done_again() {
             let there = |session: &Session| (KNOBS[row].read)(session, 0).map(|dial| dial.value);
             apply(
                 &mut session,
-                Request::Turn(
+                PanelRequest::Turn(
                     row,
                     Turn::By {
                         up: true,
