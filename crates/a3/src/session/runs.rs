@@ -113,6 +113,13 @@ impl Runs {
         self.clock = times.reduce(f64::max).unwrap_or(self.clock);
     }
 
+    /// Begins to read the states again, with no steps due: after a time in which nothing was
+    /// simulated.
+    pub(super) fn start_anew(&mut self) {
+        self.settle();
+        self.read = None;
+    }
+
     /// Takes readings of the states: ten times a second while they move, and once when they stand
     /// still.
     pub(super) fn read_state(&mut self, moving: bool) {

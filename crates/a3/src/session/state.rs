@@ -64,7 +64,7 @@ pub struct Session {
     /// Values for the text over the picture.
     pub readings: Readings,
     /// Time spent since the readings were last taken.
-    pub(super) meter: Meter,
+    meter: Meter,
 }
 
 impl Session {
@@ -175,8 +175,7 @@ impl Session {
 
     /// Begins to measure again, with no steps due: after a time in which nothing was simulated.
     pub fn start_anew(&mut self) {
-        self.runs.settle();
-        self.runs.read = None;
+        self.runs.start_anew();
         self.meter = Meter::new();
     }
 
