@@ -28,7 +28,7 @@ pub fn window(options: &WindowOptions) -> Result<Session, Failure> {
     };
     Session::new(
         origin(what, options.limits.given()),
-        setup,
+        &setup,
         vec![simulation],
         &beginning,
     )
@@ -57,7 +57,7 @@ pub fn comparison(options: &Compare) -> Result<Session, Failure> {
     };
     Session::new(
         origin(what, options.limits.given()),
-        setup,
+        &setup,
         simulations,
         &beginning,
     )

@@ -8,7 +8,7 @@ use crate::begin;
 use crate::cli::{Cli, Command};
 use crate::failure::Failure;
 use crate::hud::panel;
-use crate::session::Session;
+use crate::session::{Session, looks, write_scene};
 use crate::show::has_springs;
 
 /// The command line that begins with the picture and the run of pane `at` as they are now. Where
@@ -17,10 +17,13 @@ use crate::show::has_springs;
 pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
     let mut words = words(session, at);
     if !makes(&words, session) {
-        let written = if session.panes.len() == 1 {
-            session.write_scene(at)
+        let written = if session.runs.panes.len() == 1 {
+            write_scene(session, session.runs.first())
         } else {
-            session.write_scene_of(&beginning(session.first()).map_err(Failure::run)?)
+            write_scene(
+                session,
+                &beginning(session.runs.first()).map_err(Failure::run)?,
+            )
         };
         words = words_of_file(session, at, &written.map_err(Failure::Run)?);
     }
@@ -30,7 +33,7 @@ pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
 
 /// The words after the program's name, with the scene as it was asked for.
 fn words(session: &Session, at: usize) -> Vec<String> {
-    let (origin, run) = (session.origin(), session.first());
+    let (origin, run) = (&session.library.shown, session.runs.first());
     let description = &origin.source.description;
     let begins_windy = description.wind.as_ref().is_some_and(|wind| wind.on);
     let mut words = words_of_file(session, at, &origin.source.typed);
@@ -53,15 +56,15 @@ fn words(session: &Session, at: usize) -> Vec<String> {
 /// The words after the program's name, with a scene in which all has its beginning.
 fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
     let control = |run: &Simulation| run.control().value();
-    let mut words = if session.panes.len() == 1 {
-        let run = session.first();
+    let mut words = if session.runs.panes.len() == 1 {
+        let run = session.runs.first();
         vec![run.method().name.into(), control(run).to_string()]
     } else {
-        let runs = session.panes.iter().map(|pane| &pane.simulation);
+        let runs = session.runs.panes.iter().map(|pane| &pane.simulation);
         let methods = runs.map(|run| format!("{}:{}", run.method().name, control(run)));
         ["compare".into()].into_iter().chain(methods).collect()
     };
-    let StepLimits { absolute, max_step } = session.origin().limits;
+    let StepLimits { absolute, max_step } = session.library.shown.limits;
     for (name, limit) in [("--absolute", absolute), ("--max-step", max_step)] {
         words.extend(
             limit
@@ -69,24 +72,24 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
                 .flat_map(|limit| [name.into(), limit.to_string()]),
         );
     }
-    let show = &session.panes[at].show;
+    let show = &session.runs.panes[at].show;
     let mut option = |name: &str, value: &str| words.extend([name.into(), value.into()]);
     option("--scene", scene);
     let coloured = show.colouring.quantity;
-    if let Some(quantity) = coloured.filter(|quantity| session.has(*quantity)) {
+    if let Some(quantity) = coloured.filter(|quantity| looks::has(&session.runs.panes, *quantity)) {
         option("--colour", quantity.name());
     }
     if let Some(arrows) = show.field.arrows {
         option("--arrows", arrows.name());
     }
-    if let (Some(i), 1) = (show.springs_of, session.panes.len()) {
+    if let (Some(i), 1) = (show.springs_of, session.runs.panes.len()) {
         option("--springs-of", &i.to_string());
     }
-    let springs = show.style == Style::Springs && has_springs(session.first());
+    let springs = show.style == Style::Springs && has_springs(session.runs.first());
     for (on, word) in [
         (show.style == Style::Wireframe, "--wireframe"),
         (springs, "--springs"),
-        (session.camera.is_parallel(), "--orthographic"),
+        (session.view.camera.is_parallel(), "--orthographic"),
         (show.dark, "--dark"),
         (session.readings.paused, "--paused"),
     ] {
@@ -109,16 +112,16 @@ fn makes(words: &[String], session: &Session) -> bool {
         return false;
     };
     let begins_alike = |now: &Simulation, made: &Simulation| {
-        let begun = if session.panes.len() == 1 {
+        let begun = if session.runs.panes.len() == 1 {
             Ok(now.moment())
         } else {
             beginning(now).map(|run| run.moment())
         };
         begun.is_ok_and(|begun| begun == made.moment())
     };
-    let mut pairs = session.panes.iter().zip(&made.panes);
+    let mut pairs = session.runs.panes.iter().zip(&made.runs.panes);
     panel::tuned(session).is_empty()
-        && session.camera == made.camera
+        && session.view.camera == made.view.camera
         && pairs.all(|(now, made)| begins_alike(&now.simulation, &made.simulation))
 }
 
@@ -145,7 +148,7 @@ fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Action, compared, frames, session};
+    use crate::session::{RunAction, compared, frames, session};
 
     /// The words of a command line that has no quotes.
     fn again(line: &str) -> Session {
@@ -184,7 +187,7 @@ mod tests {
         assert!(line.contains("/own.toml"), "{line}");
         // Some time later, seen from elsewhere, and tuned.
         frames(&mut session, 0.3);
-        session.camera.orbit(0.3, 0.1);
+        session.view.camera.orbit(0.3, 0.1);
         panel::tune(
             &mut session,
             &[("gravity".into(), 5.0), ("stiffness".into(), 1.5)],
@@ -192,15 +195,16 @@ mod tests {
         let line = of(&session, 0).ok().unwrap();
         assert!(line.contains("/a3-flag-1.toml --colour speed"), "{line}");
         let made = again(&line);
-        assert_eq!(made.first().state(), session.first().state());
-        assert_eq!(made.first().control(), session.first().control());
+        assert_eq!(made.runs.first().state(), session.runs.first().state());
+        assert_eq!(made.runs.first().control(), session.runs.first().control());
         let gravity = made
+            .runs
             .first()
             .model()
             .network()
             .and_then(a3_core::Network::gravity);
         assert_eq!(gravity.unwrap().y, -5.0);
-        assert!((made.camera.eye() - session.camera.eye()).norm() < 1e-4);
+        assert!((made.view.camera.eye() - session.view.camera.eye()).norm() < 1e-4);
         // What it makes is said by options again, with that file.
         let same = of(&made, 0).ok().unwrap();
         assert_eq!(same, line);
@@ -210,10 +214,10 @@ mod tests {
         panel::tune(&mut several, &[("gravity".into(), 5.0)]);
         let line = of(&several, 0).ok().unwrap();
         let made = again(&line);
-        assert_eq!(made.panes.len(), 2);
-        let begun = beginning(several.first()).unwrap();
-        assert_eq!(made.first().state(), begun.state());
-        several.act(Action::Reset, 0);
+        assert_eq!(made.runs.panes.len(), 2);
+        let begun = beginning(several.runs.first()).unwrap();
+        assert_eq!(made.runs.first().state(), begun.state());
+        several.act(RunAction::Reset, 0);
         assert!(of(&several, 0).ok().unwrap().contains("a3-flag-3"));
     }
 

@@ -35,10 +35,10 @@ pub fn run(options: &Compare) -> Result<(), Failure> {
 pub fn table(session: &Session) -> String {
     let head =
         "  solver        setting   time [s]    error [m]   evaluations/s   computing [ms/s]\n";
-    let lines = session.panes.iter().map(line);
+    let lines = session.runs.panes.iter().map(line);
     let readings = &session.readings;
     let why = readings.no_error.map(|why| format!("no errors: {why}\n"));
-    let past = |until: &f64| session.first().time() > *until;
+    let past = |until: &f64| session.runs.first().time() > *until;
     let chaos = readings.predictable.filter(past).map(|until| {
         format!("errors past {until} s say little: small differences have grown 10,000 times\n")
     });
@@ -72,8 +72,8 @@ pub fn picture(gpu: &Gpu, offscreen: Offscreen, session: &mut Session) -> Result
     let size = offscreen.size();
     // Text does not shrink with the picture: it could not be read.
     let scale = painter::scale(size).max(1.0);
-    let (panes, readings) = (&mut session.panes, &session.readings);
+    let (panes, readings) = (&mut session.runs.panes, &session.readings);
     let mut studio = Studio::new(gpu, offscreen, panes);
-    let pixels = studio.draw(gpu, panes, session.camera, scale, readings)?;
+    let pixels = studio.draw(gpu, panes, session.view.camera, scale, readings)?;
     output::png(&pixels, size)
 }

@@ -17,12 +17,12 @@ pub fn run(why: &str, mut session: Session) -> Result<(), Failure> {
     output::warn(&format!(
         "{why}: simulating {SECONDS} seconds without a window."
     ));
-    let scene = session.first().scene().name.clone();
-    if session.panes.len() > 1 {
+    let scene = session.runs.first().scene().name.clone();
+    if session.runs.panes.len() > 1 {
         session.run_to(f64::from(SECONDS));
         output::say(&compare::table(&session))?;
     } else {
-        tell(&mut session.panes[0])?;
+        tell(&mut session.runs.panes[0])?;
     }
     match pollster::block_on(Gpu::headless()) {
         Ok(gpu) => {

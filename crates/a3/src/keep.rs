@@ -12,31 +12,31 @@ use crate::session::Session;
 /// Writes the run of pane `at` under the first free name, beside the file of its scene if there is
 /// one, and returns that name.
 pub fn keep(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
-    let run = &session.panes[at.min(session.panes.len() - 1)].simulation;
-    let origin = session.origin();
+    let run = &session.runs.panes[at.min(session.runs.panes.len() - 1)].simulation;
+    let origin = &session.library.shown;
     let folder = origin.source.path.as_deref().and_then(Path::parent);
     let mut kept = Kept::new(&origin.source, origin.grid, run, None);
     kept.tuned = panel::tuned(session);
     let folder = folder.unwrap_or("".as_ref());
     let path = output::write_new(folder, &run.scene().name, ENDING, &kept.bytes()?)?;
-    session.kept = Some(path.clone());
+    session.library.kept = Some(path.clone());
     Ok(path)
 }
 
 /// Takes the run of a window up where it was kept, tuned alike. A hand lets go.
 pub fn take_up(session: &mut Session, path: &Path) -> Result<(), Failure> {
-    if session.panes.len() > 1 {
+    if session.runs.panes.len() > 1 {
         return Err(Failure::usage(
             "a checkpoint has one run, so it cannot be opened beside others",
         ));
     }
     let kept = Kept::read(path)?;
-    let origin = session.origin();
-    kept.check(path, &origin.source, origin.grid, session.first())?;
+    let origin = &session.library.shown;
+    kept.check(path, &origin.source, origin.grid, session.runs.first())?;
     panel::tune(session, &kept.tuned);
     let taken = session.take_up(&kept.checkpoint);
     taken.map_err(|why| Failure::usage(format!("{}: {why}", path.display())))?;
-    session.kept = Some(path.into());
+    session.library.kept = Some(path.into());
     Ok(())
 }
 
@@ -44,7 +44,7 @@ pub fn take_up(session: &mut Session, path: &Path) -> Result<(), Failure> {
 mod tests {
     use super::*;
     use crate::hud::panel::{PanelKey, press};
-    use crate::session::{Action, frames, session};
+    use crate::session::{RunAction, frames, session};
 
     #[test]
     fn a_tuned_run_goes_on_from_its_file() {
@@ -55,7 +55,7 @@ mod tests {
         let words = ["r", "0.002", "--scene", scene.to_str().unwrap()];
         let mut first = session(&words);
         first.readings.in_window = true;
-        first.act(Action::Panel, 0);
+        first.act(RunAction::Panel, 0);
         // Every row, solver and step too.
         for _ in 0..20 {
             press(&mut first, PanelKey::Down, false);
@@ -75,7 +75,7 @@ mod tests {
             frames(session, 0.5);
         }
         let seen = |session: &Session| {
-            let run = session.first();
+            let run = session.runs.first();
             (
                 run.time(),
                 run.method().name,
@@ -90,7 +90,7 @@ mod tests {
             .map_err(Failure::message)
             .unwrap();
         assert_eq!(panel::tuned(&second), []);
-        assert_eq!(second.first().time(), 0.0);
+        assert_eq!(second.runs.first().time(), 0.0);
         let mut other = session(&["r", "0.01"]);
         let why = take_up(&mut other, &path).err().unwrap().message();
         assert!(why.contains("of the scene flag, not of cloth"), "{why}");

@@ -15,7 +15,7 @@ use crate::cli::{self, Cli, Command};
 use crate::failure::Failure;
 use crate::progress;
 use crate::scene_file::Hash;
-use crate::session::Action;
+use crate::session::{Action, RunAction};
 use crate::settings::Settings;
 
 /// Begins what the address asks for; where that is not possible, the page says why.
@@ -62,7 +62,7 @@ pub fn run_steps(words: &str, steps: u32) -> String {
         .and_then(|cli| begin::window(&cli.window).map_err(Failure::message));
     let begun = Instant::now();
     let run = session.and_then(|session| {
-        let first = session.first();
+        let first = session.runs.first();
         let mut run = Simulation::new(first.scene().clone(), first.method(), first.control())
             .map_err(|why| why.to_string())?;
         let until = f64::from(steps) * first.control().value();
@@ -89,7 +89,7 @@ pub fn run_steps(words: &str, steps: u32) -> String {
 
 /// Does what key Tab does, which leaves a page.
 pub fn toggle_panel() {
-    app::send(app::Event::Act(Action::Panel));
+    app::send(app::Event::Act(Action::Run(RunAction::Panel)));
 }
 
 /// Opens a file that was dropped on the page.

@@ -22,7 +22,7 @@ pub fn run(options: &WindowOptions) -> Result<(), Failure> {
         keep::take_up(&mut session, path)?;
     }
     if let Some(i) = options.springs_of {
-        output::say(&show::list_springs_of(session.first(), i))?;
+        output::say(&show::list_springs_of(session.runs.first(), i))?;
     }
     open(session, &options.look, files)
 }

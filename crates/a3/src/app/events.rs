@@ -4,63 +4,17 @@ use std::sync::Arc;
 use web_time::Instant;
 
 use winit::application::ApplicationHandler;
-use winit::event::{ElementState, KeyEvent, MouseButton, StartCause, WindowEvent};
+use winit::event::{ElementState, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow};
-use winit::keyboard::{Key, NamedKey};
 use winit::window::{Fullscreen, WindowId};
 
-use super::keyboard;
 use super::platform::{self, Event};
-use super::pointer::Drag;
 use super::state::App;
 use crate::hud::panel;
-use crate::session::Action;
-
-impl App {
-    /// Does what a key is for: in the panel, or by the table of keys.
-    fn press_key(&mut self, event_loop: &ActiveEventLoop, event: &KeyEvent) {
-        if let (Some(_), Some(graphics)) = (&self.status, &self.graphics)
-            && event.logical_key == Key::Named(NamedKey::F12)
-        {
-            graphics.lose_device();
-            self.redraw();
-        }
-        if let (true, Some(by)) = (self.control, keyboard::zoom(&event.logical_key)) {
-            return self.scale_interface(by);
-        }
-        let typed = keyboard::text_key(event);
-        if self.session.list.is_some() {
-            if typed.is_some_and(|key| self.session.press_list(key)) {
-                self.scene_changed();
-            }
-            self.redraw();
-            return;
-        }
-        if typed.is_some_and(|key| panel::press_text(&mut self.session, key)) {
-            self.redraw();
-            return;
-        }
-        let key = keyboard::panel_key(&event.logical_key);
-        if key.is_some_and(|key| panel::press(&mut self.session, key, self.shift)) {
-            self.redraw();
-            return;
-        }
-        let Some(action) = keyboard::action(&event.logical_key) else {
-            return;
-        };
-        let repeats = matches!(
-            action,
-            Action::Step | Action::LongerStep | Action::ShorterStep | Action::Scrub(_)
-        );
-        if !event.repeat || repeats {
-            self.act(event_loop, action);
-        }
-    }
-}
 
 impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
-        if self.window.is_some() {
+        if self.screen.window.is_some() {
             return;
         }
         event_loop.set_control_flow(ControlFlow::Wait);
@@ -68,40 +22,61 @@ impl ApplicationHandler<Event> for App {
         let attributes =
             platform::attributes().with_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
         match event_loop.create_window(attributes) {
-            Ok(window) => self.window = Some(Arc::new(window)),
+            Ok(window) => self.screen.window = Some(Arc::new(window)),
             Err(why) => return self.fail(event_loop, format!("no window ({why})")),
         }
-        self.title();
+        self.screen.set_title(&self.session);
         self.open_graphics(event_loop);
         self.last = Instant::now();
     }
 
     #[cfg(target_arch = "wasm32")]
     fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
-        self.take_event(event_loop, event);
+        match event {
+            Event::Opened(opened) => {
+                let opened = self.outside.opened(opened, &self.screen, &self.session);
+                if let Some(graphics) = opened {
+                    self.take_graphics(event_loop, graphics);
+                    self.last = Instant::now();
+                }
+            }
+            Event::Open(path) => {
+                if self.session.open(&path) {
+                    self.scene_changed();
+                }
+                self.screen.redraw();
+            }
+            Event::Act(action) => self.act(event_loop, action),
+        }
     }
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
         // While all moves, each frame looks.
-        if self.visible && !self.session.animated() && self.look_under_pointer() {
-            self.redraw();
+        if self.screen.visible
+            && !self.session.animated()
+            && self
+                .mouse
+                .look(self.held.shift_key(), &mut self.session, &self.screen)
+        {
+            self.screen.redraw();
         }
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
-        self.complete_film();
+        let graphics = self.screen.graphics.as_ref();
+        self.outside.films.complete(&mut self.session, graphics);
         self.remember();
     }
 
     fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
         if let StartCause::ResumeTimeReached { .. } = cause {
             event_loop.set_control_flow(ControlFlow::Wait);
-            self.redraw();
+            self.screen.redraw();
         }
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        let Some(graphics) = &mut self.graphics else {
+        let Some(graphics) = &mut self.screen.graphics else {
             return;
         };
         if !matches!(event, WindowEvent::RedrawRequested) {
@@ -111,7 +86,7 @@ impl ApplicationHandler<Event> for App {
         let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
         let taken = !is_key && (graphics.on_event(&event) || self.session.list.is_some())
             || panel::leaves(&self.session, graphics.size(), graphics.scale()).0 as f32
-                <= self.mouse.pointer[0];
+                <= self.mouse.pointer.position[0];
         if let WindowEvent::MouseInput { state, .. } = event {
             self.session.history.hold(state == ElementState::Pressed);
         }
@@ -119,21 +94,18 @@ impl ApplicationHandler<Event> for App {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
                 graphics.resized();
-                self.redraw();
+                self.screen.redraw();
             }
             WindowEvent::Occluded(hidden) => {
-                self.visible = !hidden;
+                self.screen.visible = !hidden;
                 // Time spent hidden is not simulated.
                 self.last = Instant::now();
                 self.session.start_anew();
                 self.say_status();
-                self.redraw();
+                self.screen.redraw();
             }
-            WindowEvent::ModifiersChanged(held) => {
-                self.shift = held.state().shift_key();
-                self.control = held.state().control_key();
-            }
-            WindowEvent::Focused(false) => self.let_go(),
+            WindowEvent::ModifiersChanged(held) => self.held = held.state(),
+            WindowEvent::Focused(false) => self.mouse.let_go(&mut self.session, &self.screen),
             WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
                 self.press_key(event_loop, &event);
             }
@@ -142,40 +114,36 @@ impl ApplicationHandler<Event> for App {
                 button,
                 ..
             } if !taken => {
-                self.press(button);
-                self.redraw();
+                let shift = self.held.shift_key();
+                self.mouse
+                    .press(button, shift, &mut self.session, &self.screen);
+                self.screen.redraw();
             }
             WindowEvent::MouseInput {
                 state: ElementState::Released,
                 button,
                 ..
-            } if self.mouse.button == Some(button) => {
-                if button == MouseButton::Right
-                    && self.mouse.is_click()
-                    && self.mouse.drag == Drag::Pan
-                {
-                    self.click();
-                }
-                self.let_go();
-                self.redraw();
+            } => {
+                self.mouse.release(button, &mut self.session, &self.screen);
+                self.screen.redraw();
             }
             WindowEvent::DroppedFile(path) => {
                 if self.session.open(&path) {
                     self.scene_changed();
                 }
-                self.redraw();
+                self.screen.redraw();
             }
             WindowEvent::CursorMoved { position, .. } => {
-                self.mouse.inside = true;
-                self.move_to(position);
+                self.mouse
+                    .move_to(position, &mut self.session, &self.screen);
             }
-            WindowEvent::CursorLeft { .. } => self.mouse.inside = false,
+            WindowEvent::CursorLeft { .. } => self.mouse.pointer.inside = false,
             WindowEvent::MouseWheel { delta, .. } if !taken => {
-                self.scroll(delta);
-                self.redraw();
+                self.mouse.scroll(delta, &mut self.session, &self.screen);
+                self.screen.redraw();
             }
-            WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. } => self.redraw(),
-            WindowEvent::RedrawRequested if self.visible => self.frame(event_loop),
+            WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. } => self.screen.redraw(),
+            WindowEvent::RedrawRequested if self.screen.visible => self.frame(event_loop),
             _ => {}
         }
     }

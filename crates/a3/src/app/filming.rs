@@ -3,134 +3,120 @@
 use std::thread;
 use std::time::Duration;
 
-use super::state::App;
+use a3_render::Gpu;
+
+use super::graphics::Graphics;
 use crate::failure::Failure;
 use crate::hud::panel;
 use crate::output;
 use crate::recorder::{Format, Recorder};
+use crate::session::Session;
 
-impl App {
+/// The film that is being made, if there is one.
+#[derive(Default)]
+pub struct Films {
+    recorder: Option<Recorder>,
+}
+
+impl Films {
     /// Films from now on, or completes that film.
-    pub fn record(&mut self) {
-        if self
-            .outside
-            .recorder
-            .as_ref()
-            .is_some_and(Recorder::is_live)
-        {
-            return self.end_film();
+    pub fn record(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
+        if self.recorder.as_ref().is_some_and(Recorder::is_live) {
+            return self.end(session);
         }
-        self.begin_film(|app, format| {
-            let graphics = app.graphics.as_ref()?;
-            Some(Recorder::from_now(graphics.gpu(), &app.session, format))
-        });
+        self.begin(session, graphics, Recorder::from_now);
     }
 
     /// Films the last seconds that are kept.
-    pub fn film_last(&mut self) {
-        self.begin_film(|app, format| {
-            let (graphics, seconds) = (app.graphics.as_ref()?, app.session.panel.film_of);
-            let gpu = graphics.gpu();
-            Some(Recorder::of_kept(gpu, &app.session, format, seconds))
-        });
+    pub fn record_last(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
+        self.begin(session, graphics, Recorder::of_kept);
     }
 
     /// Begins a film, if none is being made.
-    fn begin_film(
+    fn begin(
         &mut self,
-        begin: impl FnOnce(&Self, Format) -> Option<Result<Recorder, Failure>>,
+        session: &mut Session,
+        graphics: Option<&Graphics>,
+        begin: impl FnOnce(&Gpu, &Session, Format) -> Result<Recorder, Failure>,
     ) {
-        let Some(graphics) = &self.graphics else {
+        let Some(graphics) = graphics else {
             return;
         };
-        if self.outside.recorder.is_some() {
-            self.session.say("Another film is being made.");
+        if self.recorder.is_some() {
+            session.readings.say("Another film is being made.");
             return;
         }
         let scale = graphics.scale();
         let format = Format {
-            ending: self.session.panel.film,
-            size: panel::leaves(&self.session, graphics.size(), scale),
+            ending: session.panel.film,
+            size: panel::leaves(session, graphics.size(), scale),
             scale,
         };
-        match begin(self, format) {
-            Some(Ok(recorder)) => self.outside.recorder = Some(recorder),
-            Some(Err(why)) => self.session.warn(why.message()),
-            None => {}
+        match begin(graphics.gpu(), session, format) {
+            Ok(recorder) => self.recorder = Some(recorder),
+            Err(why) => session.readings.warn(why.message()),
         }
-        self.tell_film();
+        self.tell(session);
     }
 
     /// Draws the next frame of the film that is being made, if it is due, and returns whether the
     /// film needs another frame of the window for the next.
-    pub fn film(&mut self) -> bool {
-        let (Some(recorder), Some(graphics)) = (&mut self.outside.recorder, &self.graphics) else {
+    pub fn draw(&mut self, session: &mut Session, graphics: Option<&Graphics>) -> bool {
+        let (Some(recorder), Some(graphics)) = (&mut self.recorder, graphics) else {
             return false;
         };
-        match recorder.go_on(graphics.gpu(), &mut self.session) {
+        match recorder.go_on(graphics.gpu(), session) {
             Ok(true) => {}
-            Ok(false) => self.end_film(),
+            Ok(false) => self.end(session),
             Err(why) => {
-                self.outside.recorder = None;
-                self.session.warn(why.message());
+                self.recorder = None;
+                session.readings.warn(why.message());
             }
         }
-        self.tell_film();
-        self.outside
-            .recorder
-            .as_ref()
-            .is_some_and(|film| !film.is_live())
+        self.tell(session);
+        self.recorder.as_ref().is_some_and(|film| !film.is_live())
     }
 
     /// Completes a film of what happens from now on: something else is shown.
-    pub fn end_live_film(&mut self) {
-        if self
-            .outside
-            .recorder
-            .as_ref()
-            .is_some_and(Recorder::is_live)
-        {
-            self.end_film();
+    pub fn end_live(&mut self, session: &mut Session) {
+        if self.recorder.as_ref().is_some_and(Recorder::is_live) {
+            self.end(session);
         }
     }
 
     /// Real time that passes for a session of which so much did (s), while it is filmed.
-    pub fn pace(&self, real: f64) -> f64 {
-        let recorder = self.outside.recorder.as_ref();
-        recorder.map_or(real, |recorder| recorder.pace(&self.session, real))
+    pub fn pace(&self, session: &Session, real: f64) -> f64 {
+        let recorder = self.recorder.as_ref();
+        recorder.map_or(real, |recorder| recorder.pace(session, real))
     }
 
     /// Completes the film that is being made, and says so.
-    pub fn end_film(&mut self) {
-        let Some(recorder) = self.outside.recorder.take() else {
+    pub fn end(&mut self, session: &mut Session) {
+        let Some(recorder) = self.recorder.take() else {
             return;
         };
         match recorder.finish() {
-            Ok(said) => self.session.say(said),
-            Err(why) => self.session.warn(why.message()),
+            Ok(said) => session.readings.say(said),
+            Err(why) => session.readings.warn(why.message()),
         }
-        self.tell_film();
+        self.tell(session);
     }
 
     /// Completes the film that is being made before the window closes: with all moments that it is
     /// to show.
-    pub fn complete_film(&mut self) {
-        while self
-            .outside
-            .recorder
-            .as_ref()
-            .is_some_and(|film| !film.is_live())
-            && self.film()
+    pub fn complete(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
+        while self.recorder.as_ref().is_some_and(|film| !film.is_live())
+            && self.draw(session, graphics)
         {
             thread::sleep(Duration::from_millis(1));
         }
-        self.end_film();
-        if let Some(said) = self.session.readings.message.take() {
+        self.end(session);
+        if let Some(said) = session.readings.message.take() {
             output::warn(&said);
         }
     }
 
-    fn tell_film(&mut self) {
-        self.session.readings.film = self.outside.recorder.as_ref().map(Recorder::progress);
+    fn tell(&self, session: &mut Session) {
+        session.readings.film = self.recorder.as_ref().map(Recorder::progress);
     }
 }

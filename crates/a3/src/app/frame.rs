@@ -2,12 +2,10 @@
 
 use web_time::{Duration, Instant};
 
-use a3_core::Vector3;
 use a3_render::GpuError;
-use winit::event_loop::{ActiveEventLoop, ControlFlow};
+use winit::event_loop::ActiveEventLoop;
 
 use super::graphics::FrameOutcome;
-use super::pointer::Drag;
 use super::state::App;
 use crate::hud::panel::{self, Request};
 
@@ -17,38 +15,37 @@ const RETRY: Duration = Duration::from_millis(50);
 impl App {
     /// Brings the simulation up to date and draws it.
     pub fn frame(&mut self, event_loop: &ActiveEventLoop) {
-        self.look_at_files();
+        if self.outside.files_changed() && self.session.reload() {
+            self.last = Instant::now();
+            self.scene_changed();
+        }
         let now = Instant::now();
         let real = now.duration_since(self.last).as_secs_f64();
         self.last = now;
-        if let Drag::Pull(grip) = self.mouse.drag {
-            let tile = self.tile(self.mouse.pane);
-            let place = tile.place(self.mouse.pointer);
-            let [x, y, z] = grip
-                .target(&self.session.camera, place, tile.aspect())
-                .map(f64::from);
-            self.session.pull(Vector3::new(x, y, z));
-        }
-        self.session.tick(self.pace(real));
-        self.session.go_along();
-        self.session.read_state();
-        self.look_under_pointer();
-        let message_ends = self.session.message_ends();
-        let Some(graphics) = &mut self.graphics else {
+        let session = &mut self.session;
+        self.mouse.pull(session, &self.screen);
+        session.tick(self.outside.films.pace(session, real));
+        session.view.go_along(&session.runs.panes);
+        session.read_state();
+        self.mouse
+            .look(self.held.shift_key(), session, &self.screen);
+        let message_ends = session.readings.message_ends();
+        let Some(graphics) = &mut self.screen.graphics else {
             return;
         };
         let begun = Instant::now();
-        match graphics.frame(&mut self.session, self.cursor) {
+        match graphics.frame(session, self.mouse.cursor) {
             Ok(FrameOutcome::Drawn(again, request)) => {
-                self.session.drawn(begun.elapsed());
-                let again = if self.film() || request.is_some() {
+                session.drawn(begun.elapsed());
+                let filmed = self.outside.films.draw(session, Some(graphics));
+                let again = if filmed || request.is_some() {
                     Some(Duration::ZERO)
                 } else {
                     again
                 };
                 match request {
                     Some(Request::Act(action)) => self.act(event_loop, action),
-                    Some(request) if panel::apply(&mut self.session, request) => {
+                    Some(Request::Change(change)) if panel::apply(session, change) => {
                         self.scene_changed();
                     }
                     _ => {}
@@ -56,64 +53,31 @@ impl App {
                 if let Some(status) = &mut self.status {
                     status.frames += 1;
                 }
+                let frame_time = self.screen.frame_time(self.session.panel.frame_limit);
                 let next = if self.session.animated() {
-                    Some(now + self.frame_time())
+                    Some(now + frame_time)
                 } else {
-                    let again = again.map(|delay| now + delay.max(self.frame_time()));
-                    [again, message_ends, self.next_look()]
+                    let again = again.map(|delay| now + delay.max(frame_time));
+                    [again, message_ends, self.outside.next_look()]
                         .into_iter()
                         .flatten()
                         .min()
                 };
                 if let Some(next) = next {
-                    self.wait_until(event_loop, next);
+                    self.screen.wait_until(event_loop, next);
                 }
             }
-            Ok(FrameOutcome::Skipped) => self.wait_until(event_loop, now + RETRY),
+            Ok(FrameOutcome::Skipped) => self.screen.wait_until(event_loop, now + RETRY),
             Err(GpuError::Lost) => self.open_graphics(event_loop),
             Err(why) => self.fail(event_loop, why),
         }
         self.say_status();
     }
 
-    /// Time from one frame to the next: a little less than that of the monitor, because presenting
-    /// a frame waits for the rest, where it waits at all.
-    fn frame_time(&self) -> Duration {
-        let monitor = self
-            .window
-            .as_ref()
-            .and_then(|window| window.current_monitor());
-        let rate = monitor
-            .and_then(|monitor| monitor.refresh_rate_millihertz())
-            .unwrap_or(60_000);
-        let own = Duration::from_secs_f64(0.9e3 / f64::from(rate.clamp(30_000, 500_000)));
-        match self.session.panel.frame_limit {
-            0 => own,
-            limit => own.max(Duration::from_secs(1) / limit),
-        }
-    }
-
-    /// Asks for a frame at that time, unless the window is hidden.
-    fn wait_until(&self, event_loop: &ActiveEventLoop, when: Instant) {
-        if !self.visible {
-            event_loop.set_control_flow(ControlFlow::Wait);
-        } else if when <= Instant::now() {
-            self.redraw();
-        } else {
-            event_loop.set_control_flow(ControlFlow::WaitUntil(when));
-        }
-    }
-
     /// Writes a line for tests, if they are asked for.
     pub fn say_status(&mut self) {
-        if let (Some(status), Some(graphics)) = (&mut self.status, &self.graphics) {
-            status.say(
-                &self.session,
-                graphics,
-                self.cursor,
-                self.visible,
-                self.devices,
-            );
+        if let Some(status) = &mut self.status {
+            status.say(&self.session, &self.screen, self.mouse.cursor);
         }
     }
 }

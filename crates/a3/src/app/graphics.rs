@@ -7,9 +7,9 @@ use std::time::Duration;
 use a3_render::{Gpu, GpuError, Renderer, Targets, Tile, Transfer};
 use egui::CursorIcon;
 use wgpu::CurrentSurfaceTexture;
-use winit::event_loop::OwnedDisplayHandle;
 use winit::window::Window;
 
+use super::adapter::{choose_format, clamped, transfer, window_samples};
 use super::layer::Layer;
 use crate::hud::panel::{self, Request};
 use crate::hud::{self, Overlay, layout};
@@ -75,7 +75,7 @@ impl Graphics {
             Some(gpu.largest_side() as usize),
         );
         Ok(Self {
-            renderer: Renderer::new(&gpu, format, samples, &session.panes[0].topology()),
+            renderer: Renderer::new(&gpu, format, samples, &session.runs.panes[0].topology()),
             targets: Targets::new(&gpu, size, format, samples),
             transfer: transfer(&gpu, &config),
             layer: Layer::new(&gpu, &config),
@@ -100,7 +100,7 @@ impl Graphics {
     /// The parts of the window that the panes fill.
     pub fn tiles(&self, session: &Session) -> Vec<Tile> {
         let size = panel::leaves(session, self.size(), self.scale());
-        layout::tiles(session.panes.len(), size, self.scale())
+        layout::tiles(session.runs.panes.len(), size, self.scale())
     }
 
     /// Pixels per point.
@@ -147,14 +147,14 @@ impl Graphics {
     /// Takes the topology of another scene.
     pub fn set_scene(&mut self, session: &Session) {
         self.renderer
-            .set_topology(&self.gpu, &session.panes[0].topology());
+            .set_topology(&self.gpu, &session.runs.panes[0].topology());
         self.tears.clear();
     }
 
     /// Leaves torn springs and triangles out of the topology.
     fn tear(&mut self, session: &Session) {
-        self.tears.resize(session.panes.len(), 0);
-        for (k, (pane, tears)) in session.panes.iter().zip(&mut self.tears).enumerate() {
+        self.tears.resize(session.runs.panes.len(), 0);
+        for (k, (pane, tears)) in session.runs.panes.iter().zip(&mut self.tears).enumerate() {
             let now = pane.simulation.tears();
             if *tears != now {
                 *tears = now;
@@ -222,13 +222,14 @@ impl Graphics {
             }
         };
         self.tear(session);
-        for pane in &mut session.panes {
+        for pane in &mut session.runs.panes {
             pane.show.compose(&pane.simulation);
         }
         let pictures: Vec<_> = session
+            .runs
             .panes
             .iter()
-            .map(|pane| pane.show.picture(session.camera, self.scale()))
+            .map(|pane| pane.show.picture(session.view.camera, self.scale()))
             .zip(self.tiles(session))
             .collect();
         self.renderer.prepare(&self.gpu, &pictures);
@@ -309,9 +310,11 @@ impl Graphics {
         }));
         let mut request = None;
         let mut output = self.overlay.lay_out(&self.gpu, input, |ctx| {
-            hud::show(ctx, &session.panes, &session.readings);
+            hud::show(ctx, &session.runs.panes, &session.readings);
             request = panel::show(ctx, session).or(request);
-            request = hud::show_list(ctx, session).or(request);
+            request = hud::show_list(ctx, session)
+                .map(Request::Change)
+                .or(request);
         });
         let mut answer = std::mem::take(&mut output.platform_output);
         if answer.cursor_icon == CursorIcon::Default {
@@ -324,76 +327,9 @@ impl Graphics {
             .map(|viewport| viewport.repaint_delay);
         let again = again.filter(|delay| *delay < Duration::from_mins(1));
         let size = (self.config.width, self.config.height);
-        self.overlay.dark = session.panes[0].show.dark;
+        self.overlay.dark = session.runs.panes[0].show.dark;
         let target = (view, below);
         let before = self.overlay.paint(&self.gpu, encoder, target, size, output);
         (before, again, request)
     }
-}
-
-/// Samples of a pixel in the window. A software adapter gets one: at 1280 x 720 on two cores a
-/// frame takes 11 ms offscreen instead of 43. Lines have smooth edges all the same, and saved
-/// pictures have them everywhere.
-fn window_samples(gpu: &Gpu, format: wgpu::TextureFormat) -> u32 {
-    if gpu.is_software() {
-        1
-    } else {
-        gpu.samples(format)
-    }
-}
-
-/// The size of the window (px) within the limits of the device.
-fn clamped(gpu: &Gpu, window: &Window) -> (u32, u32) {
-    let (size, limit) = (window.inner_size(), gpu.largest_side());
-    (size.width.clamp(1, limit), size.height.clamp(1, limit))
-}
-
-/// Opens an adapter that can draw to the window.
-pub async fn open(
-    window: Arc<Window>,
-    display: OwnedDisplayHandle,
-) -> Result<(Gpu, wgpu::Surface<'static>), GpuError> {
-    let mut result = Err(GpuError::no_adapter());
-    for backends in Gpu::backends() {
-        // GL needs the display's handle to present.
-        let mut descriptor =
-            wgpu::InstanceDescriptor::new_with_display_handle_from_env(Box::new(display.clone()));
-        descriptor.backends = backends;
-        let instance = wgpu::Instance::new(descriptor);
-        let Ok(surface) = instance.create_surface(window.clone()) else {
-            continue;
-        };
-        result = Gpu::open(instance, Some(&surface))
-            .await
-            .map(|gpu| (gpu, surface));
-        if result.is_ok() {
-            break;
-        }
-    }
-    result
-}
-
-/// Chooses the format of the surface: bytes that are blended as they are, for text. Pictures are
-/// drawn to the sRGB format of the same bytes.
-fn choose_format(gpu: &Gpu, surface: &wgpu::Surface, config: &mut wgpu::SurfaceConfiguration) {
-    use wgpu::TextureFormat::{Bgra8Unorm, Rgba8Unorm};
-    let formats = surface.get_capabilities(&gpu.adapter).formats;
-    let bytes = |f: &wgpu::TextureFormat| matches!(f, Bgra8Unorm | Rgba8Unorm);
-    config.format = formats.into_iter().find(bytes).unwrap_or(config.format);
-    if has_two_views(gpu) {
-        config.view_formats = vec![config.format.add_srgb_suffix()];
-    }
-}
-
-/// Whether a surface can be seen in two formats. On GL it cannot.
-fn has_two_views(gpu: &Gpu) -> bool {
-    let flags = gpu.adapter.get_downlevel_capabilities().flags;
-    flags.contains(wgpu::DownlevelFlags::SURFACE_VIEW_FORMATS)
-}
-
-/// What is drawn into where the surface cannot be seen in two formats.
-fn transfer(gpu: &Gpu, config: &wgpu::SurfaceConfiguration) -> Option<Transfer> {
-    let size = (config.width, config.height);
-    let needed = !has_two_views(gpu) && !config.format.is_srgb();
-    needed.then(|| Transfer::new(gpu, size, config.format))
 }

@@ -3,28 +3,30 @@
 
 use egui::CursorIcon;
 
-use super::mouse::CLICK;
-use super::pointer::Drag;
-use super::state::App;
-use crate::hud::panel;
+use super::mouse::{Drag, Mouse};
+use super::pointer::CLICK;
+use super::screen::Screen;
+use crate::session::Session;
 use crate::show::Target;
 
-impl App {
-    /// Looks what is under the pointer, and returns whether the picture changes by that.
-    pub fn look_under_pointer(&mut self) -> bool {
-        let at = self.pointed();
-        let (cursor, hovered) = match self.mouse.drag {
+impl Mouse {
+    /// Looks what is under the pointer, and returns whether the picture changes by that. With
+    /// Shift, a press would begin a box.
+    pub fn look(&mut self, shift: bool, session: &mut Session, screen: &Screen) -> bool {
+        let pointer = &self.pointer;
+        let at = pointer.pane(session, screen);
+        let (cursor, hovered) = match self.drag {
             Drag::Pull(_) => (CursorIcon::Grabbing, None),
             Drag::Orbit => (CursorIcon::AllScroll, None),
             Drag::Pan => (CursorIcon::Move, None),
             Drag::Scrub => (CursorIcon::ResizeHorizontal, None),
             Drag::Select { .. } => (CursorIcon::Crosshair, None),
-            Drag::None if !self.over_picture() => (CursorIcon::Default, None),
-            Drag::None if self.timeline_share(CLICK).is_some() => {
+            Drag::None if !pointer.is_over_picture(session, screen) => (CursorIcon::Default, None),
+            Drag::None if pointer.timeline_share(session, screen, CLICK).is_some() => {
                 (CursorIcon::ResizeHorizontal, None)
             }
-            Drag::None if self.shift => (CursorIcon::Crosshair, None),
-            Drag::None => match self.hit(at).map(|(target, _)| target) {
+            Drag::None if shift => (CursorIcon::Crosshair, None),
+            Drag::None => match pointer.hit(session, screen, at).map(|(target, _)| target) {
                 Some(target @ Target::Particle(_)) => (CursorIcon::Grab, Some(target)),
                 Some(target @ Target::Obstacle(_)) => (CursorIcon::Move, Some(target)),
                 None => (CursorIcon::Default, None),
@@ -32,23 +34,11 @@ impl App {
         };
         let mut changed = self.cursor != cursor;
         self.cursor = cursor;
-        for (k, pane) in self.session.panes.iter_mut().enumerate() {
+        for (k, pane) in session.runs.panes.iter_mut().enumerate() {
             let hovered = hovered.filter(|_| k == at);
             changed |= pane.show.hovered != hovered;
             pane.show.hovered = hovered;
         }
         changed
-    }
-
-    /// Whether the pointer is over the picture, where presses act on the scene.
-    fn over_picture(&self) -> bool {
-        let Some(graphics) = &self.graphics else {
-            return false;
-        };
-        let session = &self.session;
-        let (size, [x, y]) = (graphics.size(), self.mouse.pointer);
-        let free = panel::leaves(session, size, graphics.scale());
-        let inside = (0.0..free.0 as f32).contains(&x) && (0.0..free.1 as f32).contains(&y);
-        inside && self.mouse.inside && session.list.is_none() && !session.readings.help
     }
 }

@@ -65,7 +65,7 @@ pub fn text_key(event: &KeyEvent) -> Option<TextKey> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::KEYS;
+    use crate::session::{KEYS, RunAction};
 
     #[test]
     fn every_key_of_the_table_can_be_typed() {
@@ -85,7 +85,10 @@ mod tests {
                 assert_eq!(action(&typed), Some(binding.action));
             }
         }
-        assert_eq!(action(&Key::Character(" ".into())), Some(Action::Pause));
+        assert_eq!(
+            action(&Key::Character(" ".into())),
+            Some(Action::Run(RunAction::Pause))
+        );
         assert_eq!(action(&Key::Character("10".into())), None);
         assert_eq!(action(&Key::Character("Tab".into())), None);
         assert_eq!(action(&Key::Named(NamedKey::F2)), None);

@@ -1,5 +1,6 @@
 //! The window: events in, frames out. Nothing else knows winit.
 
+mod adapter;
 mod events;
 #[cfg(not(target_arch = "wasm32"))]
 mod filming;
@@ -9,12 +10,15 @@ mod hover;
 mod keyboard;
 mod layer;
 mod mouse;
+#[cfg(not(target_arch = "wasm32"))]
+mod native;
+#[cfg(target_arch = "wasm32")]
+mod page;
 mod pick;
-#[cfg_attr(not(target_arch = "wasm32"), path = "native.rs")]
-#[cfg_attr(target_arch = "wasm32", path = "page.rs")]
 mod platform;
 mod pointer;
 mod remember;
+mod screen;
 mod start;
 mod state;
 mod status;

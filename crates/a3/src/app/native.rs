@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use a3_render::Offscreen;
+use a3_render::{GpuError, Offscreen};
 use arboard::Clipboard;
 use winit::dpi::LogicalSize;
 use winit::event_loop::ActiveEventLoop;
@@ -12,13 +12,14 @@ use winit::event_loop::ActiveEventLoop;
 use winit::platform::wayland::WindowAttributesExtWayland;
 use winit::window::{Window, WindowAttributes};
 
-use super::graphics::{self, Graphics};
-use super::state::App;
+use super::adapter;
+use super::filming::Films;
+use super::graphics::Graphics;
+use super::screen::Screen;
 use super::watch::Watch;
 use crate::failure::Failure;
 use crate::hud::Studio;
-use crate::recorder::Recorder;
-use crate::session::Readings;
+use crate::session::{Readings, Session};
 use crate::{lessons, output};
 
 /// How the window begins.
@@ -40,8 +41,7 @@ pub type Event = ();
 pub struct Outside {
     /// The clipboard, once it was needed: what was copied is lost with it.
     clipboard: Option<Clipboard>,
-    /// The film that is being made.
-    pub recorder: Option<Recorder>,
+    pub films: Films,
     /// The files of the scene, if they are watched.
     watch: Option<Watch>,
 }
@@ -54,55 +54,30 @@ impl Outside {
             ..Self::default()
         }
     }
-}
 
-impl App {
-    /// Opens all that depends on the adapter, for the window that is there.
-    pub fn open_graphics(&mut self, event_loop: &ActiveEventLoop) {
-        let Some(window) = self.window.clone() else {
-            return;
-        };
+    /// Opens all that depends on the adapter, for the window that is there, or returns none where
+    /// an event will bring it.
+    pub fn open_graphics(
+        &mut self,
+        screen: &mut Screen,
+        session: &mut Session,
+    ) -> Option<Result<Graphics, GpuError>> {
+        let window = screen.window.clone()?;
         // What was filmed is drawn by the device that goes.
-        self.end_film();
+        self.films.end(session);
         // The old surface has to go before the window can have another.
-        self.graphics = None;
-        let opened = pollster::block_on(graphics::open(window.clone(), self.display.clone()));
-        let graphics =
-            opened.and_then(|(gpu, surface)| Graphics::new(gpu, surface, window, &self.session));
-        self.take_graphics(event_loop, graphics);
-    }
-
-    /// Closes the window.
-    #[expect(clippy::unused_self, reason = "a page is not closed, and says so")]
-    pub fn quit(&self, event_loop: &ActiveEventLoop) {
-        event_loop.exit();
+        screen.graphics = None;
+        let opened = pollster::block_on(adapter::open(window.clone(), screen.display.clone()));
+        Some(opened.and_then(|(gpu, surface)| Graphics::new(gpu, surface, window, session)))
     }
 
     /// Saves a picture, and returns what is said of it.
-    pub fn save_picture(&mut self) -> String {
-        match self.write_picture() {
+    #[expect(clippy::unused_self, reason = "a page saves the next frame")]
+    pub fn save_picture(&mut self, session: &mut Session, graphics: Option<&Graphics>) -> String {
+        match write_picture(session, graphics) {
             Ok(name) => format!("saved {name}"),
             Err(failure) => failure.message(),
         }
-    }
-
-    /// Writes a picture under the first free name, and returns the name: one pane without text,
-    /// several with the text that tells them apart.
-    fn write_picture(&mut self) -> Result<String, Failure> {
-        let lost = || Failure::run("the graphics adapter is not open");
-        let graphics = self.graphics.as_ref().ok_or_else(lost)?;
-        let (gpu, size, session) = (graphics.gpu(), graphics.size(), &mut self.session);
-        let offscreen = Offscreen::new(gpu, size).map_err(Failure::run)?;
-        let readings = Readings {
-            no_error: session.readings.no_error,
-            ..Readings::default()
-        };
-        let (panes, scale) = (&mut session.panes, graphics.scale());
-        let mut studio = Studio::new(gpu, offscreen, panes);
-        let pixels = studio.draw(gpu, panes, session.camera, scale, &readings)?;
-        let scene = &session.first().scene().name;
-        let path = output::write_new("".as_ref(), scene, "png", &output::png(&pixels, size)?)?;
-        Ok(path.display().to_string())
     }
 
     /// Writes the command line of now to the terminal and to the clipboard, and returns what is
@@ -110,33 +85,53 @@ impl App {
     pub fn copy(&mut self, line: &str) -> String {
         // A closed terminal is no reason to lose the line.
         let _ = output::say(&format!("{line}\n"));
-        let clipboard = &mut self.outside.clipboard;
-        if clipboard.is_none() {
-            *clipboard = Clipboard::new().ok();
+        if self.clipboard.is_none() {
+            self.clipboard = Clipboard::new().ok();
         }
-        let copied = clipboard.as_mut().map(|board| board.set_text(line));
+        let copied = self.clipboard.as_mut().map(|board| board.set_text(line));
         match copied {
             Some(Ok(())) => format!("copied: {line}"),
             _ => format!("on the terminal: {line}"),
         }
     }
 
-    /// Opens the lessons, and returns what is said of that.
-    pub fn open_lessons() -> String {
-        lessons::open().unwrap_or_else(Failure::message)
-    }
-
-    /// Loads the scene again if one of its files was saved.
-    pub fn look_at_files(&mut self) {
-        let watch = self.outside.watch.as_mut();
-        if watch.is_some_and(Watch::changed) && self.session.reload() {
-            self.last = Instant::now();
-            self.scene_changed();
-        }
+    /// Whether one of the files of the scene was saved since the last look.
+    pub fn files_changed(&mut self) -> bool {
+        self.watch.as_mut().is_some_and(Watch::changed)
     }
 
     /// Time of the next look at the files that are watched.
     pub fn next_look(&self) -> Option<Instant> {
-        self.outside.watch.as_ref().map(Watch::next)
+        self.watch.as_ref().map(Watch::next)
     }
+}
+
+/// Closes the window, or returns why it stays open.
+pub fn quit(event_loop: &ActiveEventLoop) -> Option<&'static str> {
+    event_loop.exit();
+    None
+}
+
+/// Opens the lessons, and returns what is said of that.
+pub fn open_lessons() -> String {
+    lessons::open().unwrap_or_else(Failure::message)
+}
+
+/// Writes a picture under the first free name, and returns the name: one pane without text,
+/// several with the text that tells them apart.
+fn write_picture(session: &mut Session, graphics: Option<&Graphics>) -> Result<String, Failure> {
+    let lost = || Failure::run("the graphics adapter is not open");
+    let graphics = graphics.ok_or_else(lost)?;
+    let (gpu, size) = (graphics.gpu(), graphics.size());
+    let offscreen = Offscreen::new(gpu, size).map_err(Failure::run)?;
+    let readings = Readings {
+        no_error: session.readings.no_error,
+        ..Readings::default()
+    };
+    let (panes, scale) = (&mut session.runs.panes, graphics.scale());
+    let mut studio = Studio::new(gpu, offscreen, panes);
+    let pixels = studio.draw(gpu, panes, session.view.camera, scale, &readings)?;
+    let scene = &session.runs.first().scene().name;
+    let path = output::write_new("".as_ref(), scene, "png", &output::png(&pixels, size)?)?;
+    Ok(path.display().to_string())
 }

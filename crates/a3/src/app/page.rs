@@ -10,11 +10,12 @@ use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::platform::web::WindowAttributesExtWebSys;
 use winit::window::{Window, WindowAttributes};
 
-use super::graphics::{self, Graphics};
-use super::state::App;
+use super::adapter;
+use super::graphics::Graphics;
+use super::screen::Screen;
 use crate::browser;
 use crate::output;
-use crate::session::Action;
+use crate::session::{Action, Session};
 
 thread_local! {
     /// The way to the event loop.
@@ -55,59 +56,55 @@ pub fn reach(proxy: EventLoopProxy<Event>) {
 pub struct Outside {
     /// Whether an adapter is being opened.
     opening: bool,
+    pub films: Films,
+}
+
+/// The frames that are saved: pictures. Films are for the program.
+#[derive(Default)]
+pub struct Films {
     /// Whether the next frame is to be saved as a picture.
     picture: bool,
 }
 
-impl App {
+impl Outside {
     /// Opens all that depends on the adapter, for the window that is there: an event says that it
     /// is open.
-    pub fn open_graphics(&mut self, _: &ActiveEventLoop) {
-        self.graphics = None;
-        if let (Some(window), false) = (self.window.clone(), self.outside.opening) {
-            self.outside.opening = true;
-            let display = self.display.clone();
+    pub fn open_graphics(
+        &mut self,
+        screen: &mut Screen,
+        _: &mut Session,
+    ) -> Option<Result<Graphics, GpuError>> {
+        screen.graphics = None;
+        if let (Some(window), false) = (screen.window.clone(), self.opening) {
+            self.opening = true;
+            let display = screen.display.clone();
             wasm_bindgen_futures::spawn_local(async move {
-                send(Event::Opened(graphics::open(window, display).await));
+                send(Event::Opened(adapter::open(window, display).await));
             });
         }
+        None
     }
 
-    /// Does what the page asks for.
-    pub fn take_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
-        match event {
-            Event::Opened(opened) => {
-                self.outside.opening = false;
-                let Some(window) = self.window.clone() else {
-                    return;
-                };
-                let graphics = opened
-                    .and_then(|(gpu, surface)| Graphics::new(gpu, surface, window, &self.session));
-                if let Err(why) = &graphics {
-                    browser::show(&why.to_string());
-                }
-                self.take_graphics(event_loop, graphics);
-                self.last = Instant::now();
-            }
-            Event::Open(path) => {
-                if self.session.open(&path) {
-                    self.scene_changed();
-                }
-                self.redraw();
-            }
-            Event::Act(action) => self.act(event_loop, action),
+    /// Takes the adapter that was opened, for the window that is there.
+    pub fn opened(
+        &mut self,
+        opened: Result<(Gpu, wgpu::Surface<'static>), GpuError>,
+        screen: &Screen,
+        session: &Session,
+    ) -> Option<Result<Graphics, GpuError>> {
+        self.opening = false;
+        let window = screen.window.clone()?;
+        let graphics =
+            opened.and_then(|(gpu, surface)| Graphics::new(gpu, surface, window, session));
+        if let Err(why) = &graphics {
+            browser::show(&why.to_string());
         }
-    }
-
-    /// A page is closed by the browser. What is remembered is kept now.
-    pub fn quit(&mut self, _: &ActiveEventLoop) {
-        self.remember();
-        self.session.say("The browser closes the page.");
+        Some(graphics)
     }
 
     /// Saves the next frame as a picture, and returns what is said of it.
-    pub fn save_picture(&mut self) -> String {
-        self.outside.picture = true;
+    pub fn save_picture(&mut self, _: &mut Session, _: Option<&Graphics>) -> String {
+        self.films.picture = true;
         "The picture is in your downloads.".into()
     }
 
@@ -122,49 +119,59 @@ impl App {
         format!("copied: {link}")
     }
 
-    /// Opens the lessons, which lie beside the page, and returns what is said of that.
-    pub fn open_lessons() -> String {
-        browser::open("lessons/README.md");
-        "The lessons are open beside this page.".into()
+    /// No files are watched.
+    pub fn files_changed(&mut self) -> bool {
+        false
     }
 
+    /// No files are watched.
+    pub fn next_look(&self) -> Option<Instant> {
+        None
+    }
+}
+
+impl Films {
     /// Films are for the program.
-    pub fn record(&mut self) {
-        self.session
+    pub fn record(&mut self, session: &mut Session, _: Option<&Graphics>) {
+        session
+            .readings
             .say("The program makes films: y copies the command line for it.");
     }
 
     /// Films are for the program.
-    pub fn film_last(&mut self) {
-        self.record();
+    pub fn record_last(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
+        self.record(session, graphics);
     }
 
     /// Saves the picture that was just drawn, if that was asked for. Returns whether another frame
     /// is needed for it.
-    pub fn film(&mut self) -> bool {
-        if std::mem::take(&mut self.outside.picture) {
-            let scene = &self.session.first().scene().name;
+    pub fn draw(&mut self, session: &mut Session, _: Option<&Graphics>) -> bool {
+        if std::mem::take(&mut self.picture) {
+            let scene = &session.runs.first().scene().name;
             browser::download_picture(format!("a3-{scene}.png"));
         }
         false
     }
 
     /// There are no films.
-    pub fn end_live_film(&mut self) {}
+    pub fn end_live(&mut self, _: &mut Session) {}
 
     /// There are no films.
-    pub fn complete_film(&mut self) {}
+    pub fn complete(&mut self, _: &mut Session, _: Option<&Graphics>) {}
 
     /// Real time as it passes.
-    pub fn pace(&self, real: f64) -> f64 {
+    pub fn pace(&self, _: &Session, real: f64) -> f64 {
         real
     }
+}
 
-    /// No files are watched.
-    pub fn look_at_files(&mut self) {}
+/// A page is closed by the browser.
+pub fn quit(_: &ActiveEventLoop) -> Option<&'static str> {
+    Some("The browser closes the page.")
+}
 
-    /// No files are watched.
-    pub fn next_look(&self) -> Option<Instant> {
-        None
-    }
+/// Opens the lessons, which lie beside the page, and returns what is said of that.
+pub fn open_lessons() -> String {
+    browser::open("lessons/README.md");
+    "The lessons are open beside this page.".into()
 }

@@ -8,7 +8,7 @@ use winit::event_loop::EventLoop;
 use super::platform::{Event, Outside};
 use super::state::App;
 use crate::failure::Failure;
-use crate::session::Session;
+use crate::session::{Session, looks};
 use crate::settings::Settings;
 
 /// How the window ends.
@@ -39,7 +39,7 @@ pub fn open(
     event_loop.run_app(&mut app).map_err(Failure::run)?;
     match app.failure {
         None => Ok(End::Closed),
-        Some(Failure::Run(why)) if app.devices == 0 => {
+        Some(Failure::Run(why)) if app.screen.devices == 0 => {
             app.session.readings.in_window = false;
             Ok(End::NoWindow(why, Box::new(app.session)))
         }
@@ -77,12 +77,12 @@ fn prepare(session: &mut Session, settings: Option<&Settings>) {
     if let Some(settings) = settings {
         session.panel.open = settings.panel;
         if settings.dark {
-            session.set_dark(true);
+            looks::set_dark(&mut session.runs.panes, true);
         }
         session.panel.film = settings.film;
         session.panel.frame_limit = settings.frame_limit;
         session.panel.film_of = settings.film_seconds;
-        session.recent.clone_from(&settings.recent);
+        session.library.recent.clone_from(&settings.recent);
     }
 }
 

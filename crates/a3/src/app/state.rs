@@ -1,52 +1,40 @@
-//! The window's state: its session, its graphics and its mouse.
+//! The window's state: its session, its screen and its mouse.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use web_time::Instant;
 
-use a3_render::{GpuError, Tile};
-use egui::CursorIcon;
+use a3_render::GpuError;
+use winit::event::KeyEvent;
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
-use winit::window::{Fullscreen, Window};
+use winit::keyboard::{Key, ModifiersState, NamedKey};
 
 use super::graphics::Graphics;
-use super::platform::Outside;
-use super::pointer::Mouse;
+use super::keyboard;
+use super::mouse::Mouse;
+use super::platform::{self, Outside};
+use super::remember::remember;
+use super::screen::Screen;
 use super::status::Status;
 use crate::failure::Failure;
 use crate::hud::panel;
-use crate::session::{Action, Session};
+use crate::session::{Action, RunAction, Session, WindowAction};
 use crate::settings::Settings;
-use crate::show::Target;
 use crate::{command_line, keep, output};
 
 /// The window, from the first event to the last.
 pub struct App {
     /// The session that is shown.
     pub session: Session,
-    pub display: OwnedDisplayHandle,
-    /// All that depends on the adapter, once it is open.
-    pub graphics: Option<Graphics>,
-    /// The window, once it is there.
-    pub window: Option<Arc<Window>>,
-    /// Time when the simulation was last brought up to date.
-    pub last: Instant,
+    /// The window on the screen.
+    pub screen: Screen,
     /// The mouse.
     pub mouse: Mouse,
-    /// The shape of the pointer over the picture.
-    pub cursor: CursorIcon,
-    /// Whether the shift key is held.
-    pub shift: bool,
-    /// Whether the control key is held.
-    pub control: bool,
+    /// The keys that are held beside others.
+    pub held: ModifiersState,
+    /// Time when the simulation was last brought up to date.
+    pub last: Instant,
     /// The settings as they were read, unless none are remembered.
     pub settings: Option<Settings>,
-    /// Size of text and panel over that of the screen's own scale.
-    pub zoom: f32,
-    /// Whether the window can be seen.
-    pub visible: bool,
-    /// Number of devices opened so far.
-    pub devices: u32,
     /// What the window has of the system.
     pub outside: Outside,
     /// Lines for tests, if they are asked for.
@@ -64,22 +52,16 @@ impl App {
         outside: Outside,
         settings: Option<Settings>,
     ) -> Self {
+        let zoom = settings.as_ref().map_or(1.0, |it| it.interface_scale);
         Self {
             session,
-            display,
-            graphics: None,
-            window: None,
-            last: Instant::now(),
+            screen: Screen::new(display, zoom),
             mouse: Mouse::new(),
-            cursor: CursorIcon::Default,
-            shift: false,
-            control: false,
-            zoom: settings.as_ref().map_or(1.0, |it| it.interface_scale),
+            held: ModifiersState::empty(),
+            last: Instant::now(),
             settings,
-            visible: true,
-            devices: 0,
-            status: status.then(Status::default),
             outside,
+            status: status.then(Status::default),
             failure: None,
         }
     }
@@ -90,32 +72,14 @@ impl App {
         event_loop.exit();
     }
 
-    /// Asks for another frame.
-    pub fn redraw(&self) {
-        if let Some(window) = &self.window {
-            window.request_redraw();
+    /// Opens all that depends on the adapter.
+    pub fn open_graphics(&mut self, event_loop: &ActiveEventLoop) {
+        let opened = self
+            .outside
+            .open_graphics(&mut self.screen, &mut self.session);
+        if let Some(graphics) = opened {
+            self.take_graphics(event_loop, graphics);
         }
-    }
-
-    /// The part of the window that pane k fills.
-    pub fn tile(&self, k: usize) -> Tile {
-        let tiles = self
-            .graphics
-            .as_ref()
-            .map(|graphics| graphics.tiles(&self.session));
-        tiles.map_or(Tile::whole((1, 1)), |tiles| tiles[k])
-    }
-
-    /// Pixels per point.
-    pub fn scale(&self) -> f32 {
-        self.graphics.as_ref().map_or(1.0, Graphics::scale)
-    }
-
-    /// The pane under the pointer, or else the first.
-    pub fn pointed(&self) -> usize {
-        (0..self.session.panes.len())
-            .find(|k| self.tile(*k).contains(self.mouse.pointer))
-            .unwrap_or(0)
     }
 
     /// Takes up all that depends on the adapter.
@@ -124,117 +88,162 @@ impl App {
         event_loop: &ActiveEventLoop,
         graphics: Result<Graphics, GpuError>,
     ) {
-        match graphics {
-            Ok(mut graphics) => {
-                graphics.set_zoom(self.zoom);
-                self.graphics = Some(graphics);
-                self.devices += 1;
-            }
-            Err(why) => self.fail(event_loop, why),
+        if let Err(why) = self.screen.take_graphics(graphics) {
+            self.fail(event_loop, why);
         }
-        self.redraw();
+    }
+
+    /// Does what a key is for: in the panel, or by the table of keys.
+    pub fn press_key(&mut self, event_loop: &ActiveEventLoop, event: &KeyEvent) {
+        if let (Some(_), Some(graphics)) = (&self.status, &self.screen.graphics)
+            && event.logical_key == Key::Named(NamedKey::F12)
+        {
+            graphics.lose_device();
+            self.screen.redraw();
+        }
+        if let (true, Some(by)) = (self.held.control_key(), keyboard::zoom(&event.logical_key)) {
+            let said = self.screen.scale_interface(by);
+            return self.session.readings.say(said);
+        }
+        let typed = keyboard::text_key(event);
+        if self.session.list.is_some() {
+            if typed.is_some_and(|key| self.session.press_list(key)) {
+                self.scene_changed();
+            }
+            self.screen.redraw();
+            return;
+        }
+        if typed.is_some_and(|key| panel::press_text(&mut self.session, key)) {
+            self.screen.redraw();
+            return;
+        }
+        let key = keyboard::panel_key(&event.logical_key);
+        let shift = self.held.shift_key();
+        if key.is_some_and(|key| panel::press(&mut self.session, key, shift)) {
+            self.screen.redraw();
+            return;
+        }
+        let Some(action) = keyboard::action(&event.logical_key) else {
+            return;
+        };
+        let repeats = matches!(
+            action,
+            Action::Run(
+                RunAction::Step
+                    | RunAction::LongerStep
+                    | RunAction::ShorterStep
+                    | RunAction::Scrub(_)
+            )
+        );
+        if !event.repeat || repeats {
+            self.act(event_loop, action);
+        }
     }
 
     /// Does an action of the keys.
     pub fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
+        let pane = self.mouse.pointer.pane(&self.session, &self.screen);
         match action {
-            Action::Quit => self.quit(event_loop),
-            Action::Picture => {
-                let message = self.save_picture();
-                self.session.say(message);
-            }
-            Action::FullScreen => {
-                if let Some(window) = &self.window {
-                    let whole = window.fullscreen().is_none();
-                    window.set_fullscreen(whole.then_some(Fullscreen::Borderless(None)));
-                }
-            }
-            Action::Undo | Action::Redo => {
-                let again = action == Action::Redo || self.shift;
-                panel::undo(&mut self.session, again);
-            }
-            Action::Follow => {
-                let pane = self.pointed();
-                let hit = self.hit(pane).and_then(|(target, _)| match target {
-                    Target::Particle(i) => Some(i),
-                    Target::Obstacle(_) => None,
-                });
-                self.session.follow(pane, hit);
-            }
-            Action::WritePlots => {
-                let message = match self.write_plots() {
-                    Ok(path) => format!("wrote {}", path.display()),
-                    Err(failure) => failure.message(),
-                };
-                self.session.say(message);
-            }
-            Action::Record => self.record(),
-            Action::FilmLast => self.film_last(),
-            Action::CommandLine => {
-                let message = match command_line::of(&self.session, self.pointed()) {
-                    Ok(line) => self.copy(&line),
-                    Err(failure) => failure.message(),
-                };
-                self.session.say(message);
-            }
-            Action::Keep => {
-                let at = self.pointed();
-                let message = match keep::keep(&mut self.session, at) {
-                    Ok(path) => format!("kept in {}", path.display()),
-                    Err(failure) => failure.message(),
-                };
-                self.session.say(message);
-            }
-            Action::TakeUp => {
-                self.mouse.let_go();
-                let message = match self.session.kept.clone() {
-                    None => "Nothing was kept: k keeps the run in a file.".into(),
-                    Some(path) => match keep::take_up(&mut self.session, &path) {
-                        Ok(()) => format!("loaded {}", path.display()),
-                        Err(failure) => failure.message(),
-                    },
-                };
-                self.session.say(message);
-                self.scene_changed();
-            }
-            Action::Lessons => {
-                let message = Self::open_lessons();
-                self.session.say(message);
-            }
-            action => {
+            Action::Run(action) => {
                 // No steps are due for the time in which nothing moved.
                 if !self.session.animated() {
                     self.last = Instant::now();
                 }
-                if self.session.act(action, self.pointed()) {
+                if self.session.act(action, pane) {
                     self.scene_changed();
                 }
             }
+            Action::Window(action) => self.act_in_window(event_loop, action, pane),
         }
-        self.redraw();
+        self.screen.redraw();
     }
 
-    /// Writes the samples of all panes under the first name that is free.
-    fn write_plots(&self) -> Result<PathBuf, Failure> {
-        let table = panel::csv(&self.session.panes).map_err(Failure::run)?;
-        let scene = &self.session.first().scene().name;
-        output::write_new("".as_ref(), scene, "csv", &table)
+    /// Does an action that needs the window. The pointer is over `pane`.
+    fn act_in_window(&mut self, event_loop: &ActiveEventLoop, action: WindowAction, pane: usize) {
+        let (session, graphics) = (&mut self.session, self.screen.graphics.as_ref());
+        let message = match action {
+            WindowAction::Quit => {
+                let stays = platform::quit(event_loop);
+                if stays.is_some() {
+                    self.remember();
+                }
+                stays.map(Into::into)
+            }
+            WindowAction::Picture => Some(self.outside.save_picture(session, graphics)),
+            WindowAction::FullScreen => {
+                self.screen.toggle_full();
+                None
+            }
+            WindowAction::Undo | WindowAction::Redo => {
+                let again = action == WindowAction::Redo || self.held.shift_key();
+                panel::undo(session, again);
+                None
+            }
+            WindowAction::Follow => {
+                let hit = self.mouse.pointer.hit(session, &self.screen, pane);
+                let particle = hit.and_then(|(target, _)| target.particle());
+                let panes = &session.runs.panes;
+                Some(session.view.follow(panes, pane, particle))
+            }
+            WindowAction::WritePlots => Some(said("wrote", write_plots(session))),
+            WindowAction::Record => {
+                self.outside.films.record(session, graphics);
+                None
+            }
+            WindowAction::FilmLast => {
+                self.outside.films.record_last(session, graphics);
+                None
+            }
+            WindowAction::CommandLine => Some(match command_line::of(session, pane) {
+                Ok(line) => self.outside.copy(&line),
+                Err(failure) => failure.message(),
+            }),
+            WindowAction::Keep => Some(said("kept in", keep::keep(session, pane))),
+            WindowAction::TakeUp => {
+                let loaded = match session.library.kept.clone() {
+                    None => "Nothing was kept: k keeps the run in a file.".into(),
+                    Some(path) => {
+                        let taken = keep::take_up(session, &path);
+                        said("loaded", taken.map(|()| path))
+                    }
+                };
+                session.readings.say(loaded);
+                self.scene_changed();
+                None
+            }
+            WindowAction::Lessons => Some(platform::open_lessons()),
+        };
+        if let Some(message) = message {
+            self.session.readings.say(message);
+        }
     }
 
     /// Shows another scene.
     pub fn scene_changed(&mut self) {
-        self.mouse.let_go();
-        self.end_live_film();
-        if let Some(graphics) = &mut self.graphics {
-            graphics.set_scene(&self.session);
-        }
-        self.title();
+        self.mouse.stop();
+        self.outside.films.end_live(&mut self.session);
+        self.screen.set_scene(&self.session);
     }
 
-    /// Puts the scene's name into the title of the window.
-    pub fn title(&self) {
-        if let Some(window) = &self.window {
-            window.set_title(&format!("a3: {}", self.session.first().scene().name));
+    /// Keeps the settings for the next window, if they are remembered.
+    pub fn remember(&self) {
+        if let Some(before) = &self.settings {
+            remember(before, &self.session, &self.screen);
         }
     }
+}
+
+/// What is said of a file that was written or read, or why it was not.
+fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
+    match file {
+        Ok(path) => format!("{done} {}", path.display()),
+        Err(failure) => failure.message(),
+    }
+}
+
+/// Writes the samples of all panes under the first name that is free.
+fn write_plots(session: &Session) -> Result<PathBuf, Failure> {
+    let table = panel::csv(&session.runs.panes).map_err(Failure::run)?;
+    let scene = &session.runs.first().scene().name;
+    output::write_new("".as_ref(), scene, "csv", &table)
 }

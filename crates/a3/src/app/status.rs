@@ -5,7 +5,7 @@ use web_time::{Duration, Instant};
 use a3_render::Tile;
 use egui::CursorIcon;
 
-use super::graphics::Graphics;
+use super::screen::Screen;
 use crate::output;
 use crate::session::{Pane, Session};
 use crate::show::{Arrows, Quantity};
@@ -22,24 +22,21 @@ pub struct Status {
 }
 
 impl Status {
-    /// Writes a line, unless nothing has changed and the last one is too recent.
-    pub fn say(
-        &mut self,
-        session: &Session,
-        graphics: &Graphics,
-        cursor: CursorIcon,
-        visible: bool,
-        devices: u32,
-    ) {
-        let run = session.first();
+    /// Writes a line once there are graphics, unless nothing has changed and the last one is too
+    /// recent.
+    pub fn say(&mut self, session: &Session, screen: &Screen, cursor: CursorIcon) {
+        let Some(graphics) = &screen.graphics else {
+            return;
+        };
+        let run = session.runs.first();
         let readings = &session.readings;
-        let panes = &session.panes;
+        let panes = &session.runs.panes;
         let grabbed = run.grabbed().map_or("-".into(), |i| i.to_string());
         // Position of the grabbed particle in the window (px).
         let place = |pane: &Pane, tile: Tile| {
             let p = pane.simulation.position(pane.simulation.grabbed()?);
             let point = [p.x as f32, p.y as f32, p.z as f32];
-            let ([x, y], _) = session.camera.project(point, tile.aspect())?;
+            let ([x, y], _) = session.view.camera.project(point, tile.aspect())?;
             let (x, y) = (x * tile.width as f32, y * tile.height as f32);
             Some(format!("{:.0},{:.0}", tile.x as f32 + x, tile.y as f32 + y))
         };
@@ -66,8 +63,11 @@ impl Status {
             session.panel.open,
             session.list.is_some(),
             readings.film.is_some(),
-            session.followed().map_or("-".into(), |i| i.to_string()),
-            session.camera.is_parallel(),
+            session
+                .view
+                .followed()
+                .map_or("-".into(), |i| i.to_string()),
+            session.view.camera.is_parallel(),
             graphics.scale(),
             panes[0].show.dark,
             run.blow_up().is_some(),
@@ -82,8 +82,8 @@ impl Status {
                 .map_or("-".into(), |i| i.to_string()),
             graphics.size().0,
             graphics.size().1,
-            visible,
-            devices,
+            screen.visible,
+            screen.devices,
         );
         let now = Instant::now();
         let quiet = self

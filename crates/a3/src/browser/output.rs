@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::browser::{self, files};
+use crate::browser::{download, files, log};
 use crate::failure::Failure;
 
 /// Gives `bytes` to the browser as a download, and keeps them as a file of the page. Returns its
@@ -22,12 +22,12 @@ pub fn write_new(_: &Path, scene: &str, extension: &str, bytes: &[u8]) -> Result
 /// Gives `bytes` to the browser as a download of that name, and keeps them as a file of the page.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     files::keep(path, bytes);
-    browser::download(&path.to_string_lossy(), bytes).map_err(Failure::run)
+    download(&path.to_string_lossy(), bytes).map_err(Failure::run)
 }
 
 /// Writes words to the console.
 pub fn say(text: &str) -> Result<(), Failure> {
-    browser::log(text.trim_end());
+    log(text.trim_end());
     Ok(())
 }
 
@@ -43,7 +43,7 @@ pub fn said(written: io::Result<()>) -> Result<(), Failure> {
 
 /// Writes a message to the console.
 pub fn warn(message: &str) {
-    browser::log(message);
+    log(message);
 }
 
 /// Why a file could not be read, in words.

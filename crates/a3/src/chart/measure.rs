@@ -5,7 +5,7 @@ use a3_core::accuracy::{Frames, Metric, Reference, Scope, coarser, ladder};
 use a3_core::stability::{Mode, largest_step, spectrum};
 use a3_core::{Control, Method, Model, Scene};
 
-use super::check_contact;
+use super::asked::check_contact;
 use super::data::{Data, VERSION};
 use super::record::Record;
 use super::single::{compared, precision, reference, time};

@@ -9,7 +9,8 @@ use a3_plot::{Curve, Measurement, Problem, WorkPrecision};
 use super::data::Data;
 use super::measure::Study;
 use super::record::Record;
-use super::{describe, style, table, unit};
+use super::words::{describe, unit};
+use super::{style, table};
 use crate::cli::What;
 
 /// Error of a run over that of a run in which nothing moves, above which it is not drawn.

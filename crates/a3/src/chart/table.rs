@@ -8,6 +8,7 @@ use a3_core::{Control, Method};
 use super::data::Data;
 use super::measure::Study;
 use super::record::Record;
+use super::words::unit;
 use crate::list;
 
 /// Decimal digits of the errors in the table, from 1e-2 to 1e-8.
@@ -104,7 +105,7 @@ pub fn text(
     metric: Metric,
     timed: bool,
 ) -> String {
-    let unit = super::unit(metric);
+    let unit = unit(metric);
     let what = if timed {
         "computing time (ms)"
     } else {

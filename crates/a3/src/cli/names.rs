@@ -4,19 +4,17 @@ use std::ffi::OsStr;
 
 use a3_core::{Method, integrators};
 use a3_scenes::nearest;
-#[cfg(feature = "window")]
-use clap::CommandFactory;
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command};
 
 #[cfg(feature = "window")]
-use super::{Cli, values::step};
+use super::values::step;
 use crate::scene_file::Source;
 
-/// A parser of names, which knows them all.
+/// A parser of names, which knows them all, for arguments of a command.
 #[derive(Clone)]
 pub struct Names<T> {
-    parse: fn(&str) -> Result<T, String>,
+    parse: fn(&str, &Command) -> Result<T, String>,
     all: fn() -> Vec<&'static str>,
 }
 
@@ -29,7 +27,10 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for Names<T> {
         arg: Option<&Arg>,
         value: &OsStr,
     ) -> Result<T, clap::Error> {
-        TypedValueParser::parse_ref(&self.parse, command, arg, value)
+        let found = (self.parse)(value.to_str().unwrap_or_default(), command);
+        // The message that clap makes needs a parser that fails.
+        let found = move |_: &str| found.clone();
+        TypedValueParser::parse_ref(&found, command, arg, value)
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
@@ -39,13 +40,13 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for Names<T> {
 
 /// A solver, by its letter or its name.
 pub const SOLVER: Names<&'static Method> = Names {
-    parse: solver,
+    parse: |text, _| solver(text),
     all: solvers,
 };
 
 /// A solver, or all of them: none in particular.
 pub const SOLVER_OR_ALL: Names<Option<&'static Method>> = Names {
-    parse: solver_or_all,
+    parse: |text, _| solver_or_all(text),
     all: || [vec![ALL], solvers()].concat(),
 };
 
@@ -59,7 +60,7 @@ pub const SOLVER_OR_COMMAND: Names<&'static Method> = Names {
 /// A solver, and its step or tolerance after a colon.
 #[cfg(feature = "window")]
 pub const SOLVER_AND_STEP: Names<(&'static Method, Option<f64>)> = Names {
-    parse: solver_and_step,
+    parse: |text, _| solver_and_step(text),
     all: solvers,
 };
 
@@ -68,7 +69,7 @@ const ALL: &str = "all";
 
 /// A scene, by its name or in a file.
 pub const SCENE: Names<Source> = Names {
-    parse: Source::find,
+    parse: |text, _| Source::find(text),
     all: scenes,
 };
 
@@ -97,7 +98,7 @@ fn solver_or_all(text: &str) -> Result<Option<&'static Method>, String> {
 }
 
 #[cfg(feature = "window")]
-fn solver_or_command(text: &str) -> Result<&'static Method, String> {
+fn solver_or_command(text: &str, cli: &Command) -> Result<&'static Method, String> {
     if let Some(method) = integrators::find(text) {
         return Ok(method);
     }
@@ -106,8 +107,8 @@ fn solver_or_command(text: &str) -> Result<&'static Method, String> {
             "a scene comes after --scene, as in `a3 --scene {text}`"
         ));
     }
-    let cli = Cli::command();
-    let commands: Vec<_> = cli.get_subcommands().map(Command::get_name).collect();
+    let commands = cli.get_subcommands().map(Command::get_name);
+    let commands: Vec<_> = commands.filter(|name| *name != "help").collect();
     Err(match nearest_of(text, &commands) {
         Some(name) => format!(
             "there is no such command or solver; did you mean {name}? `a3 --help` lists the commands, and `a3 solvers` \

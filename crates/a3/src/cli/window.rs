@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use a3_core::Method;
 use clap::Args;
 
+use super::drawing::Drawing;
 use super::names::{SOLVER_AND_STEP, SOLVER_OR_COMMAND};
+use super::run::{RunOptions, StepOptions, What};
 use super::values::{beginning, particle, rate, size, step, until};
-use super::{Drawing, RunOptions, StepOptions, What};
 
 #[derive(Args)]
 pub struct WindowOptions {

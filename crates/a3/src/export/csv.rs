@@ -4,7 +4,8 @@ use std::path::Path;
 
 use a3_core::Simulation;
 
-use super::{Export, velocities};
+use super::format::Export;
+use super::numbers::velocities;
 use crate::failure::Failure;
 use crate::output::Draft;
 use crate::rounding::{DIGITS, short};

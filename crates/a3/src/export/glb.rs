@@ -10,8 +10,9 @@ use a3_core::Simulation;
 use a3_scenes::Surface;
 use serde_json::{Value, json};
 
+use super::format::Export;
 use super::geometry::{Geometry, positions};
-use super::{Export, rows};
+use super::numbers::rows;
 use crate::failure::Failure;
 use crate::frames::FrameTimes;
 use crate::output::{Draft, Scratch};

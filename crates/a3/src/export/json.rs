@@ -6,7 +6,8 @@ use std::path::Path;
 use a3_core::Simulation;
 use serde::{Serialize, Serializer};
 
-use super::{Export, velocities};
+use super::format::Export;
+use super::numbers::velocities;
 use crate::failure::Failure;
 use crate::output::{self, Draft};
 use crate::rounding::{DIGITS, short};

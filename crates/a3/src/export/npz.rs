@@ -11,7 +11,8 @@ use std::path::Path;
 use a3_core::Simulation;
 use crc32fast::Hasher;
 
-use super::{Export, velocities};
+use super::format::Export;
+use super::numbers::velocities;
 use crate::failure::Failure;
 use crate::frames::FrameTimes;
 use crate::output::{Draft, Scratch};

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use a3_core::Simulation;
 use a3_scenes::{Presentation, Surface};
 
-use super::Export;
+use super::format::Export;
 use super::geometry::{Geometry, positions};
 use crate::failure::Failure;
 use crate::frames::Sequence;

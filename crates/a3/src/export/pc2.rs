@@ -13,9 +13,10 @@ use std::path::{Path, PathBuf};
 use a3_core::Simulation;
 use a3_scenes::Surface;
 
-use super::Export;
+use super::format::Export;
 use super::geometry::{Geometry, positions, vertices};
-use super::{obj, rows};
+use super::numbers::rows;
+use super::obj;
 use crate::failure::Failure;
 use crate::frames::FrameTimes;
 use crate::output::{self, Draft};

@@ -15,7 +15,7 @@ use std::path::Path;
 use a3_core::Simulation;
 use a3_scenes::Surface;
 
-use super::Export;
+use super::format::Export;
 use super::geometry::{Geometry, positions, vertices};
 use crate::failure::Failure;
 use crate::frames::FrameTimes;

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 
-use super::Film;
+use super::format::Film;
 use super::palette::Palette;
 use crate::failure::Failure;
 use crate::output::{Draft, not_written};

@@ -6,7 +6,7 @@ use std::io::{self, Read, Seek, Write};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 
-use super::Film;
+use super::format::Film;
 use crate::failure::Failure;
 use crate::interrupt::{self, Loose, Temporary};
 use crate::output::{self, Draft, not_written};

@@ -5,7 +5,7 @@ use egui::{
     Sense, Ui, vec2,
 };
 
-use super::panel::Request;
+use super::panel::PanelRequest;
 use super::style::{FAINT, MARGIN, PAPER, TEXT, faint, text, title};
 use crate::session::{Entry, Session, Topic};
 
@@ -17,7 +17,7 @@ const HEIGHT: f32 = 22.0;
 const NAME: f32 = 136.0;
 
 /// Draws the list that is open, and returns what the mouse asks for.
-pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
+pub fn show(ctx: &Context, session: &Session) -> Option<PanelRequest> {
     let list = session.list.as_ref()?;
     let window = ctx.content_rect().shrink(MARGIN);
     let mut request = None;
@@ -59,7 +59,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                         for (k, entry) in list.entries().enumerate() {
                             count += 1;
                             if row(ui, entry, k == list.chosen) {
-                                request = Some(Request::Take(entry.number));
+                                request = Some(PanelRequest::Take(entry.number));
                             }
                         }
                         if count == 0 {
@@ -70,7 +70,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
         });
     let outside = |ctx: &Context| ctx.input(|input| input.pointer.any_pressed());
     if request.is_none() && outside(ctx) && !area.response.contains_pointer() {
-        request = Some(Request::CloseList);
+        request = Some(PanelRequest::CloseList);
     }
     request
 }
@@ -117,10 +117,15 @@ mod tests {
 
     use super::*;
     use crate::hud::panel;
-    use crate::session::{Action, session};
+    use crate::session::{RunAction, session};
 
     /// Draws the list, with the pointer at a place and perhaps pressed there.
-    fn draw(ctx: &Context, session: &Session, at: Pos2, pressed: Option<bool>) -> Option<Request> {
+    fn draw(
+        ctx: &Context,
+        session: &Session,
+        at: Pos2,
+        pressed: Option<bool>,
+    ) -> Option<PanelRequest> {
         let mut events = vec![Event::PointerMoved(at)];
         events.extend(pressed.map(|pressed| Event::PointerButton {
             pos: at,
@@ -143,7 +148,7 @@ mod tests {
     #[test]
     fn a_click_takes_an_entry_and_a_click_elsewhere_closes_the_list() {
         let mut session = session(&["v", "0.005"]);
-        session.act(Action::Scenes, 0);
+        session.act(RunAction::Scenes, 0);
         let ctx = crate::hud::style::context();
         let middle = Pos2::new(320.0, 180.0);
         for _ in 0..3 {
@@ -151,19 +156,19 @@ mod tests {
         }
         draw(&ctx, &session, middle, Some(true));
         let request = draw(&ctx, &session, middle, Some(false));
-        let Some(Request::Take(number)) = request else {
+        let Some(PanelRequest::Take(number)) = request else {
             panic!("{request:?}");
         };
-        assert!(panel::apply(&mut session, Request::Take(number)));
+        assert!(panel::apply(&mut session, PanelRequest::Take(number)));
         let name = a3_scenes::SCENES[number].name;
-        assert_eq!(session.first().scene().name, name);
-        session.act(Action::Scenes, 0);
+        assert_eq!(session.runs.first().scene().name, name);
+        session.act(RunAction::Scenes, 0);
         let corner = Pos2::new(4.0, 4.0);
         for _ in 0..2 {
             assert_eq!(draw(&ctx, &session, corner, None), None);
         }
         let request = draw(&ctx, &session, corner, Some(true));
-        assert_eq!(request, Some(Request::CloseList));
-        assert!(!panel::apply(&mut session, Request::CloseList) && session.list.is_none());
+        assert_eq!(request, Some(PanelRequest::CloseList));
+        assert!(!panel::apply(&mut session, PanelRequest::CloseList) && session.list.is_none());
     }
 }

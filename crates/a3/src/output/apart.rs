@@ -76,7 +76,8 @@ fn same(a: &Path, b: &Path) -> bool {
     matches!((resolve(a), resolve(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-#[cfg(all(test, unix))]
+#[cfg(unix)]
+#[cfg(test)]
 mod tests {
     use super::*;
 

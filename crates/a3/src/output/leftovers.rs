@@ -61,7 +61,8 @@ fn is_gone(process: i32) -> bool {
     process > 0 && kill(Pid::from_raw(process), None) == Err(Errno::ESRCH)
 }
 
-#[cfg(all(test, unix))]
+#[cfg(unix)]
+#[cfg(test)]
 mod tests {
     use super::*;
     use std::fs::{self, File};

@@ -4,7 +4,7 @@ use a3_core::{Error, Simulation};
 use indicatif::{ProgressBar, ProgressStyle};
 use web_time::{Duration, Instant};
 
-use super::march;
+use super::march::march;
 use crate::output;
 
 /// Brings a simulation to `until` (s) in whole steps, the last one shortened, with a bar once it

@@ -2,57 +2,12 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 mod bar;
-
-use a3_core::{Error, Simulation};
+mod march;
+#[cfg(target_arch = "wasm32")]
+mod page;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use bar::{Bar, advance};
-
-/// Simulated time between two calls of `frame` (s).
-const FRAME: f64 = 1.0 / 60.0;
-
-/// Does what [`march`] does to the end, whatever `frame` sees: a page has no terminal.
+pub use march::march;
 #[cfg(target_arch = "wasm32")]
-pub fn advance(
-    simulation: &mut Simulation,
-    until: f64,
-    mut frame: impl FnMut(&Simulation),
-) -> Result<(), Error> {
-    march(simulation, until, |simulation| {
-        frame(simulation);
-        true
-    })
-    .map(drop)
-}
-
-/// Brings a simulation to `until` (s) in whole steps, the last one shortened, as long as `frame`
-/// returns true, which is called about sixty times a simulated second. Returns whether it got to
-/// the end.
-pub fn march(
-    simulation: &mut Simulation,
-    until: f64,
-    mut frame: impl FnMut(&Simulation) -> bool,
-) -> Result<bool, Error> {
-    let control = simulation.control();
-    let step = control.step().unwrap_or(FRAME);
-    let stride = (FRAME / step).floor().max(1.0);
-    loop {
-        // Whole steps that end before the last one. If only rounding makes the last one shorter, it
-        // is whole too.
-        let left = (until - simulation.time()) / step;
-        let whole = (left - 1.0 - Simulation::SLIVER).ceil().min(stride);
-        if whole < 1.0 {
-            break;
-        }
-        if control.step().is_none() {
-            simulation.advance_to(simulation.time() + FRAME)?;
-        } else {
-            simulation.take_steps(whole as u64)?;
-        }
-        if !frame(simulation) {
-            return Ok(false);
-        }
-    }
-    simulation.advance_to(until)?;
-    Ok(frame(simulation))
-}
+pub use page::advance;

@@ -55,18 +55,14 @@ impl Recorder {
     /// Films the session from now on.
     pub fn from_now(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
         let interval = 1.0 / format.ending.rate();
-        let next = session.clock();
+        let next = session.runs.clock;
         Self::new(gpu, session, format, Source::Session { next, interval })
     }
 
-    /// Films the last seconds that the session has kept.
-    pub fn of_kept(
-        gpu: &Gpu,
-        session: &Session,
-        format: Format,
-        seconds: f64,
-    ) -> Result<Self, Failure> {
-        let moments = session.kept_moments(seconds, 1.0 / format.ending.rate());
+    /// Films the last seconds that the session has kept, as many as its panel says.
+    pub fn of_kept(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
+        let (seconds, interval) = (session.panel.film_of, 1.0 / format.ending.rate());
+        let moments = session.timeline.last(seconds, interval);
         if moments.len() < 2 {
             return Err(Failure::run("Nothing is kept yet that could be filmed."));
         }
@@ -77,10 +73,10 @@ impl Recorder {
             copy.restore(&run.moment())?;
             Ok(Pane::new(copy, pane.show.clone()))
         };
-        let panes: Result<_, a3_core::Error> = session.panes.iter().map(copy).collect();
+        let panes: Result<_, a3_core::Error> = session.runs.panes.iter().map(copy).collect();
         let source = Source::Kept {
             panes: panes.map_err(Failure::run)?,
-            camera: session.camera,
+            camera: session.view.camera,
             count: moments.len(),
             moments: moments.into_iter(),
         };
@@ -94,10 +90,10 @@ impl Recorder {
             scale,
         } = format;
         let within = ending.fit(size);
-        let (path, film) = film::begin_new(&session.first().scene().name, ending, within)?;
+        let (path, film) = film::begin_new(&session.runs.first().scene().name, ending, within)?;
         let offscreen = Offscreen::new(gpu, within).map_err(Failure::run)?;
         Ok(Self {
-            studio: Studio::new(gpu, offscreen, &session.panes),
+            studio: Studio::new(gpu, offscreen, &session.runs.panes),
             encoder: Encoder::new(film),
             path,
             scale: scale * within.1 as f32 / size.1 as f32,
@@ -118,7 +114,7 @@ impl Recorder {
         match self.source {
             Source::Session { .. } if !self.encoder.has_room() => 0.0,
             Source::Session { next, .. } => {
-                let left = (next - session.clock()).max(0.0);
+                let left = (next - session.runs.clock).max(0.0);
                 real.min(left * 2f64.powi(session.readings.slowness))
             }
             Source::Kept { .. } => real,
@@ -138,15 +134,15 @@ impl Recorder {
             Source::Session { next, interval } => {
                 let apart = *interval * 0.5f64.powi(session.readings.slowness);
                 // After going back or a reset, the next frame is the one that is shown.
-                if session.clock() < *next - apart - 1e-9 {
-                    *next = session.clock();
+                if session.runs.clock < *next - apart - 1e-9 {
+                    *next = session.runs.clock;
                 }
-                if session.clock() < *next - 1e-9 {
+                if session.runs.clock < *next - 1e-9 {
                     return Ok(true);
                 }
                 *next += apart;
-                let camera = session.camera;
-                let panes = &mut session.panes;
+                let camera = session.view.camera;
+                let panes = &mut session.runs.panes;
                 self.studio
                     .draw(gpu, panes, camera, self.scale, &readings)?
             }

@@ -1,293 +1,323 @@
-//! The actions of keys on a session.
+//! What the user does to a session: by keys, by the mouse, and by lists to choose from.
 
-use a3_core::{Method, integrators};
+use std::path::Path;
 
-use super::clock::KEY_BUDGET;
-use super::keys::Action;
-use super::list::Topic;
-use super::pane::{PORTION, Pane};
+use a3_core::{Network, integrators};
+use a3_scenes::Setup;
+
+use super::actions::RunAction;
+use super::history::Change;
+use super::list::{List, TextKey, Topic, solvers};
+use super::looks;
+use super::runs::KEY_BUDGET;
+use super::save;
 use super::state::Session;
-use crate::bounds;
+use super::tuning::Tuning;
+use crate::show;
 
 /// The slowest motion is 1 / 2^6 of real time.
 const SLOWEST: i32 = 6;
 
-/// Steps and tolerances of the keys + and -, in each decade.
-const LADDER: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
-
 impl Session {
-    /// Does an action, except those that need the window, and returns whether another scene is
-    /// shown. A solver is for the pane `at`, all else for every pane.
-    pub fn act(&mut self, action: Action, at: usize) -> bool {
+    /// Does an action, and returns whether another scene is shown. A solver is for the pane `at`,
+    /// all else for every pane.
+    pub fn act(&mut self, action: RunAction, at: usize) -> bool {
         match action {
-            Action::NextScene | Action::PreviousScene => {
-                self.go_to_scene(if action == Action::NextScene { 1 } else { -1 });
+            RunAction::NextScene | RunAction::PreviousScene => {
+                let by = if action == RunAction::NextScene {
+                    1
+                } else {
+                    -1
+                };
+                self.show_scene(self.library.beside(by));
                 return true;
             }
-            Action::Scenes => self.toggle_list(Topic::Scenes),
-            Action::Solvers => self.toggle_list(Topic::Solvers { pane: at }),
-            Action::Reset => {
-                let touching = self.first().touching();
-                self.panes.iter_mut().for_each(Pane::reset);
-                if touching && !self.first().touching() {
-                    self.say(
-                        "Surfaces cross at the beginning, so they pass through one another again.",
-                    );
-                }
-                self.clear_timeline();
-                if let Some(reference) = &mut self.reference {
-                    reference.reset();
-                    self.readings.no_error = None;
-                }
-                self.start_anew();
+            RunAction::Scenes => self.toggle_list(Topic::Scenes),
+            RunAction::Solvers => self.toggle_list(Topic::Solvers { pane: at }),
+            RunAction::Reset => self.reset(),
+            RunAction::Swing if self.runs.first().scene().swing.is_none() => {
+                self.readings.say("There is nothing to swing here.");
             }
-            Action::Swing if self.first().scene().swing.is_none() => {
-                self.say("There is nothing to swing here.");
+            RunAction::Swing => {
+                let on = !self.runs.first().swinging();
+                self.runs.align();
+                self.runs.all_mut().for_each(|run| run.set_swinging(on));
             }
-            Action::Swing => {
-                let on = !self.first().swinging();
-                self.align();
-                self.do_to_all(|run| run.set_swinging(on));
+            RunAction::Wind if self.runs.first().scene().wind.is_none() => {
+                self.readings.say("There is no wind here.");
             }
-            Action::Wind if self.first().scene().wind.is_none() => {
-                self.say("There is no wind here.");
+            RunAction::Wind => {
+                let on = !self.runs.first().windy();
+                self.runs.align();
+                self.runs.all_mut().for_each(|run| run.set_wind(on));
             }
-            Action::Wind => {
-                let on = !self.first().windy();
-                self.align();
-                self.do_to_all(|run| run.set_wind(on));
+            RunAction::Touch => {
+                let done = self.runs.toggle_touch();
+                self.tell(done);
             }
-            Action::Touch => self.toggle_touch(),
-            Action::Wireframe => self.next_style(),
-            Action::Colour => self.next_colour(),
-            Action::Arrows => self.next_arrows(),
-            Action::Pause => {
+            RunAction::Wireframe => looks::next_style(&mut self.runs.panes),
+            RunAction::Colour => self.readings.say(looks::next_colour(&mut self.runs.panes)),
+            RunAction::Arrows => self.readings.say(looks::next_arrows(&mut self.runs.panes)),
+            RunAction::Pause => {
                 self.readings.paused = !self.readings.paused;
                 self.start_anew();
             }
-            Action::Step if self.readings.rewound.is_some() => self.scrub(1),
-            Action::Scrub(by) => self.scrub(by),
-            Action::Slower => self.readings.slowness = (self.readings.slowness + 1).min(SLOWEST),
-            Action::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
-            Action::Step => {
-                self.readings.paused = true;
-                self.settle();
-                // The longest step, and as many of the shorter ones as fit.
-                let alive = self.panes.iter().filter(|pane| pane.alive());
-                let step = alive.map(|pane| pane.simulation.step_size().unwrap_or(PORTION));
-                let step = step.fold(0.0, f64::max);
-                self.advance(self.clock + step, KEY_BUDGET, KEY_BUDGET);
-            }
-            Action::Solver(i) => match integrators::METHODS.get(i) {
-                Some(method) => self.set_method(method, at),
-                None => self.say(format!("There are {} solvers.", integrators::METHODS.len())),
+            RunAction::Step if self.readings.rewound.is_some() => self.scrub(1),
+            RunAction::Scrub(by) => self.scrub(by),
+            RunAction::Slower => self.readings.slowness = (self.readings.slowness + 1).min(SLOWEST),
+            RunAction::Faster => self.readings.slowness = (self.readings.slowness - 1).max(0),
+            RunAction::Step => self.step(),
+            RunAction::Solver(i) => match integrators::METHODS.get(i) {
+                Some(method) => {
+                    let done = self.runs.set_method(method, at, &self.tuning.defaults);
+                    self.tell(done);
+                }
+                None => self
+                    .readings
+                    .say(format!("There are {} solvers.", integrators::METHODS.len())),
             },
-            Action::LongerStep => self.set_steps(true),
-            Action::ShorterStep => self.set_steps(false),
-            Action::Camera => {
-                let parallel = self.camera.is_parallel();
-                self.camera = self.panes[0].show.camera();
-                self.camera.set_parallel(parallel);
-                self.followed = None;
+            RunAction::LongerStep | RunAction::ShorterStep => {
+                let done = self.runs.set_steps(action == RunAction::LongerStep);
+                self.tell(done);
             }
-            Action::FreeAll => self.free_all(),
-            Action::Projection => self.toggle_projection(),
-            Action::SeeAll => self.see_all(),
-            Action::NextView => self.next_view(),
-            Action::Panel => self.panel.open = !self.panel.open,
-            Action::WriteScene => match self.write_scene(at) {
-                Ok(name) => self.say(format!("wrote {name}")),
-                Err(why) => self.say(why),
-            },
-            Action::Help => self.readings.help = !self.readings.help,
-            Action::Picture
-            | Action::CommandLine
-            | Action::Follow
-            | Action::Undo
-            | Action::Redo
-            | Action::FullScreen
-            | Action::WritePlots
-            | Action::Record
-            | Action::FilmLast
-            | Action::Keep
-            | Action::TakeUp
-            | Action::Lessons
-            | Action::Quit => {}
+            RunAction::Camera => {
+                self.view.see_from(self.runs.panes[0].show.camera());
+                self.view.stay();
+            }
+            RunAction::FreeAll => {
+                let all: Vec<_> = (0..self.runs.first().particles()).collect();
+                self.pin_all(&all, false);
+            }
+            RunAction::Projection => self.readings.say(self.view.toggle_projection()),
+            RunAction::SeeAll => self.view.see_all(&self.runs.panes),
+            RunAction::NextView => self.readings.say(self.view.next_view()),
+            RunAction::Panel => self.panel.open = !self.panel.open,
+            RunAction::WriteScene => {
+                let pane = &self.runs.panes[at.min(self.runs.panes.len() - 1)];
+                let said = match save::write_scene(self, &pane.simulation) {
+                    Ok(name) => format!("wrote {name}"),
+                    Err(why) => why,
+                };
+                self.readings.say(said);
+            }
+            RunAction::Help => self.readings.help = !self.readings.help,
         }
         false
     }
 
-    fn set_method(&mut self, method: &'static Method, at: usize) {
-        let at = at.min(self.panes.len() - 1);
-        let pane = &mut self.panes[at];
-        pane.wanted_step = None;
-        let run = &pane.simulation;
-        let control = if method.is_adaptive() == run.method().is_adaptive() {
-            run.control()
-        } else {
-            self.defaults.control_of(method)
-        };
-        match pane.simulation.set_method(method, control) {
-            Ok(()) => {
-                pane.wanted = method;
-                pane.restart_cost();
-            }
-            Err(why) => self.say(why.to_string()),
+    /// Takes all runs back to the beginning of their scene.
+    fn reset(&mut self) {
+        let touching = self.runs.first().touching();
+        self.runs.reset();
+        if touching && !self.runs.first().touching() {
+            self.readings
+                .say("Surfaces cross at the beginning, so they pass through one another again.");
         }
-        self.adapt();
+        self.readings.read_reference(self.runs.reference.as_ref());
+        self.another_run();
     }
 
-    fn set_steps(&mut self, longer: bool) {
-        for k in 0..self.panes.len() {
-            let pane = &mut self.panes[k];
-            pane.wanted_step = None;
-            let control = pane.simulation.control();
-            let range = bounds::of(control);
-            let next = next_step(control.value(), longer).clamp(*range.start(), *range.end());
-            if let Err(why) = pane.simulation.set_control(control.with_value(next)) {
-                self.say(why.to_string());
-            } else {
-                pane.restart_cost();
-            }
+    /// Pauses, and takes the longest step, and as many of the shorter ones as fit.
+    fn step(&mut self) {
+        self.readings.paused = true;
+        self.runs.settle();
+        self.advance(self.runs.longest_step(), KEY_BUDGET, KEY_BUDGET);
+    }
+
+    /// Says why something was refused, if it was.
+    fn tell(&mut self, done: Result<(), impl ToString>) {
+        if let Err(why) = done {
+            self.readings.say(why.to_string());
         }
-        self.adapt();
     }
 
     /// Sets the step (s) or the tolerance of one pane.
     pub fn set_step_of(&mut self, at: usize, value: f64) {
-        self.panes[at].wanted_step = None;
-        let run = &mut self.panes[at].simulation;
-        match run.set_control(run.control().with_value(value)) {
-            Ok(()) => self.panes[at].restart_cost(),
-            Err(why) => self.say(why.to_string()),
-        }
-        self.adapt();
+        let done = self.runs.set_step_of(at, value);
+        self.tell(done);
     }
 
-    pub(super) fn adapt(&mut self) {
-        if let Some(reference) = &mut self.reference {
-            reference.adapt(&self.panes);
-        }
-    }
-}
-
-/// The next larger or smaller step or tolerance of the ladder.
-fn next_step(step: f64, longer: bool) -> f64 {
-    let decade = step.log10().floor() as i32;
-    let rungs = (decade - 1..=decade + 1).flat_map(|d| {
-        // Dividing by a power of ten is exact to the last digit where multiplying by its inverse is
-        // not.
-        LADDER.iter().map(move |rung| {
-            if d < 0 {
-                rung / 10f64.powi(-d)
-            } else {
-                rung * 10f64.powi(d)
-            }
-        })
-    });
-    let next = if longer {
-        rungs
-            .filter(|rung| *rung > step * (1.0 + 1e-9))
-            .reduce(f64::min)
-    } else {
-        rungs
-            .filter(|rung| *rung < step * (1.0 - 1e-9))
-            .reduce(f64::max)
-    };
-    next.unwrap_or(step)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::bounds::{LARGEST_STEP, SMALLEST_STEP};
-    use crate::session::{compared, session};
-    use a3_core::Control;
-
-    #[test]
-    fn scenes_come_round_and_the_solver_comes_back() {
-        let mut session = session(&["v", "0.005"]);
-        let mut seen = vec![];
-        for _ in 0..a3_scenes::SCENES.len() {
-            seen.push((
-                session.panes[0].simulation.scene().name.clone(),
-                session.panes[0].simulation.method().name,
-            ));
-            assert!(session.act(Action::NextScene, 0));
-        }
-        let expected: Vec<_> = a3_scenes::SCENES.iter().map(|entry| entry.name).collect();
-        assert_eq!(
-            seen.iter()
-                .map(|(scene, _)| scene.as_str())
-                .collect::<Vec<_>>(),
-            expected
-        );
-        // Verlet cannot serve the circle, and serves the others again.
-        let solvers: Vec<_> = seen.iter().map(|(_, solver)| *solver).collect();
-        for (scene, solver) in expected.iter().zip(solvers) {
-            assert_eq!(
-                solver,
-                if *scene == "simple" {
-                    "trapezoid"
-                } else {
-                    "verlet"
-                }
-            );
-        }
-        assert_eq!(session.panes[0].simulation.scene().name, "cloth");
+    /// Changes the model of every run. A reset keeps the change. Where surfaces touch and would
+    /// cross then, a message names what does, and nothing is changed.
+    pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
+        let done = self.runs.adjust(change);
+        self.tell(done);
     }
 
-    #[test]
-    fn the_grid_asked_for_comes_back() {
-        let mut session = session(&["t", "0.005", "--grid", "30x25"]);
-        for _ in 0..a3_scenes::SCENES.len() {
-            session.act(Action::NextScene, 0);
+    /// Lets go of the held particle or sphere.
+    pub fn release(&mut self) {
+        if let Some(push) = self.runs.release() {
+            self.history.note(push);
         }
-        assert_eq!(session.panes[0].simulation.particles(), 750);
     }
 
-    #[test]
-    fn steps_climb_the_ladder() {
-        assert_eq!(next_step(0.01, true), 0.012);
-        assert_eq!(next_step(0.01, false), 0.008);
-        assert_eq!(next_step(0.008, true), 0.01);
-        assert_eq!(next_step(0.0123, false), 0.012);
-        assert_eq!(next_step(8.0, true), 10.0);
-        let ends = |solver, end: f64, longer| {
-            let mut session = session(&[solver, &end.to_string(), "--scene", "chain"]);
-            let action = if longer {
-                Action::LongerStep
-            } else {
-                Action::ShorterStep
-            };
-            session.act(action, 0);
-            session.first().control().value() == end
+    /// Pins particle i where it is in every run, or frees it if the first run has it pinned.
+    pub fn toggle_pin(&mut self, i: usize) {
+        let pinned = !self.runs.is_pinned(i);
+        if self.pin(&[i], pinned) > 0 {
+            let now = if pinned { "pinned" } else { "free" };
+            self.readings.say(format!("particle {i} is {now} now"));
+        }
+    }
+
+    /// Pins particles where they are in every run, or lets go of them, and says how many.
+    pub fn pin_all(&mut self, particles: &[usize], pinned: bool) {
+        let count = self.pin(particles, pinned);
+        self.readings.say(match (count, pinned) {
+            (0, true) => "There is nothing here that could be pinned.".into(),
+            (0, false) => "There are no pins here.".into(),
+            (1, true) => "1 particle is pinned now.".into(),
+            (1, false) => "1 particle is free now.".into(),
+            (n, true) => format!("{n} particles are pinned now."),
+            (n, false) => format!("{n} particles are free now."),
+        });
+    }
+
+    /// Pins or frees particles, notes what can be undone of that, and returns how many were
+    /// changed in the first run.
+    fn pin(&mut self, particles: &[usize], pinned: bool) -> usize {
+        let particles = self.runs.pin(particles, pinned);
+        let count = particles.len();
+        if count > 0 {
+            self.history.note(Change::Pins { particles, pinned });
+        }
+        count
+    }
+
+    /// Opens a list, or closes the one that is open.
+    fn toggle_list(&mut self, topic: Topic) {
+        if self.list.take().is_some_and(|list| list.topic == topic) {
+            return;
+        }
+        let panes = &self.runs.panes;
+        let entries = match topic {
+            Topic::Scenes => self.library.entries(),
+            Topic::Solvers { pane } => solvers(&panes[pane.min(panes.len() - 1)].simulation),
         };
-        assert!(ends("r", LARGEST_STEP, true) && ends("r", SMALLEST_STEP, false));
-        assert!(ends("a", 1.0, true) && ends("a", 1e-13, false));
+        self.readings.help = false;
+        self.list = Some(List::new(topic, entries));
     }
 
-    #[test]
-    fn a_digit_is_for_one_pane_and_plus_for_all() {
-        let mut session = compared(&["e:0.05", "r:0.01", "--scene", "chain"], 0.1);
-        session.act(Action::Solver(1), 1);
-        session.act(Action::LongerStep, 1);
-        let methods: Vec<_> = session
-            .panes
-            .iter()
-            .map(|pane| (pane.simulation.method().name, pane.simulation.control()))
-            .collect();
-        assert_eq!(
-            methods,
-            [
-                ("euler", Control::Step(0.06)),
-                ("trapezoid", Control::Step(0.012))
-            ]
-        );
-        // One step of the longest.
-        session.act(Action::Reset, 0);
-        session.act(Action::Step, 0);
-        let steps: Vec<_> = session.panes.iter().map(|p| p.simulation.steps()).collect();
-        assert_eq!(steps, [1, 5]);
+    /// Does what a key means in the list that is open, and returns whether another scene is shown.
+    pub fn press_list(&mut self, key: TextKey) -> bool {
+        let Some(list) = &mut self.list else {
+            return false;
+        };
+        if key == TextKey::Close {
+            self.list = None;
+            return false;
+        }
+        list.press(key).is_some_and(|number| self.take(number))
+    }
+
+    /// Takes an entry by its number, closes the list, and returns whether another scene is shown.
+    pub fn take(&mut self, number: usize) -> bool {
+        match self.list.take().map(|list| list.topic) {
+            Some(Topic::Scenes) => {
+                if let Some(file) = self.library.earlier_file(number) {
+                    return self.open(&file);
+                }
+                self.show_scene(number);
+                true
+            }
+            Some(Topic::Solvers { pane }) => self.act(RunAction::Solver(number), pane),
+            None => false,
+        }
+    }
+
+    /// Shows the scene of this number among all names. Where that is not possible, a message says
+    /// why.
+    fn show_scene(&mut self, number: usize) {
+        match self.library.show(number) {
+            Ok(setup) => {
+                self.see_scene(&setup);
+                self.set_scene(&setup);
+            }
+            Err(why) => self.readings.warn(why),
+        }
+    }
+
+    /// Shows the scene of a file, with the same solvers and steps where they serve it, and returns
+    /// whether that was possible; if not, a message says why, and all goes on.
+    pub fn open(&mut self, file: &Path) -> bool {
+        match self.library.open(file) {
+            Ok(setup) => {
+                let source = &self.library.shown.source;
+                let summary = source.description.summary.as_deref();
+                let what = summary.map_or(String::new(), |what| format!(": {what}"));
+                self.readings.say(format!("opened {}{what}", source.typed));
+                self.see_scene(&setup);
+                self.set_scene(&setup);
+                true
+            }
+            Err(why) => {
+                self.readings.warn(why);
+                false
+            }
+        }
+    }
+
+    /// Loads the scene again from its file, and returns whether that was possible; if not, a
+    /// message says why, and all goes on. Camera, solvers and steps stay as they are, unless the
+    /// file says others than before.
+    pub fn reload(&mut self) -> bool {
+        let reloaded = match self.library.reload() {
+            Ok(Some(reloaded)) => reloaded,
+            Ok(None) => return false,
+            Err(why) => {
+                self.readings.warn(why);
+                return false;
+            }
+        };
+        let setup = &reloaded.setup;
+        if reloaded.camera {
+            self.see_scene(setup);
+        }
+        let typed = &self.library.shown.source.typed;
+        self.readings.say(format!("loaded {typed} again"));
+        let before = self.runs.first();
+        let (windy, swinging) = (before.windy(), before.swinging());
+        let touching = before.touching();
+        self.set_scene(setup);
+        for run in self.runs.all_mut() {
+            run.set_wind(windy);
+            run.set_swinging(swinging);
+            // What crosses in the file as it is now begins as the file has it.
+            let _ = run.set_touching(touching);
+        }
+        if let Some(method) = reloaded.method {
+            let control = setup.defaults.control_of(method);
+            for pane in &mut self.runs.panes {
+                if let Err(why) = pane.simulation.set_method(method, control) {
+                    self.readings.say(why.to_string());
+                }
+                pane.wanted = method;
+            }
+            self.runs.adapt();
+        }
+        true
+    }
+
+    /// Sees a scene as it is first seen.
+    fn see_scene(&mut self, setup: &Setup) {
+        self.view.see_from(show::camera(&setup.presentation));
+    }
+
+    /// Begins another scene, with the same solvers and steps where they serve it.
+    fn set_scene(&mut self, setup: &Setup) {
+        let said = match self.runs.set_scene(setup) {
+            Ok(said) => {
+                self.tuning = Tuning::of(setup);
+                self.view.stay();
+                self.history.clear();
+                self.readings.read_reference(self.runs.reference.as_ref());
+                self.another_run();
+                said
+            }
+            Err(why) => Some(why.to_string()),
+        };
+        if let Some(said) = said {
+            self.readings.say(said);
+        }
     }
 }

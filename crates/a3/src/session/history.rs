@@ -97,6 +97,8 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hud::panel;
+    use crate::session::{RunAction, compared, frames, session};
 
     #[test]
     fn a_drag_is_one_change_and_a_new_change_ends_what_was_undone() {
@@ -130,5 +132,85 @@ mod tests {
             });
         }
         assert_eq!(history.done.len(), MOST);
+    }
+
+    #[test]
+    fn pins_are_undone_and_done_again_in_every_run() {
+        let mut session = compared(&["t:0.01", "r:0.01", "--scene", "mit"], 0.2);
+        let pins = |session: &crate::session::Session| {
+            let runs = session.runs.panes.iter().map(|pane| &pane.simulation);
+            runs.map(|run| run.model().network().unwrap().pins().count())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(pins(&session), [2, 2]);
+        session.pin_all(&[40, 41, 42, 0], true);
+        let said = session.readings.message.clone().unwrap();
+        assert_eq!(
+            (pins(&session), &*said),
+            (vec![5, 5], "3 particles are pinned now.")
+        );
+        session.act(RunAction::FreeAll, 0);
+        assert_eq!(pins(&session), [0, 0]);
+        frames(&mut session, 0.1);
+        for expected in [5, 2] {
+            panel::undo(&mut session, false);
+            assert_eq!(pins(&session), [expected; 2]);
+        }
+        panel::undo(&mut session, false);
+        assert_eq!(
+            session.readings.message.as_deref(),
+            Some("There is nothing to undo.")
+        );
+        panel::undo(&mut session, true);
+        assert_eq!(pins(&session), [5, 5]);
+        // Another scene knows of none of that.
+        session.act(RunAction::NextScene, 0);
+        panel::undo(&mut session, false);
+        assert_eq!(
+            session.readings.message.as_deref(),
+            Some("There is nothing to undo.")
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_pinned_is_said() {
+        let mut circle = session(&["t", "0.01", "--scene", "simple"]);
+        circle.pin_all(&[0], true);
+        assert_eq!(
+            circle.readings.message.as_deref(),
+            Some("There is nothing here that could be pinned.")
+        );
+        circle.act(RunAction::FreeAll, 0);
+        assert_eq!(
+            circle.readings.message.as_deref(),
+            Some("There are no pins here.")
+        );
+    }
+
+    #[test]
+    fn a_push_is_undone() {
+        use a3_core::Vector3;
+        let mut session = session(&["r", "0.005", "--scene", "mit-sphere"]);
+        let place = |session: &crate::session::Session| {
+            let run = session.runs.first();
+            let sphere = run.model().network().unwrap().obstacles()[0].clone();
+            sphere.path.at(run.time()).position
+        };
+        let before = place(&session);
+        assert!(session.runs.grab_obstacle(0));
+        session.runs.pull(before + Vector3::new(0.2, 0.0, 0.0));
+        frames(&mut session, 1.0);
+        session.release();
+        let pushed = place(&session);
+        assert!((pushed - before).norm() > 0.1);
+        panel::undo(&mut session, false);
+        assert_eq!(place(&session), before);
+        panel::undo(&mut session, true);
+        assert_eq!(place(&session), pushed);
+        // What was held and not moved is no change.
+        assert!(session.runs.grab_obstacle(0));
+        session.release();
+        panel::undo(&mut session, false);
+        assert_eq!(place(&session), before);
     }
 }

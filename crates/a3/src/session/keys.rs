@@ -1,71 +1,6 @@
 //! The keys, in one table from which the help is made too.
 
-/// Action of a key.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Action {
-    NextScene,
-    PreviousScene,
-    /// Open the list of scenes, or close it.
-    Scenes,
-    /// Open the list of solvers, or close it.
-    Solvers,
-    Reset,
-    Swing,
-    /// Draw the surface, the wireframe, or all springs.
-    Wireframe,
-    /// Colour by the next quantity, or by none.
-    Colour,
-    /// Draw the next arrows, or none.
-    Arrows,
-    Wind,
-    /// Let surfaces touch one another and themselves, or pass through.
-    Touch,
-    Pause,
-    Step,
-    /// Choose a solver, by its number in the table of methods.
-    Solver(usize),
-    LongerStep,
-    ShorterStep,
-    Slower,
-    Faster,
-    /// Go so many kept frames on, or back if it is negative.
-    Scrub(isize),
-    Camera,
-    /// Let go of all pins.
-    FreeAll,
-    Undo,
-    /// Do again what was undone.
-    Redo,
-    /// Perspective or orthographic.
-    Projection,
-    /// Follow what is under the pointer.
-    Follow,
-    /// See all particles, from the same side.
-    SeeAll,
-    /// See from the front, from the side, or from above.
-    NextView,
-    Picture,
-    Panel,
-    WriteScene,
-    /// Write what the plots show as CSV.
-    WritePlots,
-    /// Film from now on, or complete that film.
-    Record,
-    /// Film the last seconds.
-    FilmLast,
-    /// Copy the command line that makes what is shown.
-    CommandLine,
-    /// Keep the run in a file.
-    Keep,
-    /// Go on from the last such file.
-    TakeUp,
-    Help,
-    /// Fill the screen, or a window again.
-    FullScreen,
-    /// Open the lessons.
-    Lessons,
-    Quit,
-}
+use super::actions::{Action, RunAction, WindowAction};
 
 /// A row of the table: keys, their action, and its name in the help.
 pub struct Binding {
@@ -74,52 +9,62 @@ pub struct Binding {
     pub help: &'static str,
 }
 
-const fn bind(keys: &'static [&'static str], action: Action, help: &'static str) -> Binding {
+const fn run(keys: &'static [&'static str], action: RunAction, help: &'static str) -> Binding {
+    let action = Action::Run(action);
+    Binding { keys, action, help }
+}
+
+const fn window(
+    keys: &'static [&'static str],
+    action: WindowAction,
+    help: &'static str,
+) -> Binding {
+    let action = Action::Window(action);
     Binding { keys, action, help }
 }
 
 /// All keys but the digits, which stand for the solvers in the order of their table.
 pub static KEYS: &[Binding] = &[
-    bind(&["t", "PgDn"], Action::NextScene, "next scene"),
-    bind(&["PgUp"], Action::PreviousScene, "previous scene"),
-    bind(&["o"], Action::Scenes, "list of scenes"),
-    bind(&["e"], Action::Solvers, "list of solvers"),
-    bind(&["r"], Action::Reset, "reset"),
-    bind(&["s"], Action::Swing, "swing the pins"),
-    bind(&["w"], Action::Wireframe, "surface, wires, springs"),
-    bind(&["v"], Action::Colour, "colour by values"),
-    bind(&["a"], Action::Arrows, "arrows"),
-    bind(&["d"], Action::Wind, "wind"),
-    bind(&["x"], Action::Touch, "self-collision"),
-    bind(&["Space"], Action::Pause, "pause"),
-    bind(&["."], Action::Step, "one step, one frame on"),
-    bind(&[","], Action::Scrub(-1), "one frame back"),
-    bind(&["<"], Action::Scrub(-10), "ten frames back"),
-    bind(&[">"], Action::Scrub(10), "ten frames on"),
-    bind(&["[", "("], Action::Slower, "slow motion"),
-    bind(&["]", ")"], Action::Faster, "faster again"),
-    bind(&["+", "="], Action::LongerStep, "longer step"),
-    bind(&["-"], Action::ShorterStep, "shorter step"),
-    bind(&["c"], Action::Camera, "camera home"),
-    bind(&["g"], Action::SeeAll, "see all"),
-    bind(&["b"], Action::NextView, "front, side, top"),
-    bind(&["z"], Action::Undo, "undo; Shift: redo"),
-    bind(&["Del"], Action::FreeAll, "let go of all pins"),
-    bind(&["i"], Action::Projection, "perspective or parallel"),
-    bind(&["j"], Action::Follow, "follow a particle"),
-    bind(&["p"], Action::Picture, "save a picture"),
-    bind(&["Tab"], Action::Panel, "tune and plot"),
-    bind(&["f"], Action::WriteScene, "write a scene file"),
-    bind(&["u"], Action::WritePlots, "write the plots as CSV"),
-    bind(&["m"], Action::Record, "record, or stop"),
-    bind(&["n"], Action::FilmLast, "film the last seconds"),
-    bind(&["y"], Action::CommandLine, "copy the command line"),
-    bind(&["k"], Action::Keep, "keep the run in a file"),
-    bind(&["l"], Action::TakeUp, "load what was kept"),
-    bind(&["F11"], Action::FullScreen, "full screen"),
-    bind(&["h", "?"], Action::Help, "this help"),
-    bind(&["F1"], Action::Lessons, "lessons"),
-    bind(&["Esc"], Action::Quit, "quit"),
+    run(&["t", "PgDn"], RunAction::NextScene, "next scene"),
+    run(&["PgUp"], RunAction::PreviousScene, "previous scene"),
+    run(&["o"], RunAction::Scenes, "list of scenes"),
+    run(&["e"], RunAction::Solvers, "list of solvers"),
+    run(&["r"], RunAction::Reset, "reset"),
+    run(&["s"], RunAction::Swing, "swing the pins"),
+    run(&["w"], RunAction::Wireframe, "surface, wires, springs"),
+    run(&["v"], RunAction::Colour, "colour by values"),
+    run(&["a"], RunAction::Arrows, "arrows"),
+    run(&["d"], RunAction::Wind, "wind"),
+    run(&["x"], RunAction::Touch, "self-collision"),
+    run(&["Space"], RunAction::Pause, "pause"),
+    run(&["."], RunAction::Step, "one step, one frame on"),
+    run(&[","], RunAction::Scrub(-1), "one frame back"),
+    run(&["<"], RunAction::Scrub(-10), "ten frames back"),
+    run(&[">"], RunAction::Scrub(10), "ten frames on"),
+    run(&["[", "("], RunAction::Slower, "slow motion"),
+    run(&["]", ")"], RunAction::Faster, "faster again"),
+    run(&["+", "="], RunAction::LongerStep, "longer step"),
+    run(&["-"], RunAction::ShorterStep, "shorter step"),
+    run(&["c"], RunAction::Camera, "camera home"),
+    run(&["g"], RunAction::SeeAll, "see all"),
+    run(&["b"], RunAction::NextView, "front, side, top"),
+    window(&["z"], WindowAction::Undo, "undo; Shift: redo"),
+    run(&["Del"], RunAction::FreeAll, "let go of all pins"),
+    run(&["i"], RunAction::Projection, "perspective or parallel"),
+    window(&["j"], WindowAction::Follow, "follow a particle"),
+    window(&["p"], WindowAction::Picture, "save a picture"),
+    run(&["Tab"], RunAction::Panel, "tune and plot"),
+    run(&["f"], RunAction::WriteScene, "write a scene file"),
+    window(&["u"], WindowAction::WritePlots, "write the plots as CSV"),
+    window(&["m"], WindowAction::Record, "record, or stop"),
+    window(&["n"], WindowAction::FilmLast, "film the last seconds"),
+    window(&["y"], WindowAction::CommandLine, "copy the command line"),
+    window(&["k"], WindowAction::Keep, "keep the run in a file"),
+    window(&["l"], WindowAction::TakeUp, "load what was kept"),
+    window(&["F11"], WindowAction::FullScreen, "full screen"),
+    run(&["h", "?"], RunAction::Help, "this help"),
+    window(&["F1"], WindowAction::Lessons, "lessons"),
+    window(&["Esc"], WindowAction::Quit, "quit"),
 ];
 
 /// Actions of the mouse, for the help.
@@ -143,7 +88,7 @@ pub fn action(name: &str) -> Option<Action> {
     };
     // 1 to 9 and 0, as they lie on the keyboard.
     if let Ok(digit @ 0..=9) = name.parse::<usize>() {
-        return Some(Action::Solver((digit + 9) % 10));
+        return Some(Action::Run(RunAction::Solver((digit + 9) % 10)));
     }
     KEYS.iter()
         .find(|binding| binding.keys.contains(&name.as_str()))
@@ -164,9 +109,9 @@ mod tests {
                 assert_eq!(action(key), Some(binding.action));
             }
         }
-        assert_eq!(action("T"), Some(Action::NextScene));
-        assert_eq!(action("3"), Some(Action::Solver(2)));
-        assert_eq!(action("0"), Some(Action::Solver(9)));
+        assert_eq!(action("T"), Some(Action::Run(RunAction::NextScene)));
+        assert_eq!(action("3"), Some(Action::Run(RunAction::Solver(2))));
+        assert_eq!(action("0"), Some(Action::Run(RunAction::Solver(9))));
         assert_eq!(action("10"), None);
         assert_eq!(action("F2"), None);
     }

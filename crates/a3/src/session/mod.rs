@@ -1,40 +1,41 @@
 //! Runs that keep up with real time, without a window: one run or several side by side, their
 //! common time, the hands that pull at them, the reference, the timeline, and the actions of keys.
 
+mod actions;
 mod acts;
-mod choosing;
-mod clock;
 mod ending;
-mod followed;
 mod hands;
 mod history;
 mod keys;
+mod ladder;
+mod library;
 mod limit;
 mod list;
+pub mod looks;
 mod meter;
-mod opening;
 mod origin;
 mod pane;
-mod pins;
 mod predictability;
 mod readings;
 mod reference;
-mod rewind;
+mod runs;
 mod samples;
 mod save;
-mod seeing;
 mod state;
 mod timeline;
 mod tuning;
+mod view;
 
+pub use actions::{Action, RunAction, WindowAction};
 pub use ending::Ending;
 pub use history::Change;
-pub use keys::{Action, KEYS, MOUSE, action};
+pub use keys::{KEYS, MOUSE, action};
 pub use list::{Entry, TextKey, Topic};
 pub use origin::Origin;
 pub use pane::Pane;
 pub use readings::{FilmProgress, Readings, Selection};
 pub use samples::{SPAN, Sample, Samples};
+pub use save::write_scene;
 pub use state::{Beginning, Session};
 pub use timeline::TimelinePosition;
 pub use tuning::{FILM_OF, Tuning};
@@ -81,7 +82,7 @@ mod tests {
 
     /// The time of each run (s).
     pub fn times(session: &Session) -> Vec<f64> {
-        let times = session.panes.iter().map(|pane| pane.simulation.time());
+        let times = session.runs.panes.iter().map(|pane| pane.simulation.time());
         times.collect()
     }
 }

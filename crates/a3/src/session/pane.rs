@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use web_time::{Duration, Instant};
 
-use a3_core::{Method, Simulation};
+use a3_core::{Checkpoint, Error, Method, Simulation};
 use a3_render::Topology;
-use a3_scenes::Presentation;
+use a3_scenes::{Defaults, Presentation};
 
 use super::limit::LimitWatch;
 use super::samples::Samples;
@@ -189,6 +189,47 @@ impl Pane {
     pub fn forces_changed(&mut self) {
         self.limit.hurry();
         self.restart_cost();
+    }
+
+    /// Goes on with another solver, with the same step or tolerance if it has one of that kind.
+    /// Fails if the solver does not serve the scene.
+    pub fn set_method(
+        &mut self,
+        method: &'static Method,
+        defaults: &Defaults,
+    ) -> Result<(), Error> {
+        self.wanted_step = None;
+        let run = &self.simulation;
+        let control = if method.is_adaptive() == run.method().is_adaptive() {
+            run.control()
+        } else {
+            defaults.control_of(method)
+        };
+        self.simulation.set_method(method, control)?;
+        self.wanted = method;
+        self.restart_cost();
+        Ok(())
+    }
+
+    /// Goes on with another step (s) or tolerance. Fails if it is refused.
+    pub fn set_step(&mut self, value: f64) -> Result<(), Error> {
+        self.wanted_step = None;
+        let control = self.simulation.control().with_value(value);
+        self.simulation.set_control(control)?;
+        self.restart_cost();
+        Ok(())
+    }
+
+    /// Goes on where a run was kept in a checkpoint. A hand lets go. Fails if the checkpoint is not
+    /// of such a run.
+    pub fn take_up(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+        self.simulation.restore(checkpoint)?;
+        self.simulation.release();
+        self.simulation.release_obstacle();
+        self.wanted = self.simulation.method();
+        self.show.clear_trail();
+        self.forces_changed();
+        Ok(())
     }
 
     /// Goes back to the beginning.

@@ -1,6 +1,12 @@
 //! Readings for the text over the picture, beside those of the runs themselves.
 
+use web_time::{Duration, Instant};
+
+use super::reference::ReferenceRun;
 use super::timeline::TimelinePosition;
+
+/// Time that a message stays.
+const MESSAGE_TIME: Duration = Duration::from_secs(4);
 
 /// What is said of a film that is being made.
 #[derive(Clone, Debug)]
@@ -39,6 +45,8 @@ pub struct Readings {
     pub drawing: f32,
     /// Message about what just happened, shown for a few seconds.
     pub message: Option<String>,
+    /// End of the message that is shown, unless it stays.
+    pub message_ends: Option<Instant>,
     /// The box that is being drawn.
     pub selection: Option<Selection>,
     /// A film that is being made.
@@ -53,4 +61,33 @@ pub struct Readings {
     pub slowness: i32,
     /// Position on the timeline after going back, unless it is the newest moment.
     pub rewound: Option<TimelinePosition>,
+}
+
+impl Readings {
+    /// Shows a message for a few seconds.
+    pub fn say(&mut self, message: impl Into<String>) {
+        self.message = Some(message.into());
+        self.message_ends = Some(Instant::now() + MESSAGE_TIME);
+    }
+
+    /// Shows a message until there is another one.
+    pub fn warn(&mut self, message: impl Into<String>) {
+        self.message = Some(message.into());
+        self.message_ends = None;
+    }
+
+    /// Takes down a message whose time is over, and returns when the one that is shown ends.
+    pub fn message_ends(&mut self) -> Option<Instant> {
+        if self.message_ends.is_some_and(|end| end <= Instant::now()) {
+            self.message_ends = None;
+            self.message = None;
+        }
+        self.message_ends
+    }
+
+    /// Takes what the reference, if there is one, tells of the panes' errors.
+    pub(super) fn read_reference(&mut self, reference: Option<&ReferenceRun>) {
+        self.no_error = reference.and_then(ReferenceRun::stopped);
+        self.predictable = reference.and_then(ReferenceRun::predictable);
+    }
 }

@@ -14,72 +14,75 @@ use crate::output;
 /// The most particles of a scene file that can be read again.
 const MOST: usize = 60_000;
 
-impl Session {
-    /// Writes the run of pane `at` under the first free name, beside the file of its scene if there
-    /// is one, and returns that name.
-    pub fn write_scene(&self, at: usize) -> Result<String, String> {
-        self.write_scene_of(&self.panes[at.min(self.panes.len() - 1)].simulation)
+/// Writes a run of the scene that a session shows under the first free name, beside the file of
+/// that scene if there is one, and returns that name.
+pub fn write_scene(session: &Session, run: &Simulation) -> Result<String, String> {
+    let particles = run.particles();
+    if particles > MOST {
+        return Err(format!(
+            "a scene file has at most {MOST} particles, but this run has {particles}"
+        ));
     }
+    let folder = session
+        .library
+        .shown
+        .source
+        .path
+        .as_deref()
+        .and_then(Path::parent);
+    let name = &run.scene().name;
+    let write = || -> Result<PathBuf, Failure> {
+        let text = scene_text(session, run).map_err(Failure::run)?;
+        let folder = folder.unwrap_or("".as_ref());
+        output::write_new(folder, name, "toml", text.as_bytes())
+    };
+    write()
+        .map(|path| path.display().to_string())
+        .map_err(Failure::message)
+}
 
-    /// Writes a run of the scene that is shown, as `write_scene` does.
-    pub fn write_scene_of(&self, run: &Simulation) -> Result<String, String> {
-        let particles = run.particles();
-        if particles > MOST {
-            return Err(format!(
-                "a scene file has at most {MOST} particles, but this run has {particles}"
-            ));
-        }
-        let folder = self.shown.source.path.as_deref().and_then(Path::parent);
-        let name = &run.scene().name;
-        let write = || -> Result<PathBuf, Failure> {
-            let text = self.scene_text(run).map_err(Failure::run)?;
-            let folder = folder.unwrap_or("".as_ref());
-            output::write_new(folder, name, "toml", text.as_bytes())
-        };
-        write()
-            .map(|path| path.display().to_string())
-            .map_err(Failure::message)
+/// The text of the scene file.
+fn scene_text(session: &Session, run: &Simulation) -> Result<String, a3_core::Error> {
+    let mut description = description(session, run);
+    let state = description.state.take();
+    let mut text = format!(
+        "# The scene {} as it was at t = {} s, written by a3 {}. Its clock begins at 0 again.\n\n{}",
+        run.scene().name.replace(char::is_control, " "),
+        run.time(),
+        env!("CARGO_PKG_VERSION"),
+        description.to_toml()?,
+    );
+    let state = state.unwrap_or_default();
+    text += "\n[state]\n";
+    write_rows(&mut text, "positions", &state.positions);
+    write_rows(&mut text, "velocities", &state.velocities);
+    if !state.orientations.is_empty() {
+        write_rows(&mut text, "orientations", &state.orientations);
+        write_rows(&mut text, "angular_momenta", &state.angular_momenta);
     }
+    Ok(text)
+}
 
-    /// The text of the scene file.
-    fn scene_text(&self, run: &Simulation) -> Result<String, a3_core::Error> {
-        let mut description = self.description(run);
-        let state = description.state.take();
-        let mut text = format!(
-            "# The scene {} as it was at t = {} s, written by a3 {}. Its clock begins at 0 again.\n\n{}",
-            run.scene().name.replace(char::is_control, " "),
-            run.time(),
-            env!("CARGO_PKG_VERSION"),
-            description.to_toml()?,
-        );
-        let state = state.unwrap_or_default();
-        text += "\n[state]\n";
-        write_rows(&mut text, "positions", &state.positions);
-        write_rows(&mut text, "velocities", &state.velocities);
-        if !state.orientations.is_empty() {
-            write_rows(&mut text, "orientations", &state.orientations);
-            write_rows(&mut text, "angular_momenta", &state.angular_momenta);
-        }
-        Ok(text)
+/// The description of the run: the scene as it is tuned, and the state as it is now.
+fn description(session: &Session, run: &Simulation) -> Description {
+    let Origin { source, grid, .. } = &session.library.shown;
+    let mut description = Description::clone(&source.description);
+    if let (Some(grid), Some(cloth)) = (grid, description.cloth.first_mut()) {
+        cloth.grid = [grid.rows(), grid.cols()];
     }
-
-    /// The description of the run: the scene as it is tuned, and the state as it is now.
-    fn description(&self, run: &Simulation) -> Description {
-        let Origin { source, grid, .. } = &self.shown;
-        let mut description = Description::clone(&source.description);
-        if let (Some(grid), Some(cloth)) = (grid, description.cloth.first_mut()) {
-            cloth.grid = [grid.rows(), grid.cols()];
-        }
-        snapshot::scale_springs(&mut description, self.tuning.stiffness, self.tuning.damping);
-        snapshot::scale_wind(&mut description, self.tuning.gusts);
-        snapshot::begin_with(&mut description, run.model(), &run.moment());
-        let triple = |p: nalgebra::Point3<f32>| [p.x, p.y, p.z].map(f64::from);
-        description.camera = Some(Camera {
-            eye: triple(self.camera.eye()),
-            target: triple(self.camera.target()),
-        });
-        description
-    }
+    snapshot::scale_springs(
+        &mut description,
+        session.tuning.stiffness,
+        session.tuning.damping,
+    );
+    snapshot::scale_wind(&mut description, session.tuning.gusts);
+    snapshot::begin_with(&mut description, run.model(), &run.moment());
+    let triple = |p: nalgebra::Point3<f32>| [p.x, p.y, p.z].map(f64::from);
+    description.camera = Some(Camera {
+        eye: triple(session.view.camera.eye()),
+        target: triple(session.view.camera.target()),
+    });
+    description
 }
 
 /// Writes a list of rows of numbers, with as many digits as they need.
@@ -94,8 +97,8 @@ fn write_rows(text: &mut String, key: &str, rows: &[impl Debug]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::keys::Action;
     use super::*;
+    use crate::session::RunAction;
     use crate::session::session;
     use a3_core::contact::Shape;
     use a3_core::{Network, Vector3};
@@ -111,7 +114,7 @@ mod tests {
     /// What was written, read again: the same state to the last digit, and the same forces.
     fn check(session: &Session, path: &Path) {
         let source = Source::find(path.to_str().unwrap()).unwrap();
-        let run = session.first();
+        let run = session.runs.first();
         let setup = source.build(None).unwrap();
         let (scene, defaults) = (setup.scene, setup.defaults);
         let name = &run.scene().name;
@@ -131,7 +134,7 @@ mod tests {
             }
         }
         let eye = crate::show::camera(&setup.presentation).eye();
-        assert!((eye - session.camera.eye()).norm() < 1e-4);
+        assert!((eye - session.view.camera.eye()).norm() < 1e-4);
         let pins = |run: &Simulation| {
             let network = run.model().network();
             let pins = network.into_iter().flat_map(Network::pins);
@@ -150,7 +153,7 @@ mod tests {
 
     fn written(session: &Session, folder: &Path) -> PathBuf {
         let path = folder.join("scene.toml");
-        std::fs::write(&path, session.scene_text(session.first()).unwrap()).unwrap();
+        std::fs::write(&path, scene_text(session, session.runs.first()).unwrap()).unwrap();
         path
     }
 
@@ -159,7 +162,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut session = session(&["r", "0.005"]);
         for entry in a3_scenes::SCENES {
-            assert_eq!(session.first().scene().name, entry.name);
+            assert_eq!(session.runs.first().scene().name, entry.name);
             session.tuning.stiffness = 1.5;
             session.tuning.gusts = 2.0;
             session.adjust(|network| {
@@ -177,23 +180,23 @@ mod tests {
                     }
                 }
             });
-            session.change_all(|run| {
+            session.runs.change_all(|run| {
                 if let Some(wind) = run.scene().wind {
                     run.change_wind(wind.scaled(2.0));
                 }
             });
-            session.act(Action::Wind, 0);
-            session.act(Action::Swing, 0);
-            session.camera.orbit(0.4, 0.2);
+            session.act(RunAction::Wind, 0);
+            session.act(RunAction::Swing, 0);
+            session.view.camera.orbit(0.4, 0.2);
             run_on(&mut session);
             check(&session, &written(&session, folder.path()));
             // In the hand, of which the file knows nothing: what is free stays free.
-            let run = session.first();
+            let run = session.runs.first();
             let walls = run.model().network();
             let in_wall = |i: &usize| walls.is_some_and(|network| network.is_wall(*i));
             let last = (0..run.particles()).rev().find(|i| !in_wall(i)).unwrap();
-            session.grab(last);
-            session.pull(Vector3::new(0.3, 0.1, 0.2));
+            session.runs.grab(last);
+            session.runs.pull(Vector3::new(0.3, 0.1, 0.2));
             session.tick(0.01);
             let text = std::fs::read_to_string(written(&session, folder.path())).unwrap();
             assert!(text.starts_with(&format!("# The scene {} as it was at t = ", entry.name)));
@@ -202,7 +205,7 @@ mod tests {
             let network = scene.model.network();
             assert!(network.is_none_or(|network| !network.is_pinned(last)));
             session.release();
-            session.act(Action::NextScene, 0);
+            session.act(RunAction::NextScene, 0);
         }
     }
 
@@ -224,9 +227,16 @@ mod tests {
              pin = [{ at = ['left'] }, { at = ['right'], shift = { by = [0.9, 0, 0], start = 0.1, end = 0.7 } }]\n";
         std::fs::write(&path, rag).unwrap();
         let mut session = session(&["r", "0.002", "--scene", path.to_str().unwrap()]);
-        session.act(Action::Wind, 0);
+        session.act(RunAction::Wind, 0);
         run_on(&mut session);
-        let torn = session.first().model().network().unwrap().torn().to_vec();
+        let torn = session
+            .runs
+            .first()
+            .model()
+            .network()
+            .unwrap()
+            .torn()
+            .to_vec();
         assert!(torn.len() > 5, "{torn:?}");
         let path = written(&session, folder.path());
         check(&session, &path);
@@ -253,7 +263,7 @@ mod tests {
         let mut session = session(&["r", "0.005", "--scene", path.to_str().unwrap()]);
         session.tick(0.1);
         for k in 1..=2 {
-            let name = session.write_scene(0).unwrap();
+            let name = write_scene(&session, session.runs.first()).unwrap();
             let expected = folder.path().join(format!("a3-leaf-{k}.toml"));
             assert_eq!(name, expected.to_str().unwrap());
             check(&session, &expected);

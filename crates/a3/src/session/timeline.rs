@@ -156,6 +156,7 @@ impl Timeline {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::{RunAction, frames, session};
     use a3_core::{Control, integrators};
 
     fn run(rows: usize) -> Simulation {
@@ -259,5 +260,63 @@ mod tests {
         assert!(timeline.go_to(0.5));
         assert_eq!(timeline.position().unwrap().back, 2.0);
         assert!(timeline.go(10) && timeline.position().is_none());
+    }
+
+    /// Back, on again to where it was, and from the middle a second time: the same to the bit.
+    #[test]
+    fn what_was_comes_back_to_the_bit_and_goes_on_from_there() {
+        let mut session = session(&["t", "0.01", "--scene", "cloth"]);
+        session.readings.in_window = true;
+        frames(&mut session, 1.0);
+        let newest = (
+            session.runs.first().time(),
+            session.runs.first().state().to_vec(),
+        );
+        session.act(RunAction::Scrub(-10), 0);
+        let place = session.readings.rewound.unwrap();
+        assert!(
+            session.readings.paused && (place.back - 1.0 / 6.0).abs() < 0.02,
+            "{place:?}"
+        );
+        let (time, steps) = (session.runs.first().time(), session.runs.first().steps());
+        assert!(time < newest.0 && (time - 0.01 * steps as f64).abs() < 1e-9);
+        let then = session.runs.first().state().to_vec();
+        // Nothing goes on by itself.
+        session.tick(0.1);
+        assert_eq!(session.runs.first().state(), then);
+        session.act(RunAction::Step, 0);
+        session.act(RunAction::Scrub(10), 0);
+        assert_eq!(session.readings.rewound, None);
+        assert_eq!(
+            (session.runs.first().time(), session.runs.first().state()),
+            (newest.0, &newest.1[..])
+        );
+        session.act(RunAction::Scrub(-10), 0);
+        assert_eq!(session.runs.first().state(), then);
+        session.act(RunAction::Pause, 0);
+        while session.runs.first().time() < newest.0 - 1e-9 {
+            session.tick(0.01);
+        }
+        assert_eq!(
+            (session.runs.first().state(), session.readings.rewound),
+            (&newest.1[..], None)
+        );
+        session.act(RunAction::Reset, 0);
+        session.act(RunAction::Scrub(-1), 0);
+        assert_eq!(
+            (session.runs.first().time(), session.readings.rewound),
+            (0.0, None)
+        );
+    }
+
+    #[test]
+    fn going_back_undoes_a_blow_up() {
+        let mut session = session(&["r", "0.05", "--scene", "mit"]);
+        session.readings.in_window = true;
+        while session.runs.panes[0].alive() {
+            session.tick(1.0 / 60.0);
+        }
+        session.act(RunAction::Scrub(-10), 0);
+        assert!(session.runs.panes[0].alive() && session.readings.rewound.is_some());
     }
 }

@@ -1,6 +1,7 @@
 //! The panel's part of a session: the tuning of the scene, and the chosen row.
 
 use a3_core::Scene;
+use a3_scenes::{Defaults, Setup};
 
 use super::ending::Ending;
 
@@ -9,6 +10,8 @@ use super::ending::Ending;
 pub struct Tuning {
     /// The scene as it was built.
     pub own: Scene,
+    /// How the scene is run unless one says otherwise.
+    pub defaults: Defaults,
     /// Factor of the springs' stiffness over the scene's own.
     pub stiffness: f64,
     /// Factor of the springs' damping over the scene's own.
@@ -19,9 +22,10 @@ pub struct Tuning {
 
 impl Tuning {
     /// An untuned scene.
-    pub fn of(scene: Scene) -> Self {
+    pub fn of(setup: &Setup) -> Self {
         Self {
-            own: scene,
+            own: setup.scene.clone(),
+            defaults: setup.defaults,
             stiffness: 1.0,
             damping: 1.0,
             gusts: 1.0,

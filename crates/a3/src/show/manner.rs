@@ -11,6 +11,16 @@ pub enum Target {
     Obstacle(usize),
 }
 
+impl Target {
+    /// The number of the particle, if it is one.
+    pub fn particle(self) -> Option<usize> {
+        match self {
+            Self::Particle(i) => Some(i),
+            Self::Obstacle(_) => None,
+        }
+    }
+}
+
 /// The manner in which a run is shown at first.
 #[derive(Clone, Copy, Default)]
 pub struct Manner {

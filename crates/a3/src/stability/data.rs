@@ -3,7 +3,7 @@
 use a3_core::stability::Observation;
 use serde::Serialize;
 
-use super::MethodLimits;
+use super::limits::MethodLimits;
 use crate::failure::Failure;
 
 /// Limits of a method (s). Null stands for a limit that is not known.

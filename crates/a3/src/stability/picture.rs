@@ -4,7 +4,7 @@ use a3_core::integrators::bdf_growth;
 use a3_core::stability::{GROWTH, Growth, Mode, tenfold_time};
 use a3_plot::{Region, StabilityRegions};
 
-use super::MethodLimits;
+use super::limits::MethodLimits;
 use super::table::{INTERVAL, is_interval, observation, step};
 use crate::chart::style;
 

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use a3_core::Scene;
 use a3_core::stability::{Limit, Mode, Motion, Observation, RestState};
 
-use super::MethodLimits;
+use super::limits::MethodLimits;
 use crate::list;
 
 /// A step in words, to three digits (ms).

@@ -9,7 +9,7 @@ use super::values::{
     damping, drag, floor, gravity, gusts, network, own, radii, solver, sphere, springs_of, step,
     stiffness, strain_limit, strain_limits, switch,
 };
-use crate::session::{Action, Change, Ending, Session, Tuning};
+use crate::session::{Change, Ending, RunAction, Session, Tuning, looks};
 use crate::show::{Arrows, Quantity, Show};
 
 /// A knob: a row of the table.
@@ -64,7 +64,7 @@ const fn tunes(knob: Knob) -> Knob {
 /// All knobs, from top to bottom.
 pub static KNOBS: &[Knob] = &[
     knob("solver", "The integrator.", solver, |session, at, i| {
-        session.act(Action::Solver(i as usize), at);
+        session.act(RunAction::Solver(i as usize), at);
     }),
     knob(
         "step",
@@ -143,11 +143,11 @@ pub static KNOBS: &[Knob] = &[
         "wind",
         "Whether the wind blows.",
         |session, _| {
-            session.first().scene().wind?;
-            Some(switch(session.first().windy(), false))
+            session.runs.first().scene().wind?;
+            Some(switch(session.runs.first().windy(), false))
         },
         |session, at, _| {
-            session.act(Action::Wind, at);
+            session.act(RunAction::Wind, at);
         },
     )),
     tunes(knob(
@@ -157,7 +157,9 @@ pub static KNOBS: &[Knob] = &[
         |session, _, factor| {
             session.tuning.gusts = factor;
             if let Some(wind) = session.tuning.own.wind {
-                session.change_all(|run| run.change_wind(wind.scaled(factor)));
+                session
+                    .runs
+                    .change_all(|run| run.change_wind(wind.scaled(factor)));
             }
         },
     )),
@@ -165,11 +167,11 @@ pub static KNOBS: &[Knob] = &[
         "swing",
         "Whether the pins swing.",
         |session, _| {
-            session.first().scene().swing?;
-            Some(switch(session.first().swinging(), false))
+            session.runs.first().scene().swing?;
+            Some(switch(session.runs.first().swinging(), false))
         },
         |session, at, _| {
-            session.act(Action::Swing, at);
+            session.act(RunAction::Swing, at);
         },
     ),
     knob(
@@ -177,21 +179,21 @@ pub static KNOBS: &[Knob] = &[
         "Whether the scene's pins hold.",
         |session, _| {
             own(session)?.pins().next()?;
-            Some(switch(session.first().pinned(), true))
+            Some(switch(session.runs.first().pinned(), true))
         },
-        |session, _, on| session.change_all(|run| run.set_pinned(on != 0.0)),
+        |session, _, on| session.runs.change_all(|run| run.set_pinned(on != 0.0)),
     ),
     knob(
         "self-collision",
         "Whether surfaces touch one another and themselves, or pass through.",
         |session, _| {
-            session.first().scene().touch.as_ref()?;
+            session.runs.first().scene().touch.as_ref()?;
             let own = own(session).and_then(Network::touch);
             let own = own.is_some_and(|touch| touch.bodies);
-            Some(switch(session.first().touching(), own))
+            Some(switch(session.runs.first().touching(), own))
         },
         |session, at, _| {
-            session.act(Action::Touch, at);
+            session.act(RunAction::Touch, at);
         },
     ),
     tunes(knob(
@@ -237,7 +239,7 @@ pub static KNOBS: &[Knob] = &[
         "The particle whose springs are listed and highlighted, by its number.",
         springs_of,
         |session, _, i| {
-            for pane in &mut session.panes {
+            for pane in &mut session.runs.panes {
                 pane.show.springs_of = (i >= 0.0).then_some(i as usize);
             }
         },
@@ -247,7 +249,10 @@ pub static KNOBS: &[Knob] = &[
         "The quantity that colours show.",
         colour,
         |session, _, k| {
-            session.set_colour(Quantity::ALL.get(k as usize).copied());
+            looks::set_colour(
+                &mut session.runs.panes,
+                Quantity::ALL.get(k as usize).copied(),
+            );
         },
     ),
     knob(
@@ -255,8 +260,8 @@ pub static KNOBS: &[Knob] = &[
         "The value at the end of the scale of colours. It fits the largest value until it is set.",
         full_colour,
         |session, at, end| {
-            let fits = end == session.panes[at].show.colouring.scale.fitting;
-            session.fix_scale((!fits).then_some(end));
+            let fits = end == session.runs.panes[at].show.colouring.scale.fitting;
+            looks::fix_scale(&mut session.runs.panes, (!fits).then_some(end));
         },
     ),
     knob(
@@ -264,7 +269,10 @@ pub static KNOBS: &[Knob] = &[
         "The vectors that arrows show.",
         arrows,
         |session, _, k| {
-            session.set_arrows(Arrows::ALL.get(k as usize).copied());
+            looks::set_arrows(
+                &mut session.runs.panes,
+                Arrows::ALL.get(k as usize).copied(),
+            );
         },
     ),
     knob(
@@ -272,15 +280,18 @@ pub static KNOBS: &[Knob] = &[
         "The surface, its wires, or all springs, each kind in its colour and width.",
         style,
         |session, _, k| {
-            let styles = Show::styles(session.first());
-            session.set_style(styles.get(k as usize).copied().unwrap_or_default());
+            let styles = Show::styles(session.runs.first());
+            looks::set_style(
+                &mut session.runs.panes,
+                styles.get(k as usize).copied().unwrap_or_default(),
+            );
         },
     ),
     apart(knob(
         "dark",
         "Whether light things are drawn on a dark background.",
-        |session, _| Some(switch(session.panes[0].show.dark, false)),
-        |session, _, on| session.set_dark(on != 0.0),
+        |session, _| Some(switch(session.runs.panes[0].show.dark, false)),
+        |session, _, on| looks::set_dark(&mut session.runs.panes, on != 0.0),
     )),
     knob(
         "frames",

@@ -12,7 +12,7 @@ mod view;
 
 pub use knobs::{tune, tuned};
 pub use plots::csv;
-pub use request::{PanelKey, Request, apply, press, press_text};
+pub use request::{PanelKey, PanelRequest, Request, apply, press, press_text};
 pub use undo::undo;
 pub use view::{inset, leaves, show};
 

@@ -300,7 +300,7 @@ mod tests {
         for k in 1..=5 {
             session.run_to(0.1 * f64::from(k));
         }
-        let text = String::from_utf8(super::csv(&session.panes).unwrap()).unwrap();
+        let text = String::from_utf8(super::csv(&session.runs.panes).unwrap()).unwrap();
         let mut lines = text.lines();
         let heading = lines.next().unwrap();
         assert!(
@@ -309,6 +309,7 @@ mod tests {
         );
         let rows: Vec<Vec<_>> = lines.map(|line| line.split(',').collect()).collect();
         let samples: Vec<_> = session
+            .runs
             .panes
             .iter()
             .map(|pane| pane.samples.iter().count())
@@ -318,7 +319,7 @@ mod tests {
             rows.iter()
                 .all(|row| row.len() == heading.split(',').count())
         );
-        let last = session.panes[1].samples.iter().last().unwrap();
+        let last = session.runs.panes[1].samples.iter().last().unwrap();
         let row = rows.last().unwrap();
         assert_eq!((row[0], row[1]), ("rk4", &*last.time.to_string()));
         assert_eq!(row[5].parse(), Ok(last.energy.unwrap().total()));
@@ -330,7 +331,7 @@ mod tests {
         for k in 1..=20 {
             session.run_to(0.1 * f64::from(k));
         }
-        let samples = &session.panes[0].samples;
+        let samples = &session.runs.panes[0].samples;
         assert!((samples.nearest(1.04).unwrap().time - 1.0).abs() < 1e-9);
         assert!((samples.nearest(2.2).unwrap().time - 2.0).abs() < 1e-9);
         assert!(samples.nearest(7.0).is_none());

@@ -4,17 +4,24 @@ use super::dial::{Dial, Turn};
 use super::knobs::{KNOBS, Knob};
 use crate::session::{Action, Session, TextKey};
 
-/// A change that the user asks for in the panel.
+/// A request of the mouse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Request {
+    /// Do what a key does.
+    Act(Action),
+    /// Change the panel, what it tunes, or the list that is open.
+    Change(PanelRequest),
+}
+
+/// A request of the mouse to the panel, or to the list that is open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PanelRequest {
     /// Choose a row, by its number in the table of knobs.
     Choose(usize),
     /// Type a value for the knob of that number.
     Type(usize),
     /// Turn the knob of that number.
     Turn(usize, Turn),
-    /// Do what a key does.
-    Act(Action),
     /// Take the entry of this number from the list that is open.
     Take(usize),
     /// Close that list.
@@ -51,7 +58,7 @@ pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
 
 /// The number of the pane that the panel is about.
 pub fn pane(session: &Session) -> usize {
-    session.panel.pane.min(session.panes.len() - 1)
+    session.panel.pane.min(session.runs.panes.len() - 1)
 }
 
 /// Does what a key means while the panel is seen, and says whether it means something there. With
@@ -77,28 +84,27 @@ pub fn press(session: &mut Session, key: PanelKey, other: bool) -> bool {
         PanelKey::Right => Turn::By { up: true, other },
         PanelKey::Toggle => Turn::Toggle,
     };
-    apply(session, Request::Turn(rows[at], turn));
+    apply(session, PanelRequest::Turn(rows[at], turn));
     true
 }
 
 /// Makes the change that was asked for, and returns whether another scene is shown.
-pub fn apply(session: &mut Session, request: Request) -> bool {
+pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
     let at = pane(session);
     // What was typed and not taken is given up.
     session.panel.typed = None;
     match request {
-        Request::Type(row) => {
+        PanelRequest::Type(row) => {
             session.panel.row = row;
             session.panel.typed = Some(String::new());
         }
-        Request::Choose(row) => session.panel.row = row,
-        Request::Turn(row, turn) => {
+        PanelRequest::Choose(row) => session.panel.row = row,
+        PanelRequest::Turn(row, turn) => {
             session.panel.row = row;
             KNOBS[row].turn(session, at, turn);
         }
-        Request::Act(action) => return session.act(action, at),
-        Request::Take(number) => return session.take(number),
-        Request::CloseList => session.list = None,
+        PanelRequest::Take(number) => return session.take(number),
+        PanelRequest::CloseList => session.list = None,
     }
     false
 }
@@ -120,9 +126,9 @@ pub fn press_text(session: &mut Session, key: TextKey) -> bool {
             let (typed, row) = (typed.clone(), session.panel.row);
             match value(session, row, &typed) {
                 Ok(value) => {
-                    apply(session, Request::Turn(row, Turn::Exactly(value)));
+                    apply(session, PanelRequest::Turn(row, Turn::Exactly(value)));
                 }
-                Err(why) => session.say(format!("{}: {why}", KNOBS[row].name)),
+                Err(why) => session.readings.say(format!("{}: {why}", KNOBS[row].name)),
             }
         }
     }

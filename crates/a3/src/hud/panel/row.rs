@@ -7,7 +7,7 @@ use egui::{
 use super::super::style::{FAINT, TEXT};
 use super::dial::{Dial, DialScale, Turn};
 use super::knobs::Knob;
-use super::request::Request;
+use super::request::PanelRequest;
 use crate::rounding::short;
 
 /// Height of a row (points).
@@ -43,7 +43,7 @@ pub struct Row<'a> {
 
 impl Row<'_> {
     /// Draws the row, and returns what the mouse asks for.
-    pub fn show(&self, ui: &Ui, rect: Rect) -> Option<Request> {
+    pub fn show(&self, ui: &Ui, rect: Rect) -> Option<PanelRequest> {
         let Self { number, dial, .. } = *self;
         let id = |part| Id::unique((part, number));
         let whole = ui.interact(rect.expand2(vec2(6.0, 0.0)), id("row"), Sense::click());
@@ -62,7 +62,7 @@ impl Row<'_> {
         if let DialScale::Choice(_) = dial.scale {
             let left = rect.left() + NAME - 18.0;
             let room = Rect::from_x_y_ranges(left..=rect.right(), rect.y_range());
-            request = choice(ui, room, id, dial).map(|turn| Request::Turn(number, turn));
+            request = choice(ui, room, id, dial).map(|turn| PanelRequest::Turn(number, turn));
         } else {
             let value = Rect::from_x_y_ranges(rect.right() - VALUE..=rect.right(), rect.y_range());
             let left = rect.left() + NAME;
@@ -72,15 +72,15 @@ impl Row<'_> {
             } else {
                 slider(ui, room, id("dial"), dial)
             };
-            let set = set.map(|turn| Request::Turn(number, turn));
+            let set = set.map(|turn| PanelRequest::Turn(number, turn));
             request = set.or(self.value(ui, value, id("value"))).or(request);
         }
-        request.or_else(|| whole.clicked().then_some(Request::Choose(number)))
+        request.or_else(|| whole.clicked().then_some(PanelRequest::Choose(number)))
     }
 
     /// Draws the value, or what is typed for it. A click begins to type, and a double click brings
     /// back the scene's own.
-    fn value(&self, ui: &Ui, rect: Rect, id: Id) -> Option<Request> {
+    fn value(&self, ui: &Ui, rect: Rect, id: Id) -> Option<PanelRequest> {
         let dial = self.dial;
         let response = ui.interact(rect, id, Sense::click());
         let typeable = dial.scale.ends().is_some();
@@ -104,9 +104,9 @@ impl Row<'_> {
         }
         let response = response.on_hover_text(self.about());
         if response.double_clicked() {
-            return Some(Request::Turn(self.number, Turn::Own));
+            return Some(PanelRequest::Turn(self.number, Turn::Own));
         }
-        (typeable && response.clicked()).then_some(Request::Type(self.number))
+        (typeable && response.clicked()).then_some(PanelRequest::Type(self.number))
     }
 
     /// What the knob is, and how it is set.

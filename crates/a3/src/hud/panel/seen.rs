@@ -4,19 +4,18 @@ use a3_render::Style;
 
 use super::dial::{Dial, DialScale};
 use crate::rounding::short;
-use crate::session::{Ending, FILM_OF, SPAN, Session};
+use crate::session::{Ending, FILM_OF, SPAN, Session, looks};
 use crate::show::{Arrows, Quantity, Show};
 
 /// A choice among what has a name, or none of it.
 fn one_of<T: Copy + PartialEq>(
-    session: &Session,
     all: &[T],
     chosen: Option<T>,
-    has: impl Fn(&Session, T) -> bool,
+    has: impl Fn(T) -> bool,
     name: impl Fn(T) -> &'static str,
 ) -> Option<Dial> {
     let none = all.len() as f64;
-    let there = (0..all.len()).filter(|k| has(session, all[*k]));
+    let there = (0..all.len()).filter(|k| has(all[*k]));
     let mut values: Vec<f64> = there.map(|k| k as f64).collect();
     if values.is_empty() {
         return None;
@@ -32,18 +31,14 @@ fn one_of<T: Copy + PartialEq>(
 }
 
 pub fn colour(session: &Session, at: usize) -> Option<Dial> {
-    let chosen = session.panes.get(at)?.show.colouring.quantity;
-    one_of(
-        session,
-        &Quantity::ALL,
-        chosen,
-        Session::has,
-        Quantity::name,
-    )
+    let chosen = session.runs.panes.get(at)?.show.colouring.quantity;
+    let panes = &session.runs.panes;
+    let has = |quantity| looks::has(panes, quantity);
+    one_of(&Quantity::ALL, chosen, has, Quantity::name)
 }
 
 pub fn full_colour(session: &Session, at: usize) -> Option<Dial> {
-    let colouring = &session.panes.get(at)?.show.colouring;
+    let colouring = &session.runs.panes.get(at)?.show.colouring;
     let (quantity, scale) = (colouring.quantity?, colouring.scale);
     let fitting = if scale.fitting > 0.0 {
         scale.fitting
@@ -113,9 +108,9 @@ pub fn film_of(session: &Session) -> Dial {
 }
 
 pub fn arrows(session: &Session, at: usize) -> Option<Dial> {
-    let chosen = session.panes.get(at)?.show.field.arrows;
-    let has = |session: &Session, arrows: Arrows| arrows.is_in(session.first());
-    one_of(session, &Arrows::ALL, chosen, has, Arrows::name)
+    let chosen = session.runs.panes.get(at)?.show.field.arrows;
+    let has = |arrows: Arrows| arrows.is_in(session.runs.first());
+    one_of(&Arrows::ALL, chosen, has, Arrows::name)
 }
 
 /// The names of the styles.
@@ -128,7 +123,7 @@ fn style_name(style: Style) -> &'static str {
 }
 
 pub fn style(session: &Session, at: usize) -> Option<Dial> {
-    let pane = session.panes.get(at)?;
+    let pane = session.runs.panes.get(at)?;
     let styles = Show::styles(&pane.simulation);
     let place = styles.iter().position(|style| *style == pane.show.style);
     let drawn = pane.show.has_surface(&pane.simulation);

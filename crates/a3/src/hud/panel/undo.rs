@@ -7,11 +7,11 @@ use crate::session::{Change, Session};
 pub fn undo(session: &mut Session, again: bool) {
     let Some(change) = session.history.step(again) else {
         let what = if again { "do again" } else { "undo" };
-        return session.say(format!("There is nothing to {what}."));
+        return session.readings.say(format!("There is nothing to {what}."));
     };
     let what = match change {
         Change::Pins { particles, pinned } => {
-            session.set_pins(&particles, pinned == again);
+            session.runs.set_pins(&particles, pinned == again);
             match (particles.len(), pinned) {
                 (1, true) => format!("pin of particle {}", particles[0]),
                 (1, false) => format!("letting go of particle {}", particles[0]),
@@ -20,7 +20,8 @@ pub fn undo(session: &mut Session, again: bool) {
             }
         }
         Change::Push { obstacle, paths } => {
-            session.put_back(obstacle, paths[usize::from(again)]);
+            // Where surfaces would cross, the obstacle stays where it is.
+            let _ = session.runs.put_back(obstacle, paths[usize::from(again)]);
             "push".into()
         }
         Change::Knob {
@@ -41,5 +42,5 @@ pub fn undo(session: &mut Session, again: bool) {
         }
     };
     let did = if again { "done again" } else { "undone" };
-    session.say(format!("{did}: {what}"));
+    session.readings.say(format!("{did}: {what}"));
 }

@@ -12,7 +12,7 @@ use crate::session::Session;
 
 /// The network of the first run, if its scene has one.
 pub fn network(session: &Session) -> Option<&Network> {
-    session.first().model().network()
+    session.runs.first().model().network()
 }
 
 /// The network of the scene as it was built.
@@ -31,14 +31,14 @@ pub fn switch(on: bool, own: bool) -> Dial {
 }
 
 pub fn solver(session: &Session, at: usize) -> Option<Dial> {
-    let run = &session.panes.get(at)?.simulation;
+    let run = &session.runs.panes.get(at)?.simulation;
     let system = run.model().system();
     let serves = |i: &usize| integrators::METHODS[*i].check(system).is_ok();
     let index = |method| {
         let of = |m: &a3_core::Method| std::ptr::eq(m, method);
         integrators::METHODS.iter().position(of).unwrap_or(0) as f64
     };
-    let own = session.shown().solver_or(None);
+    let own = session.library.shown.source.solver_or(None);
     Some(Dial {
         value: index(run.method()),
         own: index(own),
@@ -53,7 +53,7 @@ pub fn solver(session: &Session, at: usize) -> Option<Dial> {
 }
 
 pub fn step(session: &Session, at: usize) -> Option<Dial> {
-    let run = &session.panes.get(at)?.simulation;
+    let run = &session.runs.panes.get(at)?.simulation;
     let (from, to, words) = match run.control() {
         // Steps beyond these ends are typed, not turned to.
         Control::Step(step) => (
@@ -68,7 +68,7 @@ pub fn step(session: &Session, at: usize) -> Option<Dial> {
     };
     Some(Dial {
         value: run.control().value(),
-        own: session.defaults.control_of(run.method()).value(),
+        own: session.tuning.defaults.control_of(run.method()).value(),
         scale: DialScale::Log { from, to },
         words,
     })
@@ -107,7 +107,7 @@ pub fn damping(session: &Session, _: usize) -> Option<Dial> {
 }
 
 pub fn gusts(session: &Session, _: usize) -> Option<Dial> {
-    session.first().scene().wind?;
+    session.runs.first().scene().wind?;
     let scale = DialScale::Linear {
         from: 0.0,
         to: 3.0,
@@ -218,7 +218,7 @@ pub fn sphere(session: &Session, _: usize) -> Option<Dial> {
 
 pub fn springs_of(session: &Session, at: usize) -> Option<Dial> {
     let network = network(session)?;
-    let i = session.panes.get(at)?.show.springs_of;
+    let i = session.runs.panes.get(at)?.show.springs_of;
     Some(Dial {
         value: i.map_or(-1.0, |i| i as f64),
         own: -1.0,

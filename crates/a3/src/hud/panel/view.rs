@@ -6,7 +6,7 @@ use super::super::style::{FAINT, TEXT};
 use super::plots;
 use super::request::{self, Request, is_shown, rows};
 use super::row::{self, Row};
-use crate::session::{Action, Session};
+use crate::session::{Action, RunAction, Session, WindowAction};
 
 /// Least and largest width of the panel (points), and the share of a window's width between them.
 const WIDTH: (f32, f32, f32) = (304.0, 460.0, 0.2);
@@ -94,7 +94,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                     chosen: n == chosen,
                     typed: session.panel.typed.as_deref().filter(|_| n == chosen),
                 };
-                request = row.show(ui, place).or(request);
+                request = row.show(ui, place).map(Request::Change).or(request);
                 top += row::HEIGHT;
             }
             request = foot(ui, inner, session).or(request);
@@ -102,7 +102,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
                 pos2(inner.left(), top + 12.0),
                 pos2(inner.right(), inner.bottom() - FOOT),
             );
-            let pane = &session.panes[request::pane(session)];
+            let pane = &session.runs.panes[request::pane(session)];
             let pointer = ui.ctx().pointer_latest_pos();
             plots::draw(ui.painter(), room, &pane.samples, pointer);
         });
@@ -113,7 +113,7 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Request> {
 fn head(ui: &egui::Ui, inner: Rect, session: &Session) {
     let painter = ui.painter();
     let line = inner.top() + 19.0;
-    let words = match session.panes.len() {
+    let words = match session.runs.panes.len() {
         1 => "Tuning".into(),
         count => format!(
             "Tuning  pane {} of {count}",
@@ -145,10 +145,10 @@ fn foot(ui: &egui::Ui, inner: Rect, session: &Session) -> Option<Request> {
     let live = session.readings.film.as_ref().is_some_and(|film| film.live);
     let record = if live { "stop" } else { "film" };
     let buttons = [
-        ("scene", "f", Action::WriteScene),
-        ("plots", "u", Action::WritePlots),
-        (record, "m", Action::Record),
-        (&last, "n", Action::FilmLast),
+        ("scene", "f", Action::Run(RunAction::WriteScene)),
+        ("plots", "u", Action::Window(WindowAction::WritePlots)),
+        (record, "m", Action::Window(WindowAction::Record)),
+        (&last, "n", Action::Window(WindowAction::FilmLast)),
     ];
     let gap = 5.0;
     let width = (inner.width() - 3.0 * gap) / 4.0;

@@ -1,18 +1,18 @@
 use egui::vec2;
 
+use super::opened::{changed, dials, every_scene, opened};
 use super::screen::Screen;
-use super::{changed, dials, every_scene, opened};
 use crate::hud::panel::dial::DialScale;
 use crate::hud::panel::request::rows;
 use crate::hud::panel::view::{leaves, width};
-use crate::session::Action;
+use crate::session::RunAction;
 
 const SIZES: [[f32; 2]; 2] = [[1280.0, 720.0], [800.0, 600.0]];
 
 #[test]
 fn the_mouse_turns_every_row_and_that_only() {
     for mut session in every_scene() {
-        let name = session.first().scene().name.clone();
+        let name = session.runs.first().scene().name.clone();
         let mut screen = Screen::new(SIZES[0]);
         for (k, knob, dial) in rows(&session) {
             let before = dials(&session);
@@ -56,7 +56,7 @@ fn nothing_is_cut_or_overlaps() {
     let several = ["mit-sphere", "simple"].map(compared);
     let mut screens = SIZES.map(Screen::new);
     for mut session in every_scene().chain(several) {
-        let name = session.first().scene().name.clone();
+        let name = session.runs.first().scene().name.clone();
         for k in 1..=4 {
             session.run_to(0.1 * f64::from(k));
         }
@@ -106,7 +106,7 @@ fn the_help_stands_alone() {
     let mut session = opened(&["r", "0.005"]);
     assert_eq!(leaves(&session, (1280, 720), 1.0), (976, 720));
     assert_eq!(leaves(&session, (2560, 1440), 2.0), (1952, 1440));
-    session.act(Action::Help, 0);
+    session.act(RunAction::Help, 0);
     assert_eq!(leaves(&session, (1280, 720), 1.0), (1280, 720));
     assert!(
         !Screen::new(SIZES[0])

@@ -2,9 +2,9 @@
 
 use egui::{Context, Event, PointerButton, Pos2, RawInput, Rect, Shape, pos2};
 
-use crate::hud;
 use crate::hud::panel::request::{Request, apply};
 use crate::hud::panel::view::{MARGIN, inset, show, width};
+use crate::hud::{style, text};
 use crate::session::Session;
 
 /// A window, as egui sees it.
@@ -17,7 +17,7 @@ pub struct Screen {
 impl Screen {
     pub fn new(size: [f32; 2]) -> Self {
         Self {
-            ctx: crate::hud::style::context(),
+            ctx: style::context(),
             size,
             time: 0.0,
         }
@@ -44,7 +44,7 @@ impl Screen {
         };
         let mut request = None;
         let mut output = self.ctx.run_ui(input, |ui| {
-            hud::show(ui.ctx(), &session.panes, &session.readings);
+            text::show(ui.ctx(), &session.runs.panes, &session.readings);
             request = show(ui.ctx(), session).or(request);
         });
         output.textures_delta.set.clear();
@@ -95,7 +95,7 @@ impl Screen {
             vec![button(to, false)],
             vec![],
         ] {
-            if let (_, Some(request)) = self.frame(session, event) {
+            if let (_, Some(Request::Change(request))) = self.frame(session, event) {
                 apply(session, request);
             }
         }

@@ -1,18 +1,18 @@
 use a3_core::contact::Shape;
 use a3_core::{Control, Network, Path, Vector3};
 
+use super::opened::{changed, dials, every_scene, opened, type_key};
 use super::screen::Screen;
-use super::{changed, dials, every_scene, opened, type_key};
 use crate::hud::panel::dial::Turn;
 use crate::hud::panel::knobs::KNOBS;
-use crate::hud::panel::request::{PanelKey, Request, apply, press, press_text, rows};
+use crate::hud::panel::request::{PanelKey, PanelRequest, apply, press, press_text, rows};
 use crate::hud::panel::undo;
-use crate::session::{Action, Session, TextKey, compared};
+use crate::session::{RunAction, Session, TextKey, compared};
 
 #[test]
 fn keys_reach_every_row_and_turn_that_only() {
     for mut session in every_scene() {
-        let name = session.first().scene().name.clone();
+        let name = session.runs.first().scene().name.clone();
         let count = dials(&session).len();
         for (k, (row, value)) in dials(&session).into_iter().enumerate() {
             let before = dials(&session);
@@ -40,7 +40,7 @@ fn keys_reach_every_row_and_turn_that_only() {
         type_key(&mut session, PanelKey::Up, false);
         assert_eq!(rows(&session)[count - 1].0, session.panel.row);
         // A closed panel takes no keys.
-        session.act(Action::Panel, 0);
+        session.act(RunAction::Panel, 0);
         assert!(!press(&mut session, PanelKey::Up, false));
     }
 }
@@ -49,7 +49,7 @@ fn keys_reach_every_row_and_turn_that_only() {
 #[test]
 fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     let forces = |session: &Session| {
-        let run = session.first();
+        let run = session.runs.first();
         let mut f = vec![0.0; run.state().len()];
         run.model().system().eval_f(run.time(), run.state(), &mut f);
         f
@@ -58,7 +58,7 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     session.tick(0.1);
     let turn = |session: &mut Session, name: &str, turn| {
         let k = KNOBS.iter().position(|knob| knob.name == name).unwrap();
-        apply(session, Request::Turn(k, turn));
+        apply(session, PanelRequest::Turn(k, turn));
     };
     let before = forces(&session);
     for (name, value) in [
@@ -70,14 +70,14 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
         turn(&mut session, name, Turn::To(value));
         assert_ne!(forces(&session), before, "{name}");
         // What a reset goes back to is tuned too.
-        session.act(Action::Reset, 0);
+        session.act(RunAction::Reset, 0);
         let k = KNOBS.iter().find(|knob| knob.name == name).unwrap();
         assert_eq!((k.read)(&session, 0).unwrap().value, value);
         for _ in 0..6 {
             session.tick(1.0 / 60.0);
         }
         turn(&mut session, name, Turn::Own);
-        session.act(Action::Reset, 0);
+        session.act(RunAction::Reset, 0);
         session.tick(0.1);
         assert_eq!(forces(&session), before, "{name}");
     }
@@ -88,7 +88,7 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     assert_ne!(forces(&damped), before);
     turn(&mut damped, "damping", Turn::Own);
     assert_eq!(forces(&damped), before);
-    let network = |session: &Session| session.first().model().network().unwrap().clone();
+    let network = |session: &Session| session.runs.first().model().network().unwrap().clone();
     turn(&mut damped, "strain limit", Turn::To(1.2));
     assert_eq!(network(&damped).strain_limits(), [(0..400, 1.2)]);
     turn(&mut damped, "strain limit", Turn::Own);
@@ -112,7 +112,7 @@ fn what_is_turned_acts_and_what_is_turned_back_leaves_no_trace() {
     turn(&mut session, "pins", Turn::Toggle);
     assert_eq!(network(&session).pins().count(), 0);
     turn(&mut session, "springs of", Turn::To(7.0));
-    assert_eq!(session.panes[0].show.springs_of, Some(7));
+    assert_eq!(session.runs.panes[0].show.springs_of, Some(7));
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn another_scene_is_not_tuned() {
     for k in 2..=5 {
         apply(
             &mut session,
-            Request::Turn(
+            PanelRequest::Turn(
                 k,
                 Turn::By {
                     up: true,
@@ -130,8 +130,8 @@ fn another_scene_is_not_tuned() {
             ),
         );
     }
-    session.act(Action::NextScene, 0);
-    session.act(Action::NextScene, 0);
+    session.act(RunAction::NextScene, 0);
+    session.act(RunAction::NextScene, 0);
     for (_, knob, dial) in rows(&session).iter().skip(2) {
         assert_eq!(dial.value, dial.own, "{}", knob.name);
     }
@@ -141,10 +141,10 @@ fn another_scene_is_not_tuned() {
 fn the_limit_follows_the_stiffness() {
     let mut session = opened(&["r", "0.005", "--scene", "mit", "--paused"]);
     session.read_state();
-    let limit = |session: &Session| session.panes[0].limit.limit().unwrap().step;
+    let limit = |session: &Session| session.runs.panes[0].limit.limit().unwrap().step;
     let before = limit(&session);
     let k = KNOBS.iter().position(|k| k.name == "stiffness").unwrap();
-    apply(&mut session, Request::Turn(k, Turn::To(4.0)));
+    apply(&mut session, PanelRequest::Turn(k, Turn::To(4.0)));
     session.read_state();
     let after = limit(&session);
     assert!((before / after - 2.0).abs() < 0.05, "{before} {after}");
@@ -153,23 +153,26 @@ fn the_limit_follows_the_stiffness() {
 #[test]
 fn every_pane_and_the_reference_are_tuned_alike() {
     let mut session = compared(&["r:0.005", "v:0.005", "--scene", "pendulum"], 0.3);
-    session.act(Action::Panel, 0);
+    session.act(RunAction::Panel, 0);
     for (name, value) in [("stiffness", 2.0), ("gravity", 20.0), ("drag", 0.02)] {
         let k = KNOBS.iter().position(|k| k.name == name).unwrap();
-        apply(&mut session, Request::Turn(k, Turn::To(value)));
+        apply(&mut session, PanelRequest::Turn(k, Turn::To(value)));
     }
     for _ in 0..60 {
         session.tick(1.0 / 60.0);
     }
-    for pane in &session.panes {
+    for pane in &session.runs.panes {
         let error = pane.error.unwrap();
         assert!(error < 1e-3, "{error}");
     }
     // The step is that of one pane.
     session.panel.pane = 1;
-    apply(&mut session, Request::Turn(1, Turn::To(0.002)));
-    assert_eq!(session.first().control(), Control::Step(0.005));
-    assert_eq!(session.panes[1].simulation.control(), Control::Step(0.002));
+    apply(&mut session, PanelRequest::Turn(1, Turn::To(0.002)));
+    assert_eq!(session.runs.first().control(), Control::Step(0.005));
+    assert_eq!(
+        session.runs.panes[1].simulation.control(),
+        Control::Step(0.002)
+    );
 }
 
 #[test]
@@ -222,10 +225,15 @@ fn values_are_typed() {
         typing
     };
     assert!(!type_value(&mut session, "gravity", "3.21"));
-    let gravity = session.first().model().network().and_then(Network::gravity);
+    let gravity = session
+        .runs
+        .first()
+        .model()
+        .network()
+        .and_then(Network::gravity);
     assert_eq!(gravity.unwrap().y, -3.21);
     assert!(!type_value(&mut session, "step", "1/120"));
-    assert_eq!(session.first().control(), Control::Step(1.0 / 120.0));
+    assert_eq!(session.runs.first().control(), Control::Step(1.0 / 120.0));
     // Numbers that cannot be are refused, and may be mended.
     for (words, why) in [
         ("1,5", "stiffness: use a decimal point: 1.5"),
@@ -243,7 +251,7 @@ fn values_are_typed() {
 #[test]
 fn turns_are_undone_and_done_again() {
     for mut session in every_scene() {
-        let name = session.first().scene().name.clone();
+        let name = session.runs.first().scene().name.clone();
         for (row, _, dial) in rows(&session) {
             // A solver that takes a tolerance has another step.
             if ["solver", "step"].contains(&KNOBS[row].name) {
@@ -253,7 +261,7 @@ fn turns_are_undone_and_done_again() {
             let there = |session: &Session| (KNOBS[row].read)(session, 0).map(|dial| dial.value);
             apply(
                 &mut session,
-                Request::Turn(
+                PanelRequest::Turn(
                     row,
                     Turn::By {
                         up: true,

@@ -1,0 +1,50 @@
+//! The window of the browser, and what it does for the page.
+
+use wasm_bindgen::JsCast;
+use web_sys::{Document, HtmlCanvasElement, Storage, Window};
+
+/// The window of the browser.
+pub fn window() -> Option<Window> {
+    web_sys::window()
+}
+
+/// The document of the page.
+pub fn document() -> Option<Document> {
+    window()?.document()
+}
+
+/// The canvas that is drawn to.
+pub fn canvas() -> Option<HtmlCanvasElement> {
+    document()?.get_element_by_id("a3")?.dyn_into().ok()
+}
+
+/// What the browser remembers for this page from one time to the next.
+pub fn storage() -> Option<Storage> {
+    window()?.local_storage().ok().flatten()
+}
+
+/// Writes a line to the console.
+pub fn log(line: &str) {
+    web_sys::console::log_1(&line.into());
+}
+
+/// Shows words in place of the picture.
+pub fn show(words: &str) {
+    if let Some(place) = document().and_then(|document| document.get_element_by_id("words")) {
+        place.set_text_content(Some(words));
+    }
+}
+
+/// Copies a text to the clipboard, if the browser lets it.
+pub fn copy(text: &str) {
+    if let Some(window) = window() {
+        let _ = window.navigator().clipboard().write_text(text);
+    }
+}
+
+/// Opens another page beside this one.
+pub fn open(address: &str) {
+    if let Some(window) = window() {
+        let _ = window.open_with_url_and_target(address, "_blank");
+    }
+}

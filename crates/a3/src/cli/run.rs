@@ -1,0 +1,84 @@
+//! The options of runs: what is simulated, how, and until when.
+
+use a3_core::{Grid, Method, StepLimits};
+use clap::Args;
+
+use super::names::{SCENE, SOLVER};
+use super::values::{absolute, grid, max_step, step, threads, until};
+use crate::failure::Failure;
+use crate::scene_file::Source;
+
+/// What is simulated.
+#[derive(Args, Clone)]
+pub struct What {
+    /// Scene: a name that `a3 scenes` lists, or a file of your own: TOML, JSON, or a mesh
+    #[arg(long, value_name = "NAME|FILE", default_value = "cloth", value_parser = SCENE, hide_possible_values = true)]
+    pub scene: Source,
+    /// Rows and columns of the cloth, such as 30x40
+    #[arg(long, value_name = "ROWSxCOLS", value_parser = grid, allow_hyphen_values = true)]
+    pub grid: Option<Grid>,
+    /// Let the wind blow
+    #[arg(long)]
+    pub wind: bool,
+    /// Swing the pinned particles to and fro
+    #[arg(long)]
+    pub swing: bool,
+    /// Keep surfaces from passing through one another and themselves
+    #[arg(long)]
+    pub self_collision: bool,
+    /// Number of threads; by default one for each processor, or as many as the environment variable
+    /// `RAYON_NUM_THREADS` says
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<usize>,
+}
+
+/// Limits of adaptive steps.
+#[derive(Args)]
+pub struct StepOptions {
+    /// Error of positions that a step of an adaptive solver may make, in m; by default the
+    /// tolerance times the radius of the scene
+    #[arg(long, value_name = "M", value_parser = absolute, allow_negative_numbers = true)]
+    pub absolute: Option<f64>,
+    /// Longest step of an adaptive solver, in s; by default the scene's own, if it has one
+    #[arg(long, value_name = "S", value_parser = max_step, allow_negative_numbers = true)]
+    pub max_step: Option<f64>,
+}
+
+impl StepOptions {
+    /// The limits that are given.
+    pub fn given(&self) -> StepLimits {
+        StepLimits {
+            absolute: self.absolute,
+            max_step: self.max_step,
+        }
+    }
+}
+
+/// A run without a window.
+#[derive(Args)]
+pub struct RunOptions {
+    /// Solver by letter or name, as `a3 solvers` lists them; by default the scene's own, or else t
+    #[arg(value_parser = SOLVER, hide_possible_values = true)]
+    pub solver: Option<&'static Method>,
+    /// Step in seconds, or relative tolerance of an adaptive solver; by default the scene's own, or
+    /// else the solver's
+    #[arg(value_parser = step, allow_negative_numbers = true)]
+    pub step: Option<f64>,
+    /// Simulated seconds, by default the scene's own; the last state is that at exactly this time
+    #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true)]
+    pub until: Option<f64>,
+    #[command(flatten)]
+    pub limits: StepOptions,
+    #[command(flatten)]
+    pub what: What,
+}
+
+impl RunOptions {
+    /// The end of the run (s).
+    pub fn end(&self) -> Result<f64, Failure> {
+        let own = self.what.scene.description.duration;
+        self.until.or(own).ok_or_else(|| {
+            Failure::usage("the scene has no duration of its own: give --until T in seconds, such as --until 10")
+        })
+    }
+}

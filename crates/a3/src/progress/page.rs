@@ -1,0 +1,18 @@
+//! Long runs on a page, which has no terminal.
+
+use a3_core::{Error, Simulation};
+
+use super::march::march;
+
+/// Does what [`march`] does to the end, whatever `frame` sees.
+pub fn advance(
+    simulation: &mut Simulation,
+    until: f64,
+    mut frame: impl FnMut(&Simulation),
+) -> Result<(), Error> {
+    march(simulation, until, |simulation| {
+        frame(simulation);
+        true
+    })
+    .map(drop)
+}
