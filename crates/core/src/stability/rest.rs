@@ -1,12 +1,14 @@
 //! Scenes at rest: the state of rest, and the largest step with which a small
 //! disturbance around it does not grow.
 
+use super::limit::{GROWTH, Limit, largest_step};
 use super::linearised::AtRest;
+use super::mode::Mode;
 use super::normalised::Mixing;
+use super::observation::Observation;
 use super::pencil::Pencil;
 use super::search::{Budget, bisect, cost, step_and_look, steps};
 use super::spectrum::{Undamped, of_drag, shapes};
-use super::{GROWTH, Limit, Mode, Observation, largest_step};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, find};
