@@ -1,7 +1,10 @@
 //! Choice of the cheapest method, with its step or tolerance, for a given error.
 
-use super::ladder::FEWEST;
-use super::{GoOn, Metric, Outcome, Reference, coarser, ladder, measure};
+use super::errors::Metric;
+use super::frames::GoOn;
+use super::ladder::{FEWEST, coarser, ladder};
+use super::measure::{Outcome, measure};
+use super::reference::Reference;
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{METHODS, Method};
