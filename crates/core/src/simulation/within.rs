@@ -112,7 +112,8 @@ impl Within {
         let (h, dim) = (t1 - t0, self.ends[0].len());
         self.is_smooth.resize(n + (dim - 6 * n), true);
         let [mut y, mut f] = std::mem::take(&mut self.middle);
-        (y.resize(dim, 0.0), f.resize(dim, 0.0));
+        y.resize(dim, 0.0);
+        f.resize(dim, 0.0);
         for _ in 0..ROUNDS {
             self.write(n, 0.5, h, &mut y);
             system.hold(t0 + 0.5 * h, &mut y);
