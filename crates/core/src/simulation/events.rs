@@ -8,6 +8,7 @@
 
 use nalgebra::Vector3;
 
+use super::depths::Depths;
 use crate::contact::{Approach, Course, earliest};
 use crate::network::Network;
 use crate::scene::Model;
@@ -55,12 +56,7 @@ pub(super) struct Searched<'a> {
     pub t: f64,
     pub h: f64,
     pub ends: [&'a [f64]; 2],
-    /// Distance (m) that counts as none.
-    pub none: f64,
-    /// Depth (m) into an obstacle that needs no event.
-    pub shallow: f64,
-    /// Depth (m) to which what rests may sink.
-    pub deepest: f64,
+    pub depths: Depths,
 }
 
 /// State at a share of the step, written to the slice.
@@ -139,13 +135,16 @@ impl Events {
             let obstacle = &step.network.obstacles()[pair.obstacle];
             let approach = Approach::new(obstacle, &course, t);
             if pair.touches {
-                let deepest = step.deepest.min(0.25 * obstacle.shape.greatest_depth());
+                let deepest = step
+                    .depths
+                    .deepest
+                    .min(0.25 * obstacle.shape.greatest_depth());
                 let sunk = approach.first(0.0, deepest).filter(|_| deepest > 0.0);
                 if let Some(share) = sunk {
                     let share = begin + share / PIECES as f64;
                     keep_first(&mut first, share, EventKind::Sunk);
                 } else {
-                    pair.touches = approach.separation(1.0).distance <= step.none;
+                    pair.touches = approach.separation(1.0).distance <= step.depths.none;
                 }
                 continue;
             }
@@ -228,7 +227,7 @@ impl Events {
                     self.pairs.push(Pair {
                         particle,
                         obstacle,
-                        touches: body.shape.separation(seen).distance <= step.none,
+                        touches: body.shape.separation(seen).distance <= step.depths.none,
                     });
                 }
             }
@@ -269,7 +268,10 @@ impl Searched<'_> {
         let end = obstacle
             .shape
             .separation(pose.inwards(x - pose.place.position));
-        let shallow = self.shallow.min(0.25 * obstacle.shape.greatest_depth());
+        let shallow = self
+            .depths
+            .shallow
+            .min(0.25 * obstacle.shape.greatest_depth());
         (-shallow..=0.0).contains(&end.distance) && end.normal.dot(normal) > 0.5
     }
 
@@ -298,7 +300,7 @@ impl Searched<'_> {
             }
             share = next;
         }
-        (gap.abs() <= self.none).then_some(share)
+        (gap.abs() <= self.depths.none).then_some(share)
     }
 
     /// Distance (m) from an event at a share of the step, and its rate (m/s).

@@ -1,40 +1,107 @@
 //! Events of a step, for those that locate them: where the first is, and which particles rest on
 //! obstacles until then.
 
-use super::Simulation;
-use super::events::{Event, Searched};
-use super::resting;
-use super::step::{MAX_PENETRATION, NONE};
-use super::stepper::Kind;
+use super::depths::Depths;
+use super::events::{Event, Events, Searched};
+use super::resting::{Resting, Rests, first_end, may_rest};
+use super::state::RunState;
+use super::stepper::Stepper;
 use crate::integrators::Work;
+use crate::scene::Model;
 
-impl Simulation {
-    /// Finds the first event of a step of h (s) from time t (s) to the state as it is now.
-    pub(super) fn first_event(&mut self, t: f64, h: f64) -> Option<Event> {
-        let network = self.model.network()?;
+/// Search for the first event of a step.
+pub(super) struct Locator {
+    /// Whether fixed steps end at events too, in parts.
+    pub cuts_fixed_steps: bool,
+    events: Events,
+    /// Particles that rest on obstacles in the step that is taken.
+    rests: Rests,
+}
+
+impl Locator {
+    /// Search in a model, with room for all its particles.
+    pub fn new(model: &Model) -> Self {
+        Self {
+            cuts_fixed_steps: false,
+            events: Events::new(model),
+            rests: Rests::new(model),
+        }
+    }
+
+    /// Whether steps end at events.
+    pub fn serves(&self, stepper: &Stepper) -> bool {
+        stepper.is_adaptive() || self.cuts_fixed_steps
+    }
+
+    /// Whether fixed steps are taken in parts, each up to an event.
+    pub fn cuts(&self, stepper: &Stepper) -> bool {
+        self.cuts_fixed_steps && !stepper.is_adaptive()
+    }
+
+    /// View of a model in which particles rest, if any do.
+    pub fn view<'a>(&'a self, model: &'a Model) -> Option<Resting<'a>> {
+        self.rests.view(model)
+    }
+
+    /// State at the event that was found.
+    pub fn state(&self) -> &[f64] {
+        &self.events.state
+    }
+
+    /// Lists the particles that rest on obstacles at time t (s), for steps that locate events.
+    pub fn list_rests(
+        &mut self,
+        model: &Model,
+        state: &mut RunState,
+        stepper: &mut Stepper,
+        t: f64,
+        depths: Depths,
+    ) {
+        let method = state.method;
+        let serves = !method.implicit && !method.needs_mechanics && !method.positions_only;
+        let network = model.network();
+        let network = network.filter(|network| serves && may_rest(network));
+        let heights = [depths.none, depths.none.max(depths.shallow)];
+        self.rests.clear();
+        if let Some(network) = network.filter(|_| self.serves(stepper)) {
+            let evaluated = self.rests.list(network, t, &mut state.y, heights);
+            state.work += Work::of(evaluated);
+        }
+        // The last evaluation of a step in which others rest is of another system.
+        let before = std::mem::replace(&mut state.resting, self.rests.fingerprint());
+        if before != state.resting {
+            stepper.forget();
+        }
+    }
+
+    /// Finds the first event of a step of h (s) from time t (s), from y0 to the state as it is now.
+    pub fn first_event(
+        &mut self,
+        model: &Model,
+        state: &mut RunState,
+        stepper: &mut Stepper,
+        y0: &[f64],
+        (t, h): (f64, f64),
+        depths: Depths,
+    ) -> Option<Event> {
+        let network = model.network()?;
         if network.obstacles().is_empty() && network.tear_limit().is_none() {
             return None;
         }
-        let shallow = self.shallow();
+        let RunState { y, work, .. } = state;
         let step = Searched {
             network,
             t,
             h,
-            ends: [self.phases.contact.y0(), &self.state.y],
-            none: NONE * self.radius,
-            shallow,
-            deepest: MAX_PENETRATION * self.radius,
+            ends: [y0, y],
+            depths,
         };
-        if step.ends.iter().any(|y| y.len() != self.state.y.len())
-            || self.state.y.iter().any(|y| !y.is_finite())
-        {
+        if y0.len() != y.len() || y.iter().any(|y| !y.is_finite()) {
             return None;
         }
-        let (stepper, work) = (&mut self.stepper, &mut self.state.work);
-        let y0 = self.phases.contact.y0();
         let (rests, scratch) = self.rests.split();
-        let resting = resting::view(&self.model, rests);
-        let system = resting.as_ref().map_or(self.model.system(), |view| view);
+        let resting = Resting::of(model, rests);
+        let system = resting.as_ref().map_or(model.system(), |view| view);
         let mut state_at = |share: f64, out: &mut [f64]| {
             *work += stepper.state_at(system, t, share * h, y0, out);
             system.hold(t + share * h, out);
@@ -42,9 +109,9 @@ impl Simulation {
         let event = self.events.first(&step, &mut state_at);
         let before = event.map_or(1.0, |event| event.share);
         let state = &mut self.events.state;
-        let span = (t, h, step.none);
+        let span = (t, h, depths.none);
         let mut evaluated = 0;
-        let end = resting::first_end(
+        let end = first_end(
             network,
             (rests, scratch),
             span,
@@ -57,27 +124,5 @@ impl Simulation {
         );
         *work += Work::of(evaluated);
         end.or(event)
-    }
-
-    /// Lists the particles that rest on obstacles, for steps that locate events.
-    pub(super) fn list_rests(&mut self, t: f64) {
-        let method = self.state.method;
-        let serves = !method.implicit && !method.needs_mechanics && !method.positions_only;
-        let network = self.model.network();
-        let network = network.filter(|network| serves && resting::may_rest(network));
-        let none = NONE * self.radius;
-        let heights = [none, none.max(self.shallow())];
-        self.rests.clear();
-        if let Some(network) = network.filter(|_| self.stepper.is_adaptive() || self.locates) {
-            let evaluated = self.rests.list(network, t, &mut self.state.y, heights);
-            self.state.work += Work::of(evaluated);
-        }
-        // The last evaluation of a step in which others rest is of another system.
-        let before = std::mem::replace(&mut self.state.resting, self.rests.fingerprint());
-        if let Kind::Adaptive(adaptive) = &mut self.stepper.kind
-            && before != self.state.resting
-        {
-            adaptive.restart();
-        }
     }
 }

@@ -132,6 +132,11 @@ impl Rests {
         (&self.now, &mut self.scratch)
     }
 
+    /// View of a model in which the particles rest, if any do.
+    pub fn view<'a>(&'a self, model: &'a Model) -> Option<Resting<'a>> {
+        Resting::of(model, &self.now)
+    }
+
     /// Begins a step in which no particle rests, as far as is known.
     pub fn clear(&mut self) {
         self.now.clear();
@@ -212,10 +217,12 @@ impl Rests {
     }
 }
 
-/// View of a model in which particles rest, if any do.
-pub(super) fn view<'a>(model: &'a Model, rests: &'a [Rest]) -> Option<Resting<'a>> {
-    let network = model.network().filter(|_| !rests.is_empty())?;
-    Some(Resting { network, rests })
+impl<'a> Resting<'a> {
+    /// View of a model in which particles rest, if any do.
+    pub fn of(model: &'a Model, rests: &'a [Rest]) -> Option<Self> {
+        let network = model.network().filter(|_| !rests.is_empty())?;
+        Some(Self { network, rests })
+    }
 }
 
 /// Finds where the first contact ceases, before a share of a step from t (s) of h (s), on its

@@ -198,14 +198,14 @@ impl Within {
         })
     }
 
-    /// Goes on within a step.
+    /// That step again, of a system of that dimension.
     ///
     /// # Errors
     /// It is of another system, or its times are none of a step.
-    pub fn resume(&mut self, span: Option<&Span>, dim: usize) -> Result<(), Error> {
-        self.times = None;
+    pub fn of(span: Option<&Span>, dim: usize) -> Result<Self, Error> {
+        let mut within = Self::default();
         let Some(Span { times, ends }) = span else {
-            return Ok(());
+            return Ok(within);
         };
         let [t0, t1] = *times;
         if !(t0 < t1 && (t1 - t0).is_finite()) {
@@ -221,9 +221,9 @@ impl Within {
                 });
             }
         }
-        self.begin(&ends[0]);
-        self.enter(*times, &ends[1]);
-        Ok(())
+        within.begin(&ends[0]);
+        within.enter(*times, &ends[1]);
+        Ok(within)
     }
 }
 

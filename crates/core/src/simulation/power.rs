@@ -1,4 +1,4 @@
-//! Work on a scene: by pins that move, wind, constraints and obstacles.
+//! Power and work of what moves a scene: by pins that move, wind, constraints and obstacles.
 //!
 //! A pin works against the springs at its particle and against gravity. Its power is integrated
 //! over each step: by Simpson's rule, with the state in the middle from the Hermite polynomial,
@@ -44,9 +44,9 @@ pub(super) struct End<'a> {
     pub y: &'a [f64],
 }
 
-/// All that works on a scene.
+/// Power of all that works on a scene.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Drive {
+pub(super) struct Power {
     /// Whether the parts are those of the network and the state as they are.
     is_fresh: bool,
     pins: Option<Pins>,
@@ -54,7 +54,7 @@ pub(super) struct Drive {
     all: Option<All>,
 }
 
-impl Drive {
+impl Power {
     /// Gets ready for a step from y at time t (s), if it is not.
     pub fn begin(&mut self, network: &Network, t: f64, y: &[f64]) {
         if std::mem::replace(&mut self.is_fresh, true) {
