@@ -11,6 +11,7 @@ mod ladder;
 mod measure;
 mod reference;
 mod run;
+mod snapshot;
 mod trajectory;
 
 pub use choose::{Candidate, SetBy, choose};

@@ -11,9 +11,10 @@
 
 use std::borrow::Cow;
 
-use super::errors::{Errors, Metric, Scope, Snapshot};
+use super::errors::{Errors, Metric, Scope};
 use super::frames::{Frames, GoOn};
 use super::run::{Between, Look, run};
+use super::snapshot::Snapshot;
 use super::trajectory::Trajectory;
 use crate::control::Control;
 use crate::error::Error;
