@@ -9,7 +9,7 @@ use crate::scene::StepLimits;
 const MAX_PENETRATION: f64 = 1e-3;
 
 /// Share of a length of the scene that counts as none of it.
-pub(super) const NONE: f64 = 1e-9;
+pub(super) const NEGLIGIBLE_SHARE: f64 = 1e-9;
 
 /// Depths into an obstacle (m).
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ impl Depths {
         let absolute = limits.absolute.unwrap_or(relative * radius);
         let deepest = MAX_PENETRATION * radius;
         Self {
-            none: NONE * radius,
+            none: NEGLIGIBLE_SHARE * radius,
             shallow: absolute.min(deepest),
             deepest,
         }

@@ -10,7 +10,7 @@ mod failure;
 mod grabbed;
 mod hand;
 mod interaction;
-mod located;
+mod locator;
 mod phases;
 mod pins;
 mod power;

@@ -8,10 +8,10 @@
 //! [`retry`](super::retry)).
 
 use super::bounds::Bounds;
-use super::depths::{Depths, NONE};
+use super::depths::{Depths, NEGLIGIBLE_SHARE};
 use super::events::{Event, EventKind};
 use super::failure::{Failure, cause_of};
-use super::located::Locator;
+use super::locator::Locator;
 use super::phases::{Phases, Settled};
 use super::power::{End, energy_of};
 use super::reach::{Part, Reach};
@@ -29,10 +29,31 @@ use crate::system::ParticleSystem;
 pub(super) const SLIVER: f64 = 1e-6;
 
 /// Price of a sweep over the springs that a limit of strain applies to, in evaluations.
-const SWEEP: f64 = 2.0;
+const SWEEP_PRICE: f64 = 2.0;
 
 /// Price of a plane between two surfaces, in evaluations of one particle on springs.
-const PLANE: f64 = 7.0;
+const PLANE_PRICE: f64 = 7.0;
+
+/// Plan of a step.
+#[derive(Clone, Copy)]
+struct Plan {
+    /// Time of its beginning (s).
+    t: f64,
+    reach: Reach,
+    depths: Depths,
+    /// Whether it ends at the first event within it.
+    locates: bool,
+}
+
+/// Reason for which an attempt at a step has failed.
+enum Setback {
+    /// It was too long: that share of its length h (s) is tried next.
+    Again { h: f64, share: f64 },
+    /// The run is lost.
+    Lost(Cause),
+    /// An error that is not of the run.
+    Error(Error),
+}
 
 /// Pipeline of the phases of a step.
 pub(super) struct Pipeline {
@@ -106,97 +127,143 @@ impl Pipeline {
         t: f64,
         target: Option<f64>,
     ) -> Result<Result<(Part, Settled), Cause>, Error> {
-        let is_adaptive = self.stepper.is_adaptive();
-        let depths = Depths::new(self.bounds.radius, self.limits, state.control);
-        let locates = self.locator.serves(&self.stepper);
+        let (stepper, limits) = (&mut self.stepper, self.limits);
+        let depths = Depths::new(self.bounds.radius, limits, state.control);
+        let locates = self.locator.serves(stepper);
         let reach = if locates {
-            Reach::of_step(model, self.limits, is_adaptive, t, target)
+            Reach::of_step(model, limits, stepper.is_adaptive(), t, target)
         } else {
             Reach::default()
         };
-        self.locator
-            .list_rests(model, state, &mut self.stepper, t, depths);
+        self.locator.list_rests(model, state, stepper, t, depths);
+        let plan = Plan {
+            t,
+            reach,
+            depths,
+            locates,
+        };
         loop {
-            let resting = self.locator.view(model);
-            let system = resting.as_ref().map_or(model.system(), |view| view);
-            self.phases.begin(model, &state.y, locates);
-            let control = match state.control {
-                // What rounding leaves of a step is no part of its own.
-                Control::Step(h) if reach.longest <= h * (1.0 + SLIVER) => {
-                    Control::Step(reach.longest)
-                }
-                control => control,
-            };
-            let y = &mut state.y;
-            let taken = match self.stepper.integrate(system, control, t, reach.longest, y) {
-                Ok(taken) => taken,
-                Err(error) => return cause_of(error, model.particles()).map(Err),
-            };
-            state.work += taken.work;
-            let mut part = reach.part(t, taken.h);
-            let event = if locates {
-                let (stepper, y0) = (&mut self.stepper, self.phases.y0());
-                self.locator
-                    .first_event(model, state, stepper, y0, (t, taken.h), depths)
-            } else {
-                None
-            };
-            match event {
-                Some(Event {
-                    kind: EventKind::Sunk,
-                    share,
-                }) if taken.h > MIN_RETRY_STEP && is_adaptive => {
-                    self.take_again(state, taken.h, MIN_RETRY_SHARE.max(0.9 * share));
-                    continue;
-                }
-                Some(Event { kind, share }) if !matches!(kind, EventKind::Sunk) => {
-                    part = Part::of(t, share * taken.h);
-                    state.y.copy_from_slice(self.locator.state());
-                    if let (EventKind::Touch { .. }, Some(network)) = (kind, model.network()) {
-                        let times = (part.end, part.h);
-                        self.phases.strike(network, times, depths, &mut state.y);
-                    }
-                }
-                _ => {}
+            match self.attempt(model, state, plan) {
+                Ok(taken) => return Ok(Ok(taken)),
+                Err(Setback::Again { h, share }) => self.take_again(state, h, share),
+                Err(Setback::Lost(cause)) => return Ok(Err(cause)),
+                Err(Setback::Error(error)) => return Err(error),
             }
-            let bulge = if is_adaptive && state.method.implicit {
-                self.phases.bulge(model, (t, part.h), &state.y)
-            } else {
-                0.0
-            };
-            if let Some(share) = share_of_bulge(bulge, part.h) {
-                self.take_again(state, part.h, share);
-                continue;
-            }
-            let (order, t1, y) = (state.method.order, part.end, &state.y[..]);
-            let end = End { order, t: t1, y };
-            if let Some(cause) = self.watch.look_before_guard(model, &state.balance, end) {
-                return Ok(Err(cause));
-            }
-            let settled = match self.phases.settle(model, (t, part.h), &mut state.y) {
-                Ok(settled) => settled,
-                Err(cause) => return Ok(Err(cause)),
-            };
-            let planes = PLANE * settled.met.guarded.planes as f64 / model.work();
-            state.work.algebra += SWEEP * settled.strained.sweeps as f64 + planes;
-            if let Stepper::Adaptive(adaptive) = &mut self.stepper {
-                if let Some(share) = share_of_retry(&settled, part.h, depths) {
-                    self.take_again(state, part.h, share);
-                    continue;
-                }
-                limit_next(adaptive, &settled, bulge, part.h, depths);
-                if part.is_cut {
-                    adaptive.restart();
-                }
-            }
-            if part.is_cut
-                && let Some(network) = model.network()
-            {
-                network.hold(part.end, &mut state.y);
-            }
-            state.guarded += settled.met.guarded;
-            return Ok(Ok((part, settled)));
         }
+    }
+
+    /// Takes a step once: integrates, ends it at an event, and settles its end.
+    fn attempt(
+        &mut self,
+        model: &Model,
+        state: &mut RunState,
+        plan: Plan,
+    ) -> Result<(Part, Settled), Setback> {
+        let Plan { t, depths, .. } = plan;
+        self.phases.begin(model, &state.y, plan.locates);
+        let mut part = self.integrate(model, state, plan)?;
+        if plan.locates {
+            part = self.end_at_event(model, state, plan, part)?;
+        }
+        let h = part.h;
+        let bulge = if self.stepper.is_adaptive() && state.method.implicit {
+            self.phases.bulge(model, (t, h), &state.y)
+        } else {
+            0.0
+        };
+        if let Some(share) = share_of_bulge(bulge, h) {
+            return Err(Setback::Again { h, share });
+        }
+        let (order, y) = (state.method.order, &state.y[..]);
+        let end = End {
+            order,
+            t: part.end,
+            y,
+        };
+        if let Some(cause) = self.watch.look_before_guard(model, &state.balance, end) {
+            return Err(Setback::Lost(cause));
+        }
+        let settled = self.phases.settle(model, (t, h), &mut state.y);
+        let settled = settled.map_err(Setback::Lost)?;
+        let planes = PLANE_PRICE * settled.met.guarded.planes as f64 / model.work();
+        state.work.algebra += SWEEP_PRICE * settled.strained.sweeps as f64 + planes;
+        if let Stepper::Adaptive(adaptive) = &mut self.stepper {
+            if let Some(share) = share_of_retry(&settled, h, depths) {
+                return Err(Setback::Again { h, share });
+            }
+            limit_next(adaptive, &settled, bulge, h, depths);
+            if part.is_cut {
+                adaptive.restart();
+            }
+        }
+        if part.is_cut
+            && let Some(network) = model.network()
+        {
+            network.hold(part.end, &mut state.y);
+        }
+        state.guarded += settled.met.guarded;
+        Ok((part, settled))
+    }
+
+    /// Takes the state to the end of a step by the method.
+    fn integrate(
+        &mut self,
+        model: &Model,
+        state: &mut RunState,
+        Plan { t, reach, .. }: Plan,
+    ) -> Result<Part, Setback> {
+        let resting = self.locator.view(model);
+        let system = resting.as_ref().map_or(model.system(), |view| view);
+        let control = match state.control {
+            // What rounding leaves of a step is no part of its own.
+            Control::Step(h) if reach.longest <= h * (1.0 + SLIVER) => Control::Step(reach.longest),
+            control => control,
+        };
+        let y = &mut state.y;
+        match self.stepper.integrate(system, control, t, reach.longest, y) {
+            Ok(taken) => {
+                state.work += taken.work;
+                Ok(reach.part(t, taken.h))
+            }
+            Err(error) => {
+                let cause = cause_of(error, model.particles());
+                Err(cause.map_or_else(Setback::Error, Setback::Lost))
+            }
+        }
+    }
+
+    /// Ends a step at its first event, if there is one: particles that touch an obstacle there
+    /// strike it.
+    fn end_at_event(
+        &mut self,
+        model: &Model,
+        state: &mut RunState,
+        Plan { t, depths, .. }: Plan,
+        whole: Part,
+    ) -> Result<Part, Setback> {
+        let (stepper, y0, h) = (&mut self.stepper, self.phases.y0(), whole.h);
+        let event = self
+            .locator
+            .first_event(model, state, stepper, y0, (t, h), depths);
+        let Some(Event { share, kind }) = event else {
+            return Ok(whole);
+        };
+        if matches!(kind, EventKind::Sunk) {
+            let share = MIN_RETRY_SHARE.max(0.9 * share);
+            let again = h > MIN_RETRY_STEP && self.stepper.is_adaptive();
+            return if again {
+                Err(Setback::Again { h, share })
+            } else {
+                Ok(whole)
+            };
+        }
+        let part = Part::of(t, share * h);
+        state.y.copy_from_slice(self.locator.state());
+        if let (EventKind::Touch { .. }, Some(network)) = (kind, model.network()) {
+            let times = (part.end, part.h);
+            self.phases.strike(network, times, depths, &mut state.y);
+        }
+        Ok(part)
     }
 
     /// Goes back to the beginning of a step of h (s), of which that share is taken next.
@@ -229,7 +296,7 @@ impl Pipeline {
     /// breaks at its end.
     pub fn tear(&mut self, model: &mut Model, state: &mut RunState) {
         let share = if self.locator.serves(&self.stepper) {
-            NONE
+            NEGLIGIBLE_SHARE
         } else {
             0.0
         };
