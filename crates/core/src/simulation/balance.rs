@@ -15,13 +15,13 @@ use crate::network::Network;
 const INTERVAL: f64 = 0.1;
 
 /// Gain, in energies of the scene, from which on a run is said to gain energy.
-const NOTED: f64 = 0.5;
+const NOTABLE_GAIN: f64 = 0.5;
 
 /// Gain, in energies of the scene, from which on a run is lost.
-const LOST: f64 = 100.0;
+const MAX_GAIN: f64 = 100.0;
 
 /// Speed that nobody sees, in radii of the scene (1/s): rounding moves what is at rest more slowly.
-const UNSEEN: f64 = 1e-9;
+const UNSEEN_SPEED: f64 = 1e-9;
 
 /// Energy that nothing put into a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,7 +71,7 @@ impl Balance {
         let energy = energy_of(network, t, y);
         let mass = network.masses().iter().sum::<f64>();
         let weight = network.gravity().map_or(0.0, |g| g.norm()) * mass;
-        let unseen = 0.5 * mass * (UNSEEN * radius).powi(2);
+        let unseen = 0.5 * mass * (UNSEEN_SPEED * radius).powi(2);
         // Rounding leaves a fluid at rest with less than none.
         let moving = (energy.kinetic + energy.elastic + energy.contact).max(0.0);
         Self {
@@ -101,7 +101,7 @@ impl Balance {
 
     /// Whether the run had gained little when it was last looked at.
     pub(super) fn is_sound(&self) -> bool {
-        self.share < NOTED
+        self.share < NOTABLE_GAIN
     }
 
     /// Whether the last look was so long before time t (s) that another is due.
@@ -156,7 +156,7 @@ impl Balance {
             let terms = network.masses().iter().zip(v).map(|(m, v)| m * v * v);
             terms.sum::<f64>()
         };
-        0.5 * (0..3).map(squared).sum::<f64>() > LOST * self.scale()
+        0.5 * (0..3).map(squared).sum::<f64>() > MAX_GAIN * self.scale()
     }
 
     /// Looks at the energy of y at time t (s), with room for forces. Returns the gain by which the
@@ -179,7 +179,7 @@ impl Balance {
         }
         let (x, v) = network.halves(y);
         self.singular |= network.is_nearly_singular(t, x, v, f);
-        (self.share > LOST).then(|| {
+        (self.share > MAX_GAIN).then(|| {
             let (particle, speed) = fastest_particle(v);
             Cause::Gained {
                 energy: self.gain,
@@ -191,14 +191,14 @@ impl Balance {
 
     /// Largest gain, if it is so large that the step is too long.
     pub(super) fn notable_gain(&self) -> Option<Gain> {
-        self.most.filter(|gain| gain.share > NOTED)
+        self.most.filter(|gain| gain.share > NOTABLE_GAIN)
     }
 
     /// Energy that the run has gained or lost, over that of its motion: `None` if nothing moves, or
     /// hands, contact or tears may have changed it.
     pub(super) fn change(&self) -> Option<f64> {
         let motion = self.moving + self.fall;
-        let moves = motion > UNSEEN * self.own;
+        let moves = motion > UNSEEN_SPEED * self.own;
         let energy = self.gain + self.work;
         (moves && !self.open).then_some(energy / motion)
     }

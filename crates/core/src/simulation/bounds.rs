@@ -10,14 +10,14 @@ use crate::scene::Model;
 
 /// Distance from the scene's middle, in its radii, at which a particle is lost, unless it is there
 /// without gaining energy.
-const LOST: f64 = 100.0;
+const MAX_DISTANCE: f64 = 100.0;
 
 /// Distance, in radii, within which all particles of a state are that one goes back to: still a
 /// picture of the scene.
-const GOOD: f64 = 3.0;
+const MAX_GOOD_DISTANCE: f64 = 3.0;
 
 /// Numbers that are looked at without a branch.
-const BLOCK: usize = 64;
+const BLOCK_LENGTH: usize = 64;
 
 /// Bounds of a scene as it begins.
 #[derive(Clone, Copy, Debug)]
@@ -30,12 +30,12 @@ pub(super) struct Bounds {
 impl Bounds {
     /// Whether all particles of y are so near that one goes back to that state after a blow-up.
     pub fn hold(&self, model: &Model, y: &[f64]) -> bool {
-        self.beyond(GOOD, model, y).is_none()
+        self.beyond(MAX_GOOD_DISTANCE, model, y).is_none()
     }
 
     /// The cause of a blow-up, if a particle of y seems lost.
     pub fn lost(&self, model: &Model, y: &[f64]) -> Option<Cause> {
-        self.beyond(LOST, model, y)
+        self.beyond(MAX_DISTANCE, model, y)
     }
 
     /// Constraints of a model that contradict one another in the state y at time t (s).
@@ -57,8 +57,8 @@ impl Bounds {
         // By blocks without a branch inside. Written so that NaN, which compares as false, is lost
         // too.
         let near = |block: Range<usize>| block.fold(true, |near, i| near & (squared(i) <= limit));
-        let mut blocks = (0..n).step_by(BLOCK);
-        if !blocks.all(|start| near(start..n.min(start + BLOCK))) {
+        let mut blocks = (0..n).step_by(BLOCK_LENGTH);
+        if !blocks.all(|start| near(start..n.min(start + BLOCK_LENGTH))) {
             let particle = (0..n).find(|&i| !near(i..i + 1))?;
             let distance = squared(particle).sqrt();
             return Some(if distance.is_finite() {
@@ -68,7 +68,7 @@ impl Bounds {
             });
         }
         let finite = |block: &[f64]| block.iter().fold(true, |finite, v| finite & v.is_finite());
-        if v.chunks(BLOCK).all(finite) {
+        if v.chunks(BLOCK_LENGTH).all(finite) {
             return None;
         }
         v.iter()

@@ -21,13 +21,13 @@ const PIECES: usize = 8;
 const NEWTON_STEPS: usize = 8;
 
 /// Most times that a search of a piece goes on after what was no event.
-const MOST_GRAZES: usize = 8;
+const MAX_GRAZES: usize = 8;
 
 /// Share of a piece after which a search goes on.
-const AFTER: f64 = 1e-5;
+const GAP_AFTER_GRAZE: f64 = 1e-5;
 
 /// Share of a piece below which an interval of a spring's length is not halved.
-const FINEST: f64 = 1e-4;
+const MIN_INTERVAL: f64 = 1e-4;
 
 /// Kind of an event.
 #[derive(Clone, Copy, Debug)]
@@ -149,7 +149,7 @@ impl Events {
                 continue;
             }
             let mut from = 0.0;
-            for _ in 0..MOST_GRAZES {
+            for _ in 0..MAX_GRAZES {
                 let Some(share) = approach.first(from, 0.0) else {
                     break;
                 };
@@ -169,7 +169,7 @@ impl Events {
                         keep_first(&mut first, share, kind);
                         break;
                     }
-                    None => from = share + AFTER,
+                    None => from = share + GAP_AFTER_GRAZE,
                 }
                 if from >= 1.0 {
                     break;
@@ -362,7 +362,7 @@ fn course<Y: AsRef<[f64]>>(ends: &[Y; 2], i: usize, h: f64, n: usize) -> Course 
 /// Share of a piece at which a vector is first longer than `longest` (m).
 fn first_longer(apart: &Course, longest: f64) -> Option<f64> {
     let [speed, _] = apart.bounds();
-    earliest([0.0, 1.0], FINEST, |[a, b]| {
+    earliest([0.0, 1.0], MIN_INTERVAL, |[a, b]| {
         let middle = apart.position(0.5 * (a + b));
         middle.norm() + speed * 0.5 * (b - a) >= longest
     })

@@ -22,11 +22,11 @@ const FREE_REACH: f64 = 0.5;
 
 /// Share of the particle's way to its target by which each pull moves the hand on: so it gets there
 /// whatever hangs on it.
-const FOLLOW: f64 = 0.25;
+const FOLLOWED_SHARE: f64 = 0.25;
 
 /// Least and greatest length that a hand gives to a rod whose other end has not followed yet, in
 /// lengths of the rod.
-const ROD: (f64, f64) = (0.95, 1.05);
+const ROD_LENGTHS: (f64, f64) = (0.95, 1.05);
 
 /// Hand, and what it sees.
 pub(super) struct Hand<'a> {
@@ -77,7 +77,7 @@ impl<'a> Hand<'a> {
             // The hand goes on where it was, until the particle is at the target.
             true => {
                 let hand = grabbed.path.at(self.time).position;
-                let ahead = hand - from + (target - from) * FOLLOW;
+                let ahead = hand - from + (target - from) * FOLLOWED_SHARE;
                 self.way(hand, within(FREE_REACH, ahead))
             }
             false => self.way(from, self.within_reach(i, from, target)),
@@ -131,7 +131,8 @@ impl<'a> Hand<'a> {
             .chain(self.network.neighbours_in_solids(i))
             .map(|(other, rest)| (other, 0.0, self.reach * rest));
         let rods = self.network.rods_of(i);
-        let rods = rods.map(|(other, length)| (other, ROD.0 * length, ROD.1 * length));
+        let rods =
+            rods.map(|(other, length)| (other, ROD_LENGTHS.0 * length, ROD_LENGTHS.1 * length));
         let share = springs
             .chain(rods)
             .map(|(other, shortest, longest)| {

@@ -1,4 +1,4 @@
-//! Power and work of what moves a scene: by pins that move, wind, constraints and obstacles.
+//! Power and work of what drives a scene: pins that move, wind, constraints and obstacles.
 //!
 //! A pin works against the springs at its particle and against gravity. Its power is integrated
 //! over each step: by Simpson's rule, with the state in the middle from the Hermite polynomial,
@@ -22,10 +22,10 @@ use crate::system::{Mechanics, ParticleSystem};
 const INTERVAL: f64 = 1.0 / 60.0;
 
 /// ... because there are more particles than this.
-const FEW: usize = 200;
+const FEW_PARTICLES: usize = 200;
 
 /// Half of the time over which the power of all together is found (s).
-const MOMENT: f64 = 1e-7;
+const HALF_MOMENT: f64 = 1e-7;
 
 /// Order above which a method's steps are long, and Simpson's rule is needed.
 const LOW_ORDER: u32 = 2;
@@ -252,7 +252,7 @@ impl Breeze {
     }
 
     fn work(&mut self, network: &Network, End { t, y, .. }: End) -> f64 {
-        let few = network.particles() <= FEW;
+        let few = network.particles() <= FEW_PARTICLES;
         if !few && t - self.t < INTERVAL {
             return 0.0;
         }
@@ -298,7 +298,7 @@ impl All {
 
     fn work(&mut self, network: &Network, end: End) -> f64 {
         let h = end.t - self.t;
-        let few = network.particles() <= FEW;
+        let few = network.particles() <= FEW_PARTICLES;
         if !few && h < INTERVAL {
             return 0.0;
         }
@@ -330,7 +330,7 @@ impl All {
             state.extend(y.iter().zip(&*f).map(|(y, f)| y + moment * f));
             energy_of(network, t + moment, state).total()
         };
-        (at(MOMENT) - at(-MOMENT)) / (2.0 * MOMENT)
+        (at(HALF_MOMENT) - at(-HALF_MOMENT)) / (2.0 * HALF_MOMENT)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::error::Cause;
 use crate::scene::{Model, StepLimits};
 
 /// Error of a constraint over its length from which on a run is lost.
-const BROKEN: f64 = 0.1;
+const MAX_CONSTRAINT_ERROR: f64 = 0.1;
 
 /// Watch over the energy and the constraints of a run.
 #[derive(Debug)]
@@ -174,7 +174,9 @@ impl Watch {
         } else {
             None
         };
-        let broken = worst.filter(|unmet| unmet.share > BROKEN).map(Cause::Unmet);
+        let broken = worst
+            .filter(|unmet| unmet.share > MAX_CONSTRAINT_ERROR)
+            .map(Cause::Unmet);
         let lost = lost.filter(|_| !balance.is_sound());
         broken.or(lost).or(gained)
     }
