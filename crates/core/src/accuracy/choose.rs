@@ -74,7 +74,7 @@ pub fn choose(
 ) -> Result<Option<Vec<Candidate>>, Error> {
     let mut found: Vec<Candidate> = vec![];
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
-    // What the reference does not know of the error is no longer there to be made.
+    // The reference's own uncertainty is part of the error that is allowed.
     let error = error - metric.of(&reference.floor);
     let is_small = scene.model.work() < DEAR_IF_SMALL.1;
     let dear = if is_small { DEAR_IF_SMALL.0 } else { DEAR };

@@ -20,7 +20,7 @@ const NOTABLE_GAIN: f64 = 0.5;
 /// Gain, in energies of the scene, from which on a run is lost.
 const MAX_GAIN: f64 = 100.0;
 
-/// Speed that nobody sees, in radii of the scene (1/s): rounding moves what is at rest more slowly.
+/// Speed below which motion is rounding noise, in radii of the scene (1/s).
 const UNSEEN_SPEED: f64 = 1e-9;
 
 /// Energy that nothing put into a run.

@@ -297,9 +297,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// Pulls the grabbed particle towards `target` (m), where it arrives at once to the eye, unless
-    /// springs or rods hold it back: the hand stretches a spring as far as the scene allows, a rod
-    /// hardly at all, and gets farther as the other end follows.
+    /// Pulls the grabbed particle towards `target` (m), which it reaches within 1/30 s unless that
+    /// is too fast, or springs or rods hold it back: the hand stretches a spring as far as the
+    /// scene allows, a rod hardly at all, and gets farther as the other end follows.
     pub fn pull(&mut self, target: Vector3<f64>) {
         if let Some((hand, grabbed)) = self.hand().zip(self.state.grabbed) {
             self.lead(hand.pull(grabbed, target));

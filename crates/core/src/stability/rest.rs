@@ -209,7 +209,8 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
             if dear || !go_on() || run.take_steps(1).is_err() {
                 return Ok(None);
             }
-            // Where the guard of surfaces holds what falls, nothing rests on the force of contact.
+            // If the guard of surfaces carries the weight, and not the force of contact, there is
+            // no equilibrium: steps become shorter.
             let now = run.control().value();
             let next = if acts(&run) > held {
                 SHORTER * now
