@@ -1,7 +1,10 @@
 //! Choice of the cheapest method, with its step or tolerance, for a given error.
 
-use super::ladder::FEWEST;
-use super::{GoOn, Metric, Outcome, Reference, coarser, ladder, measure};
+use super::errors::Metric;
+use super::frames::GoOn;
+use super::ladder::{FEWEST, coarser, ladder};
+use super::measure::{Outcome, measure};
+use super::reference::Reference;
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{METHODS, Method};
@@ -71,7 +74,7 @@ pub fn choose(
 ) -> Result<Option<Vec<Candidate>>, Error> {
     let mut found: Vec<Candidate> = vec![];
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
-    // What the reference does not know of the error is no longer there to be made.
+    // The reference's own uncertainty is part of the error that is allowed.
     let error = error - metric.of(&reference.floor);
     let is_small = scene.model.work() < DEAR_IF_SMALL.1;
     let dear = if is_small { DEAR_IF_SMALL.0 } else { DEAR };

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::GoOn;
+use super::frames::GoOn;
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, find};

@@ -1,6 +1,6 @@
 //! Steps or tolerances at which a method is tried, from the coarsest that makes sense.
 
-use super::Frames;
+use super::frames::Frames;
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::Method;

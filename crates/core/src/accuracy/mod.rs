@@ -3,163 +3,22 @@
 
 mod choose;
 mod errors;
+mod frames;
 mod hermite;
 mod horizon;
 mod impact;
 mod ladder;
+mod measure;
 mod reference;
 mod run;
+mod snapshot;
 mod trajectory;
-
-use std::time::Duration;
-
-use crate::contact::Guarded;
-use crate::control::Control;
-use crate::error::{BlowUp, Error};
-use crate::integrators::{Method, Work};
-use crate::scene::Scene;
-use crate::simulation::Simulation;
 
 pub use choose::{Candidate, SetBy, choose};
 pub use errors::{Errors, Metric, Scope};
+pub use frames::{Frames, GoOn};
 pub use horizon::{Horizon, horizon};
 pub use ladder::{coarser, ladder};
+pub use measure::{Outcome, measure, measure_by};
 pub use reference::{Precision, Reference};
 pub use run::{Between, Look, Visit, run};
-use run::{Looks, looked_at};
-
-/// Function that is called between frames and returns whether to go on.
-pub type GoOn<'a> = &'a dyn Fn() -> bool;
-
-/// Times at which runs are compared: the ends of `count` equal parts of the time from 0 to `until`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frames {
-    /// Time of the last frame (s).
-    pub until: f64,
-    /// Number of frames.
-    pub count: u64,
-}
-
-impl Frames {
-    /// Frames up to `until` (s): at least 60 in each second, and at least 60 in all.
-    #[must_use]
-    pub fn new(until: f64) -> Self {
-        Self {
-            until,
-            count: 60 * until.ceil().max(1.0) as u64,
-        }
-    }
-
-    /// Interval between frames (s).
-    #[must_use]
-    pub fn spacing(&self) -> f64 {
-        self.until / self.count as f64
-    }
-
-    /// Time of frame k (s).
-    #[must_use]
-    pub fn time(&self, k: u64) -> f64 {
-        if k == self.count {
-            self.until
-        } else {
-            k as f64 * self.spacing()
-        }
-    }
-
-    /// Number of steps of h (s) that reach the last frame; the last step may be shorter.
-    #[must_use]
-    pub fn steps(&self, h: f64) -> u64 {
-        (self.until / h - Simulation::SLIVER).ceil().max(1.0) as u64
-    }
-}
-
-/// Outcome of a run against the reference.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
-    /// Largest errors over the frames that the run reached, or those at the last frame if only that
-    /// one counts.
-    pub errors: Errors,
-    /// Work of the whole run.
-    pub work: Work,
-    /// What the guard of surfaces did: a run that it held is not the method's own.
-    pub guarded: Guarded,
-    /// Blow-up of the run, if it was lost.
-    pub lost: Option<BlowUp>,
-    /// Computing time of the run alone, by the clock that was given.
-    pub time: Duration,
-}
-
-/// Runs a scene and compares the run with its reference. Returns `None` if `go_on` returned false.
-///
-/// # Errors
-/// The method does not support the scene or the control, or the run fails without a blow-up.
-pub fn measure(
-    scene: &Scene,
-    method: &'static Method,
-    control: Control,
-    reference: &Reference,
-    go_on: GoOn,
-) -> Result<Option<Outcome>, Error> {
-    let clock = || Duration::ZERO;
-    measure_by(&clock, scene, method, control, reference, &mut [], go_on)
-}
-
-/// As [`measure`], with the computing time by a clock: a function that returns the time since some
-/// moment. The largest error of each coordinate over the frames that count (m) is written to
-/// `coordinates`, n x 3, unless that is empty.
-///
-/// # Errors
-/// The method does not support the scene or the control, or the run fails without a blow-up.
-pub fn measure_by(
-    clock: &dyn Fn() -> Duration,
-    scene: &Scene,
-    method: &'static Method,
-    control: Control,
-    reference: &Reference,
-    coordinates: &mut [f64],
-    go_on: GoOn,
-) -> Result<Option<Outcome>, Error> {
-    coordinates.fill(0.0);
-    let mut simulation = Simulation::new(scene.clone(), method, control)?;
-    let mut errors = Errors::default();
-    let mut last = reference.start.clone();
-    let mut visit = |look: &Look| {
-        let (k, model) = (look.frame, look.run.model());
-        last = last.next(model, reference.frames.time(k), look.state);
-        if reference.counts(k) {
-            let mut here = reference.errors(k, &last);
-            let mut at = (reference.frames.time(k), last.positions());
-            if let Some(step) = &look.within {
-                let at_end = reference.errors_between(model, k, step);
-                if at_end.position < here.position {
-                    at = step.nearest;
-                }
-                here = here.min(at_end);
-            }
-            errors = errors.max(here);
-            if coordinates.is_empty() {
-                return;
-            }
-            let truth = reference.positions(model, k, at.0);
-            let apart = truth.iter().zip(at.1).map(|(a, b)| (a - b).abs());
-            for (most, apart) in coordinates.iter_mut().zip(apart) {
-                *most = f64::max(*most, apart);
-            }
-        }
-    };
-    let mut looks = Looks {
-        visit: &mut visit,
-        clock,
-        spent: Duration::ZERO,
-    };
-    let begun = clock();
-    let end = looked_at(&mut simulation, &reference.frames, go_on, Some(&mut looks))?;
-    let time = clock().saturating_sub(begun + looks.spent);
-    Ok(end.map(|lost| Outcome {
-        time,
-        errors,
-        work: simulation.work(),
-        guarded: simulation.guarded(),
-        lost,
-    }))
-}

@@ -11,9 +11,11 @@
 
 use std::borrow::Cow;
 
-use super::errors::Snapshot;
+use super::errors::{Errors, Metric, Scope};
+use super::frames::{Frames, GoOn};
+use super::run::{Between, Look, run};
+use super::snapshot::Snapshot;
 use super::trajectory::Trajectory;
-use super::{Between, Errors, Frames, GoOn, Look, Metric, Scope, run};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, Work, find};

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
+use super::frames::{Frames, GoOn};
 use super::hermite::weights;
-use super::{Frames, GoOn};
 use crate::error::{BlowUp, Error};
 use crate::simulation::Simulation;
 

@@ -1,7 +1,9 @@
 //! States of a reference at the frames and between them, which errors are taken from.
 
-use super::errors::{Errors, Scope, Snapshot};
-use super::{Between, Frames};
+use super::errors::{Errors, Scope};
+use super::frames::Frames;
+use super::run::Between;
+use super::snapshot::Snapshot;
 use crate::scene::Model;
 
 /// Number of frames through which a state between them is interpolated.

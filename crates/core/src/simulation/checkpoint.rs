@@ -2,23 +2,22 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Simulation;
+use super::driver::{Driver, Progress};
 use super::state::RunState;
-use super::stepper::{Progress, Stepper};
-use super::tuning::{let_touch, touches_itself};
+use super::touching::{let_touch, touches_itself};
 use crate::contact::Shape;
 use crate::elements::Wind;
 use crate::error::Error;
 use crate::network::Network;
 use crate::path::Path;
-use crate::scene::Model;
+use crate::scene::{Model, Scene};
 
 /// A run at one time: all that it needs, beside its scene, to go on to the same bits.
 ///
-/// The scene is not in it, nor what was [adjusted](Simulation::adjust) of the scene, such as the
-/// stiffness of springs: restore it in a run of the same scene, adjusted alike. The last step of an
-/// adaptive method is in it if [`Simulation::checkpoint`] made it, and not if
-/// [`Simulation::record`] did.
+/// The scene is not in it, nor what was [adjusted](crate::Simulation::adjust) of the scene, such as
+/// the stiffness of springs: restore it in a run of the same scene, adjusted alike. The last step
+/// of an adaptive method is in it if [`checkpoint`](crate::Simulation::checkpoint) made it, and not
+/// if [`record`](crate::Simulation::record) did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// State of the run.
@@ -38,16 +37,48 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Checkpoint of a run in a state, without changes of its scene.
-    pub(super) fn new(run: RunState) -> Self {
-        Self {
-            run,
+    /// Checkpoint of a run in a state, without the last step of an adaptive method.
+    pub(super) fn of(state: &RunState, model: &Model, driver: &Driver) -> Self {
+        let mut moment = Self {
+            run: state.clone(),
             pins: vec![],
             obstacles: vec![],
             wind: None,
             touching: false,
             torn: vec![],
             progress: Progress::default(),
+        };
+        moment.record_changes(state, model, driver);
+        moment
+    }
+
+    /// Becomes that checkpoint, in the memory of this one.
+    pub(super) fn record(&mut self, state: &RunState, model: &Model, driver: &Driver) {
+        self.run.copy_from(state);
+        self.record_changes(state, model, driver);
+    }
+
+    /// Records what hands, time and tears changed of the model.
+    fn record_changes(&mut self, state: &RunState, model: &Model, driver: &Driver) {
+        self.pins.clear();
+        self.obstacles.clear();
+        self.torn.clear();
+        let network = model.network();
+        if let Some(network) = network {
+            self.pins.extend(network.pins());
+            let obstacles = network.obstacles().iter().enumerate();
+            self.obstacles.extend(
+                obstacles
+                    .filter(|(_, obstacle)| obstacle.shape != Shape::Floor)
+                    .map(|(k, obstacle)| (k, obstacle.path)),
+            );
+            self.torn.extend_from_slice(network.torn());
+        }
+        self.wind = network.and_then(Network::wind).copied();
+        self.touching = touches_itself(model);
+        self.progress = driver.progress(false);
+        if driver.is_within() {
+            self.run.set_time(state.time());
         }
     }
 
@@ -68,7 +99,7 @@ impl Checkpoint {
     }
 
     /// `Ok` if the state is one of a system of this dimension.
-    fn check(&self, dim: usize) -> Result<(), Error> {
+    pub(super) fn check(&self, dim: usize) -> Result<(), Error> {
         let y = &self.run.y;
         if y.len() != dim {
             return Err(Error::Dimension {
@@ -82,6 +113,18 @@ impl Checkpoint {
             ));
         }
         Ok(())
+    }
+
+    /// Model of a scene with what hands, time and tears changed.
+    pub(super) fn model(&self, scene: &Scene) -> Result<Model, Error> {
+        let mut model = scene.model.clone();
+        if let (Model::Network(network), Some(whole)) = (&mut model, scene.model.network()) {
+            if self.touching != touches_itself(&scene.model) {
+                let_touch(network, scene, self.touching)?;
+            }
+            self.bind(network, whole)?;
+        }
+        Ok(model)
     }
 
     /// Gives a network, which is as its scene has it, what hands, time and tears changed.
@@ -108,162 +151,43 @@ impl Checkpoint {
         }
         Ok(())
     }
-}
 
-impl Simulation {
-    /// The run as it is now, with the last step of an adaptive method: some 20 arrays of the size
-    /// of the state.
-    #[must_use]
-    pub fn checkpoint(&self) -> Checkpoint {
-        let mut whole = self.moment();
-        whole.run.copy_from(&self.state);
-        whole.progress = self.stepper.progress(true);
-        whole
-    }
-
-    /// The run as it is now, without the last step of an adaptive method: what goes on from there
-    /// begins a new one.
-    #[must_use]
-    pub fn moment(&self) -> Checkpoint {
-        let mut moment = Checkpoint::new(self.state.clone());
-        self.record_model(&mut moment);
-        moment
-    }
-
-    /// Writes a [moment](Self::moment) over another one, whose memory is used again.
-    pub fn record(&self, moment: &mut Checkpoint) {
-        moment.run.copy_from(&self.state);
-        self.record_model(moment);
-    }
-
-    /// Writes what hands, time and tears changed of the model to a moment.
-    fn record_model(&self, moment: &mut Checkpoint) {
-        moment.pins.clear();
-        moment.obstacles.clear();
-        moment.torn.clear();
-        let network = self.model.network();
-        if let Some(network) = network {
-            moment.pins.extend(network.pins());
-            let obstacles = network.obstacles().iter().enumerate();
-            moment.obstacles.extend(
-                obstacles
-                    .filter(|(_, obstacle)| obstacle.shape != Shape::Floor)
-                    .map(|(k, obstacle)| (k, obstacle.path)),
-            );
-            moment.torn.extend_from_slice(network.torn());
+    /// Gives a network of the run what it had at this moment: springs that had not broken, the
+    /// paths of obstacles, and whether surfaces touched. Returns whether that changes its forces.
+    fn mend(&self, network: &mut Network, scene: &Scene) -> Result<bool, Error> {
+        let touching = network.touch().is_some_and(|touch| touch.bodies);
+        for (k, path) in &self.obstacles {
+            network.lead_obstacle(*k, *path)?;
         }
-        moment.wind = network.and_then(Network::wind).copied();
-        moment.touching = self.touching();
-        moment.progress = self.stepper.progress(false);
-        if self.stepper.within.times().is_some() {
-            moment.run.set_time(self.time());
+        let torn = network.torn() != self.torn;
+        if torn && let Some(whole) = scene.model.network() {
+            network.mend(whole, &self.torn)?;
         }
+        if self.touching != touching {
+            let_touch(network, scene, self.touching)?;
+        }
+        Ok(torn || self.touching != touching)
     }
 
-    /// Takes over everything of a checkpoint: the run goes on as the one that it was made of, to
-    /// the same bits. A run that was lost goes on too.
+    /// Puts a run of a scene back to this moment, from where it goes on by its own method.
     ///
     /// # Errors
-    /// The checkpoint is of another scene, its method does not serve this one, or a number is not
-    /// finite. The run goes on as before then.
-    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
-        checkpoint.check(self.state.y.len())?;
-        let run = &checkpoint.run;
-        let mut model = self.scene.model.clone();
-        if let (Model::Network(network), Some(whole)) = (&mut model, self.scene.model.network()) {
-            if checkpoint.touching != touches_itself(&self.scene.model) {
-                let_touch(network, &self.scene, checkpoint.touching)?;
-            }
-            checkpoint.bind(network, whole)?;
-        }
-        let mut stepper = Stepper::new(run.method, &self.scene, model.system(), run.control)?;
-        stepper.resume(&checkpoint.progress, run.y.len())?;
-        (self.model, self.stepper) = (model, stepper);
-        self.state.copy_from(run);
-        self.watch.resume();
-        self.phases.contact.forget_impulses();
-        self.blow_up = None;
-        self.keep_good();
-        Ok(())
-    }
-
-    /// Goes back to the state of a moment, and on from there as the run is now, also after a
-    /// blow-up: hands let go; method, control, work, wind, swing and which particles are pinned
-    /// stay. Surfaces touch if they
-    /// did at that moment. Pins whose path does not lead there stay where they are in that state,
-    /// or swing from there.
-    ///
-    /// # Errors
-    /// The moment is of another scene, or a number is not finite.
-    pub fn rewind(&mut self, moment: &Checkpoint) -> Result<(), Error> {
-        moment.check(self.state.y.len())?;
-        self.release();
-        self.release_obstacle();
-        self.go_back(moment)?;
-        self.blow_up = None;
-        self.keep_good();
-        let time = self.time();
-        let pins = self.model.network().into_iter().flat_map(Network::pins);
-        // Not for a rounding error: a scene's own path is kept.
-        let far = 1e-9 * self.radius;
-        let elsewhere: Vec<_> = pins
-            .filter(|(i, path)| (path.at(time).position - self.position(*i)).norm() > far)
-            .map(|(i, _)| i)
-            .collect();
-        for i in elsewhere {
-            self.leave_pin(i);
-        }
-        Ok(())
-    }
-
-    /// Goes back to the state of a moment of this run: time, springs that had not broken,
-    /// obstacles, and whether surfaces touched.
-    pub(super) fn go_back(&mut self, moment: &Checkpoint) -> Result<(), Error> {
-        let touching = self.touching();
-        if let (Model::Network(network), Some(whole)) =
-            (&mut self.model, self.scene.model.network())
+    /// The moment is of another scene.
+    pub(super) fn put_back(
+        &self,
+        scene: &Scene,
+        model: &mut Model,
+        state: &mut RunState,
+        driver: &mut Driver,
+    ) -> Result<(), Error> {
+        if let Model::Network(network) = model
+            && self.mend(network, scene)?
         {
-            for (k, path) in &moment.obstacles {
-                network.lead_obstacle(*k, *path)?;
-            }
-            let torn = network.torn() != moment.torn;
-            if torn {
-                network.mend(whole, &moment.torn)?;
-            }
-            if moment.touching != touching {
-                let_touch(network, &self.scene, moment.touching)?;
-            }
-            if torn || moment.touching != touching {
-                self.refit();
-            }
+            driver.pipeline.stepper.refit(state.method, model.system());
         }
-        let then = &moment.run;
-        self.state.y.copy_from_slice(&then.y);
-        self.state.balance = then.balance;
-        self.state.steps = then.steps;
-        self.stepper.forget();
-        // Another step is no multiple of the time that was counted then.
-        if then.control == self.state.control {
-            (self.state.since, self.state.taken) = (then.since, then.taken);
-            self.state.shown = then.shown;
-        } else {
-            self.state.set_time(then.time());
-        }
-        self.phases.contact.forget_impulses();
-        self.watch.resume();
-        self.look_again();
+        state.go_back(&self.run);
+        driver.forget();
+        driver.stop(model, state);
         Ok(())
-    }
-
-    /// Remembers the state as one to go back to after a blow-up.
-    pub(super) fn keep_good(&mut self) {
-        let good = match self.good.take() {
-            Some(mut good) => {
-                self.record(&mut good);
-                good
-            }
-            None => self.moment(),
-        };
-        self.good = Some(good);
     }
 }

@@ -8,6 +8,7 @@
 
 use nalgebra::Vector3;
 
+use super::depths::Depths;
 use crate::contact::{Approach, Course, earliest};
 use crate::network::Network;
 use crate::scene::Model;
@@ -20,13 +21,13 @@ const PIECES: usize = 8;
 const NEWTON_STEPS: usize = 8;
 
 /// Most times that a search of a piece goes on after what was no event.
-const MOST_GRAZES: usize = 8;
+const MAX_GRAZES: usize = 8;
 
 /// Share of a piece after which a search goes on.
-const AFTER: f64 = 1e-5;
+const GAP_AFTER_GRAZE: f64 = 1e-5;
 
 /// Share of a piece below which an interval of a spring's length is not halved.
-const FINEST: f64 = 1e-4;
+const MIN_INTERVAL: f64 = 1e-4;
 
 /// Kind of an event.
 #[derive(Clone, Copy, Debug)]
@@ -55,12 +56,7 @@ pub(super) struct Searched<'a> {
     pub t: f64,
     pub h: f64,
     pub ends: [&'a [f64]; 2],
-    /// Distance (m) that counts as none.
-    pub none: f64,
-    /// Depth (m) into an obstacle that needs no event.
-    pub shallow: f64,
-    /// Depth (m) to which what rests may sink.
-    pub deepest: f64,
+    pub depths: Depths,
 }
 
 /// State at a share of the step, written to the slice.
@@ -139,18 +135,21 @@ impl Events {
             let obstacle = &step.network.obstacles()[pair.obstacle];
             let approach = Approach::new(obstacle, &course, t);
             if pair.touches {
-                let deepest = step.deepest.min(0.25 * obstacle.shape.greatest_depth());
+                let deepest = step
+                    .depths
+                    .deepest
+                    .min(0.25 * obstacle.shape.greatest_depth());
                 let sunk = approach.first(0.0, deepest).filter(|_| deepest > 0.0);
                 if let Some(share) = sunk {
                     let share = begin + share / PIECES as f64;
                     keep_first(&mut first, share, EventKind::Sunk);
                 } else {
-                    pair.touches = approach.separation(1.0).distance <= step.none;
+                    pair.touches = approach.separation(1.0).distance <= step.depths.none;
                 }
                 continue;
             }
             let mut from = 0.0;
-            for _ in 0..MOST_GRAZES {
+            for _ in 0..MAX_GRAZES {
                 let Some(share) = approach.first(from, 0.0) else {
                     break;
                 };
@@ -170,7 +169,7 @@ impl Events {
                         keep_first(&mut first, share, kind);
                         break;
                     }
-                    None => from = share + AFTER,
+                    None => from = share + GAP_AFTER_GRAZE,
                 }
                 if from >= 1.0 {
                     break;
@@ -228,7 +227,7 @@ impl Events {
                     self.pairs.push(Pair {
                         particle,
                         obstacle,
-                        touches: body.shape.separation(seen).distance <= step.none,
+                        touches: body.shape.separation(seen).distance <= step.depths.none,
                     });
                 }
             }
@@ -269,7 +268,10 @@ impl Searched<'_> {
         let end = obstacle
             .shape
             .separation(pose.inwards(x - pose.place.position));
-        let shallow = self.shallow.min(0.25 * obstacle.shape.greatest_depth());
+        let shallow = self
+            .depths
+            .shallow
+            .min(0.25 * obstacle.shape.greatest_depth());
         (-shallow..=0.0).contains(&end.distance) && end.normal.dot(normal) > 0.5
     }
 
@@ -298,7 +300,7 @@ impl Searched<'_> {
             }
             share = next;
         }
-        (gap.abs() <= self.none).then_some(share)
+        (gap.abs() <= self.depths.none).then_some(share)
     }
 
     /// Distance (m) from an event at a share of the step, and its rate (m/s).
@@ -360,7 +362,7 @@ fn course<Y: AsRef<[f64]>>(ends: &[Y; 2], i: usize, h: f64, n: usize) -> Course 
 /// Share of a piece at which a vector is first longer than `longest` (m).
 fn first_longer(apart: &Course, longest: f64) -> Option<f64> {
     let [speed, _] = apart.bounds();
-    earliest([0.0, 1.0], FINEST, |[a, b]| {
+    earliest([0.0, 1.0], MIN_INTERVAL, |[a, b]| {
         let middle = apart.position(0.5 * (a + b));
         middle.norm() + speed * 0.5 * (b - a) >= longest
     })

@@ -1,6 +1,7 @@
 //! Phases after an integrator's step: springs that are too long are shortened, particles leave
 //! obstacles, or surfaces do not pass through one another, and pins are in their places.
 
+use super::depths::Depths;
 use crate::contact::{
     Contact, Impulses, Squeezed, Statistics, Step, StrainLimiter, Strained, resolve,
 };
@@ -55,16 +56,26 @@ impl Phases {
         }
     }
 
+    /// State that the step began with, as far as it was remembered.
+    pub fn y0(&self) -> &[f64] {
+        self.contact.y0()
+    }
+
+    /// Largest distance of vertices of surfaces from their chords in a step of h (s) from time
+    /// t (s) to y1, over the least thickness; 0 if nothing touches.
+    pub fn bulge(&self, model: &Model, (t, h): (f64, f64), y1: &[f64]) -> f64 {
+        let layer = model.network().and_then(Network::contact_layer);
+        let states = [self.y0(), y1];
+        let is_known = states[0].len() == states[1].len();
+        layer
+            .filter(|_| is_known)
+            .map_or(0.0, |layer| layer.bulge((t, h), states))
+    }
+
     /// Lets the particles that touch an obstacle at the end of a step, which is at time t (s) after
-    /// h (s), strike it. Of the heights (m), the first counts as none, and what would rebound by
-    /// less than the second does not.
-    pub fn strike(
-        &mut self,
-        network: &Network,
-        times: (f64, f64),
-        heights: [f64; 2],
-        y: &mut [f64],
-    ) {
+    /// h (s), strike it. What would rebound by less than a shallow depth does not.
+    pub fn strike(&mut self, network: &Network, times: (f64, f64), depths: Depths, y: &mut [f64]) {
+        let heights = [depths.none, depths.shallow];
         let (obstacles, inverse_masses) = (network.obstacles(), network.inverse_masses());
         self.contact
             .strike(obstacles, inverse_masses, times, heights, y);
@@ -100,7 +111,7 @@ impl Phases {
         knows_obstacles: bool,
         y: &mut [f64],
     ) {
-        let y0 = self.contact.y0();
+        let y0 = self.y0();
         if y0.len() != y.len() {
             return;
         }
@@ -113,6 +124,18 @@ impl Phases {
             resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
         }
         network.hold(t + h, y);
+    }
+
+    /// Forces of contact (N), n x 3, on the particles of a network at y at time t (s): those of
+    /// surfaces, and the impulses of the last step, divided by its length.
+    pub fn contact_forces(&self, network: &Network, t: f64, y: &[f64]) -> Vec<f64> {
+        let mut f = vec![0.0; 3 * network.particles()];
+        if let Some(layer) = network.contact_layer() {
+            let (x, v) = network.halves(y);
+            layer.add_repulsion(t, x, v, &mut f);
+        }
+        self.contact.add_forces(&mut f);
+        f
     }
 
     /// Shortens springs that are too long.

@@ -22,12 +22,12 @@ use crate::system::{Measure, ParticleSystem};
 
 /// Way (m) in which friction or weight ends a motion that counts as none, over the error that is
 /// tolerated. Larger, it shows; smaller, what friction has nearly stopped creeps on, in tiny steps.
-const STILL: f64 = 1e-2;
+const STILL_SHARE: f64 = 1e-2;
 /// Length of the interval in which a contact ceases, as a share of the step, at which its search
 /// ends.
-const FINEST: f64 = 1e-13;
+const MIN_INTERVAL: f64 = 1e-13;
 /// Largest speed at the end of a slide, over that at the beginning of the step.
-const TURNS: f64 = 0.01;
+const MAX_TURNING_SPEED: f64 = 0.01;
 /// Excess of a force over what a contact can hold, as a share of it, that rounding cannot cause.
 const ROUNDING: f64 = 1e-10;
 
@@ -132,6 +132,11 @@ impl Rests {
         (&self.now, &mut self.scratch)
     }
 
+    /// View of a model in which the particles rest, if any do.
+    pub fn view<'a>(&'a self, model: &'a Model) -> Option<Resting<'a>> {
+        Resting::of(model, &self.now)
+    }
+
     /// Begins a step in which no particle rests, as far as is known.
     pub fn clear(&mut self) {
         self.now.clear();
@@ -177,13 +182,14 @@ impl Rests {
             let press = -free.dot(&rest.normal);
             let most = network.obstacles()[rest.obstacle].friction * press;
             let leaving = speed.dot(&rest.normal);
-            let is_still = |speed: f64, slowing: f64| speed * speed <= STILL * still * slowing;
+            let is_still =
+                |speed: f64, slowing: f64| speed * speed <= STILL_SHARE * still * slowing;
             if press <= 0.0 || !is_still(leaving, press) {
                 return false;
             }
             let slide = speed - rest.normal * leaving;
             let across = free + rest.normal * press;
-            let slack = (STILL * still * most).sqrt();
+            let slack = (STILL_SHARE * still * most).sqrt();
             if slide.norm() > slack {
                 rest.slide = Slide::of(slide, slide.norm(), 0.0);
                 set_row(v, n, rest.particle, slide);
@@ -212,10 +218,12 @@ impl Rests {
     }
 }
 
-/// View of a model in which particles rest, if any do.
-pub(super) fn view<'a>(model: &'a Model, rests: &'a [Rest]) -> Option<Resting<'a>> {
-    let network = model.network().filter(|_| !rests.is_empty())?;
-    Some(Resting { network, rests })
+impl<'a> Resting<'a> {
+    /// View of a model in which particles rest, if any do.
+    pub fn of(model: &'a Model, rests: &'a [Rest]) -> Option<Self> {
+        let network = model.network().filter(|_| !rests.is_empty())?;
+        Some(Self { network, rests })
+    }
 }
 
 /// Finds where the first contact ceases, before a share of a step from t (s) of h (s), on its
@@ -246,7 +254,7 @@ pub(super) fn first_end(
         return None;
     }
     let mut low = (0.0, margin(0.0, found));
-    while low.1 > 0.0 && high.0 - low.0 > FINEST {
+    while low.1 > 0.0 && high.0 - low.0 > MIN_INTERVAL {
         // The secant's step, kept away from the ends.
         let secant = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
         let edge = 0.01 * (high.0 - low.0);
@@ -300,7 +308,7 @@ impl Rest {
             return;
         };
         let slide = self.slide(network, y);
-        if slide.dot(&along) <= 0.0 && slide.norm() <= TURNS * speed {
+        if slide.dot(&along) <= 0.0 && slide.norm() <= MAX_TURNING_SPEED * speed {
             let (n, i) = (network.particles(), self.particle);
             let v = &mut y[3 * n..6 * n];
             let still = row(v, n, i) - slide;

@@ -4,21 +4,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::balance::Balance;
+use super::grabbed::Grabbed;
 use crate::contact::Guarded;
 use crate::control::Control;
+use crate::error::{BlowUp, Cause, Error};
 use crate::integrators::{Method, Work};
-use crate::path::Path;
-
-/// A particle in the hand.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Grabbed {
-    /// Number of the particle.
-    pub particle: usize,
-    /// Whether the particle was pinned before, and is again when the hand lets go.
-    pub was_pinned: bool,
-    /// Path along which the hand leads it.
-    pub path: Path,
-}
+use crate::scene::{Model, Scene};
 
 /// State of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,6 +51,35 @@ pub struct RunState {
 }
 
 impl RunState {
+    /// State of a run at the beginning of a scene.
+    ///
+    /// # Errors
+    /// The scene's state has another length than its model's, or surfaces cross there.
+    pub(super) fn begin(
+        scene: &Scene,
+        method: &'static Method,
+        control: Control,
+    ) -> Result<Self, Error> {
+        let (model, y) = (&scene.model, &scene.state);
+        let dim = model.system().dim();
+        if y.len() != dim {
+            return Err(Error::Dimension {
+                expected: dim,
+                found: y.len(),
+            });
+        }
+        if dim == 0 || dim % 3 != 0 && model.network().is_none() {
+            return Err(Error::Invalid(format!(
+                "the state of a scene must be n x 3 numbers, not {dim}"
+            )));
+        }
+        if let Some(network) = model.network().filter(|n| n.contact_layer().is_some()) {
+            let apart = network.check_apart(0.0, network.halves(y).0);
+            apart.map_err(|e| Error::Invalid(format!("surfaces cannot begin crossed: {e}")))?;
+        }
+        Ok(Self::new(method, control, y.clone()))
+    }
+
     /// State of a run that begins at y.
     pub(super) fn new(method: &'static Method, control: Control, y: Vec<f64>) -> Self {
         Self {
@@ -89,6 +109,28 @@ impl RunState {
         *self = Self { y, ..*other };
     }
 
+    /// Blow-up of the run by a cause, at a time (s).
+    pub(super) fn blow_up(&self, cause: Cause, time: f64) -> BlowUp {
+        BlowUp {
+            method: self.method.title,
+            control: self.control,
+            step: self.steps,
+            time,
+            cause,
+        }
+    }
+
+    /// Velocities (m/s) of a model, column-major: of a mechanical one from the state, of a
+    /// first-order one from f.
+    pub(super) fn velocities(&self, model: &Model) -> Vec<f64> {
+        if let Some(network) = model.network() {
+            return network.halves(&self.y).1.to_vec();
+        }
+        let mut v = vec![0.0; self.y.len()];
+        model.system().eval_f(self.time(), &self.y, &mut v);
+        v
+    }
+
     /// Simulated time, which is shown (s).
     #[must_use]
     pub fn time(&self) -> f64 {
@@ -103,6 +145,19 @@ impl RunState {
     /// Sets the time (s), from which steps are counted.
     pub(super) fn set_time(&mut self, time: f64) {
         (self.since, self.taken, self.shown) = (time, 0, None);
+    }
+
+    /// Goes back to what the run was at another time, by its own method, in its own hands.
+    pub(super) fn go_back(&mut self, then: &Self) {
+        self.y.copy_from_slice(&then.y);
+        (self.balance, self.steps) = (then.balance, then.steps);
+        // Another step is no multiple of the time that was counted then.
+        if then.control == self.control {
+            (self.since, self.taken) = (then.since, then.taken);
+            self.shown = then.shown;
+        } else {
+            self.set_time(then.time());
+        }
     }
 }
 

@@ -1,36 +1,17 @@
-//! Steps a run: at a fixed step, or adaptively. A time shown may be within a step, whose state is
-//! then read off the step's polynomial: how often a run is looked at changes nothing.
+//! Steps a run: at a fixed step, or adaptively.
 
-use serde::{Deserialize, Serialize};
-
-use super::within::{Span, Within};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Adaptive, AdaptiveState, Integrator, Method, Taken, Work};
 use crate::scene::Scene;
 use crate::system::ParticleSystem;
 
-/// Integrator of a run, and the step that the time shown is within.
-pub(super) struct Stepper {
-    pub kind: Kind,
-    pub within: Within,
-}
-
-/// Kind of steps.
-pub(super) enum Kind {
-    /// Steps of a fixed length.
+/// Integrator of a run.
+pub(super) enum Stepper {
+    /// Takes steps of a fixed length.
     Fixed(Box<dyn Integrator>),
-    /// Steps whose length the method chooses.
+    /// Takes steps whose length the method chooses.
     Adaptive(Box<Adaptive>),
-}
-
-/// Progress of a run within a step, and what an adaptive method remembers.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Progress {
-    /// Memory of an adaptive method.
-    pub method: Option<AdaptiveState>,
-    /// Step that the time shown is within.
-    pub within: Option<Span>,
 }
 
 impl Stepper {
@@ -51,18 +32,23 @@ impl Stepper {
         };
         // The integrator is made in any case: it checks that the method serves the system.
         let integrator = method.integrator(system)?;
-        Ok(Self {
-            kind: match adaptive {
-                None => Kind::Fixed(integrator),
-                Some(adaptive) => Kind::Adaptive(Box::new(adaptive)),
-            },
-            within: Within::default(),
+        Ok(match adaptive {
+            None => Self::Fixed(integrator),
+            Some(adaptive) => Self::Adaptive(Box::new(adaptive)),
         })
     }
 
     /// Whether the method chooses its steps.
     pub fn is_adaptive(&self) -> bool {
-        matches!(self.kind, Kind::Adaptive(_))
+        matches!(self, Self::Adaptive(_))
+    }
+
+    /// The step (s): the fixed one, or the last one under a tolerance, if there was one yet.
+    pub fn step_size(&self, control: Control) -> Option<f64> {
+        match self {
+            Self::Fixed(_) => control.step(),
+            Self::Adaptive(adaptive) => Some(adaptive.last().h).filter(|h| *h > 0.0),
+        }
     }
 
     /// Takes y from t (s) to the end of a step: of the fixed length, or of the method's choice and
@@ -78,9 +64,9 @@ impl Stepper {
         longest: f64,
         y: &mut [f64],
     ) -> Result<Taken, Error> {
-        match &mut self.kind {
-            Kind::Adaptive(adaptive) => adaptive.advance(system, t, longest, y),
-            Kind::Fixed(integrator) => {
+        match self {
+            Self::Adaptive(adaptive) => adaptive.advance(system, t, longest, y),
+            Self::Fixed(integrator) => {
                 let h = control.value();
                 let work = integrator.step(system, t, h, y)?;
                 Ok(Taken { t, h, work })
@@ -99,9 +85,9 @@ impl Stepper {
         y0: &[f64],
         out: &mut [f64],
     ) -> Work {
-        match &mut self.kind {
-            Kind::Adaptive(adaptive) => adaptive.interpolate(system, t + since, out),
-            Kind::Fixed(integrator) => {
+        match self {
+            Self::Adaptive(adaptive) => adaptive.interpolate(system, t + since, out),
+            Self::Fixed(integrator) => {
                 out.copy_from_slice(y0);
                 integrator.step(system, t, since, out).unwrap_or_else(|_| {
                     out.fill(f64::NAN);
@@ -113,32 +99,38 @@ impl Stepper {
 
     /// Forgets the last step: the state or the system is no longer the one that it ended with.
     pub fn forget(&mut self) {
-        self.within.leave();
-        if let Kind::Adaptive(adaptive) = &mut self.kind {
+        if let Self::Adaptive(adaptive) = self {
             adaptive.restart();
         }
     }
 
-    /// Progress of the run or, without `whole`, only what a new step needs.
-    pub fn progress(&self, whole: bool) -> Progress {
-        let within = self.within.span().filter(|_| whole);
-        Progress {
-            method: match &self.kind {
-                Kind::Fixed(_) => None,
-                Kind::Adaptive(adaptive) => Some(adaptive.state(whole)),
-            },
-            within,
+    /// Makes the integrator anew for a system that has changed: it makes room for the forces that
+    /// it meets, and knows what they cost.
+    pub fn refit(&mut self, method: &Method, system: &dyn ParticleSystem) {
+        // The method served this system before.
+        if let Self::Fixed(integrator) = self
+            && let Ok(other) = method.integrator(system)
+        {
+            *integrator = other;
         }
     }
 
-    /// Goes on from that progress.
+    /// Memory of an adaptive method: all of it or, without `whole`, only what a new step needs.
+    pub fn memory(&self, whole: bool) -> Option<AdaptiveState> {
+        match self {
+            Self::Fixed(_) => None,
+            Self::Adaptive(adaptive) => Some(adaptive.state(whole)),
+        }
+    }
+
+    /// Goes on with that memory.
     ///
     /// # Errors
-    /// It is of another method or of another system.
-    pub fn resume(&mut self, progress: &Progress, dim: usize) -> Result<(), Error> {
-        if let (Kind::Adaptive(adaptive), Some(state)) = (&mut self.kind, &progress.method) {
-            adaptive.resume(state)?;
+    /// It is of another method.
+    pub fn resume(&mut self, memory: Option<&AdaptiveState>) -> Result<(), Error> {
+        match (self, memory) {
+            (Self::Adaptive(adaptive), Some(memory)) => adaptive.resume(memory),
+            _ => Ok(()),
         }
-        self.within.resume(progress.within.as_ref(), dim)
     }
 }

@@ -15,11 +15,11 @@ use crate::system::ParticleSystem;
 
 /// Difference between the acceleration of the polynomial and that of the system in the middle of
 /// the step, over the largest acceleration at its ends, above which a straight line is taken.
-const UNEXPLAINED: f64 = 0.375;
+const MAX_UNEXPLAINED: f64 = 0.375;
 
 /// Number of times that the middle of a step is looked at, at most: what leaves its polynomial
 /// changes the forces on others.
-const ROUNDS: usize = 4;
+const MAX_ROUNDS: usize = 4;
 
 /// Step that a time shown is within.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -114,7 +114,7 @@ impl Within {
         let [mut y, mut f] = std::mem::take(&mut self.middle);
         y.resize(dim, 0.0);
         f.resize(dim, 0.0);
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             self.write(n, 0.5, h, &mut y);
             system.hold(t0 + 0.5 * h, &mut y);
             system.eval_f(t0 + 0.5 * h, &y, &mut f);
@@ -149,7 +149,7 @@ impl Within {
             first += f0[k].powi(2);
             last += f1[k].powi(2);
         }
-        missed <= UNEXPLAINED.powi(2) * first.max(last)
+        missed <= MAX_UNEXPLAINED.powi(2) * first.max(last)
     }
 
     /// Writes the state at the fraction theta of a step of h (s), without pins.
@@ -198,14 +198,14 @@ impl Within {
         })
     }
 
-    /// Goes on within a step.
+    /// That step again, of a system of that dimension.
     ///
     /// # Errors
     /// It is of another system, or its times are none of a step.
-    pub fn resume(&mut self, span: Option<&Span>, dim: usize) -> Result<(), Error> {
-        self.times = None;
+    pub fn of(span: Option<&Span>, dim: usize) -> Result<Self, Error> {
+        let mut within = Self::default();
         let Some(Span { times, ends }) = span else {
-            return Ok(());
+            return Ok(within);
         };
         let [t0, t1] = *times;
         if !(t0 < t1 && (t1 - t0).is_finite()) {
@@ -221,9 +221,9 @@ impl Within {
                 });
             }
         }
-        self.begin(&ends[0]);
-        self.enter(*times, &ends[1]);
-        Ok(())
+        within.begin(&ends[0]);
+        within.enter(*times, &ends[1]);
+        Ok(within)
     }
 }
 

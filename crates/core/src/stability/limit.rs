@@ -1,6 +1,7 @@
 //! Largest steps by linear theory: up to which no mode grows, and at which modes grow tenfold.
 
-use super::{Growth, Mode};
+use super::growth::Growth;
+use super::mode::Mode;
 use crate::error::Error;
 use crate::integrators::Method;
 

@@ -4,7 +4,7 @@
 
 use nalgebra::Vector3;
 
-use super::{GROWTH, tenfold_time};
+use super::limit::{GROWTH, tenfold_time};
 use crate::columns::columns_mut;
 use crate::coupling::Coupling;
 use crate::elements::flow_each;

@@ -6,8 +6,12 @@
 //! however long the run, and never grows: this multiple is known (`Growth::swing`) and allowed.
 //! A run is *accurate* while its error is below a hundredth of the motion.
 
+use super::growth::Growth;
+use super::limit::{GROWTH, HORIZON, largest_step};
+use super::mode::Mode;
+use super::observation::Observation;
 use super::search::{Budget, MOST, bisect, sharpen, step_and_look, steps};
-use super::{GROWTH, Growth, HORIZON, Mode, Observation, largest_step, spectrum};
+use super::spectrum::spectrum;
 use std::cell::RefCell;
 
 use crate::control::Control;

@@ -1,6 +1,6 @@
 //! Stiffness and damping over mass, as operators on the shapes of modes.
 
-use super::Mode;
+use super::mode::Mode;
 use crate::random::SplitMix;
 use crate::system::{Linearized, kick_reads_velocity};
 

@@ -5,8 +5,8 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::Mode;
 use super::eigenvalues::eigenvalues;
+use super::mode::Mode;
 use super::normalised::Normalised;
 use crate::random::SplitMix;
 use crate::system::Linearized;

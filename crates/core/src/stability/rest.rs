@@ -1,12 +1,14 @@
 //! Scenes at rest: the state of rest, and the largest step with which a small
 //! disturbance around it does not grow.
 
+use super::limit::{GROWTH, Limit, largest_step};
 use super::linearised::AtRest;
+use super::mode::Mode;
 use super::normalised::Mixing;
+use super::observation::Observation;
 use super::pencil::Pencil;
 use super::search::{Budget, bisect, cost, step_and_look, steps};
 use super::spectrum::{Undamped, of_drag, shapes};
-use super::{GROWTH, Limit, Mode, Observation, largest_step};
 use crate::control::Control;
 use crate::error::Error;
 use crate::integrators::{Method, find};
@@ -207,7 +209,8 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
             if dear || !go_on() || run.take_steps(1).is_err() {
                 return Ok(None);
             }
-            // Where the guard of surfaces holds what falls, nothing rests on the force of contact.
+            // If the guard of surfaces carries the weight, and not the force of contact, there is
+            // no equilibrium: steps become shorter.
             let now = run.control().value();
             let next = if acts(&run) > held {
                 SHORTER * now

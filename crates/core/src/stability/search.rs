@@ -2,7 +2,8 @@
 
 use std::cell::Cell;
 
-use super::{HORIZON, Observation, STEPS};
+use super::limit::{HORIZON, STEPS};
+use super::observation::Observation;
 use crate::elements::Element;
 use crate::error::Error;
 use crate::integrators::Method;

@@ -3,8 +3,8 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use super::Mode;
 use super::eigenvalues::{ITERATIONS, PRECISIONS, eigenvalues};
+use super::mode::Mode;
 use super::normalised::{MIXED, Mixing, Normalised, dot, normalise};
 use super::pencil::Pencil;
 use crate::system::{Linearized, Mechanics, ParticleSystem, kick_reads_velocity};

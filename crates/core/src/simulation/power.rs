@@ -1,4 +1,4 @@
-//! Work on a scene: by pins that move, wind, constraints and obstacles.
+//! Power and work of what drives a scene: pins that move, wind, constraints and obstacles.
 //!
 //! A pin works against the springs at its particle and against gravity. Its power is integrated
 //! over each step: by Simpson's rule, with the state in the middle from the Hermite polynomial,
@@ -22,10 +22,10 @@ use crate::system::{Mechanics, ParticleSystem};
 const INTERVAL: f64 = 1.0 / 60.0;
 
 /// ... because there are more particles than this.
-const FEW: usize = 200;
+const FEW_PARTICLES: usize = 200;
 
 /// Half of the time over which the power of all together is found (s).
-const MOMENT: f64 = 1e-7;
+const HALF_MOMENT: f64 = 1e-7;
 
 /// Order above which a method's steps are long, and Simpson's rule is needed.
 const LOW_ORDER: u32 = 2;
@@ -44,9 +44,9 @@ pub(super) struct End<'a> {
     pub y: &'a [f64],
 }
 
-/// All that works on a scene.
+/// Power of all that works on a scene.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Drive {
+pub(super) struct Power {
     /// Whether the parts are those of the network and the state as they are.
     is_fresh: bool,
     pins: Option<Pins>,
@@ -54,7 +54,7 @@ pub(super) struct Drive {
     all: Option<All>,
 }
 
-impl Drive {
+impl Power {
     /// Gets ready for a step from y at time t (s), if it is not.
     pub fn begin(&mut self, network: &Network, t: f64, y: &[f64]) {
         if std::mem::replace(&mut self.is_fresh, true) {
@@ -252,7 +252,7 @@ impl Breeze {
     }
 
     fn work(&mut self, network: &Network, End { t, y, .. }: End) -> f64 {
-        let few = network.particles() <= FEW;
+        let few = network.particles() <= FEW_PARTICLES;
         if !few && t - self.t < INTERVAL {
             return 0.0;
         }
@@ -298,7 +298,7 @@ impl All {
 
     fn work(&mut self, network: &Network, end: End) -> f64 {
         let h = end.t - self.t;
-        let few = network.particles() <= FEW;
+        let few = network.particles() <= FEW_PARTICLES;
         if !few && h < INTERVAL {
             return 0.0;
         }
@@ -330,7 +330,7 @@ impl All {
             state.extend(y.iter().zip(&*f).map(|(y, f)| y + moment * f));
             energy_of(network, t + moment, state).total()
         };
-        (at(MOMENT) - at(-MOMENT)) / (2.0 * MOMENT)
+        (at(HALF_MOMENT) - at(-HALF_MOMENT)) / (2.0 * HALF_MOMENT)
     }
 }
 

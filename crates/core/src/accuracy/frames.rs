@@ -1,0 +1,48 @@
+//! Frames: times at which runs are compared.
+
+use crate::simulation::Simulation;
+
+/// Function that is called between frames and returns whether to go on.
+pub type GoOn<'a> = &'a dyn Fn() -> bool;
+
+/// Times at which runs are compared: the ends of `count` equal parts of the time from 0 to `until`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frames {
+    /// Time of the last frame (s).
+    pub until: f64,
+    /// Number of frames.
+    pub count: u64,
+}
+
+impl Frames {
+    /// Frames up to `until` (s): at least 60 in each second, and at least 60 in all.
+    #[must_use]
+    pub fn new(until: f64) -> Self {
+        Self {
+            until,
+            count: 60 * until.ceil().max(1.0) as u64,
+        }
+    }
+
+    /// Interval between frames (s).
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.until / self.count as f64
+    }
+
+    /// Time of frame k (s).
+    #[must_use]
+    pub fn time(&self, k: u64) -> f64 {
+        if k == self.count {
+            self.until
+        } else {
+            k as f64 * self.spacing()
+        }
+    }
+
+    /// Number of steps of h (s) that reach the last frame; the last step may be shorter.
+    #[must_use]
+    pub fn steps(&self, h: f64) -> u64 {
+        (self.until / h - Simulation::SLIVER).ceil().max(1.0) as u64
+    }
+}

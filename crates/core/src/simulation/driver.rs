@@ -1,0 +1,253 @@
+//! Driver of a run: it takes whole steps only. A time that is asked for may be within one: the run
+//! goes to the end of that step, and the state shown is read off the step's polynomial. How often a
+//! run is looked at changes nothing.
+
+use serde::{Deserialize, Serialize};
+
+use super::balance::Balance;
+use super::failure::Failure;
+use super::state::RunState;
+use super::step::{Pipeline, SLIVER};
+use super::stepper::Stepper;
+use super::within::{Span, Within};
+use crate::control::Control;
+use crate::error::Error;
+use crate::integrators::AdaptiveState;
+use crate::scene::Model;
+use crate::threads::among_threads;
+
+/// Progress of a run within a step, and what an adaptive method remembers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Progress {
+    /// Memory of an adaptive method.
+    pub method: Option<AdaptiveState>,
+    /// Step that the time shown is within.
+    pub within: Option<Span>,
+}
+
+/// Driver of a run, with the step that the time shown is within.
+pub(super) struct Driver {
+    pub pipeline: Pipeline,
+    within: Within,
+}
+
+impl Driver {
+    /// Driver that begins.
+    pub fn new(pipeline: Pipeline) -> Self {
+        let within = Within::default();
+        Self { pipeline, within }
+    }
+
+    /// Goes on by another stepper from the time shown.
+    pub fn change_stepper(&mut self, stepper: Stepper) {
+        self.pipeline.stepper = stepper;
+        self.within.leave();
+    }
+
+    /// Goes on by another stepper, from another state of a system of that dimension.
+    ///
+    /// # Errors
+    /// The progress is of another method or of another system.
+    pub fn resume(
+        &mut self,
+        mut stepper: Stepper,
+        progress: &Progress,
+        dim: usize,
+    ) -> Result<(), Error> {
+        stepper.resume(progress.method.as_ref())?;
+        self.within = Within::of(progress.within.as_ref(), dim)?;
+        self.pipeline.stepper = stepper;
+        self.pipeline.watch.resume();
+        self.pipeline.phases.contact.forget_impulses();
+        Ok(())
+    }
+
+    /// Forgets the last step: the run goes on from another state.
+    pub fn forget(&mut self) {
+        self.within.leave();
+        self.pipeline.stepper.forget();
+        self.pipeline.watch.resume();
+        self.pipeline.phases.contact.forget_impulses();
+    }
+
+    /// Progress of the run or, without `whole`, only what a new step needs.
+    pub fn progress(&self, whole: bool) -> Progress {
+        Progress {
+            method: self.pipeline.stepper.memory(whole),
+            within: self.within.span().filter(|_| whole),
+        }
+    }
+
+    /// Whether the time shown is within a step.
+    pub fn is_within(&self) -> bool {
+        self.within.times().is_some()
+    }
+
+    /// Balance of energy at the end of the last step.
+    pub fn balance(&self, model: &Model, state: &RunState) -> Balance {
+        let (watch, end) = (&self.pipeline.watch, self.last_end(state));
+        watch.balance_at(model, state.balance, end).0
+    }
+
+    /// Looks at the energy at the end of the last step.
+    ///
+    /// # Errors
+    /// The run is lost.
+    pub fn conclude(&self, model: &Model, state: &RunState) -> Result<(), Failure> {
+        let (watch, end) = (&self.pipeline.watch, self.last_end(state));
+        match watch.balance_at(model, state.balance, end).1 {
+            Some(cause) => Err(Failure::Lost { cause, time: end.0 }),
+            None => Ok(()),
+        }
+    }
+
+    /// Time (s) and state at the end of the last step.
+    fn last_end<'a>(&'a self, state: &'a RunState) -> (f64, &'a [f64]) {
+        let within = self.within.end();
+        within.unwrap_or_else(|| (state.time(), &state.y))
+    }
+
+    /// Takes `count` steps; one that the time shown is within is finished, and counts.
+    ///
+    /// # Errors
+    /// The run is lost, or a step failed.
+    pub fn take_steps(
+        &mut self,
+        model: &mut Model,
+        state: &mut RunState,
+        count: u64,
+    ) -> Result<(), Failure> {
+        among_threads(model.particles(), || {
+            for _ in 0..count {
+                if !self.arrive(model, state) {
+                    self.pipeline.step(model, state)?;
+                    self.pipeline.tear(model, state);
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Takes steps up to `time` (s), and shows the state there.
+    ///
+    /// # Errors
+    /// The run is lost, or a step failed.
+    pub fn advance_to(
+        &mut self,
+        model: &mut Model,
+        state: &mut RunState,
+        time: f64,
+    ) -> Result<(), Failure> {
+        among_threads(model.particles(), || self.go_on(model, state, time))
+    }
+
+    fn go_on(&mut self, model: &mut Model, state: &mut RunState, time: f64) -> Result<(), Failure> {
+        loop {
+            let step = self.pipeline.stepper.step_size(state.control);
+            let sliver = SLIVER * step.unwrap_or(0.0);
+            if let Some(end) = self.within.until() {
+                if time <= state.time() {
+                    return Ok(());
+                }
+                if time < end - sliver {
+                    self.show(model, state, time);
+                    return Ok(());
+                }
+                self.arrive(model, state);
+            }
+            let begin = state.end();
+            if time <= begin + sliver {
+                if time >= begin - sliver {
+                    // The last step ends there, except for rounding.
+                    state.shown = Some(time).filter(|time| *time != begin);
+                }
+                return Ok(());
+            }
+            state.shown = None;
+            let ends_later = |h: f64| begin + h * (1.0 - SLIVER) > time;
+            if state.control.step().is_some_and(ends_later) {
+                self.within.begin(&state.y);
+            }
+            self.pipeline.step(model, state)?;
+            let end = state.end();
+            if ends_later(end - begin) {
+                self.within.enter([begin, end], &state.y);
+                self.show(model, state, time);
+                return Ok(());
+            }
+            self.pipeline.tear(model, state);
+        }
+    }
+
+    /// Goes on to the end of the step that the time shown is within. Returns whether it was within
+    /// one.
+    fn arrive(&mut self, model: &mut Model, state: &mut RunState) -> bool {
+        state.shown = None;
+        let end = self.within.leave();
+        let is_within = end.is_some();
+        if let Some(end) = end {
+            std::mem::swap(end, &mut state.y);
+            self.pipeline.tear(model, state);
+        }
+        is_within
+    }
+
+    /// Shows the state at a time (s) within the step: as its polynomial has it, with contact and
+    /// pins as at the end of a step.
+    fn show(&mut self, model: &Model, state: &mut RunState, time: f64) {
+        let (system, network) = (model.system(), model.network());
+        let y = &mut state.y;
+        let Some([begin, _]) = self.within.times() else {
+            return;
+        };
+        match &mut self.pipeline.stepper {
+            Stepper::Fixed(_) => {
+                let n = network.map_or(0, |_| model.particles());
+                self.within.interpolate((system, n), time, y);
+            }
+            Stepper::Adaptive(adaptive) => {
+                state.work += adaptive.interpolate(system, time, y);
+                system.hold(time, y);
+            }
+        }
+        if let Some(network) = network {
+            let knows_contact = !self.pipeline.stepper.is_adaptive();
+            let phases = &self.pipeline.phases;
+            phases.settle_shown(network, (begin, time - begin), knows_contact, y);
+        }
+        state.shown = Some(time);
+    }
+
+    /// Ends the step at the time shown, before the state or the system changes there: an adaptive
+    /// step by its polynomial, and a fixed one by a shorter step, whose end is as stable.
+    pub fn stop(&mut self, model: &Model, state: &mut RunState) {
+        let time = state.time();
+        let end = self.within.until().unwrap_or(time);
+        if let Some([begin, _]) = self.within.times() {
+            if !self.pipeline.stepper.is_adaptive() {
+                self.shorten_step(model, state, begin, time);
+            }
+            state.set_time(time);
+        }
+        state.shown = None;
+        self.within.leave();
+        self.pipeline.stepper.forget();
+        self.pipeline.watch.disturb(model, state, time, end);
+    }
+
+    /// Takes the step that began at time t (s) again, to the time shown. A state that is read off
+    /// stays where that fails.
+    fn shorten_step(&mut self, model: &Model, state: &mut RunState, t: f64, time: f64) {
+        let Pipeline {
+            stepper, phases, ..
+        } = &mut self.pipeline;
+        let mut y = self.within.y0().to_vec();
+        phases.begin(model, &y, false);
+        let step = Control::Step(time - t);
+        let taken = stepper.integrate(model.system(), step, t, time - t, &mut y);
+        let settled = phases.settle(model, (t, time - t), &mut y);
+        if taken.is_ok() && settled.is_ok() && y.iter().all(|y| y.is_finite()) {
+            state.y = y;
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Hand that plans where it leads particles and obstacles, from what it sees at the time shown.
+
+use nalgebra::Vector3;
+
+use super::grabbed::{Grabbed, PULL_TIME};
+use super::state::RunState;
+use crate::columns::row;
+use crate::contact::Shape;
+use crate::error::Error;
+use crate::network::Network;
+use crate::path::Path;
+use crate::scene::{Model, Scene};
+
+/// Largest speed of a hand, in radii of the scene per second.
+const PULL_SPEED: f64 = 10.0;
+
+/// Greatest distance, in radii of the scene, from which a spring attracts what constraints hold ...
+const PULL_REACH: f64 = 0.05;
+
+/// ... and what they do not, where surfaces touch.
+const FREE_REACH: f64 = 0.5;
+
+/// Share of the particle's way to its target by which each pull moves the hand on: so it gets there
+/// whatever hangs on it.
+const FOLLOWED_SHARE: f64 = 0.25;
+
+/// Least and greatest length that a hand gives to a rod whose other end has not followed yet, in
+/// lengths of the rod.
+const ROD_LENGTHS: (f64, f64) = (0.95, 1.05);
+
+/// Hand, and what it sees.
+pub(super) struct Hand<'a> {
+    network: &'a Network,
+    /// State that is shown.
+    y: &'a [f64],
+    /// Time that is shown (s).
+    time: f64,
+    /// Radius of the scene (m).
+    radius: f64,
+    /// Largest length, in rest lengths, to which it stretches springs.
+    reach: f64,
+}
+
+impl<'a> Hand<'a> {
+    /// Hand on a run, in a scene of that radius (m) with masses.
+    pub fn of(scene: &Scene, model: &'a Model, state: &'a RunState, radius: f64) -> Option<Self> {
+        model.network().map(|network| Self {
+            network,
+            y: &state.y,
+            time: state.time(),
+            radius,
+            reach: scene.reach,
+        })
+    }
+
+    /// Takes hold of particle i where it is.
+    ///
+    /// # Errors
+    /// There is no such particle.
+    pub fn grab(&self, i: usize) -> Result<Grabbed, Error> {
+        self.network.check_particle(i)?;
+        Ok(Grabbed {
+            particle: i,
+            was_pinned: self.network.is_pinned(i),
+            path: Path::Still(self.position(i)),
+        })
+    }
+
+    /// Pulls a particle towards `target` (m), as far as springs, rods and its own speed allow.
+    pub fn pull(&self, grabbed: Grabbed, target: Vector3<f64>) -> Grabbed {
+        let i = grabbed.particle;
+        let from = self.position(i);
+        let within =
+            |share: f64, ahead: Vector3<f64>| from + ahead.cap_magnitude(share * self.radius);
+        let path = match grabbed.is_attracted(self.network) {
+            true if self.network.is_held(i) => self.way(from, within(PULL_REACH, target - from)),
+            // The hand goes on where it was, until the particle is at the target.
+            true => {
+                let hand = grabbed.path.at(self.time).position;
+                let ahead = hand - from + (target - from) * FOLLOWED_SHARE;
+                self.way(hand, within(FREE_REACH, ahead))
+            }
+            false => self.way(from, self.within_reach(i, from, target)),
+        };
+        Grabbed { path, ..grabbed }
+    }
+
+    /// Checks that obstacle k can be taken hold of.
+    ///
+    /// # Errors
+    /// There is no such obstacle, or it is a floor.
+    pub fn check_obstacle(&self, k: usize) -> Result<(), Error> {
+        self.network.check_obstacle(k)?;
+        if self.network.obstacles()[k].shape == Shape::Floor {
+            return Err(Error::Invalid("a floor cannot be pushed".into()));
+        }
+        Ok(())
+    }
+
+    /// Path of obstacle k from where it is to a target (m), or without one, where it is. `None` if
+    /// there is no such obstacle.
+    pub fn push(&self, k: usize, target: Option<Vector3<f64>>) -> Option<Path> {
+        let from = self.network.obstacles().get(k)?.path.at(self.time).position;
+        Some(target.map_or(Path::Still(from), |target| self.way(from, target)))
+    }
+
+    fn position(&self, i: usize) -> Vector3<f64> {
+        row(self.y, self.network.particles(), i)
+    }
+
+    /// The path of a hand that begins to move now.
+    fn way(&self, from: Vector3<f64>, to: Vector3<f64>) -> Path {
+        let start = self.time;
+        let time = PULL_TIME.max((to - from).norm() / (PULL_SPEED * self.radius));
+        Path::Line {
+            from,
+            to,
+            start,
+            end: start + time,
+        }
+    }
+
+    /// The point on the way of particle i to `target` up to which no spring of its own and no edge
+    /// of a tetrahedron is stretched too far, and no rod stretched or squeezed. A spring or rod
+    /// that is already may not become worse.
+    fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
+        let way = target - from;
+        let springs = self.network.springs_of(i);
+        let springs = springs.map(|s| (s.i + s.j - i, s.law.rest_length));
+        let springs = springs
+            .chain(self.network.neighbours_in_solids(i))
+            .map(|(other, rest)| (other, 0.0, self.reach * rest));
+        let rods = self.network.rods_of(i);
+        let rods =
+            rods.map(|(other, length)| (other, ROD_LENGTHS.0 * length, ROD_LENGTHS.1 * length));
+        let share = springs
+            .chain(rods)
+            .map(|(other, shortest, longest)| {
+                share(from - self.position(other), way, shortest, longest)
+            })
+            .fold(1.0, f64::min);
+        from + share * way
+    }
+}
+
+/// The share, at most 1, of a `way` (m) that a particle at d (m) from the other end of a spring or
+/// rod may go before it is nearer than `shortest` or farther than `longest` (m).
+fn share(d: Vector3<f64>, way: Vector3<f64>, shortest: f64, longest: f64) -> f64 {
+    let (a, b, distance) = (way.norm_squared(), d.dot(&way), d.norm());
+    if a == 0.0 {
+        return 1.0;
+    }
+    // Where it crosses a limit: the roots u of |d + u way| = limit are (-b -+ root) / a.
+    let squared = |limit: f64| b * b - a * (d.norm_squared() - limit * limit);
+    let leaves = (-b + squared(longest.max(distance)).max(0.0).sqrt()) / a;
+    let enters = squared(shortest.min(distance));
+    if shortest > 0.0 && b < 0.0 && enters >= 0.0 {
+        leaves.min(((-b - enters.sqrt()) / a).max(0.0))
+    } else {
+        leaves
+    }
+}

@@ -1,0 +1,390 @@
+//! Interaction with a run: what one sees of its scene, and how one disturbs it.
+
+use nalgebra::{DMatrixView, Vector3};
+
+use super::grabbed::Grabbed;
+use super::hand::Hand;
+use super::pins::{leave, leave_all_but, pin, unpin_all_but};
+use super::run::Simulation;
+use super::state::RunState;
+use super::touching::{check_touch, let_touch, touches_itself};
+use crate::columns::row;
+use crate::elements::Wind;
+use crate::energy::Energy;
+use crate::error::Error;
+use crate::network::{Network, let_go};
+use crate::path::Path;
+use crate::scene::Model;
+
+impl Simulation {
+    /// The model as it is now: pins led, wind on or off, springs broken.
+    #[must_use]
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The state y: of a network [x | v], in m and m/s, and after these
+    /// the rotation of each rigid body.
+    #[must_use]
+    pub fn state(&self) -> &[f64] {
+        &self.state.y
+    }
+
+    /// Number of particles.
+    #[must_use]
+    pub fn particles(&self) -> usize {
+        self.model.particles()
+    }
+
+    /// Positions (m), n x 3.
+    #[must_use]
+    pub fn positions(&self) -> DMatrixView<'_, f64> {
+        let n = self.particles();
+        DMatrixView::from_slice(&self.state.y[..3 * n], n, 3)
+    }
+
+    /// Position of particle i (m).
+    #[must_use]
+    pub fn position(&self, i: usize) -> Vector3<f64> {
+        row(&self.state.y, self.particles(), i)
+    }
+
+    /// Velocities (m/s), column-major: of a mechanical scene from its state, of a first-order one
+    /// from f.
+    #[must_use]
+    pub fn velocities(&self) -> Vec<f64> {
+        self.state.velocities(&self.model)
+    }
+
+    /// The energy (J), if the scene has forces.
+    #[must_use]
+    pub fn energy(&self) -> Option<Energy> {
+        let network = self.model.network();
+        network.map(|network| network.energy_of(self.time(), &self.state.y))
+    }
+
+    /// Height of the lowest particle (m).
+    #[must_use]
+    pub fn lowest(&self) -> f64 {
+        self.positions().column(1).min()
+    }
+
+    /// Length over rest length of the most stretched structural spring, or the largest principal
+    /// stretch of a solid, if there is any.
+    #[must_use]
+    pub fn largest_stretch(&self) -> Option<f64> {
+        let x = &self.state.y[..3 * self.particles()];
+        self.model.network()?.largest_stretch(x)
+    }
+
+    /// Number of springs that have broken.
+    #[must_use]
+    pub fn tears(&self) -> usize {
+        self.model.network().map_or(0, Network::tears)
+    }
+
+    /// The middle of the scene as it began, and the distance of its farthest particle from there,
+    /// at least 1 (m).
+    #[must_use]
+    pub fn extent(&self) -> (Vector3<f64>, f64) {
+        let bounds = &self.driver.pipeline.bounds;
+        (bounds.middle, bounds.radius)
+    }
+
+    /// Forces of contact on the particles (N), n x 3: those of surfaces as they are now, and the
+    /// impulses that obstacles, friction and the guard gave in the last step, divided by its
+    /// length. Those are not known after the run went to another state, until the next step.
+    /// Nothing if nothing can touch.
+    #[must_use]
+    pub fn contact_forces(&self) -> Option<Vec<f64>> {
+        let network = self.model.network().filter(|n| n.can_touch())?;
+        let phases = &self.driver.pipeline.phases;
+        Some(phases.contact_forces(network, self.time(), &self.state.y))
+    }
+
+    /// Ends the step at the time shown (s), and changes the network and the state there.
+    fn disturb<T>(
+        &mut self,
+        change: impl FnOnce(&mut Network, &mut RunState, f64) -> T,
+    ) -> Option<T> {
+        let time = self.time();
+        self.stop();
+        match &mut self.model {
+            Model::FirstOrder(_) => None,
+            Model::Network(network) => Some(change(network, &mut self.state, time)),
+        }
+    }
+
+    /// Ends the step at the time shown.
+    pub(super) fn stop(&mut self) {
+        self.driver.stop(&self.model, &mut self.state);
+    }
+
+    /// Makes the integrator anew for the system as it is now.
+    fn refit(&mut self) {
+        let stepper = &mut self.driver.pipeline.stepper;
+        stepper.refit(self.state.method, self.model.system());
+    }
+
+    /// Changes the model as it is now, and the one that a reset goes back to. The state and the
+    /// time stay. Does nothing in a scene without masses.
+    pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
+        self.stop();
+        for model in [&mut self.model, &mut self.scene.model] {
+            if let Model::Network(network) = model {
+                change(network);
+            }
+        }
+        self.refit();
+    }
+
+    /// Whether the wind blows.
+    #[must_use]
+    pub fn windy(&self) -> bool {
+        self.model
+            .network()
+            .is_some_and(|network| network.wind().is_some())
+    }
+
+    /// Lets the scene's wind blow, or calms it. A scene without wind stays as it is.
+    pub fn set_wind(&mut self, on: bool) {
+        let wind = self.scene.wind.filter(|_| on);
+        self.disturb(|network, _, _| network.set_wind(wind));
+    }
+
+    /// Puts another wind in the place of the scene's. A scene without wind stays without.
+    pub fn change_wind(&mut self, wind: Wind) {
+        if self.scene.wind.is_some() {
+            self.scene.wind = Some(wind);
+            self.set_wind(self.windy());
+        }
+    }
+
+    /// Whether the pins swing.
+    #[must_use]
+    pub fn swinging(&self) -> bool {
+        self.state.swinging
+    }
+
+    /// Swings the pins from where they are, or stops them there. A scene without swing stays as it
+    /// is.
+    pub fn set_swinging(&mut self, on: bool) {
+        let Some(swing) = self.scene.swing.filter(|_| on != self.state.swinging) else {
+            return;
+        };
+        let turn = swing.rate * self.time();
+        self.state.swing_phase += if on { -turn } else { turn };
+        self.state.swinging = on;
+        let (swing, held) = (on.then_some(swing), self.grabbed());
+        self.disturb(|network, state, _| {
+            let (swing, time) = ((swing, state.swing_phase), state.time());
+            leave_all_but(held, network, &mut state.y, swing, time);
+        });
+    }
+
+    /// Whether surfaces touch one another and themselves.
+    #[must_use]
+    pub fn touching(&self) -> bool {
+        touches_itself(&self.model)
+    }
+
+    /// Lets the scene's surfaces touch one another and themselves, or pass through. A scene without
+    /// surfaces stays as it is. A reset keeps this, unless surfaces cross at the beginning.
+    ///
+    /// # Errors
+    /// Surfaces cross now, and the error names the first pair; or the method does not serve
+    /// contact. The run goes on as before then.
+    pub fn set_touching(&mut self, on: bool) -> Result<(), Error> {
+        let network = self.model.network().filter(|_| self.scene.touch.is_some());
+        let Some(network) = network.filter(|_| on != self.touching()) else {
+            return Ok(());
+        };
+        if on {
+            check_touch(network, &self.scene, &self.state)?;
+        }
+        // Where surfaces touch, a hand attracts a particle that it would lead as a pin elsewhere.
+        let held = self.grabbed();
+        self.release();
+        self.stop();
+        if let Model::Network(network) = &mut self.model {
+            let_touch(network, &self.scene, on)?;
+        }
+        self.refit();
+        held.map_or(Ok(()), |i| self.grab(i))
+    }
+
+    /// Whether the scene's pins hold.
+    #[must_use]
+    pub fn pinned(&self) -> bool {
+        !self.state.unpinned
+    }
+
+    /// Frees every pinned particle but the one in the hand, or pins those of the scene again, where
+    /// they are now.
+    pub fn set_pinned(&mut self, on: bool) {
+        if on == self.pinned() {
+            return;
+        }
+        self.state.unpinned = !on;
+        if !on {
+            let held = self.grabbed();
+            if let Some(grabbed) = &mut self.state.grabbed {
+                grabbed.was_pinned = false;
+            }
+            self.disturb(|network, _, _| unpin_all_but(held, network));
+            return;
+        }
+        let own = self.scene.model.network();
+        let own: Vec<_> = own.into_iter().flat_map(Network::pins).collect();
+        for (i, _) in own {
+            match &mut self.state.grabbed {
+                Some(grabbed) if grabbed.particle == i => grabbed.was_pinned = true,
+                _ => self.leave_pin(i),
+            }
+        }
+    }
+
+    /// Pins particle i where it is, swinging if the pins do, or unpins it. Returns whether it is
+    /// pinned now. For a grabbed particle this takes effect when the hand lets go. Does nothing in
+    /// a scene without masses.
+    ///
+    /// # Errors
+    /// There is no such particle, or a rigid body carries it.
+    pub fn toggle_pin(&mut self, i: usize) -> Result<bool, Error> {
+        let Some(network) = self.model.network() else {
+            return Ok(false);
+        };
+        network.check_particle(i)?;
+        network.check_led(i)?;
+        let pinned = network.is_pinned(i);
+        let grabbed = self.state.grabbed.as_mut();
+        if let Some(grabbed) = grabbed.filter(|held| held.particle == i) {
+            grabbed.was_pinned = !grabbed.was_pinned;
+            return Ok(grabbed.was_pinned);
+        }
+        if pinned {
+            self.disturb(|network, _, _| network.unpin(i));
+        } else {
+            self.leave_pin(i);
+        }
+        Ok(!pinned)
+    }
+
+    /// Pins particle i where it is, or swings it from there.
+    pub(super) fn leave_pin(&mut self, i: usize) {
+        let swing = self.scene.swing.filter(|_| self.state.swinging);
+        let path = leave(self.position(i), swing, self.state.swing_phase, self.time());
+        self.disturb(|network, state, time| pin(network, &mut state.y, (i, path), time));
+    }
+
+    /// Number of the grabbed particle.
+    #[must_use]
+    pub fn grabbed(&self) -> Option<usize> {
+        self.state.grabbed.map(|grabbed| grabbed.particle)
+    }
+
+    /// Takes hold of particle i, and lets go of any other. The particle is a pin then, or a spring
+    /// attracts it: if it is free but for constraints, and wherever surfaces touch. Does nothing in
+    /// a scene without masses, where there is nothing to hold against.
+    ///
+    /// # Errors
+    /// There is no such particle.
+    pub fn grab(&mut self, i: usize) -> Result<(), Error> {
+        self.release();
+        if let Some(hand) = self.hand() {
+            self.lead(hand.grab(i)?);
+        }
+        Ok(())
+    }
+
+    /// Pulls the grabbed particle towards `target` (m), which it reaches within 1/30 s unless that
+    /// is too fast, or springs or rods hold it back: the hand stretches a spring as far as the
+    /// scene allows, a rod hardly at all, and gets farther as the other end follows.
+    pub fn pull(&mut self, target: Vector3<f64>) {
+        if let Some((hand, grabbed)) = self.hand().zip(self.state.grabbed) {
+            self.lead(hand.pull(grabbed, target));
+        }
+    }
+
+    /// Lets go of the grabbed particle. One that was free keeps the speed of the hand; one that was
+    /// pinned is pinned where it is.
+    pub fn release(&mut self) {
+        let Some(grabbed) = self.state.grabbed.take() else {
+            return;
+        };
+        self.disturb(|network, _, _| {
+            network.unpin(grabbed.particle);
+            let_go(network);
+        });
+        if grabbed.was_pinned {
+            self.leave_pin(grabbed.particle);
+        }
+    }
+
+    /// Leads the grabbed particle along its path.
+    fn lead(&mut self, grabbed: Grabbed) {
+        self.disturb(|network, state, time| {
+            state.grabbed = Some(grabbed);
+            grabbed.lead(network, &mut state.y, time);
+        });
+    }
+
+    /// The hand, which sees the run as it is shown, in a scene with masses.
+    fn hand(&self) -> Option<Hand<'_>> {
+        Hand::of(&self.scene, &self.model, &self.state, self.extent().1)
+    }
+
+    /// Number of the grabbed obstacle.
+    #[must_use]
+    pub fn grabbed_obstacle(&self) -> Option<usize> {
+        self.state.grabbed_obstacle
+    }
+
+    /// Takes hold of obstacle k where it is, and lets go of any other. Does nothing in a scene
+    /// without masses, where obstacles push nothing.
+    ///
+    /// # Errors
+    /// There is no such obstacle, or it is a floor.
+    pub fn grab_obstacle(&mut self, k: usize) -> Result<(), Error> {
+        self.release_obstacle();
+        let Some(hand) = self.hand() else {
+            return Ok(());
+        };
+        hand.check_obstacle(k)?;
+        self.state.grabbed_obstacle = Some(k);
+        self.push(None);
+        Ok(())
+    }
+
+    /// Moves the grabbed obstacle's place to `target` (m), as fast as a pulled particle.
+    pub fn pull_obstacle(&mut self, target: Vector3<f64>) {
+        self.push(Some(target));
+    }
+
+    /// Lets go of the obstacle: it stays where it is.
+    pub fn release_obstacle(&mut self) {
+        self.push(None);
+        self.state.grabbed_obstacle = None;
+    }
+
+    /// Pushes the grabbed obstacle to a target (m), or leaves it where it is.
+    fn push(&mut self, target: Option<Vector3<f64>>) {
+        let hand = self.hand().zip(self.state.grabbed_obstacle);
+        let pushed = hand.and_then(|(hand, k)| Some((k, hand.push(k, target)?)));
+        if let Some((k, path)) = pushed {
+            // It is there: the hand saw it.
+            let _ = self.disturb(|network, _, _| network.lead_obstacle(k, path));
+        }
+    }
+
+    /// Gives obstacle k another path, such as the one that it had before it was pushed, and lets go
+    /// of any. A reset goes back to the scene's own.
+    ///
+    /// # Errors
+    /// There is no such obstacle.
+    pub fn set_obstacle_path(&mut self, k: usize, path: Path) -> Result<(), Error> {
+        self.release_obstacle();
+        let led = self.disturb(|network, _, _| network.lead_obstacle(k, path));
+        led.unwrap_or(Ok(()))
+    }
+}

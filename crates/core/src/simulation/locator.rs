@@ -1,0 +1,128 @@
+//! Events of a step, for those that locate them: where the first is, and which particles rest on
+//! obstacles until then.
+
+use super::depths::Depths;
+use super::events::{Event, Events, Searched};
+use super::resting::{Resting, Rests, first_end, may_rest};
+use super::state::RunState;
+use super::stepper::Stepper;
+use crate::integrators::Work;
+use crate::scene::Model;
+
+/// Search for the first event of a step.
+pub(super) struct Locator {
+    /// Whether fixed steps end at events too, in parts.
+    pub cuts_fixed_steps: bool,
+    events: Events,
+    /// Particles that rest on obstacles in the step that is taken.
+    rests: Rests,
+}
+
+impl Locator {
+    /// Search in a model, with room for all its particles.
+    pub fn new(model: &Model) -> Self {
+        Self {
+            cuts_fixed_steps: false,
+            events: Events::new(model),
+            rests: Rests::new(model),
+        }
+    }
+
+    /// Whether steps end at events.
+    pub fn serves(&self, stepper: &Stepper) -> bool {
+        stepper.is_adaptive() || self.cuts_fixed_steps
+    }
+
+    /// Whether fixed steps are taken in parts, each up to an event.
+    pub fn cuts(&self, stepper: &Stepper) -> bool {
+        self.cuts_fixed_steps && !stepper.is_adaptive()
+    }
+
+    /// View of a model in which particles rest, if any do.
+    pub fn view<'a>(&'a self, model: &'a Model) -> Option<Resting<'a>> {
+        self.rests.view(model)
+    }
+
+    /// State at the event that was found.
+    pub fn state(&self) -> &[f64] {
+        &self.events.state
+    }
+
+    /// Lists the particles that rest on obstacles at time t (s), for steps that locate events.
+    pub fn list_rests(
+        &mut self,
+        model: &Model,
+        state: &mut RunState,
+        stepper: &mut Stepper,
+        t: f64,
+        depths: Depths,
+    ) {
+        let method = state.method;
+        let serves = !method.is_implicit() && !method.needs_mechanics() && !method.positions_only();
+        let network = model.network();
+        let network = network.filter(|network| serves && may_rest(network));
+        let heights = [depths.none, depths.none.max(depths.shallow)];
+        self.rests.clear();
+        if let Some(network) = network.filter(|_| self.serves(stepper)) {
+            let evaluated = self.rests.list(network, t, &mut state.y, heights);
+            state.work += Work::of(evaluated);
+        }
+        // The last evaluation of a step in which others rest is of another system.
+        let before = std::mem::replace(&mut state.resting, self.rests.fingerprint());
+        if before != state.resting {
+            stepper.forget();
+        }
+    }
+
+    /// Finds the first event of a step of h (s) from time t (s), from y0 to the state as it is now.
+    pub fn first_event(
+        &mut self,
+        model: &Model,
+        state: &mut RunState,
+        stepper: &mut Stepper,
+        y0: &[f64],
+        (t, h): (f64, f64),
+        depths: Depths,
+    ) -> Option<Event> {
+        let network = model.network()?;
+        if network.obstacles().is_empty() && network.tear_limit().is_none() {
+            return None;
+        }
+        let RunState { y, work, .. } = state;
+        let step = Searched {
+            network,
+            t,
+            h,
+            ends: [y0, y],
+            depths,
+        };
+        if y0.len() != y.len() || y.iter().any(|y| !y.is_finite()) {
+            return None;
+        }
+        let (rests, scratch) = self.rests.split();
+        let resting = Resting::of(model, rests);
+        let system = resting.as_ref().map_or(model.system(), |view| view);
+        let mut state_at = |share: f64, out: &mut [f64]| {
+            *work += stepper.state_at(system, t, share * h, y0, out);
+            system.hold(t + share * h, out);
+        };
+        let event = self.events.first(&step, &mut state_at);
+        let before = event.map_or(1.0, |event| event.share);
+        let state = &mut self.events.state;
+        let span = (t, h, depths.none);
+        let mut evaluated = 0;
+        let end = first_end(
+            network,
+            (rests, scratch),
+            span,
+            before,
+            state,
+            &mut |share, out| {
+                evaluated += 1;
+                state_at(share, out);
+            },
+        );
+        *work += Work::of(evaluated);
+        end.or(event)
+    }
+}

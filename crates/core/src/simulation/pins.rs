@@ -1,0 +1,75 @@
+//! Pins of a run: where a hand leaves them they stand, or swing from there.
+
+use nalgebra::Vector3;
+
+use crate::columns::row;
+use crate::network::Network;
+use crate::path::Path;
+use crate::scene::Swing;
+use crate::system::ParticleSystem;
+
+/// Distance of a pin from its path, over the radius of the scene, that is a rounding error.
+const ROUNDING: f64 = 1e-9;
+
+/// Path of a pin that is left at `position` (m) at time t (s): still there, or swinging from there.
+pub(super) fn leave(position: Vector3<f64>, swing: Option<Swing>, phase: f64, t: f64) -> Path {
+    match swing {
+        None => Path::Still(position),
+        Some(Swing { amplitude, rate }) => {
+            let center = position - amplitude * libm::sin(rate * t + phase);
+            Path::Sine {
+                center,
+                amplitude,
+                rate,
+                phase,
+            }
+        }
+    }
+}
+
+/// Pins a particle on a path, and gives it in y the velocity that the path has at time t (s).
+pub(super) fn pin(network: &mut Network, y: &mut [f64], (i, path): (usize, Path), t: f64) {
+    let (n, velocity) = (network.particles(), path.at(t).velocity);
+    if network.pin(i, path).is_ok() {
+        for axis in 0..3 {
+            y[(3 + axis) * n + i] = velocity[axis];
+        }
+    }
+}
+
+/// Leaves all pins but one where they are at time t (s), and puts them there in y.
+pub(super) fn leave_all_but(
+    held: Option<usize>,
+    network: &mut Network,
+    y: &mut [f64],
+    (swing, phase): (Option<Swing>, f64),
+    t: f64,
+) {
+    network.lead_pins(|i, path| {
+        if Some(i) == held {
+            path
+        } else {
+            leave(path.at(t).position, swing, phase, t)
+        }
+    });
+    network.hold(t, y);
+}
+
+/// Frees all pinned particles but one.
+pub(super) fn unpin_all_but(held: Option<usize>, network: &mut Network) {
+    let pins: Vec<_> = network.pins().map(|(i, _)| i).collect();
+    // The last ones first: whichever is removed, few are moved up.
+    for i in pins.into_iter().rev().filter(|i| Some(*i) != held) {
+        network.unpin(i);
+    }
+}
+
+/// Pinned particles that are elsewhere in y than their paths lead at time t (s), in a scene of that
+/// radius (m).
+pub(super) fn strayed(network: &Network, y: &[f64], t: f64, radius: f64) -> Vec<usize> {
+    let (n, far) = (network.particles(), ROUNDING * radius);
+    let pins = network.pins();
+    pins.filter(|(i, path)| (path.at(t).position - row(y, n, *i)).norm() > far)
+        .map(|(i, _)| i)
+        .collect()
+}

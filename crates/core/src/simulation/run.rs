@@ -1,0 +1,374 @@
+//! Run of a scene: how it goes on, and what it has cost and gained.
+
+use super::balance::Gain;
+use super::checkpoint::Checkpoint;
+use super::driver::Driver;
+use super::failure::Failure;
+use super::pins::strayed;
+use super::state::RunState;
+use super::step::{Pipeline, SLIVER};
+use super::stepper::Stepper;
+use crate::contact::{Guarded, Statistics};
+use crate::control::Control;
+use crate::error::{BlowUp, Cause, Error, Unmet};
+use crate::integrators::{Method, Work};
+use crate::network::{Network, is_conservative};
+use crate::scene::{Model, Scene};
+
+/// A run of a scene.
+pub struct Simulation {
+    pub(super) scene: Scene,
+    pub(super) model: Model,
+    pub(super) state: RunState,
+    pub(super) driver: Driver,
+    /// The last state in shape, to go back to when a step fails.
+    good: Checkpoint,
+    blow_up: Option<BlowUp>,
+}
+
+impl Simulation {
+    /// Share of a step by which its end may miss a time that is asked for: 1/60 s written as
+    /// 0.01666667 meets sixty frames a second.
+    pub const SLIVER: f64 = SLIVER;
+
+    /// A run from the scene's beginning, in fixed steps or, with an adaptive method, to a
+    /// tolerance.
+    ///
+    /// # Errors
+    /// The method does not serve the scene or does not take that control; or the scene's state has
+    /// another length than its model's.
+    pub fn new(scene: Scene, method: &'static Method, control: Control) -> Result<Self, Error> {
+        let model = scene.model.clone();
+        let stepper = Stepper::new(method, &scene, model.system(), control)?;
+        let mut state = RunState::begin(&scene, method, control)?;
+        let mut driver = Driver::new(Pipeline::new(stepper, &scene));
+        driver.pipeline.watch.begin(&model, &mut state);
+        Ok(Self {
+            good: Checkpoint::of(&state, &model, &driver),
+            scene,
+            model,
+            state,
+            driver,
+            blow_up: None,
+        })
+    }
+
+    /// Goes back to the beginning, with what was torn mended. Wind and swing stay on if they are,
+    /// and pins free; surfaces go on touching, unless they cross at the beginning. The hand lets
+    /// go.
+    pub fn reset(&mut self) {
+        let (windy, touching) = (self.windy(), self.touching());
+        let RunState {
+            method,
+            control,
+            unpinned,
+            swinging,
+            ..
+        } = self.state;
+        self.model = self.scene.model.clone();
+        self.state = RunState::new(method, control, self.scene.state.clone());
+        self.driver.pipeline.phases.contact.forget_impulses();
+        self.blow_up = None;
+        // The first step is chosen as in a new run: one that was reset is the same run.
+        if let Ok(stepper) = Stepper::new(method, &self.scene, self.model.system(), control) {
+            self.driver.change_stepper(stepper);
+        }
+        if unpinned {
+            self.set_pinned(false);
+        }
+        self.set_wind(windy);
+        self.set_swinging(swinging);
+        // Where surfaces cross, they begin as the scene has it.
+        let _ = self.set_touching(touching);
+        let watch = &mut self.driver.pipeline.watch;
+        watch.begin(&self.model, &mut self.state);
+    }
+
+    /// Lets fixed steps end at events, as adaptive ones do: where a prescribed motion begins or
+    /// ends, a particle touches an obstacle, its slide ends, or a spring breaks. A step goes on
+    /// from there by the rest of its length. So the order of the method is kept, at any price:
+    /// this is for references.
+    pub fn locate_events(&mut self) {
+        self.driver.pipeline.locator.cuts_fixed_steps = true;
+    }
+
+    /// Goes on with another method, in fixed steps or to a tolerance.
+    ///
+    /// # Errors
+    /// The method does not serve the scene or does not take that control; the run goes on as
+    /// before.
+    pub fn set_method(&mut self, method: &'static Method, control: Control) -> Result<(), Error> {
+        let stepper = Stepper::new(method, &self.scene, self.model.system(), control)?;
+        self.driver.change_stepper(stepper);
+        self.state.set_time(self.time());
+        (self.state.method, self.state.control) = (method, control);
+        let watch = &mut self.driver.pipeline.watch;
+        watch.start_over(&self.model, &mut self.state);
+        Ok(())
+    }
+
+    /// Goes on in other steps, or to another tolerance.
+    ///
+    /// # Errors
+    /// The method does not take that control; the run goes on as before.
+    pub fn set_control(&mut self, control: Control) -> Result<(), Error> {
+        let (Control::Step(_), Control::Step(_)) = (self.state.control, control) else {
+            return self.set_method(self.state.method, control);
+        };
+        self.state.method.check_control(control)?;
+        self.stop();
+        self.state.set_time(self.time());
+        self.state.control = control;
+        let watch = &mut self.driver.pipeline.watch;
+        watch.start_over(&self.model, &mut self.state);
+        Ok(())
+    }
+
+    /// Takes `count` steps; one that the time shown is within is finished, and counts. When one of
+    /// them blows up, the state is again the last at the beginning of such a call that was still in
+    /// shape, and no more steps are taken until [`reset`](Self::reset).
+    ///
+    /// # Errors
+    /// The run blew up, now or earlier.
+    pub fn take_steps(&mut self, count: u64) -> Result<(), Error> {
+        self.keep()?;
+        let taken = self
+            .driver
+            .take_steps(&mut self.model, &mut self.state, count);
+        taken.map_err(|failure| self.fail(failure))
+    }
+
+    /// Goes on to `time` (s), if it is not past it. No step is shortened for that: where none ends
+    /// at that time, the state shown is read off the polynomial of the step that it is within, so
+    /// how often one looks changes nothing. A step that blows up is treated as by
+    /// [`take_steps`](Self::take_steps).
+    ///
+    /// # Errors
+    /// The run blew up, now or earlier; or `time` is not finite.
+    pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
+        if !time.is_finite() {
+            return Err(Error::Invalid(format!(
+                "the end must be a finite number of seconds, not {time}"
+            )));
+        }
+        self.keep()?;
+        let gone = self
+            .driver
+            .advance_to(&mut self.model, &mut self.state, time);
+        gone.map_err(|failure| self.fail(failure))
+    }
+
+    /// Looks at the energy at the end of a run: a run that is shorter than the time between two
+    /// looks may be lost too, and one that is lost since the last look.
+    ///
+    /// # Errors
+    /// The run blew up, now or earlier.
+    pub fn conclude(&mut self) -> Result<(), Error> {
+        if let Some(blow_up) = self.blow_up {
+            return Err(blow_up.into());
+        }
+        let concluded = self.driver.conclude(&self.model, &self.state);
+        concluded.map_err(|failure| self.fail(failure))
+    }
+
+    /// Remembers the state if it is in shape.
+    ///
+    /// # Errors
+    /// The run blew up earlier.
+    fn keep(&mut self) -> Result<(), Error> {
+        if let Some(blow_up) = self.blow_up {
+            return Err(blow_up.into());
+        }
+        let Pipeline { watch, bounds, .. } = &mut self.driver.pipeline;
+        watch.forgive(&self.model, &mut self.state);
+        if self.state.balance.is_sound() && bounds.hold(&self.model, &self.state.y) {
+            self.good.record(&self.state, &self.model, &self.driver);
+        }
+        Ok(())
+    }
+
+    /// Ends a run that is lost, and goes back to the last state in shape.
+    fn fail(&mut self, failure: Failure) -> Error {
+        let (cause, time) = match failure {
+            Failure::Lost { cause, time } => (cause, time),
+            Failure::Error(error) => return error,
+        };
+        let mut blow_up = self.state.blow_up(cause, time);
+        let (model, state) = (&mut self.model, &mut self.state);
+        let back = self
+            .good
+            .put_back(&self.scene, model, state, &mut self.driver);
+        if let Err(error) = back {
+            return error;
+        }
+        // Constraints that contradict one another are lost in many ways.
+        let bounds = &self.driver.pipeline.bounds;
+        if let Some(unmet) = bounds.contradiction(&self.model, &self.state.y, time) {
+            blow_up.cause = Cause::Contradiction(unmet);
+        }
+        self.blow_up = Some(blow_up);
+        blow_up.into()
+    }
+
+    /// The run as it is now, with the last step of an adaptive method: some 20 arrays of the size
+    /// of the state.
+    #[must_use]
+    pub fn checkpoint(&self) -> Checkpoint {
+        let mut whole = self.moment();
+        whole.run.copy_from(&self.state);
+        whole.progress = self.driver.progress(true);
+        whole
+    }
+
+    /// The run as it is now, without the last step of an adaptive method: what goes on from there
+    /// begins a new one.
+    #[must_use]
+    pub fn moment(&self) -> Checkpoint {
+        Checkpoint::of(&self.state, &self.model, &self.driver)
+    }
+
+    /// Writes a [moment](Self::moment) over another one, whose memory is used again.
+    pub fn record(&self, moment: &mut Checkpoint) {
+        moment.record(&self.state, &self.model, &self.driver);
+    }
+
+    /// Takes over everything of a checkpoint: the run goes on as the one that it was made of, to
+    /// the same bits. A run that was lost goes on too.
+    ///
+    /// # Errors
+    /// The checkpoint is of another scene, its method does not serve this one, or a number is not
+    /// finite. The run goes on as before then.
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+        let dim = self.state.y.len();
+        checkpoint.check(dim)?;
+        let run = &checkpoint.run;
+        let model = checkpoint.model(&self.scene)?;
+        let stepper = Stepper::new(run.method, &self.scene, model.system(), run.control)?;
+        self.driver.resume(stepper, &checkpoint.progress, dim)?;
+        self.model = model;
+        self.state.copy_from(run);
+        self.go_on();
+        Ok(())
+    }
+
+    /// Goes back to the state of a moment, and on from there as the run is now, also after a
+    /// blow-up: hands let go; method, control, work, wind, swing and which particles are pinned
+    /// stay. Surfaces touch if they did at that moment. Pins whose path does not lead there stay
+    /// where they are in that state, or swing from there.
+    ///
+    /// # Errors
+    /// The moment is of another scene, or a number is not finite.
+    pub fn rewind(&mut self, moment: &Checkpoint) -> Result<(), Error> {
+        moment.check(self.state.y.len())?;
+        self.release();
+        self.release_obstacle();
+        let (model, state) = (&mut self.model, &mut self.state);
+        moment.put_back(&self.scene, model, state, &mut self.driver)?;
+        self.go_on();
+        let (y, radius) = (&self.state.y, self.extent().1);
+        let strayed = |network| strayed(network, y, self.time(), radius);
+        for i in self.model.network().map_or(vec![], strayed) {
+            self.leave_pin(i);
+        }
+        Ok(())
+    }
+
+    /// Goes on from a state in shape, also after a blow-up.
+    fn go_on(&mut self) {
+        self.blow_up = None;
+        self.good.record(&self.state, &self.model, &self.driver);
+    }
+
+    /// The scene as it was built.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The method.
+    #[must_use]
+    pub fn method(&self) -> &'static Method {
+        self.state.method
+    }
+
+    /// The step or the tolerance.
+    #[must_use]
+    pub fn control(&self) -> Control {
+        self.state.control
+    }
+
+    /// The step (s): the fixed one, or the last one under a tolerance, if there was one yet.
+    #[must_use]
+    pub fn step_size(&self) -> Option<f64> {
+        let stepper = &self.driver.pipeline.stepper;
+        stepper.step_size(self.state.control)
+    }
+
+    /// Simulated time (s).
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.state.time()
+    }
+
+    /// Steps taken since the beginning.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.state.steps
+    }
+
+    /// Cost of these steps.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        self.state.work
+    }
+
+    /// Contact during the last step.
+    #[must_use]
+    pub fn contact(&self) -> Statistics {
+        self.driver.pipeline.phases.contact.last()
+    }
+
+    /// What the guard of surfaces did since the beginning.
+    #[must_use]
+    pub fn guarded(&self) -> Guarded {
+        self.state.guarded
+    }
+
+    /// The blow-up by which the run was lost, if it was.
+    #[must_use]
+    pub fn blow_up(&self) -> Option<BlowUp> {
+        self.blow_up
+    }
+
+    /// Energy that the method put into the run, if it is more than the scene has of its own: the
+    /// step is too long.
+    #[must_use]
+    pub fn gained(&self) -> Option<Gain> {
+        self.driver.balance(&self.model, &self.state).notable_gain()
+    }
+
+    /// Energy that the run has gained or, below 0, lost since the beginning, over the kinetic,
+    /// elastic and gravitational energy that its motion has had. `None` if the forces do not keep
+    /// the energy, if contact, tears or hands may have changed it, or if nothing moves.
+    #[must_use]
+    pub fn energy_change(&self) -> Option<f64> {
+        let conserves = |network: &&Network| is_conservative(network);
+        self.model.network().filter(conserves)?;
+        self.driver.balance(&self.model, &self.state).change()
+    }
+
+    /// The constraint that was farthest from being met at the end of a step, with its largest
+    /// error.
+    #[must_use]
+    pub fn worst_constraint(&self) -> Option<Unmet> {
+        let network = self.model.network()?;
+        self.state.balance.worst_constraint(network)
+    }
+
+    /// Whether constraints were so nearly singular that bounded forces could not hold them exactly,
+    /// as a chain that is stretched straight between two pins.
+    #[must_use]
+    pub fn was_nearly_singular(&self) -> bool {
+        self.driver.balance(&self.model, &self.state).was_singular()
+    }
+}

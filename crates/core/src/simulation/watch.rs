@@ -1,0 +1,198 @@
+//! Watch over a run: why it is lost, at the ends of its steps and where something changes it.
+
+use super::balance::Balance;
+use super::power::{End, Power, energy_of, fastest};
+use super::state::RunState;
+use crate::contact::{Obstacle, Statistics};
+use crate::error::Cause;
+use crate::network::energy_of_errors;
+use crate::scene::{Model, StepLimits};
+
+/// Error of a constraint over its length from which on a run is lost.
+const MAX_CONSTRAINT_ERROR: f64 = 0.1;
+
+/// Watch over the energy and the constraints of a run.
+#[derive(Debug)]
+pub(super) struct Watch {
+    power: Power,
+    /// Whether something has changed the run since its last step.
+    disturbed: bool,
+    /// Radius of the scene (m).
+    radius: f64,
+    limits: StepLimits,
+    /// Time of the beginning of the last step (s), and its work (J).
+    last: (f64, f64),
+    /// Forces (N).
+    scratch: Vec<f64>,
+}
+
+impl Watch {
+    /// Watch over runs of a scene with that radius (m).
+    pub fn new(radius: f64, limits: StepLimits) -> Self {
+        Self {
+            power: Power::default(),
+            disturbed: false,
+            radius,
+            limits,
+            last: (0.0, 0.0),
+            scratch: vec![],
+        }
+    }
+
+    /// Begins with a run at the beginning of its steps.
+    pub fn begin(&mut self, model: &Model, state: &mut RunState) {
+        if let Some(network) = model.network() {
+            let (t, y) = (state.since, &state.y[..]);
+            // A step allocates nothing.
+            *self = Self {
+                scratch: Vec::with_capacity(y.len() / 2),
+                ..Self::new(self.radius, self.limits)
+            };
+            self.power.begin(network, t, y);
+            state.balance = Balance::new(network, (t, y), self.radius);
+        }
+        self.tolerate(model, state);
+    }
+
+    /// Forgets what a run gained, which goes on by other steps from the end of one.
+    pub fn start_over(&mut self, model: &Model, state: &mut RunState) {
+        state.balance.start_over();
+        self.disturbed = true;
+        self.power.forget();
+        self.tolerate(model, state);
+    }
+
+    /// Takes what the errors that a tolerance allows can gain as the scene's own energy: where
+    /// nothing moves, an adaptive method makes steps so long that it just meets its tolerance.
+    fn tolerate(&self, model: &Model, state: &mut RunState) {
+        if let (Some(relative), Some(network)) = (state.control.tolerance(), model.network()) {
+            let error = self.limits.absolute.unwrap_or(relative * self.radius);
+            let errors = energy_of_errors(network, state.time(), &state.y, error);
+            state.balance.tolerate(errors);
+        }
+    }
+
+    /// Goes on from another state.
+    pub fn resume(&mut self) {
+        self.disturbed = false;
+        self.power.forget();
+    }
+
+    /// Looks at a run at time t (s), where something is about to change it, on the way or at the
+    /// end of a step that ends at `end` (s).
+    pub fn disturb(&mut self, model: &Model, state: &mut RunState, t: f64, end: f64) {
+        self.power.forget();
+        let Some(network) = model.network().filter(|_| !self.disturbed) else {
+            return;
+        };
+        self.disturbed = true;
+        let (begin, work) = self.last;
+        if t < end && begin < end {
+            let rest = work * (end - t) / (end - begin);
+            state.balance.take_back(rest);
+        }
+        state
+            .balance
+            .look(network, (t, &state.y), &mut self.scratch);
+        state.balance.leave_open();
+    }
+
+    /// Takes what was changed as no gain.
+    pub fn forgive(&mut self, model: &Model, state: &mut RunState) {
+        if let Some(network) = model.network()
+            && std::mem::take(&mut self.disturbed)
+        {
+            let energy = energy_of(network, state.time(), &state.y).total();
+            state.balance.forgive(energy);
+        }
+    }
+
+    /// Gets ready for a step from y at time t (s).
+    pub fn begin_step(&mut self, model: &Model, t: f64, y: &[f64]) {
+        if let Some(network) = model.network() {
+            self.power.begin(network, t, y);
+        }
+        self.last = (t, 0.0);
+    }
+
+    /// Forgets what works on the scene: springs have torn.
+    pub fn forget_power(&mut self) {
+        self.power.forget();
+    }
+
+    /// Why a run is lost whose particles alone move with more energy than it may gain, where
+    /// surfaces have not been guarded yet: what flies through a whole scene in a step meets all of
+    /// it, and costs thousands of steps.
+    pub fn look_before_guard(&self, model: &Model, balance: &Balance, end: End) -> Option<Cause> {
+        let network = model.network()?;
+        let mut balance = *balance;
+        if network.contact_layer().is_none()
+            || self.disturbed
+            || !balance.is_exceeded(network, end.y)
+        {
+            return None;
+        }
+        balance.add(self.power.clone().work(network, end));
+        balance.look(network, (end.t, end.y), &mut vec![])
+    }
+
+    /// Notes the end of a step in which obstacles were met, and after which a particle seems lost.
+    /// Returns why the run is lost: what is far away because it fell or was thrown there has gained
+    /// nothing, and is not.
+    pub fn end_step(
+        &mut self,
+        model: &Model,
+        balance: &mut Balance,
+        end: End,
+        met: &Statistics,
+        lost: Option<Cause>,
+    ) -> Option<Cause> {
+        let Some(network) = model.network() else {
+            return lost;
+        };
+        let away = matches!(lost, Some(Cause::Away { .. }));
+        if lost.is_some() && !away {
+            return lost;
+        }
+        let End { t, y, .. } = end;
+        let mut work = self.power.work(network, end);
+        let impulse = met.impulse.max(met.guarded.impulse);
+        if impulse > 0.0 {
+            // Most of the work that obstacles did.
+            let speed = |obstacle: &Obstacle| fastest(obstacle, t, self.radius);
+            let speeds = network.obstacles().iter().map(speed);
+            work += impulse * speeds.fold(0.0, f64::max);
+            balance.leave_open();
+        }
+        balance.add(work);
+        self.last.1 = work;
+        let worst = network.worst_constraint(network.halves(y).0, self.radius);
+        if let Some(unmet) = &worst {
+            balance.note(unmet);
+        }
+        let gained = if balance.is_due(t) || away {
+            balance.look(network, (t, y), &mut self.scratch)
+        } else {
+            None
+        };
+        let broken = worst
+            .filter(|unmet| unmet.share > MAX_CONSTRAINT_ERROR)
+            .map(Cause::Unmet);
+        let lost = lost.filter(|_| !balance.is_sound());
+        broken.or(lost).or(gained)
+    }
+
+    /// Balance of a run at the end of its last step, which is at time t (s) at y, and why the run
+    /// is lost, if it is.
+    pub fn balance_at(
+        &self,
+        model: &Model,
+        mut balance: Balance,
+        (t, y): (f64, &[f64]),
+    ) -> (Balance, Option<Cause>) {
+        // What was changed since the last look is no gain.
+        let network = model.network().filter(|_| !self.disturbed);
+        let lost = network.and_then(|network| balance.look(network, (t, y), &mut vec![]));
+        (balance, lost)
+    }
+}

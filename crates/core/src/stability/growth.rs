@@ -1,0 +1,76 @@
+//! Growth of modes by a method.
+
+use super::mode::Mode;
+use super::tied::Tied;
+use crate::error::Error;
+use crate::integrators::{Integrator, Method};
+
+/// Growth of a mode in one step of a method.
+pub struct Growth {
+    system: Tied,
+    integrator: Box<dyn Integrator>,
+}
+
+impl Growth {
+    /// Growth of `mode` by `method`.
+    ///
+    /// # Errors
+    /// The method does not serve damped springs, which damp the mode.
+    pub fn new(method: &Method, mode: Mode) -> Result<Self, Error> {
+        let system = Tied(mode);
+        let integrator = method.integrator(&system)?;
+        Ok(Self { system, integrator })
+    }
+
+    /// Matrix of a step of h (s) on x times the frequency and on v: a, b, c, d row by row. `None`
+    /// where the step fails.
+    fn matrix(&mut self, h: f64) -> Option<[f64; 4]> {
+        let mut y = [0.0; 18];
+        // Particle 0 starts with x = 1, particle 1 with v = `unit`: v is scaled by the frequency,
+        // so that x and v have similar magnitudes.
+        let unit = self.system.0.frequency().max(1e-3);
+        (y[0], y[10]) = (1.0, unit);
+        let stepped = self.integrator.step(&self.system, 0.0, h, &mut y);
+        let matrix = [y[0], y[1], y[9] / unit, y[10] / unit];
+        (stepped.is_ok() && matrix.iter().all(|m| m.is_finite())).then_some(matrix)
+    }
+
+    /// Spectral radius of the matrix of a step of h (s), for a Runge-Kutta method the larger |R(h
+    /// l)| of both eigenvalues l. Infinite where the step fails.
+    pub fn of_step(&mut self, h: f64) -> f64 {
+        let Some([a, b, c, d]) = self.matrix(h) else {
+            return f64::INFINITY;
+        };
+        let (half_trace, determinant) = (0.5 * (a + d), a * d - b * c);
+        let square = half_trace * half_trace - determinant;
+        let radius = if square < 0.0 {
+            determinant.sqrt()
+        } else {
+            half_trace.abs() + square.sqrt()
+        };
+        if radius.is_nan() {
+            f64::INFINITY
+        } else {
+            radius
+        }
+    }
+
+    /// Largest energy over the least that a mode has in steps of h (s) apart from growth and decay.
+    ///
+    /// Steps move x w and v round an ellipse, c x^2 + (d - a) x v - b v^2 = const., and this is the
+    /// square of the ratio of its axes. It is 1 for a Runge-Kutta method without damping; for
+    /// Verlet's method it is 1 / (1 - (h w)^2 / 4), and has no bound at the limit. 1 where the step
+    /// fails or its matrix has real eigenvalues.
+    pub fn swing(&mut self, h: f64) -> f64 {
+        let Some([a, b, c, d]) = self.matrix(h) else {
+            return 1.0;
+        };
+        let determinant = -b * c - 0.25 * (d - a).powi(2);
+        if determinant <= 0.0 {
+            return 1.0;
+        }
+        let half = 0.5 * (c - b).abs();
+        let root = (half * half - determinant).max(0.0).sqrt();
+        (half + root) / (half - root)
+    }
+}

@@ -1,0 +1,57 @@
+//! Mode of motion.
+
+/// Rate of growth, over the frequency, that differences of forces may show of a mode that does not
+/// grow.
+const ROUNDING: f64 = 1e-6;
+
+/// Mode of motion x'' = -stiffness x - (drag + damping) x'.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mode {
+    /// Stiffness over mass, the angular frequency squared (1/s2).
+    pub stiffness: f64,
+    /// Viscous drag over mass (1/s).
+    pub drag: f64,
+    /// Damping of the springs over mass (1/s).
+    pub damping: f64,
+    /// Whether forces other than drag depend on velocities in the system, if not in this mode:
+    /// splitting methods then have other kicks.
+    pub reads_velocity: bool,
+}
+
+impl Mode {
+    /// Mode with the eigenvalue re + i im (1/s) and its conjugate, damped by drag.
+    #[must_use]
+    pub fn of_eigenvalue(re: f64, im: f64) -> Self {
+        Self {
+            stiffness: re * re + im * im,
+            drag: -2.0 * re,
+            ..Self::default()
+        }
+    }
+
+    /// Angular frequency w of the undamped mode (rad/s); 0 for negative stiffness.
+    #[must_use]
+    pub fn frequency(&self) -> f64 {
+        self.stiffness.max(0.0).sqrt()
+    }
+
+    /// Whether it has a restoring force and does not grow by itself, but for rounding.
+    #[must_use]
+    pub fn returns(&self) -> bool {
+        self.stiffness > 0.0 && self.drag + self.damping >= -ROUNDING * self.frequency()
+    }
+
+    /// Both eigenvalues as [re, im] (1/s).
+    #[must_use]
+    pub fn eigenvalues(&self) -> [[f64; 2]; 2] {
+        let half = 0.5 * (self.drag + self.damping);
+        let square = half * half - self.stiffness;
+        if square < 0.0 {
+            let im = (-square).sqrt();
+            [[-half, im], [-half, -im]]
+        } else {
+            let root = square.sqrt();
+            [[-half + root, 0.0], [-half - root, 0.0]]
+        }
+    }
+}
