@@ -3,7 +3,7 @@
 mod attraction;
 mod bodies;
 mod build;
-mod crossed;
+mod crossings;
 mod elements;
 mod energies;
 mod evaluation;

@@ -87,13 +87,50 @@ impl Crate {
         edges
     }
 
+    /// What modules use that their parent defines: a circle, as a parent uses those inside it.
+    /// Tests may.
+    pub fn upwards(&self) -> Vec<String> {
+        let is_test = |name: &Name| name.iter().any(|part| part == "tests" || part == "testing");
+        let edges = self.edges().into_iter();
+        let upwards = edges.filter(|(from, to)| {
+            !to.is_empty() && from.len() > to.len() && from.starts_with(to) && !is_test(from)
+        });
+        upwards
+            .map(|(from, to)| format!("{} uses {}", from.join("::"), to.join("::")))
+            .collect()
+    }
+
+    /// Types with inherent methods in more than two files, with their number.
+    pub fn spread(&self) -> Vec<String> {
+        let mut files: BTreeMap<(&str, &str), BTreeSet<&Name>> = BTreeMap::new();
+        for (name, text) in &self.0 {
+            for line in text.lines().filter(|line| line.starts_with("impl")) {
+                let line = line.strip_prefix("impl").unwrap_or_default();
+                // Generic parameters come before the name of the type.
+                let rest = match line.strip_prefix('<') {
+                    Some(generic) => generic.split_once("> ").map_or("", |(_, rest)| rest),
+                    None => line.trim_start(),
+                };
+                let ends = |c: char| !c.is_alphanumeric() && c != '_';
+                let of = rest.split(ends).next().unwrap_or_default();
+                if !of.is_empty() && !line.contains(" for ") {
+                    let folder = name.first().map_or("", String::as_str);
+                    files.entry((folder, of)).or_default().insert(name);
+                }
+            }
+        }
+        let wide = files.into_iter().filter(|(_, files)| files.len() > 2);
+        wide.map(|((folder, of), files)| format!("{folder}: {of} in {} files", files.len()))
+            .collect()
+    }
+
     /// Circles among the modules that stand side by side, each with what uses what.
     pub fn circles(&self) -> Vec<String> {
         let mut graphs: BTreeMap<Name, BTreeMap<String, BTreeMap<String, String>>> =
             BTreeMap::new();
         for (from, to) in self.edges() {
             let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
-            // A module and those inside it are one room.
+            // A parent uses those inside it; what they use of it is found by `upwards`.
             if common == from.len() || common == to.len() {
                 continue;
             }

@@ -91,6 +91,25 @@ fn no_module_imports_one_that_imports_it() {
     assert!(circles.is_empty(), "{circles:#?}");
 }
 
+#[test]
+fn no_module_imports_from_its_parent() {
+    let upwards: Vec<_> = sources()
+        .iter()
+        .flat_map(|source| Crate::read(source, &files(source, ".rs")).upwards())
+        .collect();
+    assert!(upwards.is_empty(), "{upwards:#?}");
+}
+
+/// A type that many files add methods to is a bag, not a value made of parts.
+#[test]
+fn no_type_has_methods_in_more_than_two_files() {
+    let spread: Vec<_> = sources()
+        .iter()
+        .flat_map(|source| Crate::read(source, &files(source, ".rs")).spread())
+        .collect();
+    assert!(spread.is_empty(), "{spread:#?}");
+}
+
 /// The map's rows name a file or folder by its path from the root, and then others beside it by
 /// their names alone.
 #[test]

@@ -46,99 +46,97 @@ impl fmt::Display for Crossed {
     }
 }
 
-impl ContactLayer {
-    /// The pairs of an edge and a triangle that have a point in common at time t (s), with
-    /// particles at x (m), n x 3: exactly, by signs of determinants; and what is inside a round
-    /// obstacle or a floor, to rounding. Obstacles among themselves are not looked at, nor bodies
-    /// among themselves that do not touch.
-    ///
-    /// # Panics
-    /// x has not three numbers for each particle.
-    #[must_use]
-    pub fn crossed(&self, t: f64, x: &[f64]) -> Vec<Crossed> {
-        let surface = self.surface();
-        let n = surface.particles();
-        assert_eq!(x.len(), 3 * n, "x has three numbers for each particle");
-        self.with_scratch(|scratch| self.crossed_with(scratch, t, x))
-    }
+/// The pairs of an edge and a triangle that have a point in common at time t (s), with
+/// particles at x (m), n x 3: exactly, by signs of determinants; and what is inside a round
+/// obstacle or a floor, to rounding. Obstacles among themselves are not looked at, nor bodies
+/// among themselves that do not touch.
+///
+/// # Panics
+/// x has not three numbers for each particle.
+#[must_use]
+pub fn crossed(layer: &ContactLayer, t: f64, x: &[f64]) -> Vec<Crossed> {
+    let surface = layer.surface();
+    let n = surface.particles();
+    assert_eq!(x.len(), 3 * n, "x has three numbers for each particle");
+    layer.with_scratch(|scratch| crossed_with(layer, scratch, t, x))
+}
 
-    /// Whether more primitives of a thickness (m) are at one place at time t (s), with particles at
-    /// x (m), n x 3, than their pairs can be listed for: those whose boxes meet.
-    pub(crate) fn is_crowded(&self, t: f64, x: &[f64], thickness: f64) -> bool {
-        let surface = self.surface();
-        let mut places = vec![];
-        surface.place(self.obstacles(), t, x, &mut places);
-        let around = |corners: &[u32; 3]| {
-            Aabb::around(corners.map(|i| places[i as usize])).grown(0.5 * thickness)
-        };
-        let corners = surface
-            .bodies
-            .corners
-            .iter()
-            .chain(&surface.obstacles.corners);
-        let boxes: Vec<_> = corners.map(around).collect();
-        let most = MOST_PAIRS.max(PAIRS_OF_ONE * boxes.len());
-        let mut pairs = 0;
-        !Bvh::new(&boxes).pairs(|_, _| {
-            pairs += 1;
-            pairs <= most
-        })
-    }
+/// Whether more primitives of a thickness (m) are at one place at time t (s), with particles at
+/// x (m), n x 3, than their pairs can be listed for: those whose boxes meet.
+pub(crate) fn is_crowded(layer: &ContactLayer, t: f64, x: &[f64], thickness: f64) -> bool {
+    let surface = layer.surface();
+    let mut places = vec![];
+    surface.place(layer.obstacles(), t, x, &mut places);
+    let around = |corners: &[u32; 3]| {
+        Aabb::around(corners.map(|i| places[i as usize])).grown(0.5 * thickness)
+    };
+    let corners = surface
+        .bodies
+        .corners
+        .iter()
+        .chain(&surface.obstacles.corners);
+    let boxes: Vec<_> = corners.map(around).collect();
+    let most = MOST_PAIRS.max(PAIRS_OF_ONE * boxes.len());
+    let mut pairs = 0;
+    !Bvh::new(&boxes).pairs(|_, _| {
+        pairs += 1;
+        pairs <= most
+    })
+}
 
-    fn crossed_with(&self, scratch: &mut Scratch, t: f64, x: &[f64]) -> Vec<Crossed> {
-        let surface = self.surface();
-        let n = surface.particles();
-        let Scratch {
-            candidates,
-            x: places,
-            ..
-        } = scratch;
-        surface.place(self.obstacles(), t, x, places);
-        let (edges, triangles): (Vec<_>, Vec<_>) =
-            (surface.edges().collect(), surface.triangles().collect());
-        let name = |points: &[u32]| points.iter().map(|i| surface.vertex(*i)).collect();
-        let counts = |edge: &[u32; 2], triangle: &[u32; 3]| {
-            let [a, b] = [edge[0], triangle[0]].map(|i| (i as usize) < n);
-            let apart = !surface.is_one_solid(edge[0], triangle[0]);
-            a && b && surface.touches_itself && apart || a != b
+fn crossed_with(layer: &ContactLayer, scratch: &mut Scratch, t: f64, x: &[f64]) -> Vec<Crossed> {
+    let surface = layer.surface();
+    let n = surface.particles();
+    let Scratch {
+        candidates,
+        x: places,
+        ..
+    } = scratch;
+    surface.place(layer.obstacles(), t, x, places);
+    let (edges, triangles): (Vec<_>, Vec<_>) =
+        (surface.edges().collect(), surface.triangles().collect());
+    let name = |points: &[u32]| points.iter().map(|i| surface.vertex(*i)).collect();
+    let counts = |edge: &[u32; 2], triangle: &[u32; 3]| {
+        let [a, b] = [edge[0], triangle[0]].map(|i| (i as usize) < n);
+        let apart = !surface.is_one_solid(edge[0], triangle[0]);
+        a && b && surface.touches_itself && apart || a != b
+    };
+    let exact = crossings(x, &places[n..], &triangles, &edges).into_iter();
+    let exact = exact
+        .map(|crossing| (edges[crossing.edge], triangles[crossing.triangle]))
+        .filter(|(edge, triangle)| counts(edge, triangle))
+        .map(|(edge, triangle)| Crossed {
+            first: name(&edge),
+            second: name(&triangle),
+        });
+    let mut crossed: Vec<_> = exact.collect();
+    let stretch = Stretch {
+        times: [t; 2],
+        ends: [places; 2],
+        speeds: None,
+    };
+    candidates.cover(surface, &stretch);
+    let is_inside = |pair: &&Candidate| {
+        let (x, radius) = (pair.of(places), surface.radii(pair.kind, &pair.points));
+        let offset = closest(pair.kind, &x).offset;
+        let least = radius - rounded(&x);
+        match pair.kind {
+            PairKind::VertexFloor => offset.y < least,
+            _ => radius > 0.0 && offset.norm() < least,
+        }
+    };
+    let inside = candidates.near(surface.nearest()).filter(is_inside);
+    crossed.extend(inside.map(|pair| {
+        let (first, second) = pair.points.split_at(pair.kind.first());
+        let of = |points: &[u32]| {
+            let mut points = points.to_vec();
+            points.dedup();
+            name(&points)
         };
-        let exact = crossings(x, &places[n..], &triangles, &edges).into_iter();
-        let exact = exact
-            .map(|crossing| (edges[crossing.edge], triangles[crossing.triangle]))
-            .filter(|(edge, triangle)| counts(edge, triangle))
-            .map(|(edge, triangle)| Crossed {
-                first: name(&edge),
-                second: name(&triangle),
-            });
-        let mut crossed: Vec<_> = exact.collect();
-        let stretch = Stretch {
-            times: [t; 2],
-            ends: [places; 2],
-            speeds: None,
-        };
-        candidates.cover(surface, &stretch);
-        let is_inside = |pair: &&Candidate| {
-            let (x, radius) = (pair.of(places), surface.radii(pair.kind, &pair.points));
-            let offset = closest(pair.kind, &x).offset;
-            let least = radius - rounded(&x);
-            match pair.kind {
-                PairKind::VertexFloor => offset.y < least,
-                _ => radius > 0.0 && offset.norm() < least,
-            }
-        };
-        let inside = candidates.near(surface.nearest()).filter(is_inside);
-        crossed.extend(inside.map(|pair| {
-            let (first, second) = pair.points.split_at(pair.kind.first());
-            let of = |points: &[u32]| {
-                let mut points = points.to_vec();
-                points.dedup();
-                name(&points)
-            };
-            Crossed {
-                first: of(first),
-                second: of(second),
-            }
-        }));
-        crossed
-    }
+        Crossed {
+            first: of(first),
+            second: of(second),
+        }
+    }));
+    crossed
 }

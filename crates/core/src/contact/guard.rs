@@ -26,105 +26,103 @@ const PASSES: usize = 12;
 /// Times that these passes are repeated where cuts fail, because what is led leaves no room.
 const ROUNDS: usize = 20;
 
-impl ContactLayer {
-    /// Guards the step of h (s) from the state y0 at time t (s) to y1, which it changes where
-    /// surfaces would pass through one another or friction acts, and notes the impulses. Inverse
-    /// masses are in 1/kg.
-    ///
-    /// # Errors
-    /// Vertices that are led leave no room.
-    pub(crate) fn guard(
-        &self,
-        inverse_masses: &[f64],
-        (t, h): (f64, f64),
-        y0: &[f64],
-        y1: &mut [f64],
-        impulses: &mut Impulses,
-    ) -> Result<Guarded, Squeezed> {
-        impulses.clear();
-        self.with_scratch(|scratch| {
-            std::mem::swap(impulses, &mut scratch.motion.impulses);
-            let guarded = self.guard_with(scratch, inverse_masses, (t, h), y0, y1);
-            std::mem::swap(impulses, &mut scratch.motion.impulses);
-            guarded
-        })
-    }
+/// Guards the step of h (s) from the state y0 at time t (s) to y1, which it changes where
+/// surfaces would pass through one another or friction acts, and notes the impulses. Inverse
+/// masses are in 1/kg.
+///
+/// # Errors
+/// Vertices that are led leave no room.
+pub(crate) fn guard(
+    layer: &ContactLayer,
+    inverse_masses: &[f64],
+    (t, h): (f64, f64),
+    y0: &[f64],
+    y1: &mut [f64],
+    impulses: &mut Impulses,
+) -> Result<Guarded, Squeezed> {
+    impulses.clear();
+    layer.with_scratch(|scratch| {
+        std::mem::swap(impulses, &mut scratch.motion.impulses);
+        let guarded = guard_with(layer, scratch, inverse_masses, (t, h), y0, y1);
+        std::mem::swap(impulses, &mut scratch.motion.impulses);
+        guarded
+    })
+}
 
-    fn guard_with(
-        &self,
-        scratch: &mut Scratch,
-        inverse_masses: &[f64],
-        (t, h): (f64, f64),
-        y0: &[f64],
-        y1: &mut [f64],
-    ) -> Result<Guarded, Squeezed> {
-        let surface = self.surface();
-        let half = 3 * surface.particles();
-        let Scratch {
-            candidates,
-            motion,
-            cuts,
-            ..
-        } = scratch;
-        motion.times = [t, t + h];
-        surface.place(self.obstacles(), t, &y0[..half], &mut motion.x0);
-        surface.place(
-            self.obstacles(),
-            t + h,
-            &y1[..half],
-            &mut motion.moves.points,
-        );
-        for (end, start) in motion.moves.points.iter_mut().zip(&motion.x0) {
-            *end -= start;
-        }
-        surface.speeds(
-            self.obstacles(),
-            t + h,
-            &y1[half..2 * half],
-            &mut motion.v.points,
-        );
-        if surface.is_rough() || surface.is_sharp() {
-            surface.speeds(
-                self.obstacles(),
-                t,
-                &y0[half..2 * half],
-                &mut motion.v0.points,
-            );
-        }
-        motion.inverse_masses.clear();
-        motion.inverse_masses.extend_from_slice(inverse_masses);
-        motion.inverse_masses.resize(motion.x0.len(), 0.0);
-        motion.read_solids(surface, [y0, y1]);
-        motion.take_planes();
-        let mut guarded = Guarded::default();
-        motion.cover(surface, candidates);
-        let mut changed = rub(surface, h, candidates, motion, &mut guarded);
-        if surface.is_sharp() {
-            changed |= strike(surface, h, candidates, motion, &mut guarded);
-        }
-        let mut rounds = 0;
-        while !push_apart(surface, h, candidates, motion, &mut guarded, &mut changed) {
-            match cuts.cut(surface, candidates, motion) {
-                Ok(cut) => {
-                    (guarded.cuts, guarded.lost) = cut;
-                    break;
-                }
-                // More impulses may make way for what is led.
-                Err(_) if rounds < ROUNDS => rounds += 1,
-                Err(squeezed) => return Err(squeezed),
-            }
-        }
-        if changed {
-            write_back(motion, surface.particles(), y0, y1);
-            let rotations = y1[2 * half..].chunks_exact_mut(ROTATION);
-            for (k, (solid, numbers)) in motion.solids.iter().zip(rotations).enumerate() {
-                let end = solid.end(motion.moves.turns[k], motion.v.turns[k]);
-                end.write(numbers);
-            }
-        }
-        guarded.planes = motion.take_planes();
-        Ok(guarded)
+fn guard_with(
+    layer: &ContactLayer,
+    scratch: &mut Scratch,
+    inverse_masses: &[f64],
+    (t, h): (f64, f64),
+    y0: &[f64],
+    y1: &mut [f64],
+) -> Result<Guarded, Squeezed> {
+    let surface = layer.surface();
+    let half = 3 * surface.particles();
+    let Scratch {
+        candidates,
+        motion,
+        cuts,
+        ..
+    } = scratch;
+    motion.times = [t, t + h];
+    surface.place(layer.obstacles(), t, &y0[..half], &mut motion.x0);
+    surface.place(
+        layer.obstacles(),
+        t + h,
+        &y1[..half],
+        &mut motion.moves.points,
+    );
+    for (end, start) in motion.moves.points.iter_mut().zip(&motion.x0) {
+        *end -= start;
     }
+    surface.speeds(
+        layer.obstacles(),
+        t + h,
+        &y1[half..2 * half],
+        &mut motion.v.points,
+    );
+    if surface.is_rough() || surface.is_sharp() {
+        surface.speeds(
+            layer.obstacles(),
+            t,
+            &y0[half..2 * half],
+            &mut motion.v0.points,
+        );
+    }
+    motion.inverse_masses.clear();
+    motion.inverse_masses.extend_from_slice(inverse_masses);
+    motion.inverse_masses.resize(motion.x0.len(), 0.0);
+    motion.read_solids(surface, [y0, y1]);
+    motion.take_planes();
+    let mut guarded = Guarded::default();
+    motion.cover(surface, candidates);
+    let mut changed = rub(surface, h, candidates, motion, &mut guarded);
+    if surface.is_sharp() {
+        changed |= strike(surface, h, candidates, motion, &mut guarded);
+    }
+    let mut rounds = 0;
+    while !push_apart(surface, h, candidates, motion, &mut guarded, &mut changed) {
+        match cuts.cut(surface, candidates, motion) {
+            Ok(cut) => {
+                (guarded.cuts, guarded.lost) = cut;
+                break;
+            }
+            // More impulses may make way for what is led.
+            Err(_) if rounds < ROUNDS => rounds += 1,
+            Err(squeezed) => return Err(squeezed),
+        }
+    }
+    if changed {
+        write_back(motion, surface.particles(), y0, y1);
+        let rotations = y1[2 * half..].chunks_exact_mut(ROTATION);
+        for (k, (solid, numbers)) in motion.solids.iter().zip(rotations).enumerate() {
+            let end = solid.end(motion.moves.turns[k], motion.v.turns[k]);
+            end.write(numbers);
+        }
+    }
+    guarded.planes = motion.take_planes();
+    Ok(guarded)
 }
 
 /// Passes of impulses. Returns whether no pair comes too near any more.

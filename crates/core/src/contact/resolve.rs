@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::cut::Squeezed;
+use super::guard::guard;
 use super::impulses::Impulses;
 use super::layer::ContactLayer;
 use super::met::{Met, Statistics, across, velocity};
@@ -184,7 +185,7 @@ impl Contact {
     ) -> Result<Statistics, Squeezed> {
         let (impulses, length) = &mut self.impulses;
         *length = h;
-        let guarded = layer.guard(inverse_masses, (t, h), &self.y0, y1, impulses)?;
+        let guarded = guard(layer, inverse_masses, (t, h), &self.y0, y1, impulses)?;
         self.last = Statistics {
             contacts: guarded.impulses,
             impulse: guarded.impulse,

@@ -1,5 +1,5 @@
-//! A method of the table: its name, its order, the view of a system by which it takes its steps, and
-//! its constructor.
+//! A method of the table: its name, its order, the view of a system by which it takes its steps,
+//! and its constructor.
 
 use super::adaptive::Adaptive;
 use super::error_norm::Tolerance;

@@ -7,9 +7,9 @@ use nalgebra::Vector3;
 use super::build::Network;
 use super::evaluation::{at, prescribed};
 use super::surfaces::Touch;
-use super::{crossed, energies};
+use super::{crossings, energies};
 use crate::constraints::Constraint;
-use crate::contact::{ContactLayer, Crossed, Obstacle, StrainLimit};
+use crate::contact::{ContactLayer, Crossed, Obstacle, StrainLimit, crossed};
 use crate::elements::{Buckling, Element, Finish, Fluid, Sheet, Wind};
 use crate::energy::Energy;
 use crate::error::{Error, Unmet};
@@ -361,11 +361,11 @@ impl Network {
     #[must_use]
     pub fn crossed(&self, t: f64, x: &[f64]) -> Vec<Crossed> {
         match self.contact_layer() {
-            Some(layer) => layer.crossed(t, x),
-            None => self
-                .surfaces
-                .layer_of_all(self.bodies(), self.particles())
-                .crossed(t, x),
+            Some(layer) => crossed(layer, t, x),
+            None => {
+                let all = self.surfaces.layer_of_all(self.bodies(), self.particles());
+                crossed(&all, t, x)
+            }
         }
     }
 
@@ -375,7 +375,7 @@ impl Network {
     /// Surfaces cross: the message names the first pair of triangles or edges, its place, and the
     /// connected parts that cross. Or too many are at one place to be tested pair by pair.
     pub fn check_apart(&self, t: f64, x: &[f64]) -> Result<(), Error> {
-        crossed::check_apart(self, t, x)
+        crossings::check_apart(self, t, x)
     }
 
     /// The energy in the state (x, v) at time 0, and at all times if no obstacle moves. Drag,

@@ -3,7 +3,7 @@
 
 use super::depths::Depths;
 use crate::contact::{
-    Contact, Impulses, Squeezed, Statistics, Step, StrainLimiter, Strained, resolve,
+    Contact, Impulses, Squeezed, Statistics, Step, StrainLimiter, Strained, bulge, guard, resolve,
 };
 use crate::error::Cause;
 use crate::network::Network;
@@ -69,7 +69,7 @@ impl Phases {
         let is_known = states[0].len() == states[1].len();
         layer
             .filter(|_| is_known)
-            .map_or(0.0, |layer| layer.bulge((t, h), states))
+            .map_or(0.0, |layer| bulge(layer, (t, h), states))
     }
 
     /// Lets the particles that touch an obstacle at the end of a step, which is at time t (s) after
@@ -119,7 +119,7 @@ impl Phases {
         if let Some(layer) = network.contact_layer() {
             // Where prescribed motion leaves no room, the step itself has ended the run.
             let none = &mut Impulses::default();
-            let _ = layer.guard(inverse_masses, (t, h), y0, y, none);
+            let _ = guard(layer, inverse_masses, (t, h), y0, y, none);
         } else if !knows_obstacles {
             resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
         }

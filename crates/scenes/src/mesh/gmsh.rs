@@ -4,7 +4,7 @@
 use super::data::Mesh;
 use super::tetrahedra::{Numbered, lines, position, whole};
 
-/// Whether a kind of elements is a tetrahedron, of whatever order: its first points are its corners.
+/// Whether elements of a kind are tetrahedra, of any order: their first points are the corners.
 fn is_simplex(kind: u64) -> bool {
     matches!(kind, 4 | 11 | 29..=33 | 71..=75 | 79..=83 | 87 | 137 | 139)
 }

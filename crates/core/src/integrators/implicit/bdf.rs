@@ -18,7 +18,7 @@ use crate::error::Error;
 use crate::system::ParticleSystem;
 use crate::work::Work;
 
-pub(in super::super) const METHOD: Method = Method {
+pub(crate) const METHOD: Method = Method {
     name: "bdf",
     letter: 'o',
     aliases: &["ndf", "ode15s"],

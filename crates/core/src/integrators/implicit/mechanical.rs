@@ -1,5 +1,5 @@
-//! Implicit stages of a mechanical system with masses M, drag C, damping D and stiffness K, solved by
-//! Newton's method.
+//! Implicit stages of a mechanical system with masses M, drag C, damping D and stiffness K, solved
+//! by Newton's method.
 //!
 //! The guess (x, v) and
 //! base = (bx, bv), an iteration solves

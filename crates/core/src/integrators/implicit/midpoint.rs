@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::system::ParticleSystem;
 use crate::work::Work;
 
-pub(in super::super) const METHOD: Method = Method {
+pub(crate) const METHOD: Method = Method {
     name: "implicit-midpoint",
     letter: 'n',
     aliases: &[],

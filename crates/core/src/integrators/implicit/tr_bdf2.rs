@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::system::ParticleSystem;
 use crate::work::Work;
 
-pub(in super::super) const METHOD: Method = Method {
+pub(crate) const METHOD: Method = Method {
     name: "tr-bdf2",
     letter: 'b',
     aliases: &["trbdf2"],

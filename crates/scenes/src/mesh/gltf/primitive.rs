@@ -1,5 +1,5 @@
-//! A mesh that is read node by node, and primitives: triangles of a mesh, with the targets that move
-//! their points.
+//! A mesh that is read node by node, and primitives: triangles of a mesh, with the targets that
+//! move their points.
 
 use nalgebra::{Matrix4, Point3};
 

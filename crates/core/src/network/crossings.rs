@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use super::build::Network;
-use crate::contact::Crossed;
+use crate::contact::{Crossed, is_crowded};
 use crate::error::{Error, Vertex};
 use crate::sets::Sets;
 
@@ -16,11 +16,11 @@ const NAMED: usize = 3;
 pub(super) fn check_apart(network: &Network, t: f64, x: &[f64]) -> Result<(), Error> {
     if let Some(layer) = network.contact_layer() {
         let thickest = layer.surface().thickest();
-        if layer.is_crowded(t, x, 0.0) {
+        if is_crowded(layer, t, x, 0.0) {
             let why = "too many surfaces are at the same place for contact: move them apart";
             return Err(Error::Invalid(why.into()));
         }
-        if layer.is_crowded(t, x, thickest) {
+        if is_crowded(layer, t, x, thickest) {
             return Err(Error::Invalid(format!(
                 "too many surfaces are within their thickness of one another for contact: it is up to {thickest} m, \
                  and a smaller one would do"
