@@ -100,9 +100,8 @@ impl Met<'_> {
             let touch = (may_pass || !is_struck && self.obstacle.restitution > 0.0)
                 .then(|| self.touch(i, [at, row(v, n, i)]))
                 .flatten();
-            let passed = touch
-                .as_ref()
-                .and_then(|touch| touch.passed(d, inside.as_ref()));
+            let first = touch.as_ref();
+            let passed = first.and_then(|touch| touch.passed(d, inside.as_ref()));
             let Some(nearest) = passed.or(inside) else {
                 continue;
             };

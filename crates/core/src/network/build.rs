@@ -119,7 +119,7 @@ impl Network {
 
     /// Lets wind blow on particles or on triangles, or calms it.
     pub fn set_wind(&mut self, wind: Option<Wind>) {
-        self.elements.set_wind(wind);
+        self.elements.set_wind(wind.as_ref());
     }
 
     /// Adds one spring.

@@ -99,8 +99,8 @@ impl Elements {
     }
 
     /// Sets the wind on particles or on triangles, or none.
-    pub fn set_wind(&mut self, wind: Option<Wind>) {
-        let element = wind.map(|wind| match wind.air() {
+    pub fn set_wind(&mut self, wind: Option<&Wind>) {
+        let element = wind.copied().map(|wind| match wind.air() {
             Some(air) => Airflow { wind, air }.into(),
             None => wind.into(),
         });

@@ -67,12 +67,11 @@ pub(super) fn flow(
     v: [&mut [f64]; 3],
 ) {
     let Carried { drag, gravity } = drifting(network, terms);
-    match network.particles.uniform_inverse_mass() {
-        Some(w) => Flow::new(drag, gravity, w, h).apply(x, v),
-        None => {
-            let inverse_masses = &network.particles.inverse_masses()[particles];
-            flow_each(drag, gravity, inverse_masses, h, x, v);
-        }
+    if let Some(w) = network.particles.uniform_inverse_mass() {
+        Flow::new(drag, gravity, w, h).apply(x, v);
+    } else {
+        let inverse_masses = &network.particles.inverse_masses()[particles];
+        flow_each(drag, gravity, inverse_masses, h, x, v);
     }
 }
 

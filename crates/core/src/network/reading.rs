@@ -360,13 +360,11 @@ impl Network {
     /// keeps them from it, because surfaces do not touch.
     #[must_use]
     pub fn crossed(&self, t: f64, x: &[f64]) -> Vec<Crossed> {
-        match self.contact_layer() {
-            Some(layer) => crossed(layer, t, x),
-            None => {
-                let all = self.surfaces.layer_of_all(self.bodies(), self.particles());
-                crossed(&all, t, x)
-            }
+        if let Some(layer) = self.contact_layer() {
+            return crossed(layer, t, x);
         }
+        let all = self.surfaces.layer_of_all(self.bodies(), self.particles());
+        crossed(&all, t, x)
     }
 
     /// Checks that no surfaces pass through one another at time t (s) at x (m), n x 3.

@@ -84,7 +84,7 @@ impl Elements {
 
     /// Replaces the springs, the solids and the fluid by those of others, of as many particles.
     pub fn copy_springs(&mut self, others: &Self) -> Result<(), Error> {
-        let [n, of_others] = [self, others].map(|elements| elements.particles());
+        let [n, of_others] = [self, others].map(Self::particles);
         if n != of_others {
             return Err(Error::Invalid(format!(
                 "the springs of a network of {of_others} particles do not fit one of {n}"

@@ -65,7 +65,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
             ("$NOD" | "$ELM", None) => return Err(refused("1")),
             ("$Nodes" | "$ParametricNodes" | "$Elements", None) => return Err(NO_FORMAT.into()),
             ("$Nodes" | "$ParametricNodes", Some(Version::Two)) => {
-                nodes_2(&mut reader, &mut numbered)?
+                nodes_2(&mut reader, &mut numbered)?;
             }
             ("$Nodes", Some(Version::Four)) => nodes_4(&mut reader, &mut numbered)?,
             ("$Elements", Some(Version::Two)) => elements_2(&mut reader, &mut numbered)?,

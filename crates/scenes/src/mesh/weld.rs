@@ -33,7 +33,7 @@ pub(super) fn places(positions: &[Triple]) -> Vec<u32> {
     };
     // Of the points in a cell, those that are the first at their place: few, as they are apart.
     let mut firsts = vec![vec![]; cells.len()];
-    let mut same: Vec<_> = (0..positions.len() as u32).collect();
+    let mut same = Vec::with_capacity(positions.len());
     for i in 0..positions.len() {
         // The cells within reach: one or two along each axis.
         let at = scaled(i);
@@ -48,14 +48,11 @@ pub(super) fn places(positions: &[Triple]) -> Vec<u32> {
         });
         let there = around.filter_map(|cell| cells.binary_search(&cell).ok());
         let known = there.flat_map(|cell| &firsts[cell]).copied();
-        match known.filter(|k| is_near(i, *k as usize)).min() {
-            Some(first) => same[i] = first,
-            None => {
-                if let Ok(own) = cells.binary_search(&cell(i)) {
-                    firsts[own].push(i as u32);
-                }
-            }
+        let first = known.filter(|k| is_near(i, *k as usize)).min();
+        if let (None, Ok(own)) = (first, cells.binary_search(&cell(i))) {
+            firsts[own].push(i as u32);
         }
+        same.push(first.unwrap_or(i as u32));
     }
     same
 }

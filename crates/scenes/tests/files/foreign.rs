@@ -15,10 +15,8 @@ fn bent_faces_keep_all_triangles() {
     for k in 0..27 * 27 {
         let corners = [[0, 0, 0], [2, 0, 0], place(k % 27), place(k / 27)];
         let is_apart = (0..4).all(|a| (0..a).all(|b| corners[a] != corners[b]));
-        let text: String = corners
-            .iter()
-            .map(|[x, y, z]| format!("v {x} {y} {z}\n"))
-            .collect();
+        let lines = corners.map(|[x, y, z]| format!("v {x} {y} {z}\n"));
+        let text = lines.concat();
         let Ok(mesh) = Mesh::from_obj(format!("{text}f 1 2 3 4\n").as_bytes()) else {
             continue;
         };
