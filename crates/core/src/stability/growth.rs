@@ -55,12 +55,14 @@ impl Growth {
         }
     }
 
-    /// Largest energy over the least that a mode has in steps of h (s) apart from growth and decay.
+    /// Largest energy over the least that a mode has in steps of h (s), apart from growth and decay
+    /// and from what the exact motion has.
     ///
     /// Steps move x w and v round an ellipse, c x^2 + (d - a) x v - b v^2 = const., and this is the
-    /// square of the ratio of its axes. It is 1 for a Runge-Kutta method without damping; for
-    /// Verlet's method it is 1 / (1 - (h w)^2 / 4), and has no bound at the limit. 1 where the step
-    /// fails or its matrix has real eigenvalues.
+    /// square of the ratio of its axes over that of the exact motion, (1 + z) / (1 - z) with the
+    /// damping ratio z. It is 1 for a Runge-Kutta method; for Verlet's method without damping it is
+    /// 1 / (1 - (h w)^2 / 4), and has no bound at the limit. 1 where the step fails or its matrix
+    /// has real eigenvalues.
     pub fn swing(&mut self, h: f64) -> f64 {
         let Some([a, b, c, d]) = self.matrix(h) else {
             return 1.0;
@@ -71,6 +73,9 @@ impl Growth {
         }
         let half = 0.5 * (c - b).abs();
         let root = (half * half - determinant).max(0.0).sqrt();
-        (half + root) / (half - root)
+        let Mode { drag, damping, .. } = self.system.0;
+        let ratio = 0.5 * (drag + damping) / self.system.0.frequency();
+        let own = ((1.0 + ratio) / (1.0 - ratio)).max(1.0);
+        ((half + root) / (half - root) / own).max(1.0)
     }
 }

@@ -36,6 +36,10 @@ const SETTLING: [(f64, u32, bool); 5] = [
     (5.0, 400, false),
 ];
 
+/// Time (s) in which gravity moves a scene by its radius, from which on these rounds have their
+/// steps: smaller and faster scenes take shorter ones, in proportion.
+const SLOW: f64 = 0.1;
+
 /// Most work of these rounds, in that of a [`Budget`].
 const MOST: f64 = 1e9;
 
@@ -182,11 +186,14 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     if let Model::Network(network) = &mut scene.model {
         network.set_tear(None)?;
     }
-    let mut run = Simulation::new(scene.clone(), implicit, Control::Step(0.05))?;
+    let mut run = Simulation::new(scene.clone(), implicit, Control::Step(SETTLING[0].0))?;
     let mut random = SplitMix(4);
+    let gravity = network.gravity().map_or(0.0, |g| g.norm());
+    let pace = ((scene.extent().1 / gravity).sqrt() / SLOW).min(1.0);
     // A run that begins again counts from nothing.
     let mut before_push = 0.0;
     for (step, steps, leaves) in SETTLING {
+        let step = pace * step;
         if leaves {
             // A fold may be balanced on its edge. The push makes it fall to one side, and it needs
             // all the steps to come to rest there.

@@ -214,6 +214,15 @@ fn the_energy_of_a_mode_swings() {
             assert_relative_eq!(growth.swing(z / 30.0), expected, max_relative = 1e-6);
         }
     }
+    // Damping makes the exact energy swing, and a Runge-Kutta method no more than that.
+    for ratio in [0.3, 0.9] {
+        let damped = Mode {
+            damping: 2.0 * ratio * 30.0,
+            ..undamped(30.0)
+        };
+        let mut growth = Growth::new(method("rk4"), damped).unwrap();
+        assert_relative_eq!(growth.swing(1.0 / 30.0), 1.0, max_relative = 1e-6);
+    }
 }
 
 /// Largest angular frequency of n free masses on a line with one end pinned: 2 sqrt(k/m) cos(pi /
