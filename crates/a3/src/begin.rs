@@ -83,8 +83,7 @@ pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Resul
     }
 }
 
-/// `Ok` if the run, which is one of several that are compared or not, has what it is to be coloured
-/// by, the arrows, and the springs.
+/// Checks that the scene supports the requested colours, arrows and springs.
 pub fn check_drawing(
     simulation: &Simulation,
     drawing: Drawing,

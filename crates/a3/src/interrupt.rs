@@ -157,7 +157,7 @@ fn loose() -> MutexGuard<'static, Vec<Loose>> {
 /// Something loose that is removed if the program ends at once while this value exists.
 pub struct Temporary(Loose);
 
-/// Makes something of which a part is loose. No signal comes between that and its being known.
+/// Creates a temporary file and registers it for clean-up, with signals held back in between.
 pub fn temporary<T>(
     make: impl FnOnce() -> io::Result<T>,
     part: impl FnOnce(&T) -> Loose,

@@ -164,7 +164,7 @@ impl Registers {
         }
     }
 
-    /// Begins another method where the stage has arrived.
+    /// Starts the next Runge-Kutta substep from the current stage values.
     pub(crate) fn begin(&mut self, row: usize) {
         self.y.row_mut(row).copy_from_slice(self.stage.row(row));
     }
@@ -282,8 +282,8 @@ impl SweepScratch {
     }
 }
 
-/// Some rows of a matrix that has more: row r is where row r + depth will be. Each is so many
-/// columns of numbers, with zeros before and after, at places that suit the processor's vectors.
+/// Ring buffer of `depth` matrix rows: rows r and r + depth share a slot. Each row is some columns
+/// of numbers, with zeros before and after, aligned for the processor's vectors.
 pub(crate) struct Window {
     data: Vec<f64>,
     start: usize,

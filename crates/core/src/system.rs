@@ -58,7 +58,7 @@ pub trait ParticleSystem {
         None
     }
 
-    /// Puts what is led at time t (s) to its place in the state y.
+    /// Writes the prescribed positions and velocities of kinematic particles at time t (s) into y.
     fn hold(&self, _t: f64, _y: &mut [f64]) {}
 
     /// Visits the numbers of the state with what they measure, but for those of what rigid bodies

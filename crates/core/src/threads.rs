@@ -17,8 +17,8 @@ pub(crate) fn threads(particles: usize) -> usize {
     }
 }
 
-/// Runs steps of a system of so many particles on one of the threads that share them, if there are
-/// enough: seen from another thread, each part of a step begins and ends by waking one up.
+/// Runs `run` inside the thread pool, if a system of that many particles is shared among threads,
+/// so that no part of a step has to wake the pool.
 pub(crate) fn among_threads<R: Send>(particles: usize, run: impl FnOnce() -> R + Send) -> R {
     if threads(particles) > 1 {
         rayon::scope(|_| run())

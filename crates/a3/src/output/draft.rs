@@ -62,7 +62,7 @@ impl Draft {
         }
     }
 
-    /// What the system says to a little more at the end of a draft that another program wrote.
+    /// Checks for a full disk by extending a draft that another program wrote a little.
     pub fn grow(&mut self) -> io::Result<()> {
         let Sink::Beside { file, .. } = self.file.get_mut() else {
             return Ok(());

@@ -33,8 +33,8 @@ const LOOSER: f64 = 10.0;
 const SHARE: f64 = 0.25;
 /// Order of the other methods.
 const ORDER: i32 = 4;
-/// Disagreement with the other method over that of the tolerances, below which it is the former
-/// that is in doubt: the looser tolerance makes nearly all of the latter.
+/// If both methods differ by less than this fraction of the difference between tolerances, the
+/// reference is trusted: the looser tolerance makes nearly all of that.
 const SURE: f64 = 0.3;
 /// The same, where tighter tolerances no longer agree better: where friction of surfaces, a limit
 /// of strain or the guard acts after each step, the reference itself is known no better.

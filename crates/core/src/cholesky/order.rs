@@ -6,12 +6,12 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Number of others from which on a row that meets more is eliminated last, and the same over the
-/// root of the number of rows: its list would be gone through too often.
+/// Degree above which a row is dense and is ordered last, and the same over the root of the number
+/// of rows: its list would be gone through too often.
 const MANY: [f64; 2] = [40.0, 2.0];
 
-/// The order in which rows are eliminated, of each of which the others that it meets are given;
-/// `None` if the factor would have more than so many blocks below its diagonal.
+/// Elimination order (approximate minimum degree) of a matrix given by its adjacency lists; `None`
+/// if the factor would have more than `most` blocks below its diagonal.
 pub(super) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
     let n = meets.len();
     let many = MANY[0].max(MANY[1] * (n as f64).sqrt()) as usize;

@@ -1,4 +1,5 @@
-//! Pairs of primitives that may touch: a list that is kept until somebody strays too far.
+//! Pairs of primitives that may touch: a list that stays valid until a vertex moves farther than a
+//! margin.
 //!
 //! The list is made for straight courses, on which vertices go on with their velocities. It has all
 //! pairs that may touch while no vertex strays from its course by more than a margin, apart from a
@@ -24,7 +25,7 @@ const LENGTH: f64 = 4.0;
 /// Time for which a list is made, as a share of that for which the one before it held.
 const HOLDING: f64 = 1.5;
 
-/// A list is made for new courses of some vertices only where these are at most one in so many.
+/// Only the vertices that moved too far get new courses, if they are at most 1 / FEW of all.
 const FEW: usize = 8;
 
 /// Share of the margin from which on a vertex then gets a new course.

@@ -23,7 +23,7 @@ const STUCK: f64 = 1e-4;
 /// Share of the most that friction takes of a displacement below which it counts as none.
 const STILL: f64 = 1e-10;
 
-/// Share that rigid bodies get back in a step of what they lack of the distance that they keep.
+/// Fraction of the missing separation of rigid bodies that is restored in a step.
 const RESTORED: f64 = 0.1;
 
 /// Number of contacts of two bodies, the last ones, among which one at the same point is sought.

@@ -64,7 +64,8 @@ impl ContactLayer {
         self.obstacles[k] = obstacle;
     }
 
-    /// Lends the scratch. Nothing is locked meanwhile: who asks for it then gets a new one.
+    /// Lends the scratch. The lock is not held during `work`: a concurrent caller gets fresh
+    /// scratch.
     pub(super) fn with_scratch<R>(&self, work: impl FnOnce(&mut Scratch) -> R) -> R {
         let lock = || self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
         let mut scratch = std::mem::take(&mut *lock());

@@ -163,7 +163,7 @@ impl Motion {
         self.solids[k].bend(k, &self.x0, &mut self.moves);
     }
 
-    /// Whether vertex i of a surface has its way whatever it meets.
+    /// Whether vertex i of a surface is kinematic: contact does not move it.
     pub fn is_led(&self, surface: &Surface, i: u32) -> bool {
         match surface.solid(i) {
             Some(k) => self.solids[k].is_led(),

@@ -17,7 +17,7 @@ const KEPT: f64 = 1e-3;
 /// parting, over the speed that its repulsion alone would give.
 const TURN: f64 = 0.1;
 
-/// What a surface is like to touch. Where two surfaces meet, the thickness and the damping are the
+/// Contact material of a surface. Where two surfaces meet, the thickness and the damping are the
 /// means of theirs, the stiffness is the smaller one, and the friction and the restitution are the
 /// larger ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -104,7 +104,7 @@ impl Element {
         }
     }
 
-    /// The fluid, if it is one.
+    /// The fluid, if this element is one.
     pub(crate) fn fluid(&self) -> Option<&Fluid> {
         match self {
             Self::Fluid(fluid) => Some(fluid),
@@ -112,7 +112,7 @@ impl Element {
         }
     }
 
-    /// The contact of surfaces, if it is that.
+    /// The contact layer, if this element is one.
     pub(crate) fn contact_layer(&self) -> Option<&ContactLayer> {
         match self {
             Self::ContactLayer(layer) => Some(layer),
@@ -120,7 +120,7 @@ impl Element {
         }
     }
 
-    /// The contact of surfaces, to be changed, if it is that.
+    /// The contact layer, to be changed, if this element is one.
     pub(crate) fn contact_layer_mut(&mut self) -> Option<&mut ContactLayer> {
         match self {
             Self::ContactLayer(layer) => Some(layer),

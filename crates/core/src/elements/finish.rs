@@ -13,8 +13,8 @@ pub(crate) struct Finish<'a> {
     pub gravity: Option<(Vector3<f64>, &'a [f64])>,
     /// Coefficient of viscous drag (kg/s).
     pub drag: Option<f64>,
-    /// Masses (kg), where the product of a matrix with a vector is wanted: they times the vector,
-    /// less the sum.
+    /// Masses (kg). If set, the result is m v - f, the product of the implicit matrix with v,
+    /// instead of f.
     pub inertia: Option<&'a [f64]>,
     /// Factors at the end: one over each mass (1/kg).
     pub inverse_masses: Option<&'a [f64]>,

@@ -50,7 +50,7 @@ pub(crate) trait Force {
     /// Name in lists of forces.
     fn name(&self) -> &'static str;
 
-    /// `Ok` if all particles that the element names exist among so many.
+    /// Checks that every particle index is below the number of `particles`.
     fn check(&self, _particles: usize) -> Result<(), Error> {
         Ok(())
     }

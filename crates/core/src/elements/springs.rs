@@ -15,7 +15,7 @@ use crate::spring::Spring;
 #[derive(Debug, Default)]
 pub struct Springs {
     all: Vec<Spring>,
-    /// They in blocks, if there are many, once they are asked for.
+    /// Packed copy of the springs, built on first use if there are many.
     packed: OnceLock<Option<Packed>>,
 }
 

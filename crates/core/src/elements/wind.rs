@@ -107,7 +107,7 @@ impl Wind {
         }
     }
 
-    /// The wind whose time 0 is this one's time t (s).
+    /// This wind, shifted so that its time t (s) becomes 0.
     #[must_use]
     pub fn ahead(&self, t: f64) -> Self {
         Self {

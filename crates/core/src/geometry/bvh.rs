@@ -81,8 +81,8 @@ struct Node {
     item: u32,
 }
 
-/// Binary tree of boxes around items, which are numbered as they are listed. Its form stays as it
-/// was made while boxes are changed.
+/// Binary tree of boxes around items, which are numbered as they are listed. Refitting changes the
+/// boxes but not the topology.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bvh {
     /// Parents before their children.

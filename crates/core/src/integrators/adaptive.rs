@@ -178,7 +178,7 @@ impl Adaptive {
         check_dim(self.trial.dim(), y)?;
         self.trial.check(system)?;
         let mut work = Work::default();
-        // What contact put right after the last step has another derivative.
+        // Contact may have changed y after the last step: then f must be evaluated again.
         if !self.goes_on {
             work += self.trial.begin(system, t, y);
         } else if is_same(system, self.trial.end(), y) {

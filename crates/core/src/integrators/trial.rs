@@ -27,8 +27,7 @@ pub(super) trait Trial: Send {
     /// Power of h with which the estimated local error falls.
     fn exponent(&self) -> f64;
 
-    /// Ratio of the next step to this one, of which the estimated error over the tolerated one is
-    /// known.
+    /// Factor for the next step, given this step's error relative to the tolerance.
     fn change(&self, error: f64) -> f64 {
         SAFETY * libm::pow(error, -1.0 / self.exponent())
     }

@@ -13,8 +13,8 @@ const SOLUTION: [f64; 2] = [3.0, 2.0];
 /// Largest number of blocks in a factor (48 MB), and for each particle, which is enough for any
 /// tree: nets with larger ones are solved faster by iterations.
 const MOST: [usize; 2] = [500_000, 2];
-/// Number of couplings in the time that an evaluation takes beside its couplings: in relation to
-/// it, the algebra of a few couplings costs less than that of many.
+/// Fixed overhead of an evaluation, in couplings: in relation to it, the algebra of a few couplings
+/// costs less than that of many.
 const OVERHEAD: f64 = 10.0;
 
 /// Price of so many products of blocks for each coupling, in evaluations of forces spring by

@@ -37,9 +37,9 @@ const MOST: u64 = 10_000;
 /// Solver of linear systems with the tangent of one system.
 pub(crate) struct Solver {
     pub tangent: Tangent,
-    /// Whether to factorise at any price, or at none.
+    /// Forces or forbids a factorisation; `None` chooses by cost.
     direct_always: Option<bool>,
-    /// Whether to use multigrid at any price, or at none.
+    /// Forces or forbids multigrid; `None` chooses by cost.
     multigrid_always: Option<bool>,
     iterative: ConjugateGradients,
     /// The factorisation, once it is worth an analysis of the pattern; `None` also if it would be

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::path::{Path, Turn};
 use crate::rigid::Body;
 
-/// What of a network can touch, beside its triangles and obstacles.
+/// Contact properties of a network: skins, loose edges, and self-contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Touch {
     /// Skin of each particle.

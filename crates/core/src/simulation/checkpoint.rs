@@ -127,7 +127,8 @@ impl Checkpoint {
         Ok(model)
     }
 
-    /// Gives a network, which is as its scene has it, what hands, time and tears changed.
+    /// Applies this checkpoint's pins, obstacles, wind and tears to a fresh copy of the scene's
+    /// network.
     fn bind(&self, network: &mut Network, whole: &Network) -> Result<(), Error> {
         if network.torn() != self.torn {
             network.mend(whole, &self.torn)?;

@@ -120,7 +120,8 @@ impl Simulation {
         self.driver.stop(&self.model, &mut self.state);
     }
 
-    /// Makes the integrator anew for the system as it is now.
+    /// Recreates the integrator after the system changed: it sizes its scratch and its cost model
+    /// by the system.
     fn refit(&mut self) {
         let stepper = &mut self.driver.pipeline.stepper;
         stepper.refit(self.state.method, self.model.system());

@@ -30,7 +30,7 @@ const STAYS: u32 = 6;
 const OVERSHOT: f64 = 0.5;
 /// Most times that a change is shortened.
 const SHORTENED: u32 = 12;
-/// Gap relative to positions that is rounding.
+/// Relative position gap below which it counts as rounding error.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Solver of the implicit stages of a mechanical system, with its scratch.
