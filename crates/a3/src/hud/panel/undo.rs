@@ -21,7 +21,9 @@ pub fn undo(session: &mut Session, again: bool) {
         }
         Change::Push { obstacle, paths } => {
             // Where surfaces would cross, the obstacle stays where it is.
-            let _ = session.runs.put_back(obstacle, paths[usize::from(again)]);
+            if let Err(why) = session.runs.put_back(obstacle, paths[usize::from(again)]) {
+                return session.readings.say(why);
+            }
             "push".into()
         }
         Change::Knob {
