@@ -14,6 +14,8 @@ mod interrupt;
 mod lessons;
 #[path = "../../crates/a3/src/output/mod.rs"]
 mod output;
+#[path = "../../crates/a3/src/rounding.rs"]
+mod rounding;
 #[path = "../../crates/a3/src/scene_file/mod.rs"]
 mod scene_file;
 #[path = "../../crates/a3/src/share.rs"]
