@@ -33,7 +33,7 @@ pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
 
 /// The words after the program's name, with the scene as it was asked for.
 fn words(session: &Session, at: usize) -> Vec<String> {
-    let (origin, run) = (&session.library.shown, session.runs.first());
+    let (origin, run) = (&session.scenes.shown, session.runs.first());
     let description = &origin.source.description;
     let begins_windy = description.wind.as_ref().is_some_and(|wind| wind.on);
     let mut words = words_of_file(session, at, &origin.source.typed);
@@ -64,7 +64,7 @@ fn words_of_file(session: &Session, at: usize, scene: &str) -> Vec<String> {
         let methods = runs.map(|run| format!("{}:{}", run.method().name, control(run)));
         ["compare".into()].into_iter().chain(methods).collect()
     };
-    let StepLimits { absolute, max_step } = session.library.shown.limits;
+    let StepLimits { absolute, max_step } = session.scenes.shown.limits;
     for (name, limit) in [("--absolute", absolute), ("--max-step", max_step)] {
         words.extend(
             limit

@@ -13,13 +13,13 @@ use crate::session::Session;
 /// one, and returns that name.
 pub fn keep(session: &mut Session, at: usize) -> Result<PathBuf, Failure> {
     let run = &session.runs.panes[at.min(session.runs.panes.len() - 1)].simulation;
-    let origin = &session.library.shown;
+    let origin = &session.scenes.shown;
     let folder = origin.source.path.as_deref().and_then(Path::parent);
     let mut kept = Kept::new(&origin.source, origin.grid, run, None);
     kept.tuned = panel::tuned(session);
     let folder = folder.unwrap_or("".as_ref());
     let path = output::write_new(folder, &run.scene().name, ENDING, &kept.bytes()?)?;
-    session.library.kept = Some(path.clone());
+    session.scenes.kept = Some(path.clone());
     Ok(path)
 }
 
@@ -31,12 +31,12 @@ pub fn take_up(session: &mut Session, path: &Path) -> Result<(), Failure> {
         ));
     }
     let kept = Kept::read(path)?;
-    let origin = &session.library.shown;
+    let origin = &session.scenes.shown;
     kept.check(path, &origin.source, origin.grid, session.runs.first())?;
     panel::tune(session, &kept.tuned);
     let taken = session.take_up(&kept.checkpoint);
     taken.map_err(|why| Failure::usage(format!("{}: {why}", path.display())))?;
-    session.library.kept = Some(path.into());
+    session.scenes.kept = Some(path.into());
     Ok(())
 }
 

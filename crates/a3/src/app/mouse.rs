@@ -29,7 +29,7 @@ pub enum Drag {
     Pan,
     /// Go along the timeline.
     Scrub,
-    /// Pin what is in a box from there (px) to the pointer, or let go of it.
+    /// Pin or release the particles in a box from a corner (px) to the pointer.
     Select { from: [f32; 2], pinned: bool },
 }
 
@@ -47,7 +47,7 @@ pub struct Mouse {
 }
 
 impl Mouse {
-    /// A mouse of which nothing is known yet.
+    /// Creates a mouse outside the window, with no button pressed.
     pub fn new() -> Self {
         Self {
             pointer: Pointer::new(),
@@ -175,7 +175,7 @@ impl Mouse {
         }
     }
 
-    /// Pulls what is held to the pointer.
+    /// Pulls the grabbed particle or obstacle to the pointer.
     pub fn pull(&self, session: &mut Session, screen: &Screen) {
         if let Drag::Pull(grip) = self.drag {
             let tile = screen.tile(session, self.pane);

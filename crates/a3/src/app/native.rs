@@ -112,7 +112,7 @@ pub fn quit(event_loop: &ActiveEventLoop) -> Option<&'static str> {
     None
 }
 
-/// Opens the lessons, and returns what is said of that.
+/// Opens the lessons. Returns the message to show.
 pub fn open_lessons() -> String {
     lessons::open().unwrap_or_else(Failure::message)
 }

@@ -170,7 +170,7 @@ pub fn quit(_: &ActiveEventLoop) -> Option<&'static str> {
     Some("The browser closes the page.")
 }
 
-/// Opens the lessons, which lie beside the page, and returns what is said of that.
+/// Opens the lessons, which lie beside the page. Returns the message to show.
 pub fn open_lessons() -> String {
     browser::open("lessons/README.md");
     "The lessons are open beside this page.".into()

@@ -1,4 +1,4 @@
-//! The pointer of the mouse: its position, what is under it, and whether a button clicks or drags.
+//! The pointer of the mouse: its position, its pane, and whether a button clicks or drags.
 
 use web_time::{Duration, Instant};
 
@@ -30,7 +30,7 @@ pub struct Pointer {
 }
 
 impl Pointer {
-    /// A pointer of which nothing is known yet.
+    /// Creates a pointer outside the window.
     pub fn new() -> Self {
         Self {
             position: [0.0; 2],

@@ -17,7 +17,7 @@ pub fn remember(before: &Settings, session: &Session, screen: &Screen) {
         film_seconds: session.panel.film_of,
         recent: before.recent.clone(),
     };
-    now.remember(session.library.files());
+    now.remember(session.scenes.files());
     if now == *before {
         return;
     }

@@ -82,7 +82,7 @@ fn prepare(session: &mut Session, settings: Option<&Settings>) {
         session.panel.film = settings.film;
         session.panel.frame_limit = settings.frame_limit;
         session.panel.film_of = settings.film_seconds;
-        session.library.recent.clone_from(&settings.recent);
+        session.scenes.recent.clone_from(&settings.recent);
     }
 }
 

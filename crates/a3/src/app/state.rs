@@ -200,7 +200,7 @@ impl App {
             }),
             WindowAction::Keep => Some(said("kept in", keep::keep(session, pane))),
             WindowAction::TakeUp => {
-                let loaded = match session.library.kept.clone() {
+                let loaded = match session.scenes.kept.clone() {
                     None => "Nothing was kept: k keeps the run in a file.".into(),
                     Some(path) => {
                         let taken = keep::take_up(session, &path);

@@ -29,7 +29,7 @@ impl Session {
                 } else {
                     -1
                 };
-                self.show_scene(self.library.beside(by));
+                self.show_scene(self.scenes.beside(by));
                 return true;
             }
             RunAction::Scenes => self.toggle_list(Topic::Scenes),
@@ -191,7 +191,7 @@ impl Session {
         }
         let panes = &self.runs.panes;
         let entries = match topic {
-            Topic::Scenes => self.library.entries(),
+            Topic::Scenes => self.scenes.entries(),
             Topic::Solvers { pane } => solvers(&panes[pane.min(panes.len() - 1)].simulation),
         };
         self.readings.help = false;
@@ -214,7 +214,7 @@ impl Session {
     pub fn take(&mut self, number: usize) -> bool {
         match self.list.take().map(|list| list.topic) {
             Some(Topic::Scenes) => {
-                if let Some(file) = self.library.earlier_file(number) {
+                if let Some(file) = self.scenes.earlier_file(number) {
                     return self.open(&file);
                 }
                 self.show_scene(number);
@@ -228,7 +228,7 @@ impl Session {
     /// Shows the scene of this number among all names. Where that is not possible, a message says
     /// why.
     fn show_scene(&mut self, number: usize) {
-        match self.library.show(number) {
+        match self.scenes.show(number) {
             Ok(setup) => {
                 self.see_scene(&setup);
                 self.set_scene(&setup);
@@ -240,9 +240,9 @@ impl Session {
     /// Shows the scene of a file, with the same solvers and steps where they serve it, and returns
     /// whether that was possible; if not, a message says why, and all goes on.
     pub fn open(&mut self, file: &Path) -> bool {
-        match self.library.open(file) {
+        match self.scenes.open(file) {
             Ok(setup) => {
-                let source = &self.library.shown.source;
+                let source = &self.scenes.shown.source;
                 let summary = source.description.summary.as_deref();
                 let what = summary.map_or(String::new(), |what| format!(": {what}"));
                 self.readings.say(format!("opened {}{what}", source.typed));
@@ -261,7 +261,7 @@ impl Session {
     /// message says why, and all goes on. Camera, solvers and steps stay as they are, unless the
     /// file says others than before.
     pub fn reload(&mut self) -> bool {
-        let reloaded = match self.library.reload() {
+        let reloaded = match self.scenes.reload() {
             Ok(Some(reloaded)) => reloaded,
             Ok(None) => return false,
             Err(why) => {
@@ -273,7 +273,7 @@ impl Session {
         if reloaded.camera {
             self.see_scene(setup);
         }
-        let typed = &self.library.shown.source.typed;
+        let typed = &self.scenes.shown.source.typed;
         self.readings.say(format!("loaded {typed} again"));
         let before = self.runs.first();
         let (windy, swinging) = (before.windy(), before.swinging());

@@ -195,16 +195,16 @@ mod tests {
     #[test]
     fn files_of_earlier_windows_come_last_and_can_be_opened() {
         let mut session = session(&["v", "0.005"]);
-        session.library.recent = ["/nowhere/gone.toml", STRIP].map(Into::into).to_vec();
+        session.scenes.recent = ["/nowhere/gone.toml", STRIP].map(Into::into).to_vec();
         session.act(RunAction::Scenes, 0);
         type_words(&mut session, "strip.toml");
         let list = session.list.as_ref().unwrap();
         assert_eq!(list.entries().count(), 1);
         assert!(keys(&mut session, &[TextKey::Take]));
-        let shown = session.library.shown.source.typed.clone();
+        let shown = session.scenes.shown.source.typed.clone();
         assert!(shown.ends_with("strip.toml"), "{shown}");
         // It is one of the files of this window now.
-        let entries = session.library.entries();
+        let entries = session.scenes.entries();
         assert_eq!(
             entries.iter().filter(|it| it.name == "strip.toml").count(),
             0

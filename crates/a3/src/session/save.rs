@@ -24,7 +24,7 @@ pub fn write_scene(session: &Session, run: &Simulation) -> Result<String, String
         ));
     }
     let folder = session
-        .library
+        .scenes
         .shown
         .source
         .path
@@ -65,7 +65,7 @@ fn scene_text(session: &Session, run: &Simulation) -> Result<String, a3_core::Er
 
 /// The description of the run: the scene as it is tuned, and the state as it is now.
 fn description(session: &Session, run: &Simulation) -> Description {
-    let Origin { source, grid, .. } = &session.library.shown;
+    let Origin { source, grid, .. } = &session.scenes.shown;
     let mut description = Description::clone(&source.description);
     if let (Some(grid), Some(cloth)) = (grid, description.cloth.first_mut()) {
         cloth.grid = [grid.rows(), grid.cols()];

@@ -6,13 +6,13 @@ use a3_core::{Checkpoint, Error, Simulation};
 use a3_scenes::Setup;
 
 use super::history::History;
-use super::library::Library;
 use super::list::List;
 use super::meter::Meter;
 use super::origin::Origin;
 use super::pane::Pane;
 use super::readings::Readings;
 use super::runs::Runs;
+use super::scenes::Scenes;
 use super::timeline::Timeline;
 use super::tuning::{PanelState, Tuning};
 use super::view::View;
@@ -50,7 +50,7 @@ pub struct Session {
     /// From where they are seen.
     pub view: View,
     /// The scenes that can be shown.
-    pub library: Library,
+    pub scenes: Scenes,
     /// The last seconds of all runs, to go back to.
     pub timeline: Timeline,
     /// What can be undone.
@@ -87,7 +87,7 @@ impl Session {
         Ok(Self {
             view: View::new(panes[0].show.camera()),
             runs: Runs::new(panes)?,
-            library: Library::new(origin),
+            scenes: Scenes::new(origin),
             timeline: Timeline::default(),
             history: History::default(),
             tuning: Tuning::of(setup),

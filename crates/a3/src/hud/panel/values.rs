@@ -38,7 +38,7 @@ pub fn solver(session: &Session, at: usize) -> Option<Dial> {
         let of = |m: &a3_core::Method| std::ptr::eq(m, method);
         integrators::METHODS.iter().position(of).unwrap_or(0) as f64
     };
-    let own = session.library.shown.source.solver_or(None);
+    let own = session.scenes.shown.source.solver_or(None);
     Some(Dial {
         value: index(run.method()),
         own: index(own),

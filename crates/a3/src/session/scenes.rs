@@ -10,7 +10,7 @@ use super::origin::Origin;
 use crate::scene_file::Source;
 
 /// The scenes that a session can show, and the one that it shows.
-pub struct Library {
+pub struct Scenes {
     /// The scenes that were asked for or opened, to come back to, the last one first.
     asked: Vec<Origin>,
     /// The name or the file that the session began with.
@@ -34,8 +34,8 @@ pub struct Reloaded {
     pub method: Option<&'static Method>,
 }
 
-impl Library {
-    /// A library of the built-in scenes and of the scene that is shown first.
+impl Scenes {
+    /// Creates the list of the built-in scenes and of the scene that is shown first.
     pub fn new(origin: Origin) -> Self {
         Self {
             begun: origin.source.typed.clone(),
