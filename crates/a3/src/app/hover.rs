@@ -10,8 +10,8 @@ use crate::session::Session;
 use crate::show::Target;
 
 impl Mouse {
-    /// Finds the particle, body or timeline under the pointer, and returns whether the picture has to
-    /// be drawn again. With Shift, a press would begin a box.
+    /// Finds the particle, body or timeline under the pointer, and returns whether the picture has
+    /// to be drawn again. With Shift, a press would begin a box.
     pub fn look(&mut self, shift: bool, session: &mut Session, screen: &Screen) -> bool {
         let pointer = &self.pointer;
         let at = pointer.pane(session, screen);

@@ -93,7 +93,7 @@ impl Screen {
     }
 
     /// Makes text and panel larger by a step, smaller if it is negative, or as at first if it is 0.
-    /// Returns what is said of that.
+    /// Returns the message to show.
     pub fn scale_interface(&mut self, by: isize) -> String {
         let now = SCALES.iter().position(|scale| *scale >= self.zoom);
         let next = now.unwrap_or(0).saturating_add_signed(by);

@@ -233,7 +233,7 @@ impl App {
     }
 }
 
-/// What is said of a file that was written or read, or why it was not.
+/// Message about a file that was written or read, or why it was not.
 fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
     match file {
         Ok(path) => format!("{done} {}", path.display()),

@@ -8,7 +8,7 @@ use super::values::{absolute, grid, max_step, step, threads, until};
 use crate::failure::Failure;
 use crate::scene_file::Source;
 
-/// What is simulated.
+/// Options of a scene: its name or file, its grid, wind, swing and self-collision.
 #[derive(Args, Clone)]
 pub struct What {
     /// Scene: a name that `a3 scenes` lists, or a file of your own: TOML, JSON, or a mesh

@@ -174,7 +174,7 @@ impl Runs {
         }
     }
 
-    /// Takes errors and costs anew, after the runs were given other states.
+    /// Measures errors and costs again, after the runs were given other states.
     pub(super) fn states_changed(&mut self) {
         for pane in &mut self.panes {
             pane.set_errors(vec![]);

@@ -16,7 +16,7 @@ const MOST_WORK: [f64; 2] = [1.5e9, 8e8];
 /// Share of it that all searches together may do before those that need more get the rest.
 const FIRST: f64 = 0.3;
 
-/// What is measured of a scene.
+/// Measurements of a scene.
 pub struct Found {
     pub rows: Vec<MethodLimits>,
     pub motion: Motion,
@@ -103,7 +103,7 @@ pub fn measure(scene: &Scene, methods: &[&'static Method]) -> Result<Found, Fail
     })
 }
 
-/// What is found of each method, in their order, with so much work in all. The runs of implicit
+/// Results of all methods, in their order, within a budget of work. The runs of implicit
 /// methods take longest, so they begin first. Methods that need more than their share of the work
 /// are measured again, with what the others have left.
 fn each<T: Send>(

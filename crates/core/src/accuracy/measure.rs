@@ -21,7 +21,7 @@ pub struct Outcome {
     pub errors: Errors,
     /// Work of the whole run.
     pub work: Work,
-    /// What the guard of surfaces did: a run that it held is not the method's own.
+    /// Actions of the collision safeguard: a run that it changed is not the method's own.
     pub guarded: Guarded,
     /// Blow-up of the run, if it was lost.
     pub lost: Option<BlowUp>,

@@ -31,7 +31,7 @@ const ROUNDS: usize = 20;
 /// masses are in 1/kg.
 ///
 /// # Errors
-/// Vertices that are led leave no room.
+/// Kinematic vertices leave no room.
 pub(crate) fn guard(
     layer: &ContactLayer,
     inverse_masses: &[f64],

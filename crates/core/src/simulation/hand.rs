@@ -21,7 +21,7 @@ const PULL_REACH: f64 = 0.05;
 const FREE_REACH: f64 = 0.5;
 
 /// Share of the particle's way to its target by which each pull moves the hand on: so it gets there
-/// whatever hangs on it.
+/// with any load.
 const FOLLOWED_SHARE: f64 = 0.25;
 
 /// Least and greatest length that a hand gives to a rod whose other end has not followed yet, in

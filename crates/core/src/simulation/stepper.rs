@@ -104,8 +104,8 @@ impl Stepper {
         }
     }
 
-    /// Makes the integrator anew for a system that has changed: it makes room for the forces that
-    /// it meets, and knows what they cost.
+    /// Recreates the integrator for a system that has changed: it sizes its scratch and its cost
+    /// model by the system.
     pub fn refit(&mut self, method: &Method, system: &dyn ParticleSystem) {
         // The method served this system before.
         if let Self::Fixed(integrator) = self
