@@ -3,7 +3,7 @@
 use a3_render::Style;
 use clap::Args;
 
-use crate::show::{Arrows, Manner, Quantity};
+use crate::draw::show::{Arrows, Manner, Quantity};
 
 /// How a scene is drawn.
 #[expect(clippy::struct_excessive_bools, reason = "each is an option")]

@@ -9,7 +9,6 @@ use clap::{Arg, Command};
 
 #[cfg(feature = "window")]
 use super::values::step;
-use crate::scene_file::Source;
 
 /// A parser of names, which knows them all, for arguments of a command.
 #[derive(Clone)]
@@ -67,9 +66,9 @@ pub const SOLVER_AND_STEP: Names<(&'static Method, Option<f64>)> = Names {
 /// Word for all solvers.
 const ALL: &str = "all";
 
-/// A scene, by its name or in a file.
-pub const SCENE: Names<Source> = Names {
-    parse: |text, _| Source::find(text),
+/// The name of a scene, or of its file.
+pub const SCENE: Names<String> = Names {
+    parse: |text, _| Ok(text.to_owned()),
     all: scenes,
 };
 
