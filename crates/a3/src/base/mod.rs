@@ -12,7 +12,7 @@ pub mod holding;
 pub mod interrupt;
 pub mod progress;
 pub mod rounding;
-#[cfg_attr(target_arch = "wasm32", path = "browser/console.rs")]
+#[cfg_attr(target_arch = "wasm32", path = "console.rs")]
 pub mod terminal;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod verdict;

@@ -15,8 +15,8 @@ use crate::files::output;
 /// Default frames a second: of a GIF, whose delays are whole hundredths of a second, and of others.
 const RATE: (f64, f64) = (25.0, 30.0);
 
-/// The film until that time (s) that was asked for, or `None` for a single picture. Impossible films are refused here,
-/// before any work is done.
+/// Creates the film, until that time (s), that the options ask for; `None` for a single picture.
+/// Refuses impossible films before any work is done.
 pub fn begin(options: &Render, until: f64) -> Result<Option<TimedFilm>, Failure> {
     let (path, size) = (options.output.as_path(), options.size);
     let frames = |rate| FrameTimes::new(options.from.unwrap_or(0.0), until, rate);

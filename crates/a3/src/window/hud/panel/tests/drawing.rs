@@ -1,3 +1,5 @@
+//! The drawing of the panel: which rows the mouse turns.
+
 use egui::vec2;
 
 use super::opened::{changed, dials, every_scene, opened};

@@ -1,3 +1,5 @@
+//! Turning knobs by keys and typed numbers, and undoing it.
+
 use a3_core::contact::Shape;
 use a3_core::{Control, Network, Path, Vector3};
 
