@@ -26,7 +26,7 @@ pub use command::{Cli, Command, LESSONS};
 #[cfg(feature = "window")]
 pub use drawing::Drawing;
 pub use explain::explain;
-pub use measures::{ErrorMeasure, ErrorScope, WorkMeasure};
+pub use measures::{ErrorScope, WorkMeasure};
 pub use run::{RunOptions, What};
 pub use scenes::Scenes;
 pub use simulate::Simulate;

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 
 use a3_core::{Method, integrators};
 use a3_scenes::nearest;
-use clap::builder::{PossibleValue, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
 #[cfg(feature = "window")]
@@ -71,6 +71,21 @@ pub const SCENE: Names<String> = Names {
     parse: |text, _| Ok(text.to_owned()),
     all: scenes,
 };
+
+/// Creates a parser of one of some values, each with its name and its help.
+pub fn choice<T: Copy + Send + Sync + 'static>(
+    all: &'static [T],
+    words: fn(T) -> (&'static str, &'static str),
+) -> impl TypedValueParser<Value = T> {
+    let values = all.iter().map(move |value| {
+        let (name, help) = words(*value);
+        PossibleValue::new(name).help(help)
+    });
+    PossibleValuesParser::new(values).try_map(move |name| {
+        let found = all.iter().find(|value| words(**value).0 == name);
+        found.copied().ok_or("there is no such choice")
+    })
+}
 
 fn solvers() -> Vec<&'static str> {
     integrators::METHODS.iter().map(|m| m.name).collect()

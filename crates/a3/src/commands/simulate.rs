@@ -10,9 +10,9 @@ use crate::base::failure::Failure;
 use crate::base::progress::{self, Bar};
 use crate::base::{interrupt, terminal, verdict};
 use crate::cli::Simulate;
-use crate::files::checkpoint::Extremes;
-use crate::files::checkpoint::{Keeper, Kept};
-use crate::files::frames::Sequence;
+use crate::files::checkpoint::{Extremes, Keeper, Kept};
+use crate::files::export::Export;
+use crate::files::frames::{FrameTimes, Sequence};
 use crate::files::setup::{Request, Run};
 use crate::files::{export, output};
 
@@ -21,33 +21,13 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
     let begun = Instant::now();
     export::check_ending(&options.output)?;
     let mut run = Run::new(&options.run)?;
-    let stdout = Path::new("-");
-    if let Some(path) = options.summary.as_deref() {
-        if path == stdout && options.output == stdout {
-            return Err(Failure::usage(
-                "standard output can take either --output or --summary, not both",
-            ));
-        }
-        if path != stdout {
-            output::check(path, &["json"])?;
-        }
-    }
-    let wanted = options.summary.is_some() || options.checkpoint.is_some();
-    let mut extremes = wanted.then(Extremes::default);
-    if let Some(path) = &options.resume {
-        let kept = resume(path, options, &mut run)?;
-        extremes = extremes.map(|fresh| kept.extremes.unwrap_or(fresh));
-    }
+    check_summary(options)?;
+    let extremes = begin(options, &mut run)?;
     let (frames, mut export) = export::begin(options, &run)?;
-    if frames.first > 0 && Sequence::of(&options.output).is_none() {
-        terminal::warn(&format!(
-            "{} begins with frame {}, the first since the checkpoint",
-            options.output.display(),
-            frames.first
-        ));
-    }
+    warn_of_first_frame(options, &frames);
     let every = Duration::from_secs_f64(options.every);
     let keeper = options.checkpoint.as_deref();
+    let (mut simulation, end) = (run.simulation, run.until);
     let mut looks = Looks {
         options,
         request: run.request,
@@ -56,13 +36,55 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         crossed: None,
         failure: None,
     };
+    advance(&mut simulation, end, &frames, &mut *export, &mut looks)?;
+    export.finish()?;
+    looks.keep(&simulation)?;
+    warn_of_tears(options, &simulation);
+    verdict::warn(&simulation);
+    if let (Some(path), Some(extremes)) = (&options.summary, &looks.extremes) {
+        summary::write(path, &simulation, frames.count, extremes, begun)?;
+    }
+    Ok(())
+}
+
+/// Checks that the summary can be written.
+fn check_summary(options: &Simulate) -> Result<(), Failure> {
+    let stdout = Path::new("-");
+    match options.summary.as_deref() {
+        Some(path) if path != stdout => output::check(path, &["json"]),
+        Some(_) if options.output == stdout => Err(Failure::usage(
+            "standard output can take either --output or --summary, not both",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Brings the run to its checkpoint, if it resumes one. Returns the extremes until then, if any
+/// are wanted.
+fn begin(options: &Simulate, run: &mut Run) -> Result<Option<Extremes>, Failure> {
+    let wanted = options.summary.is_some() || options.checkpoint.is_some();
+    let fresh = wanted.then(Extremes::default);
+    let Some(path) = &options.resume else {
+        return Ok(fresh);
+    };
+    let kept = resume(path, options, run)?;
+    Ok(fresh.map(|fresh| kept.extremes.unwrap_or(fresh)))
+}
+
+/// Advances the simulation from frame to frame, and exports each.
+fn advance(
+    simulation: &mut Simulation,
+    end: f64,
+    frames: &FrameTimes,
+    export: &mut dyn Export,
+    looks: &mut Looks,
+) -> Result<(), Failure> {
     interrupt::listen();
-    let (mut simulation, end) = (run.simulation, run.until);
     let bar = Bar::new(end - simulation.time());
-    let mut goes_on = looks.look(&simulation);
+    let mut goes_on = looks.look(simulation);
     for (k, time) in frames.times().enumerate() {
         let mut before = simulation.time();
-        let reached = progress::march(&mut simulation, time, |simulation| {
+        let reached = progress::march(simulation, time, |simulation| {
             bar.advance(simulation.time() - before);
             before = simulation.time();
             goes_on &= looks.look(simulation);
@@ -75,17 +97,31 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
         };
         if reached != Ok(true) {
             bar.clear();
-            let written = written(&options.output, k, frames.count);
+            let written = written(&looks.options.output, k, frames.count);
             return Err(match reached {
-                Err(error) => verdict::lost(&simulation, &error, &written, end),
-                Ok(_) => looks.stopped(&simulation, &written),
+                Err(error) => verdict::lost(simulation, &error, &written, end),
+                Ok(_) => looks.stopped(simulation, &written),
             });
         }
-        export.add(&simulation)?;
+        export.add(simulation)?;
     }
     bar.clear();
-    export.finish()?;
-    looks.keep(&simulation)?;
+    Ok(())
+}
+
+/// Warns that a resumed run has no frames from before its checkpoint.
+fn warn_of_first_frame(options: &Simulate, frames: &FrameTimes) {
+    if frames.first > 0 && Sequence::of(&options.output).is_none() {
+        terminal::warn(&format!(
+            "{} begins with frame {}, the first since the checkpoint",
+            options.output.display(),
+            frames.first
+        ));
+    }
+}
+
+/// Warns that a format with one mesh for all frames does not show broken springs.
+fn warn_of_tears(options: &Simulate, simulation: &Simulation) {
     let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
     if simulation.tears() > 0 && ["pc2", "glb", "usda"].iter().any(one_mesh) {
         terminal::warn(&format!(
@@ -94,11 +130,6 @@ pub fn run(options: &Simulate) -> Result<(), Failure> {
             options.output.display()
         ));
     }
-    verdict::warn(&simulation);
-    if let (Some(path), Some(extremes)) = (&options.summary, &looks.extremes) {
-        summary::write(path, &simulation, frames.count, extremes, begun)?;
-    }
-    Ok(())
 }
 
 /// What a run is looked at for on its way.

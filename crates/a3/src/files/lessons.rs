@@ -7,6 +7,7 @@ use std::{env, fs, thread};
 
 use crate::base::failure::Failure;
 use crate::base::terminal;
+use crate::cli::LESSONS;
 use crate::files::output;
 
 macro_rules! carried {
@@ -34,6 +35,9 @@ static FILES: &[(&str, &[u8])] = carried![
     "pictures/spiral.png",
     "pictures/stiff.png",
 ];
+
+// The index comes first, and then the lessons.
+const _: () = assert!((LESSONS as usize) < FILES.len());
 
 /// What opens a file with the program that the user has chosen for it.
 const OPENER: &str = if cfg!(target_os = "macos") {
@@ -114,7 +118,6 @@ fn open_with(opener: &str, path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::LESSONS;
 
     const SOURCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/lessons");
 

@@ -5,7 +5,7 @@ use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene, integrators};
 
 use crate::base::failure::Failure;
-use crate::cli::{ErrorMeasure, ErrorScope};
+use crate::cli::ErrorScope;
 
 /// The methods that were asked for, or else all that can integrate the scene, as where one of those
 /// asked for is none in particular.
@@ -31,17 +31,8 @@ pub fn methods(
     Ok(methods)
 }
 
-/// The metric that was asked for. Refuses one that the scene does not have.
-pub fn metric(error: ErrorMeasure, scene: &Scene) -> Result<Metric, Failure> {
-    let metric = match error {
-        ErrorMeasure::Position => Metric::Position,
-        ErrorMeasure::Energy => Metric::Energy,
-        ErrorMeasure::Strain => Metric::Strain,
-        ErrorMeasure::Momentum => Metric::Momentum,
-        ErrorMeasure::Phase => Metric::Phase,
-        ErrorMeasure::Penetration => Metric::Penetration,
-        ErrorMeasure::Impact => Metric::Impact,
-    };
+/// Refuses a metric that the scene does not have.
+pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
     let of_contact = matches!(metric, Metric::Penetration | Metric::Impact);
     let network = scene.model.network();
     if of_contact && network.is_none_or(|network| network.contact_layer().is_none()) {
@@ -52,7 +43,7 @@ pub fn metric(error: ErrorMeasure, scene: &Scene) -> Result<Metric, Failure> {
     }
     let of_motion = matches!(metric, Metric::Position | Metric::Phase);
     if of_motion || network.is_some() {
-        Ok(metric)
+        Ok(())
     } else {
         Err(Failure::usage(format!(
             "the scene {} has neither energy nor momentum nor springs: ask for position or phase",

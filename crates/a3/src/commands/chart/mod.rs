@@ -16,7 +16,7 @@ pub mod text;
 mod vision;
 mod words;
 
-pub use asked::{check_contact, methods, metric, scope};
+pub use asked::{check_contact, check_metric, methods, scope};
 pub use command::run;
 pub use files::{PICTURES, write_picture};
 pub use horizon::{check_motion, look_ahead};

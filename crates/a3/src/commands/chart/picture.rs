@@ -21,7 +21,7 @@ pub const WORK: &str = "evaluations per simulated second, linear algebra include
 
 /// The diagram, with a panel for each study.
 pub fn chart(
-    studies: &[&Study],
+    studies: &[Study],
     data: &Data,
     methods: &[&'static Method],
     metric: Metric,

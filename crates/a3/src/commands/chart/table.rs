@@ -99,7 +99,7 @@ pub fn advice(study: &Study) -> Option<String> {
 
 /// The tables of all studies.
 pub fn text(
-    studies: &[&Study],
+    studies: &[Study],
     data: &Data,
     methods: &[&'static Method],
     metric: Metric,

@@ -1,7 +1,16 @@
-//! The limits of a method.
+//! The limits of methods on a scene.
 
 use a3_core::Method;
-use a3_core::stability::{Limit, Observation};
+use a3_core::stability::{Limit, Mode, Motion, Observation, RestState};
+
+/// Measurements of a scene.
+pub struct Found {
+    pub rows: Vec<MethodLimits>,
+    pub motion: Motion,
+    pub hanging: Option<RestState>,
+    /// Modes at the start.
+    pub at_start: Vec<Mode>,
+}
 
 /// The limits of a method.
 #[derive(Clone, Copy)]

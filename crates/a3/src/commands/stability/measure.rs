@@ -1,12 +1,12 @@
 //! The limits of all methods on a scene, measured at rest and in motion.
 
 use a3_core::stability::{
-    Budget, Limit, Mode, Motion, Observation, RestState, observe_at_rest, rest, spectrum,
+    Budget, Limit, Motion, Observation, RestState, observe_at_rest, rest, spectrum,
 };
 use a3_core::{Error, Method, Scene};
 use rayon::prelude::*;
 
-use super::limits::MethodLimits;
+use super::limits::{Found, MethodLimits};
 use crate::base::failure::Failure;
 use crate::base::interrupt;
 use crate::base::progress::Bar;
@@ -15,15 +15,6 @@ use crate::base::progress::Bar;
 const MOST_WORK: [f64; 2] = [1.5e9, 8e8];
 /// Share of it that all searches together may do before those that need more get the rest.
 const FIRST: f64 = 0.3;
-
-/// Measurements of a scene.
-pub struct Found {
-    pub rows: Vec<MethodLimits>,
-    pub motion: Motion,
-    pub hanging: Option<RestState>,
-    /// Modes at the start.
-    pub at_start: Vec<Mode>,
-}
 
 /// The end of a command that was interrupted too early.
 pub fn nothing() -> Failure {

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use a3_core::Scene;
-use a3_core::stability::{Limit, Mode, Motion, Observation, RestState};
+use a3_core::stability::{Limit, Mode, Observation};
 
-use super::limits::MethodLimits;
+use super::limits::{Found, MethodLimits};
 use crate::commands::list;
 
 /// A step in words, to three digits (ms).
@@ -44,13 +44,13 @@ pub fn observation(seen: Option<Observation>) -> String {
 }
 
 /// The table of all limits, with the fastest motion above it.
-pub fn text(
-    scene: &Scene,
-    rows: &[MethodLimits],
-    motion: &Motion,
-    start: &[Mode],
-    rest: Option<&RestState>,
-) -> String {
+pub fn text(scene: &Scene, found: &Found) -> String {
+    let Found {
+        rows,
+        motion,
+        hanging,
+        at_start,
+    } = found;
     let heading = [
         "solver",
         " at rest: bounded",
@@ -85,9 +85,9 @@ pub fn text(
     let mut text = format!(
         "{}: fastest motion {} at the start",
         scene.name,
-        frequency(start)
+        frequency(at_start)
     );
-    if let Some(rest) = rest {
+    if let Some(rest) = hanging {
         let _ = write!(text, ", {} at rest", frequency(&rest.modes));
     }
     let _ = write!(

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use a3_core::accuracy::Metric;
 use a3_core::{Method, integrators};
-use clap::ValueEnum;
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -14,7 +14,7 @@ use super::values::all;
 use crate::base::bounds;
 use crate::base::failure::Failure;
 use crate::base::terminal;
-use crate::cli::{ErrorMeasure, ErrorScope};
+use crate::cli::ErrorScope;
 use crate::files::output;
 use crate::files::scene_file::{Source, place, table};
 
@@ -56,7 +56,7 @@ pub struct Sweep {
     pub until: Option<f64>,
     /// Factors of the stiffness of all springs; `None` where it is not swept.
     pub stiffness: Option<Vec<f64>>,
-    pub error: ErrorMeasure,
+    pub error: Metric,
     pub scope: ErrorScope,
     /// Keys of the scenes, with their values.
     pub keys: Vec<(String, Vec<Value>)>,
@@ -96,13 +96,14 @@ impl Sweep {
             })
         });
         let error = match &text.error {
-            None => ErrorMeasure::Position,
-            Some(error) => ErrorMeasure::from_str(error, false).map_err(|_| {
-                let all = ErrorMeasure::value_variants().iter();
-                let all = all.filter_map(|e| Some(e.to_possible_value()?.get_name().to_owned()));
-                let all = all.collect::<Vec<_>>().join(", ");
-                format!("error: the choices are {all}, not {error}")
-            })?,
+            None => Metric::default(),
+            Some(error) => {
+                let mut all = Metric::ALL.into_iter();
+                all.find(|metric| metric.name() == error).ok_or_else(|| {
+                    let all = Metric::ALL.map(Metric::name).join(", ");
+                    format!("error: the choices are {all}, not {error}")
+                })?
+            }
         };
         let keys = keys::flat(&text.keys).into_iter().map(|(path, values)| {
             let values = all(&values).map_err(|why| format!("keys.{path}: {why}"))?;

@@ -12,7 +12,7 @@ use crate::base::failure::Failure;
 use crate::cli::share::Id;
 use crate::commands::chart::data::VERSION;
 use crate::commands::chart::measure::{stiffened, words};
-use crate::commands::chart::{metric, scope};
+use crate::commands::chart::{check_metric, scope};
 use crate::files::scene_file::{Hash, Source};
 
 /// Most runs.
@@ -183,7 +183,8 @@ fn variant(
     let until = sweep.until.or(source.description.duration);
     variant.until =
         until.ok_or_else(|| format!("the scene {} has no duration: give `until`", scene.name))?;
-    variant.metric = metric(sweep.error, &scene).map_err(Failure::message)?;
+    check_metric(sweep.error, &scene).map_err(Failure::message)?;
+    variant.metric = sweep.error;
     variant.scope = scope(&sweep.scope, &scene).map_err(Failure::message)?;
     let mut hash = Hash::default();
     hash.add(VERSION.bytes());

@@ -1,10 +1,9 @@
 //! What particles are coloured by, and the arrows on them.
 
 use a3_core::{Mechanics, Network, Simulation};
-use clap::ValueEnum;
 
 /// A number of each particle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Speed (m/s)
     Speed,
@@ -19,7 +18,7 @@ pub enum Quantity {
 }
 
 /// A vector of each particle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrows {
     /// Velocity (m/s)
     Velocity,

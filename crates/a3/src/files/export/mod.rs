@@ -13,3 +13,4 @@ mod pc2;
 mod usd;
 
 pub use begin::{begin, check_ending};
+pub use format::Export;
