@@ -43,6 +43,8 @@ impl Frames {
     /// Number of steps of h (s) that reach the last frame; the last step may be shorter.
     #[must_use]
     pub fn steps(&self, h: f64) -> u64 {
-        (self.until / h - Simulation::SLIVER).ceil().max(1.0) as u64
+        (self.until / h - Simulation::STEP_END_TOLERANCE)
+            .ceil()
+            .max(1.0) as u64
     }
 }
