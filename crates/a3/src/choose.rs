@@ -45,7 +45,7 @@ pub fn run(options: &Choose) -> Result<(), Failure> {
         Some(error) => Precision {
             metric,
             uncertainty: error / MARGIN.1,
-            most: f64::INFINITY,
+            max_work: f64::INFINITY,
         },
         None => precision(&scene, horizon.motion),
     };

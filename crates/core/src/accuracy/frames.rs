@@ -2,7 +2,7 @@
 
 use crate::simulation::Simulation;
 
-/// Function that is called between frames and returns whether to go on.
+/// Function that is called between frames and returns whether to continue.
 pub type GoOn<'a> = &'a dyn Fn() -> bool;
 
 /// Times at which runs are compared: the ends of `count` equal parts of the time from 0 to `until`.

@@ -144,7 +144,7 @@ fn references_are_refined_as_long_as_that_helps() {
     let precision = Precision {
         metric: Metric::Position,
         uncertainty: 1e-3,
-        most: f64::INFINITY,
+        max_work: f64::INFINITY,
     };
     let frames = Frames::new(3.0);
     let coarse = Reference::new(&random, frames, Scope::default(), precision, GO_ON);

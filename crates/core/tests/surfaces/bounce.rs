@@ -205,7 +205,7 @@ fn the_chart_of_a_bounce_has_a_sure_reference() {
     let precision = Precision {
         metric: Metric::Position,
         uncertainty: 1e-10,
-        most: 80_000.0,
+        max_work: 80_000.0,
     };
     let (frames, scope, go_on) = (Frames::new(UNTIL), Scope::default(), || true);
     let reference = Reference::new(&scene, frames, scope, precision, &go_on)
