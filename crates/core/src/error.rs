@@ -131,7 +131,7 @@ pub enum Cause {
     /// Constraint that cannot be met, whatever the step: it contradicts others, or pins.
     Contradiction(Unmet),
     /// Surfaces that are led, by pins or as obstacles, and leave no room for what is between them.
-    Squeezed {
+    Pinched {
         /// Vertices on either side.
         vertices: [Vertex; 2],
     },
@@ -301,9 +301,9 @@ impl fmt::Display for BlowUp {
                 f,
                 "{unmet}, contradicts other constraints or pins: no positions meet them all"
             ),
-            Cause::Squeezed { vertices: [a, b] } => write!(
+            Cause::Pinched { vertices: [a, b] } => write!(
                 f,
-                "surfaces are squeezed: pins or moving obstacles leave no room between {a} and {b}"
+                "surfaces are pinched: pins or moving obstacles leave no room between {a} and {b}"
             ),
         }
     }

@@ -4,7 +4,8 @@
 
 use super::depths::Depths;
 use crate::contact::{
-    Contact, Impulses, Squeezed, Statistics, Step, StrainLimiter, Strained, bulge, guard, resolve,
+    ContactPhase, Impulses, Pinched, Statistics, Step, StrainLimiter, Strained, bulge, guard,
+    resolve,
 };
 use crate::error::Cause;
 use crate::network::Network;
@@ -14,7 +15,7 @@ use crate::system::{Mechanics, ParticleSystem};
 /// Phases after a step, with their scratch.
 pub(super) struct Phases {
     limiter: StrainLimiter,
-    pub contact: Contact,
+    pub contact: ContactPhase,
     /// Excess length of the longest limited spring at the beginning of the step, if it is needed.
     excess: f64,
 }
@@ -33,7 +34,7 @@ impl Phases {
     pub fn new(dim: usize) -> Self {
         Self {
             limiter: StrainLimiter::new(dim),
-            contact: Contact::new(dim),
+            contact: ContactPhase::new(dim),
             excess: 0.0,
         }
     }
@@ -169,7 +170,7 @@ impl Phases {
             return Ok(Statistics::default());
         }
         let guarded = self.contact.guard(layer, inverse_masses, (t, h), y1);
-        let met = guarded.map_err(|Squeezed { vertices }| Cause::Squeezed { vertices })?;
+        let met = guarded.map_err(|Pinched { vertices }| Cause::Pinched { vertices })?;
         if !network.bodies().is_empty() {
             network.hold(t + h, y1);
         }

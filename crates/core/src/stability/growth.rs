@@ -60,9 +60,9 @@ impl Growth {
     ///
     /// Steps move (x w, v) round an ellipse, c x^2 + (d - a) x v - b v^2 = const. The result is the
     /// squared ratio of its axes over that of the exact motion, (1 + z) / (1 - z) with the damping
-    /// ratio z. It is 1 for a Runge-Kutta method; for Verlet's method without damping it is 1 / (1
-    /// - (h w)^2 / 4), which is unbounded at the limit. 1 if the step fails or its matrix has real
-    /// eigenvalues.
+    /// ratio z. It is 1 for a Runge-Kutta method; for Verlet's method without damping it is
+    /// 1 / (1 - (h w)^2 / 4), which is unbounded at the limit. The result is also 1 if the step
+    /// fails or its matrix has real eigenvalues.
     pub fn swing(&mut self, h: f64) -> f64 {
         let Some([a, b, c, d]) = self.matrix(h) else {
             return 1.0;

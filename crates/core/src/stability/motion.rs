@@ -10,7 +10,7 @@ use super::growth::Growth;
 use super::limit::{GROWTH, HORIZON, largest_step};
 use super::mode::Mode;
 use super::observation::Observation;
-use super::search::{Budget, MAX_RUN_WORK, bisect, sharpen, step_and_check, steps};
+use super::search::{Budget, MAX_RUN_WORK, bisect, sharpen, steps, take_checked};
 use super::spectrum::spectrum;
 use std::cell::RefCell;
 
@@ -197,7 +197,7 @@ impl Motion {
             let cost = count as f64 * work * f64::from(method.evaluations);
             let affordable = (MAX_LONG_WORK / cost).max(1.0) as u64;
             let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
-            Ok(step_and_check(
+            Ok(take_checked(
                 count * times.min(affordable.max(1)),
                 |count| {
                     let holds = budget.take(&mut run, count).filter(|_| go_on())?;

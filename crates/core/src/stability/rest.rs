@@ -7,7 +7,7 @@ use super::mode::Mode;
 use super::normalised::Mixing;
 use super::observation::Observation;
 use super::pencil::Pencil;
-use super::search::{Budget, bisect, cost, step_and_check, steps};
+use super::search::{Budget, bisect, cost, steps, take_checked};
 use super::spectrum::{Undamped, of_drag, shapes};
 use crate::control::Control;
 use crate::error::Error;
@@ -307,7 +307,7 @@ pub fn observe_at_rest(
     let holds = |h: f64| {
         let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
         let mut beside = Simulation::new(still.clone(), method, Control::Step(h))?;
-        Ok(step_and_check(steps(h, guess), |count| {
+        Ok(take_checked(steps(h, guess), |count| {
             let held = budget.take(&mut run, count).filter(|_| go_on())?;
             let held = held && budget.take(&mut beside, count)?;
             let both = run.state().iter().zip(beside.state());

@@ -22,8 +22,7 @@ const CHECKS: u64 = 200;
 const MAX_RUN_SHARE: f64 = 0.25;
 /// Work between two checks of the budget, as a share of it.
 const CHECK_SHARE: f64 = 0.01;
-/// Least number of particles that work is counted for: a small system costs more than its
-/// particles.
+/// Least number of particles that count as work: a small system costs more than its particles.
 const MIN_PARTICLES: usize = 20;
 /// Least number of steps to which a run is shortened.
 const MIN_STEPS: f64 = 100.0;
@@ -157,12 +156,9 @@ pub(super) fn steps(h: f64, expected: f64) -> u64 {
     (HORIZON / h).ceil().max(least * STEPS) as u64
 }
 
-/// Calls `check` with numbers of steps to take and to check, `steps` in all, and then 8 more, one by
-/// one. Returns what `check` does as soon as that is not `Some(true)`.
-pub(super) fn step_and_check(
-    steps: u64,
-    mut check: impl FnMut(u64) -> Option<bool>,
-) -> Option<bool> {
+/// Takes `steps` steps and then 8 more, one by one: calls `check` with numbers of steps to take and
+/// to check. Returns its result as soon as that is not `Some(true)`.
+pub(super) fn take_checked(steps: u64, mut check: impl FnMut(u64) -> Option<bool>) -> Option<bool> {
     let mut left = steps;
     while left > 0 {
         let count = (steps / CHECKS).clamp(1, left);

@@ -141,6 +141,6 @@ fn what_is_led_through_a_pin_ends_the_run() {
     let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else {
         panic!("the ball went through the pin");
     };
-    assert!(matches!(lost.cause, Cause::Squeezed { .. }), "{lost}");
+    assert!(matches!(lost.cause, Cause::Pinched { .. }), "{lost}");
     assert!((lost.time - 0.4).abs() < 0.011, "{lost}");
 }
