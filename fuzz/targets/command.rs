@@ -1,4 +1,4 @@
-//! Command lines. Commands are read, with the scenes that they name, and not run.
+//! Command lines, which are parsed, with the scenes that they name, but not run.
 #![no_main]
 #![allow(dead_code, missing_docs, unused_imports)]
 

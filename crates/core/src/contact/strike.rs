@@ -67,8 +67,8 @@ struct Impact {
     mobility: Matrix3<f64>,
     /// Time from the impact to the end of the step (s).
     left: f64,
-    /// Change (m) of the displacement along the normal after the touch: it cancels the approach, and
-    /// restores missing separation.
+    /// Change (m) of the displacement along the normal after the touch: it cancels the approach
+    /// and restores missing separation.
     wanted: f64,
     impulse: Vector3<f64>,
 }

@@ -27,8 +27,8 @@ const CHECK_STRIDE: usize = 20;
 const MIN_GROWTH: f64 = 1.5;
 /// Growth since the beginning at which the steps end: no oscillation is so large.
 const MAX_GROWTH: f64 = 1e8;
-/// Ratio of consecutive trial steps: methods of several kicks may fail in a narrow interval of steps
-/// and hold again.
+/// Ratio of consecutive trial steps: methods of several kicks may fail in a narrow interval of
+/// steps and hold again.
 const STEP_RATIO: f64 = 1.04;
 /// First and last trial step over the expected limit.
 const GUESS_RANGE: [f64; 2] = [0.25, 32.0];

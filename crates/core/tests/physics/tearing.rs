@@ -347,7 +347,7 @@ fn every_method_tears_alike() {
     }
 }
 
-/// A run that goes back to a moment has only the tears of that moment, and then tears again as
+/// A run that goes back to a moment has only its tears, and tears again as before.
 /// before.
 #[test]
 fn what_tore_after_a_moment_is_mended_there() {
