@@ -348,7 +348,6 @@ fn every_method_tears_alike() {
 }
 
 /// A run that goes back to a moment has only its tears, and tears again as before.
-/// before.
 #[test]
 fn what_tore_after_a_moment_is_mended_there() {
     let scene = described(

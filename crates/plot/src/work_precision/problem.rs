@@ -59,9 +59,9 @@ impl Measurement {
 }
 
 impl Curve {
-    /// The runs that a line joins, from the dearest on: those that no other run of the method beats
-    /// in both error and work. The steps of an adaptive method at its limit of stability cost about
-    /// the same whatever their error, and a line through them would only go to and fro.
+    /// The runs that a line joins, from the most accurate on: those that no other run of the method
+    /// beats in both error and work. The steps of an adaptive method at its limit of stability cost
+    /// about the same at any error, and a line through them would only go back and forth.
     pub(super) fn joined(&self) -> Vec<&Measurement> {
         let drawn = self.runs.iter();
         let mut runs: Vec<_> = drawn
