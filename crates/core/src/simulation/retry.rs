@@ -14,7 +14,7 @@ const MAX_STRAIN_GROWTH: f64 = 1e-2;
 /// alone.
 const MAX_BULGE: f64 = 0.25;
 
-/// Least share of a step with which it is taken again.
+/// Least share of a step with which it is taken again, except up to just after a touch.
 pub(super) const MIN_RETRY_SHARE: f64 = 0.1;
 
 /// Length (s) below which a step is not shortened for contact or strain.

@@ -18,7 +18,7 @@ impl Stepper {
     /// Stepper of a method for a scene, whose system is as it is now.
     ///
     /// # Errors
-    /// The method does not serve the system, or does not take that control.
+    /// The method does not support the system or the control.
     pub fn new(
         method: &Method,
         scene: &Scene,
@@ -30,7 +30,7 @@ impl Stepper {
             Control::Step(_) => None,
             Control::Tolerance(relative) => method.adaptive(system, scene.tolerance(relative)?),
         };
-        // The integrator is made in any case: it checks that the method serves the system.
+        // The integrator is made in any case: it checks that the method supports the system.
         let integrator = method.integrator(system)?;
         Ok(match adaptive {
             None => Self::Fixed(integrator),
@@ -107,7 +107,7 @@ impl Stepper {
     /// Recreates the integrator for a system that has changed: it sizes its scratch and its cost
     /// model by the system.
     pub fn refit(&mut self, method: &Method, system: &dyn ParticleSystem) {
-        // The method served this system before.
+        // The method supported this system before.
         if let Self::Fixed(integrator) = self
             && let Ok(other) = method.integrator(system)
         {

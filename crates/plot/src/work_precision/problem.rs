@@ -134,7 +134,7 @@ mod tests {
         };
         let problem = Problem {
             title: String::new(),
-            // The fourth run of the first is below what is resolved, and its last was lost.
+            // The fourth run of the first is below the resolution, and its last blew up.
             curves: vec![
                 curve(vec![
                     run(1e-2, 10.0, false),
