@@ -1,7 +1,8 @@
-//! Hashes of states in a build for release: those of any other build. `cargo bench --bench bits`.
+//! Hashes of states in a release build: they equal those of any other build. `cargo bench --bench
+//! bits`.
 //!
-//! The expected hashes are those of the program's own test, of the built-in scenes by every method
-//! with fixed steps.
+//! The expected hashes are those of the program's own test, of the built-in scenes with every
+//! method in fixed steps.
 
 use std::collections::BTreeMap;
 
@@ -10,11 +11,11 @@ use a3_core::{Control, Method, Scene, Simulation};
 
 const HASHES: &str = include_str!("../crates/a3/tests/golden/states.txt");
 
-/// Step (s) and number of steps of all runs, and of those where rigid bodies touch.
+/// Step (s) and number of steps of all runs, and of runs with rigid bodies in contact.
 const STEPS: (f64, f64) = (2e-3, 300.0);
 const RIGID: (f64, f64) = (1e-3, 20.0);
 
-/// FNV-1a of all bits of the state after a run, or why there is none.
+/// FNV-1a of all bits of the state after a run, or the reason why there is none.
 fn hash(scene: &Scene, method: &'static Method) -> String {
     let network = scene.model.network();
     let rigid = network.is_some_and(|n| !n.bodies().is_empty() && n.gravity().is_some());

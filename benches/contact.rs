@@ -1,8 +1,8 @@
-//! What contact of surfaces adds to a frame: `cargo bench --bench contact -- verlet/64` runs a
+//! Cost of the contact of surfaces per frame: `cargo bench --bench contact -- verlet/64` runs a
 //! part.
 //!
-//! A cloth falls on the floor edge first and folds. A frame is 1/60 s: the mean of those in which
-//! the cloth folds. What is timed is the frame with contact less the same steps from the same state
+//! A cloth falls on the floor edge first and folds. The result is the mean time of the frames (1/60
+//! s) in which the cloth folds: of a frame with contact, less the same steps from the same state
 //! without it.
 
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
@@ -19,7 +19,7 @@ const RATE: f64 = 60.0;
 /// First frame that is timed, and the number of frames.
 const FRAMES: [u32; 2] = [24, 8];
 
-/// Cloth of that many particles a side, whose surface touches.
+/// Cloth of that many particles per side, with a surface that can touch.
 fn folding(side: usize, method: &str, step: f64) -> Simulation {
     let text = format!(
         r#"
@@ -48,7 +48,7 @@ fn folding(side: usize, method: &str, step: f64) -> Simulation {
     Simulation::new(setup.scene, method, Control::Step(step)).unwrap()
 }
 
-/// Times the frames after a start, each with contact and without.
+/// Times the frames after a start, each with and without contact.
 fn time([with, without]: &mut [Simulation; 2], start: &Checkpoint, steps: u32) -> Duration {
     with.restore(start).unwrap();
     let mut difference = 0.0;

@@ -32,7 +32,7 @@ fn network(scene: &Scene) -> &Network {
     }
 }
 
-/// The yardstick: what anyone would write first, a loop over a list of springs.
+/// The baseline: a simple loop over a list of springs.
 fn plain_spring_list<const DAMPED: bool>(springs: &[Spring], x: &[f64], v: &[f64], f: &mut [f64]) {
     f.fill(0.0);
     let n = x.len() / 3;
@@ -61,7 +61,7 @@ fn plain_spring_list<const DAMPED: bool>(springs: &[Spring], x: &[f64], v: &[f64
     }
 }
 
-/// Spring forces of both cloths, as sheets and by the yardstick. Throughput is in springs.
+/// Spring forces of both cloths, as sheets and by the baseline. Throughput is in springs.
 fn forces(c: &mut Criterion) {
     for name in ["cloth", "mit"] {
         let mut group = c.benchmark_group(format!("forces/{name}"));
@@ -98,7 +98,7 @@ fn forces(c: &mut Criterion) {
     }
 }
 
-/// Spring forces of the same springs one by one: as they come, and in no order.
+/// Spring forces of the same springs one by one, in their order and shuffled.
 fn forces_of_a_list(c: &mut Criterion) {
     let mut group = c.benchmark_group("forces/list");
     for (side, shuffled) in SIDES
@@ -239,7 +239,7 @@ fn evaluation(c: &mut Criterion) {
     group.finish();
 }
 
-/// One evaluation of chains of rods on their way: constraints. Throughput is in rods.
+/// One evaluation of moving chains of rods: constraints. Throughput is in rods.
 fn rods(c: &mut Criterion) {
     let mut group = c.benchmark_group("evaluation/rods");
     for rods in [1u32, 10, 100, 1000, 10_000] {
@@ -285,13 +285,13 @@ criterion_group! {
 
 fn main() {
     let begun = SystemTime::now();
-    // Among the threads, as a run takes its steps.
+    // Inside the thread pool, as a run takes its steps.
     rayon::scope(|_| benches());
     Criterion::default().configure_from_args().final_summary();
     ratios(begun);
 }
 
-/// Prints springs per second as this run measured them, and their ratio to the plain list.
+/// Prints springs per second of this run, and their ratio to the plain list.
 fn ratios(begun: SystemTime) {
     let home = std::env::var_os("CRITERION_HOME").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/criterion"),

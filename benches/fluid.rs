@@ -1,6 +1,5 @@
-//! Times of fluids of growing numbers of particles: all forces at once, and a step of Verlet's
-//! method, in which the lists of neighbours are made anew every now and then. Throughput is in
-//! particles.
+//! Times of fluids with growing numbers of particles: all forces at once, and a step of Verlet's
+//! method, in which the lists of neighbours are rebuilt now and then. Throughput is in particles.
 
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 

@@ -1,17 +1,16 @@
-//! Instructions of the main kernels, counted by callgrind: a guard against what makes them slower,
-//! on any machine.
+//! Instructions of the main kernels, counted by callgrind, to detect slowdowns on any machine.
 //!
-//! `cargo bench --bench instructions` compares with the limits below, some 15 % above what was
-//! counted when they were set. Callgrind knows vectors of four numbers, so those are what is
-//! counted. Without `valgrind` nothing is, unless `A3_REQUIRE_VALGRIND` is set.
+//! `cargo bench --bench instructions` compares with the limits below, some 15 % above the counts at
+//! the time. Callgrind supports vectors of four numbers, so kernels are counted with those. Without
+//! `valgrind` nothing is counted, unless `A3_REQUIRE_VALGRIND` is set.
 
 use std::hint::black_box;
 use std::process::{Command, ExitCode};
 
 use a3_core::{Grid, Integrator, Linearized, Network, Scene, integrators};
 
-/// What is counted: on a cloth of 32 x 32 particles, in thousands of instructions at most, compiled
-/// for release and as tests are, where numbers are checked for overflow.
+/// Limits on a cloth of 32 x 32 particles, in thousands of instructions, compiled for release and
+/// for tests, which check for overflow.
 const LIMITS: [(&str, [u64; 2]); 9] = [
     ("forces of a sheet", [155, 160]),
     ("forces of a damped sheet", [185, 195]),
@@ -24,7 +23,7 @@ const LIMITS: [(&str, [u64; 2]); 9] = [
     ("step of implicit", [5600, 6700]),
 ];
 
-/// Runs of a kernel between which instructions are counted.
+/// Numbers of runs of a kernel; the instructions between them are counted.
 const RUNS: [u64; 2] = [2, 6];
 
 fn main() -> ExitCode {
@@ -39,7 +38,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Counts all, and says which take more than they should.
+/// Counts all kernels, and reports those above their limits.
 fn compare() -> ExitCode {
     let mut good = true;
     println!("instructions by callgrind, in thousands, and what they may be at most");
@@ -66,7 +65,7 @@ fn compare() -> ExitCode {
     }
 }
 
-/// Instructions of this program when it runs the kernel so many times.
+/// Instructions of this program when it runs the kernel `times` times.
 fn count(kernel: &str, times: u64) -> Option<u64> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
@@ -112,7 +111,7 @@ fn run(kernel: &str, times: u64) {
             }
         }
         "force differential" => {
-            // Of springs that move, are damped, and change in both.
+            // Of springs that move, are damped, and whose position and velocity change.
             for _ in 0..times {
                 network.force_differential(0.0, black_box(x), x, x, x, &mut f);
             }

@@ -1,6 +1,6 @@
-//! A cloth that folds, beside other simulators: `cargo bench --bench peers -- a.pc2 b.pc2` times
-//! the scene `peers/folding.toml` and counts the crossings in each of its frames, and in those of
-//! the files that the Python scripts in `peers/` write.
+//! A folding cloth, in comparison with other simulators: `cargo bench --bench peers -- a.pc2 b.pc2`
+//! times the scene `peers/folding.toml` and counts the crossings in each of its frames, and in
+//! those of the files that the Python scripts in `peers/` write.
 
 #![allow(missing_docs, reason = "a benchmark has no items that others use")]
 
@@ -15,7 +15,7 @@ const RATE: f64 = 60.0;
 const FRAMES: u32 = 90;
 const FIRST: u32 = 8;
 
-/// What was found in the frames of a run.
+/// Counts over the frames of a run.
 #[derive(Debug, Default)]
 struct Count {
     /// Edges that pass through triangles, summed over the frames.
@@ -48,7 +48,7 @@ fn folding(method: &str, steps: u32) -> Simulation {
     Simulation::new(setup.scene, method, step).unwrap()
 }
 
-/// Time that the processor has spent on the threads of this program (ms), on Linux.
+/// Processor time of the threads of this program (ms), on Linux.
 fn spent() -> f64 {
     let Ok(threads) = fs::read_dir("/proc/self/task") else {
         return f64::NAN;
@@ -65,7 +65,7 @@ fn spent() -> f64 {
     1e-6 * times.sum::<f64>()
 }
 
-/// Times that many frames of a method with so many steps in a frame, and counts crossings.
+/// Times a number of frames of a method, and counts crossings.
 fn time(method: &str, steps: u32, frames: u32) {
     let mut simulation = folding(method, steps);
     let (mut times, mut count) = (Vec::new(), Count::default());

@@ -1,6 +1,6 @@
-//! Long runs: `cargo bench --bench soak` takes 1e7 steps by every method, with wind and swing where
-//! the method serves them, and fails where a number is not finite or where memory grows. It takes
-//! hours; `cargo bench --bench soak -- verlet rk4` takes the steps of these methods.
+//! Long runs: `cargo bench --bench soak` takes 1e7 steps by every method, with wind and swing if
+//! the method supports them, and fails if a number is not finite or memory grows. It takes hours;
+//! `cargo bench --bench soak -- verlet rk4` takes the steps of these methods only.
 
 use std::time::Instant;
 
@@ -11,10 +11,11 @@ use a3_scenes::Description;
 /// Steps of a run, and of one with `--test`.
 const STEPS: [u64; 2] = [10_000_000, 2_000];
 
-/// Most by which memory may grow after the first tenth of a run (bytes).
+/// Largest growth of memory after the first tenth of a run (bytes).
 const GROWTH: usize = 1 << 20;
 
-/// Small cloth with all that a run can have: wind, swing, a sphere that moves, friction, a floor.
+/// Small cloth with everything that a run can have: wind, swing, a moving sphere, friction, a
+/// floor.
 const SCENE: &str = r#"
     gravity = [0, -9.81, 0]
     drag_per_mass = 0.3
@@ -33,14 +34,14 @@ const SCENE: &str = r#"
     sine = { amplitude = [0, 0, 0.5], rate = 2 }
 "#;
 
-/// Resident memory of this process (bytes), where the system tells.
+/// Resident memory of this process (bytes), if the system reports it.
 fn memory() -> Option<usize> {
     let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
     let pages: usize = pages.split(' ').nth(1)?.parse().ok()?;
     Some(pages * 4096)
 }
 
-/// Runs a method for so many steps. Returns the growth of memory (bytes).
+/// Runs a method for a number of steps. Returns the growth of memory (bytes).
 fn soak(method: &'static Method, steps: u64) -> Option<usize> {
     let wind = "[wind]\nvelocity = [3, 0, 1]\n";
     let text = if method.positions_only() {

@@ -1,4 +1,4 @@
-//! Forces of solids: as the library has them, and by a plain loop over tetrahedra.
+//! Forces of solids: by the library, and by a plain loop over tetrahedra.
 
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 
@@ -11,7 +11,7 @@ use nalgebra::Matrix3;
 
 const LAME: [f64; 2] = [5.769e4, 3.846e4];
 
-/// A box of so many particles along each edge, a little out of shape, and its state.
+/// A slightly deformed box with `side` particles along each edge, and its state.
 fn solid(side: usize, model: &str, damping: f64) -> (Network, Vec<f64>) {
     let text = format!(
         "[[solid]]\ngrid = [{side}, {side}, {side}]\nsize = [1, 1, 1]\ndensity = 1000\nyoung = 1e5\n\
@@ -50,7 +50,7 @@ fn rest(network: &Network, x: &[f64]) -> Vec<Rest> {
     each.collect()
 }
 
-/// The yardstick: what anyone would write first, for either energy.
+/// The baseline: a simple loop, for either energy.
 fn plain(all: &[Rest], neo_hookean: bool, x: &[f64], f: &mut [f64]) {
     let n = x.len() / 3;
     let [lambda, mu] = LAME;

@@ -7,7 +7,7 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 
 use super::{SIDES, cloth, network};
 
-/// A step of every method on every scene that it serves.
+/// A step of every method on every scene that it supports.
 pub fn on_scenes(c: &mut Criterion) {
     for entry in a3_scenes::SCENES {
         let mut group = c.benchmark_group(format!("step/{}", entry.name));
@@ -41,7 +41,7 @@ pub fn by_size(c: &mut Criterion) {
     }
 }
 
-/// A step of a method that chooses it, with the estimate of its error.
+/// A step of an adaptive method, with its error estimate.
 fn adaptive_step(
     group: &mut BenchmarkGroup<'_, WallTime>,
     scene: &Scene,
@@ -75,7 +75,7 @@ pub fn step(group: &mut BenchmarkGroup<'_, WallTime>, scene: &Scene, method: &in
     };
     let mut y = scene.state.clone();
     group.bench_function(method.name, |b| {
-        // So small a step that no number of them leads anywhere.
+        // The step is so small that the state hardly changes over all steps.
         b.iter(|| {
             integrator
                 .step(system, 0.0, 1e-12, black_box(&mut y))

@@ -1,7 +1,7 @@
-// Loads the program, and tells it what only a page sees.
+// Loads the program, and passes it the events that only a page receives.
 
 // Fused multiplications are an instruction of relaxed SIMD, without which they are slow; a program
-// of 30 bytes that uses one shows whether the browser has it.
+// of 30 bytes that uses it shows whether the browser supports it.
 const relaxed = WebAssembly.validate(new Uint8Array([
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 15, 1, 13, 0, 65, 1, 253, 15, 65, 2, 253, 15,
   253, 128, 2, 11,
@@ -11,7 +11,7 @@ const canvas = document.getElementById("a3");
 const panel = document.getElementById("panel");
 
 try {
-  // A browser may know WebGPU and have no adapter for it.
+  // A browser may support WebGPU without having an adapter for it.
   const adapter = relaxed && await navigator.gpu?.requestAdapter().catch(() => null);
   const build = adapter ? "webgpu" : relaxed ? "webgl" : "plain";
   if (!adapter && !document.createElement("canvas").getContext("webgl2")) {

@@ -1,4 +1,4 @@
-//! Data of charts, as JSON or CSV by the first byte.
+//! Data of charts, as JSON or CSV depending on the first byte.
 #![no_main]
 
 #[allow(dead_code, missing_docs)]

@@ -1,4 +1,4 @@
-//! Meshes in glTF, whose files beside them all have 60 bytes.
+//! Meshes in glTF, with external files of 60 bytes each.
 #![no_main]
 
 use a3_scenes::Mesh;

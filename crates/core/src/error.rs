@@ -16,7 +16,7 @@ pub enum Error {
     Unsupported {
         /// Full title of the method.
         method: &'static str,
-        /// What the system lacks, or has.
+        /// Property of the system that the method does not support.
         why: Refusal,
     },
     /// State whose length is not that of the system.
@@ -33,7 +33,7 @@ pub enum Error {
         /// Step at which the search for a shorter one ended (s).
         step: f64,
     },
-    /// Derivative that is not finite, from which no step can go on.
+    /// Derivative that is not finite, so that no step can follow.
     NotFinite {
         /// Time at the beginning of the step (s).
         time: f64,
@@ -50,18 +50,18 @@ pub enum Error {
     BlowUp(BlowUp),
 }
 
-/// Why a method does not support a system.
+/// Reason why a method does not support a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// The system has no forces and masses.
+    /// The system has no masses, and thus no forces.
     LacksMasses,
     /// Rigid bodies rotate, by equations of first order.
     Rotates,
     /// Constraints hold particles.
     HoldsConstraints,
-    /// Particles act on more others than are listed, as those of fluids.
+    /// Particles also act on others than their neighbours, as in fluids, through a shared density.
     HidesCouplings,
-    /// Forces between particles are no linear springs.
+    /// Forces between particles are not linear springs.
     LacksSprings,
     /// Forces depend on the velocity, other than by drag.
     ReadsVelocity,
@@ -124,21 +124,23 @@ pub enum Cause {
         /// not be solved.
         residual: f64,
     },
-    /// Force that depends on the velocity, which the method does not serve.
+    /// Force that depends on the velocity, which the method does not support.
     ReadsVelocity,
-    /// Constraint that is far from being met.
+    /// Constraint with a large error.
     Unmet(Unmet),
-    /// Constraint that cannot be met, whatever the step: it contradicts others, or pins.
+    /// Constraint that cannot be met with any step: it contradicts others, or pins.
     Contradiction(Unmet),
-    /// Surfaces that are led, by pins or as obstacles, and leave no room for what is between them.
-    Squeezed {
+    /// Surfaces that move as prescribed, with pins or as obstacles, and leave no room for what is
+    /// between them.
+    Pinched {
         /// Vertices on either side.
         vertices: [Vertex; 2],
     },
 }
 
-/// Share from which on an error is seen, and worth a warning.
-const VISIBLE: f64 = 0.01;
+/// Error of a constraint, as a share of its length, from which on it is visible and worth a
+/// warning.
+const VISIBLE_SHARE: f64 = 0.01;
 
 /// Constraint that is not met.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,7 +158,7 @@ impl Unmet {
     /// Whether the error is large enough to be seen: 1 % or more.
     #[must_use]
     pub fn is_visible(&self) -> bool {
-        self.share >= VISIBLE
+        self.share >= VISIBLE_SHARE
     }
 }
 
@@ -207,8 +209,8 @@ impl fmt::Display for Vertex {
     }
 }
 
-/// Advice where forces depend on the velocity.
-const TAKE_ANOTHER: &str = "with wind, air, damped springs, viscous fluids or constraints, take \
+/// Advice if forces depend on the velocity.
+const USE_ANOTHER: &str = "with wind, air, damped springs, viscous fluids or constraints, use \
     another explicit solver";
 
 impl fmt::Display for Refusal {
@@ -218,7 +220,7 @@ impl fmt::Display for Refusal {
                 f.write_str("needs forces and masses, but this system is of first order")
             }
             Self::Rotates => f.write_str(
-                "does not support rigid bodies, whose rotation is no x'' = F / m: use another \
+                "does not support rigid bodies, whose rotation is not x'' = F / m: use another \
                  solver",
             ),
             Self::HoldsConstraints => {
@@ -229,23 +231,23 @@ impl fmt::Display for Refusal {
                  neighbours: use an explicit solver",
             ),
             Self::LacksSprings => f.write_str(
-                "solves spring by spring, but here are forces between particles that are no linear \
-                 springs: use another solver",
+                "solves spring by spring, but some forces between particles are not those of \
+                 linear springs: use another solver",
             ),
             Self::ReadsVelocity => write!(
                 f,
-                "serves no forces that depend on the velocity, except drag: {TAKE_ANOTHER}"
+                "supports no forces that depend on the velocity, except drag: {USE_ANOTHER}"
             ),
             Self::TooLarge { numbers, most } => write!(
                 f,
-                "serves rigid bodies and systems without masses up to a state of {most} numbers, \
-                 and this has {numbers}: use an explicit solver"
+                "supports rigid bodies and systems without masses up to a state of {most} numbers, \
+                 but this one has {numbers}: use an explicit solver"
             ),
         }
     }
 }
 
-/// Says that an implicit method did not solve the equations of a step.
+/// Writes that an implicit method did not solve the equations of a step.
 fn not_solved(residual: f64, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     f.write_str("the equations of the step were not solved")?;
     if residual.is_finite() {
@@ -292,7 +294,7 @@ impl fmt::Display for BlowUp {
             Cause::NoConvergence { residual } => not_solved(*residual, f),
             Cause::ReadsVelocity => write!(
                 f,
-                "forces must not depend on the velocity, except by drag: {TAKE_ANOTHER}"
+                "forces must not depend on the velocity, except by drag: {USE_ANOTHER}"
             ),
             Cause::Unmet(unmet) => {
                 write!(f, "{unmet}, is off by {:.0} %", 100.0 * unmet.share)
@@ -301,9 +303,9 @@ impl fmt::Display for BlowUp {
                 f,
                 "{unmet}, contradicts other constraints or pins: no positions meet them all"
             ),
-            Cause::Squeezed { vertices: [a, b] } => write!(
+            Cause::Pinched { vertices: [a, b] } => write!(
                 f,
-                "surfaces are squeezed: pins or moving obstacles leave no room between {a} and {b}"
+                "surfaces are pinched: pins or moving obstacles leave no room between {a} and {b}"
             ),
         }
     }
@@ -342,7 +344,7 @@ impl From<BlowUp> for Error {
     }
 }
 
-/// `Ok` if `value` is finite and at least `low`, else an error that names it.
+/// Checks that `value` is finite and at least `low`; the error names it.
 pub(crate) fn at_least(low: f64, what: &str, value: f64) -> Result<(), Error> {
     if value.is_finite() && value >= low {
         Ok(())
@@ -353,7 +355,7 @@ pub(crate) fn at_least(low: f64, what: &str, value: f64) -> Result<(), Error> {
     }
 }
 
-/// `Ok` if `value` is from 0 to 1, else an error that names it.
+/// Checks that `value` is from 0 to 1; the error names it.
 pub(crate) fn share(what: &str, value: f64) -> Result<(), Error> {
     if (0.0..=1.0).contains(&value) {
         Ok(())
@@ -364,7 +366,7 @@ pub(crate) fn share(what: &str, value: f64) -> Result<(), Error> {
     }
 }
 
-/// `Ok` if `value` is finite and above zero, else an error that names it.
+/// Checks that `value` is finite and above zero; the error names it.
 pub(crate) fn positive(what: &str, value: f64) -> Result<(), Error> {
     if value.is_finite() && value > 0.0 {
         Ok(())
@@ -375,7 +377,7 @@ pub(crate) fn positive(what: &str, value: f64) -> Result<(), Error> {
     }
 }
 
-/// `Ok` if all three numbers are finite, else an error that names them.
+/// Checks that all three numbers are finite; the error names them.
 pub(crate) fn finite(what: &str, vector: Vector3<f64>) -> Result<(), Error> {
     if vector.iter().all(|x| x.is_finite()) {
         Ok(())

@@ -64,9 +64,9 @@ fn no_step_allocates() {
             };
             run.set_wind(true);
             run.set_swinging(true);
-            // In the first step, the pattern of a matrix is analysed, and many springs are packed;
-            // once more where longer steps make another way to solve pay.
-            // What works on a scene is listed in the first step after it has changed.
+            // The first step analyses the pattern of a matrix and packs many springs; one later
+            // step does again if longer steps make another solver cheaper.
+            // The forces that work on a scene are listed in the first step after they have changed.
             let is_adaptive = matches!(control, Control::Tolerance(_));
             let long = is_adaptive && (method.is_implicit() || many_springs);
             run.take_steps(if long { 60 } else { 1 }).unwrap();
@@ -144,7 +144,7 @@ fn no_step_that_tears_nothing_allocates() {
     }
 }
 
-/// Scratch of a method is allocated anew when the scene is adjusted, not during steps.
+/// Scratch of a method is reallocated when the scene is adjusted, not during steps.
 #[test]
 fn no_step_after_an_adjustment_allocates() {
     for method in integrators::METHODS.iter().filter(|m| !m.positions_only()) {

@@ -1,4 +1,4 @@
-//! Axes: the map from numbers to the sheet, and the ticks.
+//! Axes: the map from numbers to the sheet, and ticks.
 
 use crate::figure::Figure;
 use crate::geometry::{Point, Rect};
@@ -23,9 +23,9 @@ pub struct Axis {
 /// A line of the grid.
 #[derive(Debug, PartialEq)]
 pub struct Tick {
-    /// The number that it stands for.
+    /// The number of the tick.
     pub value: f64,
-    /// The number in words, such as `10^{−3}`; empty for a tick without a number.
+    /// The label of the number, such as `10^{−3}`; empty for a minor tick.
     pub label: String,
 }
 
@@ -72,7 +72,7 @@ impl Axis {
         }
     }
 
-    /// The coordinate of a number; that of the nearer end for a number beyond the ends.
+    /// The coordinate of a number; a number beyond the ends gets that of the nearer end.
     #[must_use]
     pub fn at(&self, value: f64) -> f64 {
         let value = if self.log { value.log10() } else { value };
@@ -104,7 +104,7 @@ impl Axis {
             .into_iter()
             .find(|s| s * unit >= gap)
             .unwrap_or(20.0);
-        // 2 and 5 get their numbers too where there would be hardly any numbers otherwise.
+        // 2 and 5 are labelled too if there would be hardly any labels otherwise.
         let rich = self.ends[1] - self.ends[0] < 2.5 && 0.3 * unit > 1.3 * gap;
         let mut ticks = vec![];
         let mut power = self.ends[0].floor();
@@ -158,7 +158,7 @@ fn power_of_ten(power: f64) -> String {
     format!("10^{{{power}}}").replace('-', "−")
 }
 
-/// The width of the widest number of an axis.
+/// The width of the widest label of an axis.
 pub fn widest(axis: &Axis, size: f64) -> f64 {
     axis.ticks(1.6 * size)
         .iter()
@@ -166,7 +166,8 @@ pub fn widest(axis: &Axis, size: f64) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Draws grid, frame and numbers of a panel; `numbers` says whether those of x, and those of y.
+/// Draws the grid, the frame and the labels of a panel; `numbers` tells whether x and y are
+/// labelled.
 pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numbers: [bool; 2]) {
     let grid = |label: &str| {
         let (colour, width) = if label.is_empty() {
@@ -180,7 +181,7 @@ pub fn draw(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
         x.ticks(if x.log { 3.4 } else { 2.3 } * size),
         y.ticks(1.6 * size),
     );
-    // Ticks with numbers are drawn over those without.
+    // Labelled ticks are drawn over minor ones.
     for named in [false, true] {
         for tick in xs.iter().filter(|tick| tick.label.is_empty() != named) {
             let at = x.at(tick.value);
@@ -233,14 +234,14 @@ mod tests {
         assert_eq!(labels, ["10^{−3}", "10^{−2}", "10^{−1}", "10^{0}"]);
         assert!(ticks.len() > 25, "no minor ticks");
         assert!((log.at(1e-2) - f64::midpoint(log.at(1e-3), log.at(1e-1))).abs() < 1e-9);
-        // The ends of what numbers can be.
+        // The range of double precision.
         let all = Axis::log(0.0, f64::MAX).between(0.0, 200.0);
         assert!(
             all.ticks(40.0)
                 .iter()
                 .all(|tick| all.at(tick.value).is_finite())
         );
-        // Many decades in little room: fewer numbers.
+        // Many decades on a short axis have fewer labels.
         let long = Axis::log(1e-12, 1.0).between(0.0, 200.0);
         let labels = long
             .ticks(40.0)

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 
 use crate::geometry::{Point, Rect};
 
-/// The closed outlines of the region where `inside` holds. The region is cut off at the edges of
-/// the window, lies on the same side of each outline throughout, and the window must reach as far
+/// The closed outlines of the region where `inside` is true, which is on the same side of each
+/// outline throughout. The region is cut off at the edges of the window, which must reach as far
 /// below 0 as above. The width of the window is divided into `columns` squares.
 pub fn outlines(inside: impl Fn(Point) -> bool, window: Rect, columns: usize) -> Vec<Vec<Point>> {
     let step = window.width() / columns as f64;
-    // Rows of squares above the axis; there are as many below it.
+    // Rows of squares above the axis; there are equally many below it.
     let rows = (window.y1 / step).ceil() as usize;
     let inside = |[x, y]: Point| inside([x, y.abs()]);
     let at = |i: usize, j: usize| [window.x0 + i as f64 * step, (j as f64 - rows as f64) * step];

@@ -11,12 +11,12 @@ pub enum Error {
     Sheet([f64; 2]),
     /// The sheet is too small for the chart.
     TooSmall {
-        /// Width and height that were asked for.
+        /// Requested width and height.
         sheet: [f64; 2],
-        /// Width and height of a sheet of the same shape that is large enough, if there is any.
+        /// Width and height of a sheet of the same shape that is large enough, if there is one.
         enough: Option<[f64; 2]>,
     },
-    /// The picture cannot be made of pixels, and why.
+    /// The picture cannot be rasterised, and why.
     Pixels(String),
 }
 

@@ -13,7 +13,7 @@ pub struct Figure {
     size: Point,
     /// The shapes so far.
     shapes: Vec<Shape>,
-    /// The rooms that labels take.
+    /// The rectangles that labels occupy.
     labels: Vec<Rect>,
 }
 
@@ -37,7 +37,7 @@ impl Figure {
         self.shapes.push(Shape::Line(points.to_vec(), pen));
     }
 
-    /// Paints the area inside outlines. An outline inside another is that of a hole.
+    /// Paints the area inside outlines. An outline inside another one is a hole.
     pub(crate) fn area(&mut self, outlines: Vec<Vec<Point>>, paint: Paint) {
         self.shapes.push(Shape::Area(outlines, paint));
     }
@@ -47,7 +47,7 @@ impl Figure {
         self.area(vec![r.corners().to_vec()], paint);
     }
 
-    /// Lets `draw` draw, and cuts that off at the edges of `window`.
+    /// Clips all that `draw` draws at the edges of `window`.
     pub(crate) fn clipped(&mut self, window: Rect, draw: impl FnOnce(&mut Self)) {
         let outside = std::mem::take(&mut self.shapes);
         draw(self);
@@ -70,7 +70,7 @@ impl Figure {
         self.area(vec![head], Paint::fill(GREY));
     }
 
-    /// Writes a label at a point, and returns the room that it takes.
+    /// Writes a label at a point, and returns the rectangle that it occupies.
     pub(crate) fn text(&mut self, at: Point, label: Label) -> Rect {
         let room = label.room(at);
         if !label.text.is_empty() {
@@ -81,17 +81,17 @@ impl Figure {
         room
     }
 
-    /// Keeps labels out of a room.
+    /// Keeps labels out of a rectangle.
     pub(crate) fn reserve(&mut self, room: Rect) {
         self.labels.push(room);
     }
 
-    /// Whether a room is on the sheet and clear of labels.
+    /// Whether a rectangle is on the sheet and clear of labels.
     pub(crate) fn is_free(&self, room: Rect) -> bool {
         self.sheet().holds(room) && !self.labels.iter().any(|label| label.overlaps(room))
     }
 
-    /// Whether every label is on the sheet and clear of the others.
+    /// Whether all labels are on the sheet and none overlaps another.
     pub(crate) fn is_sound(&self) -> bool {
         let free = |(k, label): (usize, &Rect)| {
             let others = &self.labels[..k];

@@ -3,7 +3,7 @@
 /// A horizontal and a vertical coordinate; the latter points down on the sheet.
 pub type Point = [f64; 2];
 
-/// An upright rectangle.
+/// An axis-aligned rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rect {
     pub x0: f64,
@@ -37,17 +37,17 @@ impl Rect {
         ]
     }
 
-    /// Whether both rectangles have an area in common.
+    /// Whether the rectangles overlap in an area.
     pub fn overlaps(self, other: Self) -> bool {
         self.x0 < other.x1 && other.x0 < self.x1 && self.y0 < other.y1 && other.y0 < self.y1
     }
 
-    /// Whether all of the other rectangle lies in this one.
+    /// Whether the other rectangle lies entirely in this one.
     pub fn holds(self, other: Self) -> bool {
         self.x0 <= other.x0 && other.x1 <= self.x1 && self.y0 <= other.y0 && other.y1 <= self.y1
     }
 
-    /// The corners, around the rectangle.
+    /// The corners, in order around the rectangle.
     pub fn corners(self) -> [Point; 4] {
         [
             [self.x0, self.y0],

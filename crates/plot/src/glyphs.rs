@@ -1,4 +1,4 @@
-//! The outlines of labels: letters from the font, shaped (kerning, ligatures) and put in place.
+//! The outlines of labels: letters of the font, shaped (kerning, ligatures) and placed.
 
 use std::sync::LazyLock;
 
@@ -11,24 +11,23 @@ use tiny_skia::{Path, PathBuilder};
 use crate::geometry::Point;
 use crate::label::{FONT, Label, RAISED, pieces};
 
-/// The font, and what shaping reads from it once.
+/// The font, with its data for shaping, which are read once.
 static LETTERS: LazyLock<Option<(FontRef<'static>, ShaperData)>> = LazyLock::new(|| {
     let font = FontRef::new(FONT).ok()?;
     let data = ShaperData::new(&font);
     Some((font, data))
 });
 
-/// A letter in its place.
+/// A placed letter.
 struct Letter {
     glyph: skrifa::GlyphId,
-    /// The left end on the base line from the beginning of the text, in units of the sheet.
+    /// The left end on the base line, relative to the start of the text, in units of the sheet.
     at: Point,
     /// The size of a unit of the font, in units of the sheet.
     unit: f64,
 }
 
-/// The outlines of a label that is written at a point, in units of the sheet; `None` if there is
-/// nothing to see.
+/// The outlines of a label at a point, in units of the sheet; `None` if nothing is visible.
 pub fn outlines(at: Point, label: Label) -> Option<Path> {
     let (font, data) = LETTERS.as_ref()?;
     let (letters, natural) = letters(font, data, label);
@@ -51,7 +50,7 @@ pub fn outlines(at: Point, label: Label) -> Option<Path> {
             unit: [stretch * letter.unit, letter.unit],
         };
         let plain = DrawSettings::unhinted(Size::unscaled(), LocationRef::default());
-        // A letter without an outline leaves its room empty.
+        // A letter without an outline leaves its place empty.
         let _ = outline.draw(plain, &mut pen);
     }
     path.finish()
@@ -92,9 +91,9 @@ struct Pen<'a> {
     path: &'a mut PathBuilder,
     /// The point where the label is written.
     at: Point,
-    /// Whether the label is read from below.
+    /// Whether the label is rotated, to be read from below.
     turned: bool,
-    /// The beginning of the letter, from there, along the text and across it.
+    /// The start of the letter relative to that point, along the text and across it.
     start: Point,
     /// A unit of the font along the text and across it, in units of the sheet.
     unit: [f64; 2],

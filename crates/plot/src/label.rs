@@ -1,4 +1,4 @@
-//! Labels: lines of text, how they look, and the room they take.
+//! Labels: lines of text, their style, and the space that they occupy.
 
 use std::sync::LazyLock;
 
@@ -8,12 +8,12 @@ use skrifa::{FontRef, MetadataProvider};
 use crate::geometry::{Point, Rect};
 use crate::paint::{Paint, Pen};
 
-/// The colour of text that is to be read first.
+/// The colour of important text.
 pub const INK: &str = "#1b1b1b";
-/// The colour of text that explains.
+/// The colour of explanations.
 pub const GREY: &str = "#5a5a5a";
 
-/// The part of a label that lies at the point where it is drawn.
+/// The part of a label that is placed at its point.
 #[derive(Clone, Copy, Debug)]
 pub enum Anchor {
     Start,
@@ -22,7 +22,7 @@ pub enum Anchor {
 }
 
 impl Anchor {
-    /// The part of the label before that point.
+    /// The fraction of the label before its point.
     pub fn part(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -32,7 +32,7 @@ impl Anchor {
     }
 }
 
-/// How a label looks.
+/// The style of a label.
 #[derive(Clone, Copy, Debug)]
 pub struct Look {
     /// The size of the font, in units of the sheet.
@@ -40,7 +40,7 @@ pub struct Look {
     pub colour: &'static str,
     pub anchor: Anchor,
     pub bold: bool,
-    /// Whether it is read from below.
+    /// Whether the label is rotated, to be read from below.
     pub turned: bool,
 }
 
@@ -66,7 +66,7 @@ impl Look {
     }
 }
 
-/// A line of text, in which `10^{-3}` has a superscript.
+/// A line of text, in which `10^{-3}` stands for a superscript.
 #[derive(Clone, Copy, Debug)]
 pub struct Label<'a> {
     pub text: &'a str,
@@ -100,24 +100,25 @@ impl<'a> Label<'a> {
         self
     }
 
-    /// The label, read from below.
+    /// The label, rotated to be read from below.
     pub fn turned(mut self) -> Self {
         self.look.turned = true;
         self
     }
 
-    /// The length that the text is stretched to, in units of the sheet, unless it has superscripts.
+    /// The length to which the text is stretched, in units of the sheet, unless it has
+    /// superscripts.
     pub fn fixed_length(self) -> Option<f64> {
         let plain = !self.text.contains("^{");
         plain.then(|| width(self.text, self.look.size))
     }
 
-    /// The room that the label takes with its anchor, on the base line, at a point.
+    /// The rectangle that the label occupies, with its anchor on the base line at a point.
     pub fn room(self, [x, y]: Point) -> Rect {
         let Look { size, anchor, .. } = self.look;
         let length = width(self.text, size);
         let before = length * anchor.part();
-        let (up, down) = (UP * size, 0.22 * size);
+        let (up, down) = (ASCENT * size, 0.22 * size);
         if self.look.turned {
             Rect::new(x - up, y + before - length, x + down, y + before)
         } else {
@@ -126,7 +127,7 @@ impl<'a> Label<'a> {
     }
 }
 
-/// The pieces of a text in order, each with whether it is a superscript.
+/// The pieces of a text in order, and whether each is a superscript.
 pub fn pieces(text: &str) -> impl Iterator<Item = (&str, bool)> {
     text.split("^{").enumerate().flat_map(|(k, part)| {
         let (raised, flat) = if k == 0 {
@@ -138,13 +139,13 @@ pub fn pieces(text: &str) -> impl Iterator<Item = (&str, bool)> {
     })
 }
 
-/// The font of charts, as a file. A constant would be copied to each place that names it.
+/// The font of charts, as a file. It is a static, because a constant would be copied to each use.
 pub static FONT: &[u8] = epaint_default_fonts::UBUNTU_LIGHT;
 
 /// The size of a superscript over that of the text.
 pub const RAISED: f64 = 0.7;
 /// The height of letters and superscripts above the base line, over the size of the text.
-const UP: f64 = 0.84;
+const ASCENT: f64 = 0.84;
 
 /// The length of a text of this size.
 pub fn width(text: &str, size: f64) -> f64 {

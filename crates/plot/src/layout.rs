@@ -1,5 +1,4 @@
-//! Layout that all charts share: headings and foot, a legend, a grid of panels, and sizes of text
-//! that fit.
+//! Layout of all charts: headings and foot, a legend, a grid of panels, and sizes of text that fit.
 
 use crate::error::Error;
 use crate::figure::Figure;
@@ -7,9 +6,9 @@ use crate::geometry::{Point, Rect};
 use crate::label::{Anchor, GREY, Label, width};
 
 /// The least size of text. Notes may have four fifths of it.
-const SMALLEST: f64 = 7.0;
+const MIN_TEXT_SIZE: f64 = 7.0;
 
-/// How much a chart says.
+/// Level of detail of a chart.
 #[derive(Clone, Copy, Debug)]
 pub struct Level {
     /// The size of its text.
@@ -18,8 +17,8 @@ pub struct Level {
     pub full: bool,
 }
 
-/// The drawing with the largest text that fits. Explanations are left out only where no size of
-/// text fits otherwise.
+/// The drawing with the largest text that fits. Explanations are left out only if no size of text
+/// fits otherwise.
 ///
 /// # Errors
 /// [`Error::Sheet`] or [`Error::TooSmall`] if no drawing fits.
@@ -36,7 +35,7 @@ pub fn fit(size: Point, draw: impl Fn(Figure, Level) -> Option<Figure>) -> Resul
         ];
         levels.into_iter().find_map(|(part, full)| {
             let level = Level {
-                size: (part * base).max(SMALLEST),
+                size: (part * base).max(MIN_TEXT_SIZE),
                 full,
             };
             draw(Figure::new(size), level).filter(Figure::is_sound)
@@ -56,7 +55,7 @@ pub fn fit(size: Point, draw: impl Fn(Figure, Level) -> Option<Figure>) -> Resul
     })
 }
 
-/// The text, cut off with an ellipsis where it is longer than the room.
+/// The text, shortened with an ellipsis if it is longer than `room`.
 pub fn elide(text: &str, size: f64, room: f64) -> String {
     if width(text, size) <= room {
         return text.to_owned();
@@ -71,8 +70,8 @@ pub fn elide(text: &str, size: f64, room: f64) -> String {
     String::new()
 }
 
-/// The text in lines that fit into the room. Lines break at spaces, other than no-break spaces, and
-/// at line breaks.
+/// The text in lines of at most the length `room`. Lines break at spaces, except no-break spaces,
+/// and at line breaks.
 pub fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = vec![];
     for paragraph in text.lines() {
@@ -135,10 +134,10 @@ pub fn headings(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: 
     left
 }
 
-/// A function that draws the sign of an entry of a legend, around a point.
+/// A function that draws the symbol of a legend entry around a point.
 pub type Sign<'a> = Box<dyn Fn(&mut Figure, Point) + 'a>;
 
-/// Draws a legend in columns at the top of the area, and leaves in `area` what is below it.
+/// Draws a legend in columns at the top of the area, and reduces `area` to the part below it.
 pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], size: f64) {
     let (sign, gap) = (4.0 * size, 1.6 * size);
     let longest = entries
@@ -148,7 +147,7 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
         .min(area.width() - sign - gap);
     let column = sign + longest + gap;
     let fitting = ((area.width() + gap) / column).floor().max(1.0) as usize;
-    // Rows are about equally long.
+    // All rows have about equally many entries.
     let rows = entries.len().div_ceil(fitting).max(1);
     let columns = entries.len().div_ceil(rows).max(1);
     for (k, (name, draw)) in entries.iter().enumerate() {
@@ -164,8 +163,8 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
     area.y0 += (1.4 * rows as f64 + 0.7) * size;
 }
 
-/// Rooms for `n` panels, row by row and `gap` apart, and the number of columns. That number makes
-/// the merit of a panel, a function of its width and height, the greatest.
+/// Cells for `n` panels, row by row and `gap` apart, and the number of columns. That number
+/// maximises the merit of a panel, a function of its width and height.
 pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Vec<Rect>, usize) {
     let cell = |columns: usize| {
         let share = |length: f64, parts: usize| (length + gap) / parts as f64 - gap;
@@ -185,8 +184,8 @@ pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Ve
     ((0..n).map(room).collect(), columns)
 }
 
-/// Writes the label below all panels, with an arrow to the left where `better` is, unless that is
-/// empty.
+/// Writes the label below all panels, with an arrow to the left and the text `better` at it, unless
+/// that is empty.
 pub fn label_below(figure: &mut Figure, room: Rect, label: &str, better: &str, size: f64) {
     let y = room.y1 - 0.3 * size;
     let mut x0 = room.x0;
@@ -207,12 +206,12 @@ pub fn label_below(figure: &mut Figure, room: Rect, label: &str, better: &str, s
     figure.text([x, y], Label::new(&label, size).anchor(Anchor::Middle));
 }
 
-/// Writes the label left of all panels, with an arrow downwards where `better` is, unless that is
-/// empty.
+/// Writes the label left of all panels, with an arrow downwards and the text `better` at it, unless
+/// that is empty.
 pub fn label_left(figure: &mut Figure, room: Rect, label: &str, better: &str, size: f64) {
     let x = room.x0 + 0.8 * size;
     let arrow = 3.9 * size + width(better, size);
-    // An explanation after a comma goes first where there is no room, and then the arrow.
+    // If space is short, an explanation after a comma is left out first, and then the arrow.
     let short = label.split(", ").next().unwrap_or(label);
     let fits = |label: &str, left: f64| width(label, size) <= room.height() - left;
     let label = if fits(label, arrow) { label } else { short };

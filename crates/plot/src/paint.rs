@@ -1,17 +1,17 @@
-//! How shapes are painted: by what they are filled, and by what pen their outlines are drawn.
+//! Paints of shapes: fill colours, and pens of outlines.
 
 use std::fmt;
 
-/// A pen: its colour and width, and the lines that it draws.
+/// A pen: its colour, width, dashes and line ends.
 #[derive(Clone, Debug)]
 pub struct Pen {
     /// The colour, as `#` and six hexadecimal digits.
     pub colour: &'static str,
     /// The width, in units of the sheet.
     pub width: f64,
-    /// The lengths of dashes and gaps in turn, in units of the sheet; none for a solid line.
+    /// The lengths of dashes and gaps in turn, in units of the sheet; empty for a solid line.
     pub dash: Vec<f64>,
-    /// Whether lines end in half a circle, and not at once.
+    /// Whether lines end in half a circle instead of a straight edge.
     pub round: bool,
 }
 
@@ -56,19 +56,19 @@ impl fmt::Display for Pen {
     }
 }
 
-/// What fills a shape, and the pen of its outline.
+/// The fill of a shape, and the pen of its outline.
 #[derive(Clone, Debug)]
 pub struct Paint {
-    /// The colour inside, as `#` and six hexadecimal digits, if there is any.
+    /// The colour inside, as `#` and six hexadecimal digits, if there is one.
     pub fill: Option<&'static str>,
-    /// The part of the colour that covers what is below it, from 0 to 1.
+    /// The opacity of the fill, from 0 to 1.
     pub opacity: f64,
     /// The pen of the outline, if it is drawn.
     pub pen: Option<Pen>,
 }
 
 impl Paint {
-    /// The paint that fills a shape.
+    /// A paint that fills a shape.
     pub fn fill(colour: &'static str) -> Self {
         Self {
             fill: Some(colour),
@@ -77,12 +77,12 @@ impl Paint {
         }
     }
 
-    /// The paint that lets what is below shine through.
+    /// The paint, with another opacity.
     pub fn opacity(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
 
-    /// The paint, and a pen for the outline.
+    /// The paint, with a pen for the outline.
     pub fn outlined(self, pen: Pen) -> Self {
         Self {
             pen: Some(pen),
@@ -115,7 +115,7 @@ impl fmt::Display for Paint {
     }
 }
 
-/// The red, green and blue of `#` and six hexadecimal digits; black if it is something else.
+/// The red, green and blue of `#` and six hexadecimal digits; black if the code is invalid.
 pub fn rgb(code: &str) -> [u8; 3] {
     let number = code.strip_prefix('#').filter(|digits| digits.len() == 6);
     let number = number.and_then(|digits| u32::from_str_radix(digits, 16).ok());
@@ -123,7 +123,7 @@ pub fn rgb(code: &str) -> [u8; 3] {
     [r, g, b]
 }
 
-/// Dashes and gaps, of which SVG repeats an odd number of lengths.
+/// Dashes and gaps; like SVG, repeats an odd number of lengths.
 pub fn dashes(lengths: &[f64]) -> Vec<f32> {
     let mut lengths: Vec<_> = lengths.iter().map(|d| *d as f32).collect();
     if lengths.len() % 2 == 1 {

@@ -13,10 +13,10 @@ use crate::shape::Shape;
 
 /// Points (1/72 inch) in a unit of the sheet (1/96 inch).
 const POINT: f32 = 0.75;
-/// Level of compression, as of zlib.
+/// Level of compression, as in zlib.
 const LEVEL: u8 = 6;
 
-/// A sheet of this size with shapes, as a file. Texts are outlines, so that they look the same
+/// A file with a sheet of this size and its shapes. Texts are outlines, so that they look the same
 /// without the font.
 pub fn file([w, h]: Point, shapes: &[Shape]) -> Vec<u8> {
     let [w, h] = [w, h].map(|length| length as f32 * POINT);
@@ -24,7 +24,7 @@ pub fn file([w, h]: Point, shapes: &[Shape]) -> Vec<u8> {
         content: Content::new(),
         opacities: vec![],
     };
-    // The axis y of a page points up.
+    // The y axis of a page points up.
     let turn = [POINT, 0.0, 0.0, -POINT, 0.0, h];
     canvas.content.save_state().transform(turn);
     canvas.content.set_line_join(LineJoinStyle::RoundJoin);
@@ -53,20 +53,20 @@ pub fn file([w, h]: Point, shapes: &[Shape]) -> Vec<u8> {
 
 type State<'a> = pdf_writer::writers::ExtGraphicsState<'a>;
 
-/// A length with no more digits than can be seen.
+/// A length, rounded to digits that are visible.
 fn rounded(length: f32) -> f32 {
     (100.0 * length).round() / 100.0
 }
 
-/// The name of a graphics state by its place in a list.
+/// The name of a graphics state by its index in a list.
 fn name(place: usize) -> Vec<u8> {
     format!("G{place}").into_bytes()
 }
 
-/// A page while it is drawn.
+/// A page in progress.
 struct Canvas {
     content: Content,
-    /// The opacities that areas have.
+    /// The opacities of areas so far.
     opacities: Vec<f32>,
 }
 
@@ -99,7 +99,7 @@ impl Canvas {
         }
     }
 
-    /// Paints what `trace` traces.
+    /// Paints the path that `trace` traces.
     fn paint(
         &mut self,
         paint: &Paint,
@@ -145,7 +145,7 @@ impl Canvas {
         }
     }
 
-    /// Traces a path, whose quadratic curves become cubic ones.
+    /// Traces a path; quadratic curves are converted to cubic ones.
     fn path(&mut self, path: &Path) {
         let mut last = [0.0; 2];
         let place = |p: tiny_skia::Point| [p.x, p.y].map(rounded);
@@ -181,7 +181,7 @@ impl Canvas {
         }
     }
 
-    /// Draws along what was traced last.
+    /// Draws along the path traced last.
     fn stroke(&mut self, pen: &Pen) {
         let [r, g, b] = rgb(pen.colour).map(|part| f32::from(part) / 255.0);
         let cap = if pen.round {
@@ -203,7 +203,7 @@ mod tests {
     use super::*;
     use crate::geometry::Rect;
 
-    /// The objects begin where the table of references says, and the page draws every shape.
+    /// The objects begin at the offsets in the table of references, and the page draws every shape.
     #[test]
     fn a_page_has_its_size_and_all_shapes() {
         let corners = Rect::new(10.0, 10.0, 50.0, 20.0).corners().to_vec();

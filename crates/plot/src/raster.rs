@@ -1,4 +1,4 @@
-//! Figures as pictures.
+//! Figures as PNG files.
 
 use tiny_skia::{
     Color, FillRule, LineCap, LineJoin, Mask, Path, PathBuilder, Pixmap, Stroke, StrokeDash,
@@ -12,7 +12,7 @@ use crate::label::Label;
 use crate::paint::{Paint, Pen, dashes, rgb};
 use crate::shape::Shape;
 
-/// A sheet of this size with shapes, as a PNG file with `scale` pixels for each unit of the sheet.
+/// A PNG file with a sheet of this size and its shapes, with `scale` pixels per unit of the sheet.
 ///
 /// # Errors
 /// [`Error::Pixels`] if the picture would be too large.
@@ -30,7 +30,7 @@ pub fn file(size: Point, shapes: &[Shape], scale: f64) -> Result<Vec<u8>, Error>
     encode(&canvas.pixels).map_err(|why| Error::Pixels(why.to_string()))
 }
 
-/// Pixels as a PNG file, without their opacity: the sheet lets nothing through.
+/// Pixels as a PNG file without opacity: the sheet is opaque.
 fn encode(pixels: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
     let colours: Vec<u8> = (pixels.data().chunks_exact(4))
         .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
@@ -45,12 +45,12 @@ fn encode(pixels: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
     Ok(file)
 }
 
-/// A picture while it is drawn.
+/// A picture in progress.
 struct Canvas {
     pixels: Pixmap,
-    /// From units of the sheet to pixels.
+    /// Transform from units of the sheet to pixels.
     zoom: Transform,
-    /// Where shapes are seen, if not everywhere.
+    /// Mask of the visible area, if it is limited.
     mask: Option<Mask>,
 }
 
@@ -83,7 +83,7 @@ impl Canvas {
         }
     }
 
-    /// The mask of a window; what it is in may have one too.
+    /// The mask of a window, which may be within another mask.
     fn window(&self, window: Rect) -> Option<Mask> {
         let path = path(&[window.corners()], true)?;
         let mut mask = if let Some(mask) = &self.mask {

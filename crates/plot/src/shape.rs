@@ -1,4 +1,4 @@
-//! What a sheet is made of.
+//! Shapes on a sheet.
 
 use crate::geometry::{Point, Rect};
 use crate::label::Look;
@@ -9,10 +9,10 @@ use crate::paint::{Paint, Pen};
 pub enum Shape {
     /// A line through points.
     Line(Vec<Point>, Pen),
-    /// The area inside outlines. An outline inside another is that of a hole.
+    /// The area inside outlines. An outline inside another one is a hole.
     Area(Vec<Vec<Point>>, Paint),
     /// A label at a point.
     Text(Point, String, Look),
-    /// Shapes that are cut off at the edges of a window.
+    /// Shapes that are clipped at the edges of a window.
     Clipped(Rect, Vec<Shape>),
 }

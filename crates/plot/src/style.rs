@@ -1,5 +1,5 @@
-//! Styles of curves: a colour, a dash and a marker, so that curves are told apart without colour
-//! too.
+//! Styles of curves: a colour, a dash and a marker, so that curves can be distinguished without
+//! colour.
 
 use std::f64::consts::TAU;
 
@@ -12,20 +12,20 @@ use crate::paint::{Paint, Pen};
 pub struct CurveStyle {
     /// The colour, as `#` and six hexadecimal digits, such as `#0072b2`.
     pub colour: &'static str,
-    /// The lengths of dashes and gaps in turn, in widths of the line; none for a solid line.
+    /// The lengths of dashes and gaps in turn, in widths of the line; empty for a solid line.
     pub dash: &'static [f64],
     /// The shape of the markers.
     pub marker: Marker,
 }
 
-/// The shape of a marker. Turns are given in whole turns from the vertical, clockwise.
+/// The shape of a marker. Rotations are given in turns, clockwise from the vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Marker {
-    /// A regular polygon with so many corners, turned.
+    /// A regular polygon with a number of corners, rotated.
     Polygon(u8, f64),
-    /// A star with so many corners, and the radius of its dents over that of its corners.
+    /// A star with a number of corners, and the ratio of its inner to its outer radius.
     Star(u8, f64),
-    /// Four beams, turned.
+    /// Four beams, rotated.
     Cross(f64),
 }
 
@@ -40,14 +40,14 @@ impl Default for CurveStyle {
     }
 }
 
-/// How much of a marker is filled.
+/// The filled part of a marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Filling {
     /// All of it.
     Full,
-    /// Half of it, for a run that something else than the method held.
+    /// Half of it, for a run in which something other than the method intervened.
     Half,
-    /// Nothing, for a run that was lost.
+    /// None of it, for a run that blew up.
     None,
 }
 
@@ -76,7 +76,7 @@ impl CurveStyle {
             }
             Filling::None => figure.area(vec![outline], open),
             Filling::Half => {
-                // The left half: what of the outline is to the right lies on the middle.
+                // The left half: points of the outline on the right are moved to the middle.
                 let left: Vec<_> = outline
                     .iter()
                     .map(|[x, y]| [x.min(centre[0]), *y])
@@ -91,7 +91,7 @@ impl CurveStyle {
         let at = |turn: f64, r: f64| [x + r * (TAU * turn).sin(), y - r * (TAU * turn).cos()];
         match self.marker {
             Marker::Polygon(n, turn) => {
-                // Polygons look equally large whatever the number of their corners.
+                // Polygons appear equally large with any number of corners.
                 let r = r * match n {
                     3 => 1.25,
                     4 => 1.15,

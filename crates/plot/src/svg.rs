@@ -7,10 +7,10 @@ use crate::label::{Anchor, Label, Look, RAISED, pieces};
 use crate::paint::Pen;
 use crate::shape::Shape;
 
-/// Fonts in order of preference. Labels are measured with the first.
+/// Fonts in order of preference. Labels are measured with the first one.
 const FONTS: &str = "Ubuntu, 'Ubuntu Light', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif";
 
-/// A sheet of this size with shapes, as a file.
+/// A file with a sheet of this size and its shapes.
 pub fn file([w, h]: Point, shapes: &[Shape]) -> String {
     let mut file = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
@@ -78,7 +78,7 @@ fn label(file: &mut String, at: Point, label: Label) {
         file,
         "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size:.2}\" fill=\"{colour}\""
     );
-    // The text keeps to its room with any font. Some programs stretch superscripts wrongly, and
+    // The text keeps its length with any font. Some programs stretch superscripts wrongly, and
     // texts with superscripts are short.
     if let Some(length) = label.fixed_length() {
         let _ = write!(
@@ -114,7 +114,7 @@ fn label(file: &mut String, at: Point, label: Label) {
     file.push_str("</text>\n");
 }
 
-/// Text as XML writes it, without control characters, which XML forbids.
+/// Text escaped for XML, without control characters, which XML forbids.
 fn escape(text: &str) -> String {
     let clean: String = text.chars().filter(|c| !c.is_control()).collect();
     clean

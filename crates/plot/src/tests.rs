@@ -1,4 +1,5 @@
-//! Whole charts of made-up data at many sizes. With `A3_KEEP_CHARTS=folder` they are kept there.
+//! Whole charts of made-up data at many sizes. With `A3_KEEP_CHARTS=folder` they are kept in that
+//! folder.
 
 use crate::{
     Curve, CurveStyle, Error, Figure, Marker, Measurement, Problem, Region, StabilityRegions,
@@ -78,7 +79,7 @@ const METHODS: [(char, &str, [f64; 6]); 13] = [
     ),
 ];
 
-/// A style that differs from method to method.
+/// A style that differs between methods.
 fn style(letter: char) -> CurveStyle {
     let k = letter as usize;
     let colours = ["#d55e00", "#0072b2", "#882255", "#117733"];
@@ -296,7 +297,7 @@ fn eigenvalues_outside_the_region_are_crosses_or_rings() {
     };
     let crosses = |radius, eigenvalues| {
         let figure = chart(radius, eigenvalues).draw(800.0, 600.0).unwrap();
-        // Two lines each, and those of the legend.
+        // Two lines each, plus those of the legend.
         figure.svg().matches("#d0021b").count() / 2 - 1
     };
     let z = || {
@@ -313,7 +314,7 @@ fn eigenvalues_outside_the_region_are_crosses_or_rings() {
     assert_eq!(crosses(|_, _| f64::NAN, z()), 4);
     let rings = |z| {
         let figure = chart(|x, y| taylor(2, x, y), z).draw(800.0, 600.0).unwrap();
-        // One line each, and that of the legend.
+        // One line each, plus that of the legend.
         figure.svg().matches("#c77700").count() - 1
     };
     // The growth by Heun's method is the root of 1 + y^4 / 4: at 0.5 it is 1.0078, at 0.6 it is

@@ -4,14 +4,14 @@ use nalgebra::{Isometry3, Matrix4, Orthographic3, Perspective3, Point3, Vector3}
 
 /// Vertical field of view (rad).
 const FIELD_OF_VIEW: f32 = 0.75;
-/// Largest pitch (rad). The eye does not pass over the poles.
-const STEEPEST: f32 = 1.5;
-/// First distances of the eye (m) at which the unit of length is 1 m.
-const METRES: std::ops::Range<f32> = 0.3..100.0;
+/// Largest pitch (rad), so that the eye does not pass over the poles.
+const MAX_PITCH: f32 = 1.5;
+/// Initial distances of the eye (m) for which the unit of length is 1 m.
+const METRE_DISTANCES: std::ops::Range<f32> = 0.3..100.0;
 /// Least and largest distance of the eye, and farthest target, in units of length.
-const NEAREST: f32 = 0.05;
-const FARTHEST: f32 = 1e3;
-const AWAY: f32 = 1e6;
+const MIN_DISTANCE: f32 = 0.05;
+const MAX_DISTANCE: f32 = 1e3;
+const MAX_TARGET_DISTANCE: f32 = 1e6;
 
 /// A camera that looks at its target from a distance, turned by a yaw around the vertical and
 /// raised by a pitch.
@@ -27,7 +27,7 @@ pub struct Camera {
     distance: f32,
     /// Whether the projection is parallel: orthographic, not perspective.
     parallel: bool,
-    /// Unit of length of what is seen (m).
+    /// Unit of length of the scene (m).
     unit: f32,
 }
 
@@ -44,10 +44,10 @@ impl Camera {
             pitch: (d.y / distance)
                 .clamp(-1.0, 1.0)
                 .asin()
-                .clamp(-STEEPEST, STEEPEST),
+                .clamp(-MAX_PITCH, MAX_PITCH),
             distance,
             parallel: false,
-            unit: if METRES.contains(&distance) {
+            unit: if METRE_DISTANCES.contains(&distance) {
                 1.0
             } else {
                 10.0f32.powf(distance.log10().floor())
@@ -55,19 +55,19 @@ impl Camera {
         }
     }
 
-    /// Unit of length (m) of what the camera was made to look at: 1, or a power of ten for what is
-    /// much smaller or larger. Balls, and the squares of the floor, are drawn by it.
+    /// Unit of length (m) of the scene: 1, or a power of ten for a much smaller or larger scene. It
+    /// sets the size of balls, and of the squares of the floor.
     #[must_use]
     pub fn unit(&self) -> f32 {
         self.unit
     }
 
-    /// Moves the target, unless that is too far away.
+    /// Moves the target, unless the new one is too far away.
     fn aim(&mut self, target: Point3<f32>) {
         if target
             .coords
             .iter()
-            .all(|c| c.abs() < AWAY * self.unit.max(1.0))
+            .all(|c| c.abs() < MAX_TARGET_DISTANCE * self.unit.max(1.0))
         {
             self.target = target;
         }
@@ -79,8 +79,8 @@ impl Camera {
         self.parallel
     }
 
-    /// Chooses an orthographic projection, or perspective. What is at the distance of the target
-    /// keeps its size.
+    /// Chooses an orthographic or a perspective projection. Things at the distance of the target
+    /// keep their size.
     pub fn set_parallel(&mut self, parallel: bool) {
         self.parallel = parallel;
     }
@@ -94,7 +94,7 @@ impl Camera {
     pub fn orbit(&mut self, yaw: f32, pitch: f32) {
         if yaw.is_finite() && pitch.is_finite() {
             self.yaw = (self.yaw + yaw).rem_euclid(std::f32::consts::TAU);
-            self.pitch = (self.pitch + pitch).clamp(-STEEPEST, STEEPEST);
+            self.pitch = (self.pitch + pitch).clamp(-MAX_PITCH, MAX_PITCH);
         }
     }
 
@@ -107,7 +107,7 @@ impl Camera {
 
     /// Sets the distance of the eye from the target (m), within bounds.
     fn set_distance(&mut self, distance: f32) {
-        self.distance = distance.clamp(NEAREST * self.unit, FARTHEST * self.unit);
+        self.distance = distance.clamp(MIN_DISTANCE * self.unit, MAX_DISTANCE * self.unit);
     }
 
     /// Multiplies the distance of the eye from the target by a factor.
@@ -117,8 +117,8 @@ impl Camera {
         }
     }
 
-    /// As [`zoom`](Self::zoom), with the point that is seen at a place in the picture, at the
-    /// distance of the target, staying there.
+    /// As [`zoom`](Self::zoom), but keeps the point that is seen at a place in the picture, at the
+    /// distance of the target, at that place.
     pub fn zoom_at(&mut self, factor: f32, at: [f32; 2], aspect: f32) {
         let stays = Point3::from(self.unproject(at, self.distance, aspect));
         let before = self.distance;
@@ -133,9 +133,9 @@ impl Camera {
         self.orbit(yaw, pitch);
     }
 
-    /// Moves the camera so that a ball (m) fills the picture, seen from the same side.
+    /// Moves the camera so that a ball (m) fills the picture, without turning it.
     pub fn see(&mut self, center: [f32; 3], radius: f32) {
-        if radius < FARTHEST * self.unit {
+        if radius < MAX_DISTANCE * self.unit {
             self.aim(Point3::from(center));
             self.set_distance(radius / (0.5 * FIELD_OF_VIEW).sin());
         }
@@ -177,7 +177,7 @@ impl Camera {
         let fovy = Self::field_of_view(aspect);
         let projection = if self.parallel {
             let half = self.distance * (0.5 * fovy).tan();
-            // What is behind the eye is seen too: there is no point from which one looks.
+            // Things behind the eye are visible too: a parallel projection has no point of view.
             let far = 5.0 * self.distance + 50.0 * self.unit;
             let wide = half * aspect;
             Orthographic3::new(-wide, wide, -half, half, -far, far).to_homogeneous()
@@ -268,7 +268,7 @@ mod tests {
             camera.set_parallel(true);
             let ([after, _], depth) = seen(&camera, beside);
             assert!((before - after).abs() < 1e-5 && (depth - camera.distance).abs() < 1e-4);
-            // Nearer and behind the eye it is seen at the same place.
+            // A point nearer to the eye or behind it is seen at the same place.
             for near in [1.0, 20.0] {
                 let ([there, _], depth) = seen(&camera, beside + z * near);
                 assert!((there - after).abs() < 1e-5);

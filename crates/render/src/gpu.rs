@@ -1,4 +1,4 @@
-//! The GPU: an open adapter, whose errors are kept until someone asks, instead of a panic.
+//! The GPU: an open adapter that records errors until they are checked, instead of panicking.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,11 +13,11 @@ pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusSt
 pub enum GpuError {
     /// No driver offers an adapter, and why.
     NoAdapter(String),
-    /// The adapter does not open, and why.
+    /// The adapter cannot be opened, and why.
     Device(String),
     /// A picture has no pixels, or more than the device can draw.
     Size {
-        /// Width and height that were asked for (px).
+        /// Requested width and height (px).
         asked: (u32, u32),
         /// Largest width and height (px).
         limit: u32,
@@ -55,7 +55,7 @@ impl fmt::Display for GpuError {
 impl std::error::Error for GpuError {}
 
 impl GpuError {
-    /// The error that no driver answers, with the backends that the environment names.
+    /// The error if no driver is found, with the backends from the environment.
     #[must_use]
     pub fn no_adapter() -> Self {
         Self::NoAdapter(match std::env::var("WGPU_BACKEND") {
@@ -67,7 +67,7 @@ impl GpuError {
 
 /// An open device.
 pub struct Gpu {
-    /// The instance that the adapter belongs to. Surfaces are created by it.
+    /// The instance of the adapter, which creates surfaces.
     pub instance: wgpu::Instance,
     /// The adapter.
     pub adapter: wgpu::Adapter,
@@ -80,7 +80,7 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// Opens an adapter for offscreen pictures, as the environment variables of wgpu ask for it.
+    /// Opens an adapter for offscreen pictures, as requested by the environment variables of wgpu.
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`] if there is none, [`GpuError::Device`] if it does not open.
@@ -98,7 +98,7 @@ impl Gpu {
     }
 
     /// The sets of backends to try in turn: those of `WGPU_BACKEND`, or else first the modern ones
-    /// and then GL. Looking for GL takes time and writes to the terminal, so that it comes last.
+    /// and then GL. GL comes last because the search for it takes time and writes to the terminal.
     #[must_use]
     pub fn backends() -> Vec<wgpu::Backends> {
         match wgpu::Backends::from_env() {
@@ -132,7 +132,7 @@ impl Gpu {
         let mut limits = wgpu::Limits::downlevel_defaults()
             .or_worse_values_from(&offered)
             .using_resolution(offered.clone());
-        // Large cloth needs buffers as large as the adapter can have.
+        // Large cloth needs the largest buffers that the adapter supports.
         limits.max_buffer_size = offered.max_buffer_size;
         limits.max_storage_buffer_binding_size = offered.max_storage_buffer_binding_size;
         let (device, queue) = adapter
@@ -151,7 +151,7 @@ impl Gpu {
         device.set_device_lost_callback(move |_, _| flag.store(true, Ordering::SeqCst));
         let refusal = Arc::new(Mutex::new(None));
         let note = refusal.clone();
-        // wgpu panics at an error without a handler.
+        // Without a handler, wgpu panics at an error.
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
             if let Ok(mut note) = note.lock() {
                 note.get_or_insert_with(|| one_line(&e.to_string()));
@@ -198,12 +198,12 @@ impl Gpu {
         if four(color) && four(DEPTH) { 4 } else { 1 }
     }
 
-    /// Polls the device, and returns what went wrong since the last check.
+    /// Polls the device, and returns the first error since the last check.
     ///
     /// # Errors
     /// [`GpuError::Lost`] if the device was lost, [`GpuError::Refused`] if it refused a call.
     pub fn check(&self) -> Result<(), GpuError> {
-        // Polling fails only if the device was lost, which the flag says too.
+        // Polling fails only if the device was lost, which the flag also tells.
         let _ = self.device.poll(wgpu::PollType::Poll);
         if self.lost.load(Ordering::SeqCst) {
             return Err(GpuError::Lost);
@@ -215,7 +215,7 @@ impl Gpu {
     }
 }
 
-/// The first adapter whose name contains `name`, in capitals or not.
+/// The first adapter whose name contains `name`, in upper or lower case.
 async fn named_adapter(
     instance: &wgpu::Instance,
     surface: Option<&wgpu::Surface<'_>>,

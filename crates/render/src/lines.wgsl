@@ -5,8 +5,8 @@
 struct Line {
     @builtin(position) clip: vec4<f32>,
     @location(0) color: vec4<f32>,
-    // Distance from the middle of the line (px) and 1, both times the depth: their ratio changes
-    // evenly on the screen, also where there is no linear interpolation, as in WebGL.
+    // Distance from the middle of the line (px) and 1, both times the depth: their ratio is linear
+    // on the screen, even without linear interpolation, as in WebGL.
     @location(1) across: vec2<f32>,
     // Half the width of the line (px).
     @location(2) @interpolate(flat) half_width: f32,
@@ -30,7 +30,7 @@ fn line(a: vec3<f32>, b: vec3<f32>, points_wide: f32, color: vec4<f32>, i: u32) 
     let beyond = direction * half_width * select(-1.0, 1.0, i >= 2u) * step(0.999, color.a);
     let offset = (vec2(-direction.y, direction.x) * side * reach + beyond) / half_size;
     var out: Line;
-    // The line lies a little nearer to the eye, so that a line on a surface is not hidden by it.
+    // The line is slightly nearer to the eye, so that a surface does not hide a line on it.
     out.clip = vec4(end.xy + offset * end.w, end.z - 2e-4 * end.w, end.w);
     out.color = color;
     out.across = vec2(side * reach, 1.0) * end.w;
@@ -38,7 +38,7 @@ fn line(a: vec3<f32>, b: vec3<f32>, points_wide: f32, color: vec4<f32>, i: u32) 
     return out;
 }
 
-// The opacity of a wire between two points, which is fainter the farther away it is.
+// The opacity of a wire between two points, which decreases with the distance.
 fn faded(a: vec3<f32>, b: vec3<f32>) -> f32 {
     let far = distance(globals.eye.xyz, 0.5 * (a + b));
     let depth = (far - globals.depth.x) / max(globals.depth.y - globals.depth.x, 1e-6);
@@ -62,7 +62,7 @@ fn faded(a: vec3<f32>, b: vec3<f32>) -> f32 {
     let b = point(ends.y);
     let value = -1.0 - select(a.w, b.w, i >= 2u);
     if value >= 0.0 { return line(a.xyz, b.xyz, points_wide, vec4(ramp(value), 1.0), i); }
-    // Opaque, so that no colour shines through another.
+    // Opaque, so that no colour is visible through another.
     let strength = 0.75 + 0.25 * faded(a.xyz, b.xyz);
     return line(a.xyz, b.xyz, points_wide, vec4(mix(paper(), inked(color), strength), 1.0), i);
 }
@@ -111,13 +111,13 @@ fn line_shadow(a: vec3<f32>, b: vec3<f32>, points_wide: f32, i: u32) -> LineShad
     @builtin(vertex_index) i: u32,
     @location(0) a: vec4<f32>, @location(1) b: vec4<f32>, @location(2) color: vec4<f32>
 ) -> LineShadow {
-    // A line that casts none is drawn with no width.
+    // A line without a shadow is drawn with no width.
     return line_shadow(a.xyz, select(a.xyz, b.xyz, b.w > 0.5), a.w * step(0.5, b.w), i);
 }
 
 @fragment fn line_shadow_fragment(in: LineShadow) -> @location(0) vec4<f32> {
     let edge = clamp(in.half_width + 0.5 - abs(in.across.x / in.across.y), 0.0, 1.0) * step(0.01, in.half_width);
-    // The stencil counts what is drawn: pixels outside must stay free.
+    // The stencil counts drawn pixels: those outside must stay free.
     if edge < 0.05 { discard; }
     return shadow_color(in.world, in.height) * vec4(1.0, 1.0, 1.0, edge);
 }

@@ -1,4 +1,4 @@
-//! Lists that vertex shaders read by index. They lie in textures, because WebGL has no storage
+//! Lists that vertex shaders read by index. They are textures, because WebGL has no storage
 //! buffers.
 
 use bytemuck::Pod;
@@ -6,7 +6,8 @@ use wgpu::{Origin3d, TexelCopyBufferLayout, TexelCopyTextureInfo, TextureFormat}
 
 use crate::gpu::Gpu;
 
-/// The items in a row of the texture, as `scene.wgsl` has it: the least that every device offers.
+/// The number of items in a row of the texture, as in `scene.wgsl`: the least width that every
+/// device supports.
 const ROW: usize = 2048;
 
 /// A list in the rows of a texture. Clones share it.
@@ -17,7 +18,7 @@ pub(crate) struct List {
 }
 
 impl List {
-    /// Room for so many items of this format.
+    /// Room for `length` items of this format.
     pub(crate) fn new(
         device: &wgpu::Device,
         label: &str,
@@ -85,7 +86,7 @@ impl List {
     }
 }
 
-/// A part of a texture that is so many items wide and so many rows high.
+/// A part of a texture, `width` items wide and `height` rows high.
 fn rows(width: usize, height: usize) -> wgpu::Extent3d {
     wgpu::Extent3d {
         width: width as u32,

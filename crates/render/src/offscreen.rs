@@ -8,14 +8,14 @@ use crate::transfer::Transfer;
 
 /// The format of offscreen pictures: eight bits each of red, green, blue and opacity, in sRGB.
 pub const OFFSCREEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// The format of text over them: the same bytes, which are blended as they are.
+/// The format of text over them: the same bytes, blended without conversion.
 pub const TEXT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// A texture to draw into, and the buffer by which its pixels come back from the GPU.
+/// A texture to draw into, and the buffer for reading its pixels back from the GPU.
 pub struct Offscreen {
-    /// Has the format of text, and is seen in that of pictures too where that is possible.
+    /// Has the format of text, and a second view in the format of pictures if possible.
     texture: wgpu::Texture,
-    /// Is drawn into where it is not.
+    /// Is drawn into if the second view is impossible.
     transfer: Option<Transfer>,
     targets: Targets,
     buffer: wgpu::Buffer,
@@ -72,11 +72,11 @@ impl Offscreen {
         self.targets.size()
     }
 
-    /// Draws a picture, and returns its pixels: rows from the top, four bytes a pixel, with colours
-    /// that are not multiplied by the opacity.
+    /// Draws a picture, and returns its pixels: rows from the top, four bytes per pixel, with
+    /// colours that are not multiplied by the opacity.
     ///
     /// # Errors
-    /// [`GpuError::Lost`] or [`GpuError::Refused`], as [`Gpu::check`] has them.
+    /// [`GpuError::Lost`] or [`GpuError::Refused`], as [`Gpu::check`] reports them.
     pub fn render(
         &self,
         gpu: &Gpu,
@@ -87,12 +87,12 @@ impl Offscreen {
         self.render_tiles(gpu, renderer, &[(*picture, tile)], |_, _| vec![])
     }
 
-    /// Draws several pictures, each in its own part of the target, and returns the pixels as
-    /// [`render`](Self::render) does. `text` draws over them, into a view of [`TEXT_FORMAT`]; the
+    /// Draws several pictures, each in its own part of the target, and returns the pixels like
+    /// [`render`](Self::render). `text` draws over them, into a view of [`TEXT_FORMAT`]; the
     /// commands that it returns are submitted first.
     ///
     /// # Errors
-    /// [`GpuError::Lost`] or [`GpuError::Refused`], as [`Gpu::check`] has them.
+    /// [`GpuError::Lost`] or [`GpuError::Refused`], as [`Gpu::check`] reports them.
     pub fn render_tiles(
         &self,
         gpu: &Gpu,
@@ -163,8 +163,8 @@ impl Offscreen {
     }
 }
 
-/// Divides colours by their opacity. Blending over nothing, and averaging with it at edges, has
-/// multiplied them by it.
+/// Divides colours by their opacity, which they were multiplied by when they were blended over
+/// nothing and averaged at edges.
 fn straighten(pixels: &mut [u8]) {
     for pixel in pixels.chunks_exact_mut(4) {
         let opacity = f32::from(pixel[3]) / 255.0;
@@ -176,7 +176,7 @@ fn straighten(pixels: &mut [u8]) {
     }
 }
 
-/// The light of an sRGB channel (IEC 61966-2-1).
+/// The linear light of an sRGB channel (IEC 61966-2-1).
 fn linear(channel: u8) -> f32 {
     let c = f32::from(channel) / 255.0;
     if c <= 0.04045 {
@@ -186,7 +186,7 @@ fn linear(channel: u8) -> f32 {
     }
 }
 
-/// The sRGB channel of a light: the inverse of [`linear`].
+/// The sRGB channel of a linear light: the inverse of [`linear`].
 fn encoded(light: f32) -> u8 {
     let light = light.min(1.0);
     let c = if light <= 0.003_130_8 {

@@ -1,20 +1,20 @@
-//! Pictures: the data that is drawn.
+//! Pictures: the data of a frame.
 
 use bytemuck::{Pod, Zeroable};
 
 use crate::camera::Camera;
 
 /// The number of looks of a surface: cloth in four colours, jelly in four, then [`STEEL_LOOK`]. The
-/// shader has the colours.
+/// shader contains the colours.
 pub const LOOKS: usize = 9;
 
-/// The look of a surface of steel.
+/// The look of steel.
 pub const STEEL_LOOK: usize = 8;
 
-/// The way in which surfaces are drawn.
+/// The style in which surfaces are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Style {
-    /// Smooth meshes. A scene without triangles is drawn by its wires all the same.
+    /// Smooth meshes. A scene without triangles is drawn as wires.
     #[default]
     Shaded,
     /// Wires.
@@ -23,7 +23,7 @@ pub enum Style {
     Springs,
 }
 
-/// The connections between particles, which stay the same from frame to frame.
+/// The connections between particles, which do not change between frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Topology {
     /// Number of particles.
@@ -33,7 +33,8 @@ pub struct Topology {
     pub triangles: Vec<[u32; 3]>,
     /// Ends of the wires.
     pub wires: Vec<[u32; 2]>,
-    /// What is drawn instead of the wires in the style of that name: the last ones over the others.
+    /// Springs that replace the wires in the style [`Style::Springs`]: later ones are drawn over
+    /// earlier ones.
     pub springs: Vec<Spring>,
 }
 
@@ -45,7 +46,7 @@ pub struct Spring {
     pub ends: [u32; 2],
     /// Width in points.
     pub width: f32,
-    /// Linear red, green and blue, where no value colours it.
+    /// Linear red, green and blue, used if no value colours the spring.
     pub color: [f32; 3],
 }
 
@@ -57,7 +58,7 @@ pub struct Ball {
     pub center: [f32; 3],
     /// Radius (m).
     pub radius: f32,
-    /// Linear red, green and blue, and 1.
+    /// Linear red, green and blue, then 1.
     pub color: [f32; 4],
 }
 
@@ -71,18 +72,18 @@ pub struct Solid {
     pub radius: f32,
     /// Directions of the sides, which are orthogonal unit vectors, each with its half extent (m).
     pub axes: [[f32; 4]; 3],
-    /// Linear red, green and blue, and 1.
+    /// Linear red, green and blue, then 1.
     pub color: [f32; 4],
-    /// Vectors whose lengths, from 0 to 1, colour it: one for each corner, whose number is the sum
-    /// of 1, 2 and 4 for those of the three axes along which it lies.
+    /// One vector for each corner, whose length, from 0 to 1, colours it. The index of a corner is
+    /// the sum of 1, 2 and 4 for those of the three axes along which it lies.
     pub values: [[f32; 4]; 8],
 }
 
 impl Solid {
-    /// Values of a solid in its own colour.
+    /// Values of a solid without coloured values.
     pub const PLAIN: [[f32; 4]; 8] = [[0.0, 0.0, 0.0, 1.0]; 8];
 
-    /// A vector as one of the values.
+    /// A vector as a value of a corner.
     #[must_use]
     pub fn value([x, y, z]: [f32; 3]) -> [f32; 4] {
         [x, y, z, 0.0]
@@ -140,7 +141,7 @@ pub struct Corner {
     pub normal: [f32; 3],
 }
 
-/// Surface of a liquid, whose triangles are other ones in each frame.
+/// Surface of a liquid, whose triangles change with each frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Liquid<'a> {
     /// Vertices.
@@ -149,17 +150,17 @@ pub struct Liquid<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
-/// All that is drawn in one frame.
+/// All data of one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
     /// The camera.
     pub camera: Camera,
-    /// The way in which surfaces are drawn.
+    /// The style in which surfaces are drawn.
     pub style: Style,
     /// Pixels per point: 1 on a screen of ordinary density, 2 on a dense one.
     pub scale: f32,
-    /// Positions of the particles (m), each with the number of the look of its surface, below
-    /// [`LOOKS`], or with what [`shaded_by`](crate::shaded_by) makes of a value that colours it.
+    /// Positions of the particles (m). The fourth number is the look of the surface, below
+    /// [`LOOKS`], or the result of [`shaded_by`](crate::shaded_by) for a value that colours it.
     pub points: &'a [[f32; 4]],
     /// Balls, such as particles of small systems, pins and obstacles.
     pub balls: &'a [Ball],
@@ -172,13 +173,13 @@ pub struct Picture<'a> {
     /// Height of the floor (m), if there is one.
     pub floor: Option<f32>,
     /// Whether floor, shadows and background are left out, so that the picture can be laid over
-    /// another.
+    /// another one.
     pub transparent: bool,
     /// Whether the background is dark.
     pub dark: bool,
 }
 
-/// A rectangular part of the target, inside it and not empty.
+/// A non-empty rectangular part of the target.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tile {
     /// Distance from the left (px).

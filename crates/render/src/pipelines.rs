@@ -1,5 +1,5 @@
-//! Render pipelines: the shader and the data of each kind of thing, and how it is combined with the
-//! picture so far.
+//! Render pipelines: the shader and the vertex data of each kind of object, and how it is combined
+//! with the picture so far.
 
 use wgpu::{
     CompareFunction, PrimitiveTopology, ShaderStages, StencilOperation, TextureSampleType,
@@ -12,7 +12,7 @@ use crate::picture::{Ball, Corner, Line, Solid, Spring};
 /// The source of the shaders.
 pub(crate) const SOURCE: &str = concat!(include_str!("scene.wgsl"), include_str!("lines.wgsl"));
 
-/// The pipelines, one for each kind of thing.
+/// The pipelines, one for each kind of object.
 pub(crate) struct Pipelines {
     pub(crate) background: wgpu::RenderPipeline,
     pub(crate) floor: wgpu::RenderPipeline,
@@ -34,8 +34,8 @@ pub(crate) struct Pipelines {
     pub(crate) line: wgpu::RenderPipeline,
 }
 
-/// The layout of the bind group that every pipeline reads: the globals, and the particles with
-/// their triangles.
+/// The layout of the bind group of all pipelines: the globals, and the particles with their
+/// triangles.
 pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry {
         binding,
@@ -66,20 +66,20 @@ pub(crate) fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     })
 }
 
-/// The way in which a pipeline combines its pixels with the picture so far.
+/// How a pipeline combines its pixels with the picture so far.
 #[derive(Clone, Copy, PartialEq)]
 enum Layer {
     /// Drawn where nothing else is.
     Back,
-    /// Blended over the floor, at most once at each pixel.
+    /// Blended over the floor, once at most for each pixel.
     Shadow,
     /// Opaque.
     Solid,
-    /// Blended over what is behind it.
+    /// Blended over the picture behind it.
     Over,
 }
 
-/// What all pipelines have in common.
+/// Data that all pipelines share.
 struct Maker<'a> {
     device: &'a wgpu::Device,
     shader: wgpu::ShaderModule,
@@ -89,7 +89,7 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// A pipeline of a vertex and a fragment shader, by the beginnings of their names.
+    /// A pipeline of a vertex and a fragment shader, given by the first parts of their names.
     fn pipeline(
         &self,
         [vertex, fragment]: [&str; 2],
@@ -239,7 +239,7 @@ fn stream(
     }
 }
 
-/// The tests of depth and stencil for a layer.
+/// Depth and stencil tests of a layer.
 fn depth_stencil(layer: Layer) -> wgpu::DepthStencilState {
     let once = wgpu::StencilFaceState {
         compare: CompareFunction::Equal,

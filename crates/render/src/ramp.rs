@@ -1,7 +1,7 @@
-//! The colours of values: from dark blue through green to yellow, ever brighter, so that those who
-//! cannot tell red from green see them too (viridis, of matplotlib).
+//! The colours of values: from dark blue through green to yellow, with increasing brightness, so
+//! that they can also be distinguished without red and green (viridis, of matplotlib).
 
-/// Colours at equal distances, as linear red, green and blue. The shader has the same.
+/// Colours at equal distances, as linear red, green and blue. The shader has the same list.
 pub(crate) const RAMP: [[f32; 3]; 8] = [
     [0.058, 0.0, 0.089],
     [0.061, 0.032, 0.209],
@@ -13,8 +13,8 @@ pub(crate) const RAMP: [[f32; 3]; 8] = [
     [0.982, 0.799, 0.019],
 ];
 
-/// The colour of a value from 0 to 1, as linear red, green and blue, and 1. Beyond these ends it is
-/// that of the end.
+/// The colour of a value from 0 to 1, as linear red, green and blue, then 1. Values beyond the ends
+/// have the colours of the ends.
 #[must_use]
 pub fn ramp(value: f32) -> [f32; 4] {
     let last = RAMP.len() - 1;
@@ -26,7 +26,7 @@ pub fn ramp(value: f32) -> [f32; 4] {
     [mixed(0), mixed(1), mixed(2), 1.0]
 }
 
-/// The fourth number of a point whose surface is coloured by a value from 0 to 1, in place of the
+/// The fourth number of a point whose surface is coloured by a value from 0 to 1, instead of the
 /// number of a look.
 #[must_use]
 pub fn shaded_by(value: f32) -> f32 {

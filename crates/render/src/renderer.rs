@@ -1,4 +1,5 @@
-//! The renderer: all that pictures of one topology share, and the order in which parts are drawn.
+//! The renderer: data that all pictures of one topology share, and the order in which parts are
+//! drawn.
 
 use std::ops::Range;
 
@@ -17,7 +18,7 @@ pub struct Renderer {
     spheres: [Shape; 3],
     rounded_box: Shape,
     mesh: Mesh,
-    /// The views, as many as were ever drawn at once.
+    /// The views; their number is the largest number drawn at once.
     views: Vec<View>,
     /// The number of views that were prepared last.
     prepared: usize,
@@ -56,11 +57,11 @@ impl Renderer {
         self.prepared = 0;
     }
 
-    /// Replaces the topology of picture k alone, for cloth that is torn there. The particles must
-    /// be the same.
+    /// Replaces the topology of picture k only, for cloth that is torn in it. The particles must be
+    /// the same.
     ///
     /// # Panics
-    /// Panics if the number of particles is another one.
+    /// Panics if the number of particles differs.
     pub fn set_topology_of(&mut self, gpu: &Gpu, k: usize, topology: &Topology) {
         assert_eq!(topology.points, self.mesh.points, "particles of a scene");
         while self.views.len() <= k {
@@ -72,7 +73,7 @@ impl Renderer {
     /// Sends pictures to the GPU, each for its own part of the target.
     ///
     /// # Panics
-    /// Panics if a picture has another number of particles than the topology.
+    /// Panics if the numbers of particles of a picture and of the topology differ.
     pub fn prepare(&mut self, gpu: &Gpu, pictures: &[(Picture, Tile)]) {
         while self.views.len() < pictures.len() {
             self.views.push(View::new(gpu, &self.layout, &self.mesh));
@@ -99,12 +100,12 @@ impl Renderer {
         }
     }
 
-    /// Draws one view into the viewport that is set.
+    /// Draws one view into the current viewport.
     fn draw_view(&self, pass: &mut wgpu::RenderPass, view: &View) {
         let (p, mesh, frame) = (&self.pipelines, &view.mesh, view.frame);
         let shaded = frame.style == Style::Shaded;
         pass.set_bind_group(0, &view.bind, &[]);
-        // Opaque things come first, so that no pixel is shaded twice, and blended ones last.
+        // Opaque objects come first, so that no pixel is shaded twice, and blended ones last.
         if shaded {
             pass.set_pipeline(&p.mesh);
             mesh.draw(pass);
@@ -204,7 +205,7 @@ mod tests {
     use super::*;
     use crate::{Camera, Liquid, OFFSCREEN_FORMAT, Offscreen};
 
-    /// The pixels by rows of a ridge of two slopes of different sizes, drawn with these shaders.
+    /// The pixels, by rows, of a ridge of two slopes of different sizes, drawn with these shaders.
     fn ridge(gpu: &Gpu, source: &str) -> Vec<u8> {
         let points = [
             [-1.0, 0.6, 0.0, 0.0],
@@ -240,7 +241,7 @@ mod tests {
             .unwrap()
     }
 
-    /// Shaders with wrong normals draw another picture.
+    /// Shaders with wrong normals draw a different picture.
     #[test]
     fn normals_are_seen_to_be_right() {
         let gpu = match pollster::block_on(Gpu::headless()) {
@@ -250,7 +251,7 @@ mod tests {
                     std::env::var_os("A3_REQUIRE_GPU").is_none(),
                     "A3_REQUIRE_GPU is set: {why}"
                 );
-                // Written directly, because the test runner hides what a passing test prints.
+                // Written directly, because the test runner hides the output of a passing test.
                 let _ = writeln!(std::io::stderr(), "SKIPPED, NOT TESTED: {why}");
                 return;
             }

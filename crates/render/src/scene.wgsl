@@ -1,6 +1,6 @@
-// The shaders of all pipelines. One bind group serves all of them: the camera and the light, and
-// the positions of the particles with the triangles that give them normals. Positions are sent once
-// a frame; the mesh, the wireframe and the shadow read the same copy. Lists lie in the rows of
+// The shaders of all pipelines. They share one bind group: the camera and the light, and the
+// positions of the particles with the triangles that give them normals. Positions are sent once per
+// frame; the mesh, the wireframe and the shadow read the same copy. Lists are in the rows of
 // textures, because WebGL has no storage buffers.
 
 struct Globals {
@@ -25,13 +25,13 @@ struct Globals {
 @group(0) @binding(2) var first: texture_2d<u32>;
 @group(0) @binding(3) var around: texture_2d<u32>;
 
-// The items in a row of a list.
+// The number of items in a row of a list.
 const ROW = 2048u;
 
-// Where item i of a list is.
+// The texel of item i of a list.
 fn item(i: u32) -> vec2<u32> { return vec2(i % ROW, i / ROW); }
 
-// Position of point i (m), and what its surface looks like.
+// Position of point i (m), and the look of its surface.
 fn point(i: u32) -> vec4<f32> { return textureLoad(points, item(i), 0); }
 
 const PAPER = vec3(0.86, 0.855, 0.835);
@@ -39,7 +39,7 @@ const SHADE = vec3(0.56, 0.60, 0.655);
 const WATER = vec3(0.02, 0.24, 0.46);
 const INK = vec3(0.035, 0.05, 0.09);
 
-// Paper, its shade towards the corners, and the grid on the floor, of the theme.
+// Paper, its shade towards the corners, and the grid on the floor, in the theme's colours.
 fn paper() -> vec3<f32> { return mix(PAPER, vec3(0.060, 0.066, 0.082), globals.depth.w); }
 fn shade() -> vec3<f32> { return mix(SHADE, vec3(0.020, 0.022, 0.030), globals.depth.w); }
 fn grid() -> vec3<f32> { return mix(SHADE * 0.8, vec3(0.20, 0.22, 0.26), globals.depth.w); }
@@ -63,8 +63,8 @@ const INSIDE = array(
     vec3(0.30, 0.36, 0.44),
 );
 
-// The colours of values from 0 to 1, at equal distances: each takes over where the one before ends.
-// A list of them would be copied for every pixel by software adapters.
+// The colours of values from 0 to 1, at equal distances: each begins where the previous one ends.
+// Software adapters would copy an array of them for every pixel.
 fn ramp(value: f32) -> vec3<f32> {
     let at = clamp(value, 0.0, 1.0) * 7.0;
     var color = vec3(0.058, 0.0, 0.089);
@@ -124,7 +124,7 @@ fn floor_grid(world: vec3<f32>) -> f32 {
     return max(line.x, line.y) * min(1.0, 0.2 / max(width.x, width.y));
 }
 
-// The floor is fainter where the eye grazes it.
+// The floor is fainter at grazing angles.
 fn floor_grazing(world: vec3<f32>) -> f32 {
     return smoothstep(0.0, 0.12, abs(normalize(globals.eye.xyz - world).y));
 }
@@ -137,7 +137,7 @@ fn floor_grazing(world: vec3<f32>) -> f32 {
     return vec4(mix(behind, color, 0.75 * fade), 1.0);
 }
 
-// From below the floor is glass, through which all that stands on it is seen.
+// From below the floor is glass, through which everything on it is visible.
 @fragment fn floor_below_fragment(in: Floor) -> @location(0) vec4<f32> {
     let opacity = 0.16 + 0.5 * floor_grid(in.world);
     return vec4(grid() * 0.9, opacity * floor_fade(in.world) * floor_grazing(in.world));
@@ -159,7 +159,7 @@ fn shadow(p: vec3<f32>) -> Shadow {
     return out;
 }
 
-// Of what is at a height above the floor: the fainter the higher.
+// Opacity at a height above the floor: the higher, the fainter.
 fn shadow_color(world: vec3<f32>, height: f32) -> vec4<f32> {
     let color = mix(vec3(0.10, 0.11, 0.17), vec3(0.0), globals.depth.w);
     let opacity = mix(0.34, 0.6, globals.depth.w);
@@ -246,8 +246,8 @@ const CHART = vec3(0.0, 0.1, 0.0);
     return out;
 }
 
-// The light of a surface. To that of jelly, light adds that entered on the other side: more along
-// the outline, where jelly is thin, and where the lamp is opposite the eye.
+// The light of a surface. Jelly also transmits light from the other side: more along the outline,
+// where it is thin, and where the lamp is opposite the eye.
 fn finished(color: vec3<f32>, finish: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec3<f32> {
     let eye = normalize(globals.eye.xyz - world);
     let lamp = globals.light.xyz;
@@ -258,7 +258,7 @@ fn finished(color: vec3<f32>, finish: vec3<f32>, n: vec3<f32>, world: vec3<f32>)
 }
 
 // The colour of a value, with a thin dark line at each tenth of the scale. `change` is its fwidth,
-// which has to be found where all pixels pass.
+// which must be computed in uniform control flow.
 fn banded(value: f32, change: f32) -> vec3<f32> {
     let tenths = 10.0 * value;
     let width = max(10.0 * change, 1e-5);
@@ -269,7 +269,7 @@ fn banded(value: f32, change: f32) -> vec3<f32> {
 }
 
 // The light of a surface that is coloured by a value, if it has one. It is computed once, because
-// software adapters take every branch.
+// software adapters execute every branch.
 fn valued(value: f32, change: f32, color: vec3<f32>, finish: vec3<f32>, n: vec3<f32>, world: vec3<f32>) -> vec4<f32> {
     let has_value = value >= 0.0;
     let shown = select(color, banded(value, change), has_value);
@@ -277,7 +277,7 @@ fn valued(value: f32, change: f32, color: vec3<f32>, finish: vec3<f32>, n: vec3<
 }
 
 @fragment fn mesh_fragment(in: Mesh, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    // A degenerate triangle has no normal; it must not become NaN.
+    // A degenerate triangle has no normal, which must not become NaN.
     let n = in.normal / max(length(in.normal), 1e-20) * select(-1.0, 1.0, front);
     let color = select(in.inside, in.outside, front);
     return valued(in.value, fwidth(in.value), color, in.finish, n, in.world);
@@ -312,7 +312,8 @@ struct Ball {
     @location(0) world: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) color: vec3<f32>,
-    // Vector whose length, from 0 to 1, colours it; the fourth number is 1 for its own colour.
+    // Vector whose length, from 0 to 1, colours the ball; the fourth number is 1 for its own
+    // colour.
     @location(3) value: vec4<f32>,
 };
 

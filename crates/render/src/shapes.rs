@@ -1,5 +1,5 @@
-//! Shapes: the sphere, of which balls are instances, and the rounded box, of which other solids
-//! are.
+//! Shapes: the sphere, whose instances are balls, and the rounded box, whose instances are other
+//! solids.
 
 /// The corners and the triangles of a unit sphere in `rings` bands of latitude.
 pub(crate) fn sphere(rings: u16) -> (Vec<[f32; 3]>, Vec<u16>) {
@@ -27,7 +27,7 @@ pub(crate) fn sphere(rings: u16) -> (Vec<[f32; 3]>, Vec<u16>) {
 /// its eight pieces can be moved apart. A corner is given by its position and its piece; the latter
 /// is -1 or 1 along each axis. Each piece has `bands` bands of latitude and of longitude.
 pub(crate) fn rounded_box(bands: u16) -> (Vec<[[f32; 3]; 2]>, Vec<u16>) {
-    // Each border is there twice: as the end of one piece and as the beginning of the next.
+    // Each border occurs twice: as the end of one piece and as the beginning of the next.
     let angles = |quarters: u16| -> Vec<(f32, u16)> {
         let angle = |q, k| {
             (
@@ -75,8 +75,8 @@ pub(crate) fn rounded_box(bands: u16) -> (Vec<[[f32; 3]; 2]>, Vec<u16>) {
 mod tests {
     use super::*;
 
-    /// The box is closed with its pieces moved apart: each edge of a triangle with an area belongs
-    /// to two such triangles.
+    /// The box stays closed when its pieces are moved apart: each edge of a triangle with an area
+    /// belongs to two such triangles.
     #[test]
     fn a_rounded_box_has_no_holes() {
         let (corners, triangles) = rounded_box(3);

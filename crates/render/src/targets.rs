@@ -10,7 +10,7 @@ pub(crate) const GAP: wgpu::Color = wgpu::Color {
     a: 1.0,
 };
 
-/// The depth buffer and, with several samples a pixel, the colour buffer that pictures are drawn
+/// The depth buffer and, for several samples per pixel, the colour buffer that pictures are drawn
 /// into.
 pub struct Targets {
     multisampled: Option<wgpu::TextureView>,
@@ -53,7 +53,7 @@ impl Targets {
         self.size
     }
 
-    /// Begins a pass that clears all targets, and whose colours end up in `destination`.
+    /// Begins a pass that clears all targets, and whose colours are written to `destination`.
     pub fn pass<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -62,7 +62,7 @@ impl Targets {
         self.pass_over(encoder, destination, GAP)
     }
 
-    /// Begins a pass as [`pass`](Self::pass) does, with this colour where nothing is drawn.
+    /// Begins a pass like [`pass`](Self::pass), with this colour where nothing is drawn.
     pub(crate) fn pass_over<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,

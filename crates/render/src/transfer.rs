@@ -1,18 +1,18 @@
-//! Pictures under text, where a texture cannot be seen in two formats, and text over pictures,
-//! where it is not drawn in each frame.
+//! Pictures under text, on devices where a texture cannot have views of two formats, and text over
+//! pictures, where it is not drawn in each frame.
 
 use wgpu::{PipelineCompilationOptions, TextureFormat, TextureUsages};
 
 use crate::gpu::Gpu;
 
 /// A texture of linear light that pictures are drawn into, and its copy into a target whose bytes
-/// are blended as they are. Text is written to that target, because its colours, their opacity and
-/// its edges are meant for sRGB. Elsewhere, one texture has a view for each.
+/// are blended without conversion. Text is written to that target, because its colours, opacity and
+/// edges are meant for sRGB. On other devices, one texture has a view for each format.
 pub struct Transfer {
     picture: wgpu::TextureView,
     bind: wgpu::BindGroup,
     pipeline: wgpu::RenderPipeline,
-    /// What becomes of the target.
+    /// What happens to the previous content of the target.
     below: wgpu::LoadOp<wgpu::Color>,
 }
 
@@ -28,8 +28,8 @@ impl Transfer {
         Self::with(gpu, size, [own, target], ("transfer_fragment", None), clear)
     }
 
-    /// A texture of `size` (px) and of the target's format, for text that is laid over a target.
-    /// Its colours are multiplied by their opacity.
+    /// A texture of `size` (px) in the target's format, for text that is laid over a target. Its
+    /// colours are premultiplied by their opacity.
     #[must_use]
     pub fn layer(gpu: &Gpu, size: (u32, u32), target: TextureFormat) -> Self {
         let blend = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
@@ -103,7 +103,7 @@ impl Transfer {
         }
     }
 
-    /// What pictures, or text, are drawn into.
+    /// The view that pictures, or text, are drawn into.
     #[must_use]
     pub fn picture(&self) -> &wgpu::TextureView {
         &self.picture
@@ -114,7 +114,7 @@ impl Transfer {
         self.pass(encoder, target).draw(0..3, 0..1);
     }
 
-    /// Does so for parts of the target alone.
+    /// Does the same only for parts of the target.
     pub fn copy_parts(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,5 +1,5 @@
-// Copies a picture of linear light into a target whose bytes are written as they are, and text as
-// it is.
+// Copies a picture of linear light into a target whose bytes are written without conversion, and
+// text unchanged.
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 

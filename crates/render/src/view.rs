@@ -1,4 +1,4 @@
-//! Views: the place of each picture in the target, and the buffers of what is in it.
+//! Views: the place of each picture in the target, and the buffers of its contents.
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BufferUsages, TextureFormat};
@@ -14,8 +14,8 @@ const LIGHT: [f32; 3] = [-0.62, 0.78, 0.42];
 /// The radius of the floor: its least value in units of length, and its ratio to the distance of
 /// the eye from the target.
 const FLOOR_REACH: (f32, f32) = (14.0, 1.4);
-/// The radii, in units of length, from which balls are drawn with more triangles.
-const LARGER: [f32; 2] = [0.03, 0.25];
+/// The radii, in units of length, from which on balls are drawn with more triangles.
+const DETAIL_RADII: [f32; 2] = [0.03, 0.25];
 
 /// The uniforms of the shaders, as `scene.wgsl` declares them.
 #[repr(C)]
@@ -50,7 +50,7 @@ pub(crate) enum Side {
     Below,
 }
 
-/// The parts of the picture that was prepared last on which draw calls depend.
+/// The properties of the last prepared picture that draw calls depend on.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Frame {
     pub(crate) tile: Tile,
@@ -58,9 +58,9 @@ pub(crate) struct Frame {
     pub(crate) floor: Option<Side>,
     /// Whether the background is drawn.
     pub(crate) background: bool,
-    /// The style of what is drawn: wires where there is no surface.
+    /// The style that is drawn: wires if there is no surface.
     pub(crate) style: Style,
-    /// The numbers of small balls, of small and middling ones, and of all.
+    /// The numbers of small balls, of small and medium ones, and of all.
     pub(crate) balls: [u32; 3],
     /// The number of solids.
     pub(crate) solids: u32,
@@ -139,7 +139,11 @@ impl View {
                 Style::Shaded if self.mesh.indices == 0 => Style::Wireframe,
                 style => style,
             },
-            balls: [below(LARGER[0]), below(LARGER[1]), balls.len() as u32],
+            balls: [
+                below(DETAIL_RADII[0]),
+                below(DETAIL_RADII[1]),
+                balls.len() as u32,
+            ],
             solids: picture.solids.len() as u32,
             lines: picture.lines.len() as u32,
             liquid: 3 * picture.liquid.triangles.len() as u32,

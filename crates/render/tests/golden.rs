@@ -1,5 +1,5 @@
-//! Pictures against golden ones, with a tolerance in what an eye would notice. `UPDATE_GOLDEN=1`
-//! writes them anew; a failure leaves the picture beside its golden one.
+//! Pictures against golden ones, with a tolerance for differences that nobody would notice.
+//! `UPDATE_GOLDEN=1` rewrites them; a failure leaves the picture beside its golden one.
 
 mod common;
 
@@ -21,9 +21,9 @@ fn draw(gpu: &Gpu, sheet: &Sheet, style: Style) -> RgbaImage {
     RgbaImage::from_raw(SIZE.0, SIZE.1, pixels).unwrap()
 }
 
-/// Share of pixels that are off by more than 12 of 255 in some channel, and the mean error of all
-/// channels. Adapters differ along edges, so a few pixels may; a shader that is a little too dark
-/// moves the mean.
+/// Share of pixels that differ by more than 12 of 255 in some channel, and the mean error of all
+/// channels. A few pixels may differ, because adapters differ along edges; a shader that is
+/// slightly too dark changes the mean.
 fn difference(a: &RgbaImage, b: &RgbaImage) -> (f64, f64) {
     assert_eq!(a.dimensions(), b.dimensions());
     let (mut off, mut sum) = (0u32, 0u64);
@@ -148,7 +148,7 @@ fn both_sides_are_lit() {
     assert!(middle[0] > 60 && middle[0] > middle[2], "{middle:?}");
 }
 
-/// Lines have the width asked for, in points: twice the scale, twice the pixels.
+/// Lines have the requested width in points: twice the scale gives twice the pixels.
 #[test]
 fn lines_are_as_wide_as_asked_for() {
     let Some(gpu) = gpu() else { return };
@@ -178,7 +178,7 @@ fn lines_are_as_wide_as_asked_for() {
         };
         let pixels = offscreen.render(&gpu, &mut renderer, &picture).unwrap();
         let column = |y: u32| pixels[4 * (y * SIZE.0 + SIZE.0 / 2) as usize];
-        // Ink in the column of the middle, from the darkness of its pixels.
+        // Ink in the middle column, from the darkness of its pixels.
         let background = f64::from(column(10));
         let ink: f64 = (0..SIZE.1)
             .map(|y| 1.0 - f64::from(column(y)) / background)
@@ -191,7 +191,7 @@ fn lines_are_as_wide_as_asked_for() {
     }
 }
 
-/// A liquid is drawn in all styles, lit by its own normals, and no longer once it is gone.
+/// A liquid is drawn in all styles, lit by its own normals, and disappears with its triangles.
 #[test]
 fn a_liquid_is_lit_by_its_normals() {
     let Some(gpu) = gpu() else { return };
@@ -233,7 +233,7 @@ fn a_liquid_is_lit_by_its_normals() {
     }
 }
 
-/// Several pictures in one target are each what they are alone, and stay in their places.
+/// Several pictures in one target look as they do alone, and stay in their places.
 #[test]
 fn pictures_side_by_side() {
     let Some(gpu) = gpu() else { return };
@@ -259,7 +259,7 @@ fn pictures_side_by_side() {
     for (alone, tile) in alone.iter().zip(tiles) {
         let part = image::imageops::crop_imm(&both, tile.x, tile.y, tile.width, tile.height);
         let (off, mean) = difference(alone, &part.to_image());
-        // The background is dithered by the place in the target.
+        // The background is dithered by its position in the target.
         assert!(off < 1e-4 && mean < 0.5, "{off} {mean}");
     }
     let gap = both.get_pixel(SIZE.0 + 2, 100);
@@ -269,7 +269,7 @@ fn pictures_side_by_side() {
     );
 }
 
-/// Without floor and background, what is solid is as it was, and edges keep their colour.
+/// Without floor and background, solid objects look the same, and edges keep their colour.
 #[test]
 fn transparent_pictures_show_the_same_things() {
     let Some(gpu) = gpu() else { return };
@@ -303,7 +303,7 @@ fn transparent_pictures_show_the_same_things() {
         "{count} {empty} of {all}"
     );
     assert!(count + empty < all, "edges are smooth");
-    // The line alone has one colour, (0.9, 0.4, 0.02) as sRGB, wherever one sees it.
+    // The line alone has one colour, (0.9, 0.4, 0.02) as sRGB, wherever it is visible.
     sheet.balls.clear();
     sheet.points.fill([0.0; 4]);
     for pixel in draw(&sheet, true).pixels().filter(|p| p.0[3] > 60) {
@@ -312,7 +312,7 @@ fn transparent_pictures_show_the_same_things() {
     }
 }
 
-/// A solid without extents is a ball; with them it is as long as it should be, turned or not, and
+/// A solid without extents is a ball; with extents it has the right length in any orientation, and
 /// its faces are lit flat.
 #[test]
 fn solids_have_the_shape_asked_for() {
@@ -352,7 +352,7 @@ fn solids_have_the_shape_asked_for() {
     };
     let round = draw(&[ball], &[]);
     assert!(same(&round, &draw(&[], &[solid(0.5, [0.0; 3], 0.7)])));
-    // Upright a capsule covers what it covers lying down, turned by a right angle.
+    // Upright, a capsule covers the same pixels as lying down, rotated by a right angle.
     let turn = std::f32::consts::FRAC_PI_2;
     let capsule = draw(&[], &[solid(0.3, [0.0, 0.4, 0.0], 0.0)]);
     assert!(same(

@@ -1,5 +1,5 @@
-//! The shaders parse and validate without a GPU, ask for nothing special, and can be said in the
-//! language of WebGL 2.
+//! The shaders parse and validate without a GPU, require no special features, and can be translated
+//! to the language of WebGL 2.
 
 use naga::back::glsl;
 use naga::proc::BoundsCheckPolicies;

@@ -1,4 +1,4 @@
-//! What goes wrong is an error, never a panic.
+//! Failures are errors, never panics.
 
 mod common;
 
@@ -62,7 +62,7 @@ fn refused_in_words(limit: u32) -> String {
 fn a_validation_error_is_reported() {
     let gpu = noop();
     gpu.check().unwrap();
-    // A format for depth is no format for colour.
+    // A depth format is not a colour format.
     let _ = Renderer::new(
         &gpu,
         wgpu::TextureFormat::Depth32Float,
@@ -100,7 +100,7 @@ fn a_lost_device_is_reported_and_another_can_be_opened() {
     }
 }
 
-/// Nothing to draw is no trouble.
+/// Drawing nothing is no error.
 #[test]
 fn an_empty_picture() {
     let gpu = noop();

@@ -1,22 +1,23 @@
-//! What the page calls: the program in a canvas, and what the page tells it.
+//! Functions that the page calls: the program in a canvas, and messages to it.
 
 #![cfg(target_arch = "wasm32")]
 
 use wasm_bindgen::prelude::wasm_bindgen;
 
-/// Begins what the address asks for.
+/// Starts the program as the address requests.
 #[wasm_bindgen]
 pub fn start() {
     a3::page::start();
 }
 
-/// Opens the panel, or closes it.
+/// Opens or closes the panel.
 #[wasm_bindgen]
 pub fn toggle_panel() {
     a3::page::toggle_panel();
 }
 
-/// Takes steps of what a command line asks for: a hash of the state, and the time of a step (µs).
+/// Takes steps of the run in a command line: returns a hash of the state, and the time of a step
+/// (µs).
 #[wasm_bindgen]
 pub fn run_steps(words: &str, steps: u32) -> String {
     a3::page::run_steps(words, steps)

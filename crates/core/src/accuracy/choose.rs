@@ -2,7 +2,7 @@
 
 use super::errors::Metric;
 use super::frames::GoOn;
-use super::ladder::{FEWEST, coarser, ladder};
+use super::ladder::{MIN_STEPS, coarser, ladder};
 use super::measure::{Outcome, measure};
 use super::reference::Reference;
 use crate::control::Control;
@@ -13,32 +13,33 @@ use crate::stability::{Mode, spectrum};
 
 /// Ratio of the shortest step that fails to the longest that meets the error, at which the search
 /// ends.
-const CLOSE: f64 = 1.02;
+const MAX_STEP_RATIO: f64 = 1.02;
 /// The same ratio for tolerances, on which the cost depends only weakly.
-const CLOSE_TOLERANCE: f64 = 1.3;
-/// Least and greatest measured order of the error, over the method's own, by which further steps
-/// are predicted.
-const AS_PREDICTED: (f64, f64) = (0.6, 1.5);
+const MAX_TOLERANCE_RATIO: f64 = 1.3;
+/// Least and greatest ratio of the measured order of the error to the method's own, at which
+/// further steps are predicted by that order.
+const TRUSTED_ORDER_RATIOS: (f64, f64) = (0.6, 1.5);
 /// Largest number of steps of a run.
-const MOST_STEPS: u64 = 1_000_000;
+const MAX_STEPS: u64 = 1_000_000;
 
-/// Cost, over that of the second cheapest method so far, at which one is given up ...
-const DEAR: f64 = 2.0;
-/// ... and that of small scenes of less [work](crate::Model::work) than this, where what a method
-/// does besides evaluations takes most of the time.
-const DEAR_IF_SMALL: (f64, f64) = (5.0, 100.0);
-/// Error with a longer step, over the one that the order of the method predicts from a shorter
-/// step, above which the longer one is unstable.
-const STEEP: f64 = 10.0;
+/// Cost of a method, over that of the second cheapest so far, at which it is given up.
+const MAX_COST_RATIO: f64 = 2.0;
+/// The same in a small scene, where methods spend most of their time outside evaluations.
+const SMALL_MAX_COST_RATIO: f64 = 5.0;
+/// [Work](crate::Model::work) of an evaluation below which a scene is small.
+const SMALL_WORK: f64 = 100.0;
+/// Error with a longer step, over the one that the method's order predicts from a shorter step,
+/// above which the longer step counts as unstable.
+const MIN_UNSTABLE_RATIO: f64 = 10.0;
 
-/// Reason for which a longer step or a larger tolerance was not taken.
+/// Reason why no larger step or tolerance was chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetBy {
     /// Its error is too large.
     Accuracy,
-    /// Its run grows.
+    /// Its run is unstable.
     Stability,
-    /// None was tried.
+    /// No larger one was tried.
     Nothing,
 }
 
@@ -51,7 +52,7 @@ pub struct Candidate {
     pub control: Control,
     /// Errors and cost of the run.
     pub outcome: Outcome,
-    /// Reason for which the step or the tolerance is not larger.
+    /// Reason why the step or the tolerance is not larger.
     pub set_by: SetBy,
 }
 
@@ -76,9 +77,13 @@ pub fn choose(
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     // The reference's own uncertainty is part of the error that is allowed.
     let error = error - metric.of(&reference.floor);
-    let is_small = scene.model.work() < DEAR_IF_SMALL.1;
-    let dear = if is_small { DEAR_IF_SMALL.0 } else { DEAR };
-    // Methods of high order come first: their cost bounds the runs of those of low order.
+    let is_small = scene.model.work() < SMALL_WORK;
+    let max_ratio = if is_small {
+        SMALL_MAX_COST_RATIO
+    } else {
+        MAX_COST_RATIO
+    };
+    // Methods of high order come first: their cost limits the runs of methods of low order.
     let mut methods: Vec<_> = METHODS.iter().collect();
     methods.sort_by_key(|method| std::cmp::Reverse(method.order));
     for method in methods {
@@ -86,9 +91,9 @@ pub fn choose(
             continue;
         }
         begin(method);
-        let dearest = found
+        let max_cost = found
             .get(1)
-            .map_or(f64::INFINITY, |c| dear * c.outcome.work.total());
+            .map_or(f64::INFINITY, |c| max_ratio * c.outcome.work.total());
         let mut search = Search {
             scene,
             modes: &modes,
@@ -96,7 +101,7 @@ pub fn choose(
             metric,
             error,
             method,
-            dearest,
+            max_cost,
             go_on,
         };
         match search.run()? {
@@ -116,7 +121,7 @@ pub fn choose(
 enum Found {
     /// Cheapest run that meets the error.
     Best(Box<Candidate>),
-    /// No run meets the error, or it would be too dear.
+    /// No run meets the error, or it would cost too much.
     Nothing,
     /// The search was told to stop.
     Stopped,
@@ -131,7 +136,7 @@ struct Search<'a> {
     error: f64,
     method: &'static Method,
     /// Largest cost of a run, in evaluations.
-    dearest: f64,
+    max_cost: f64,
     go_on: GoOn<'a>,
 }
 
@@ -140,7 +145,7 @@ impl Search<'_> {
         measure(self.scene, self.method, control, self.reference, self.go_on)
     }
 
-    /// Error of the run over the one asked for; infinite if the run was lost.
+    /// Error of the run over the allowed one; infinite if the run blew up.
     fn ratio(&self, outcome: &Outcome) -> f64 {
         if outcome.lost.is_some() {
             f64::INFINITY
@@ -151,7 +156,7 @@ impl Search<'_> {
 
     fn run(&mut self) -> Result<Found, Error> {
         let frames = self.reference.frames;
-        let rungs = ladder(self.modes, self.method, &frames, MOST_STEPS)?;
+        let rungs = ladder(self.modes, self.method, &frames, MAX_STEPS)?;
         // The last run that failed: its step or tolerance, and its ratio.
         let mut fails: Option<(f64, f64)> = None;
         let mut i = 0;
@@ -163,7 +168,7 @@ impl Search<'_> {
             let least = control
                 .step()
                 .map(|step| frames.until / step * f64::from(self.method.evaluations));
-            if least.is_some_and(|least| least > self.dearest) {
+            if least.is_some_and(|least| least > self.max_cost) {
                 return Ok(Found::Nothing);
             }
             let Some(outcome) = self.measure(control)? else {
@@ -173,16 +178,16 @@ impl Search<'_> {
             if ratio <= 1.0 {
                 break (control, outcome);
             }
-            if outcome.work.total() > self.dearest && outcome.lost.is_none() {
+            if outcome.work.total() > self.max_cost && outcome.lost.is_none() {
                 return Ok(Found::Nothing);
             }
-            let aim = self.aim(fails, (control.value(), ratio));
+            let bound = self.predicted_bound(fails, (control.value(), ratio));
             fails = Some((control.value(), ratio));
-            let next = rungs[i + 1..].iter().position(|rung| rung.value() <= aim);
+            let next = rungs[i + 1..].iter().position(|rung| rung.value() <= bound);
             i = next.map_or(rungs.len() - 1, |k| i + 1 + k).max(i + 1);
         };
         let mut bad = fails;
-        // The limit of stability is that of the start, and may be longer in motion.
+        // The limit of stability is that of the start state, and may be larger in motion.
         while bad.is_none()
             && let Some(longer) = coarser(good, &frames)
         {
@@ -215,24 +220,26 @@ impl Search<'_> {
         })))
     }
 
-    /// Reason for which a step that is good, with its error over the one asked for, is not as long
-    /// as a bad one.
+    /// Reason why no step as long as `bad` was chosen instead of `good`, whose error over the
+    /// allowed one is `own`.
     fn set_by(&self, (good, own): (Control, f64), bad: Option<(f64, f64)>) -> SetBy {
         let Some((value, ratio)) = bad else {
             return SetBy::Nothing;
         };
         let growth = (value / good.value()).powi(self.method.order as i32);
-        // An error far below the one asked for may grow much before it is too large.
-        if good.step().is_some() && ratio > STEEP * growth * own.max(1.0 / STEEP) {
+        // An error far below the allowed one may grow much before it is too large.
+        if good.step().is_some()
+            && ratio > MIN_UNSTABLE_RATIO * growth * own.max(1.0 / MIN_UNSTABLE_RATIO)
+        {
             SetBy::Stability
         } else {
             SetBy::Accuracy
         }
     }
 
-    /// Step or tolerance above which no run meets the error: what the order predicts, with a
-    /// margin, once the last two runs failed as it predicts; before that the last one's own.
-    fn aim(&self, before: Option<(f64, f64)>, last: (f64, f64)) -> f64 {
+    /// Step or tolerance above which no run is expected to meet the error: predicted by the order,
+    /// with a margin, if the last two runs failed as the order predicts; else that of the last run.
+    fn predicted_bound(&self, before: Option<(f64, f64)>, last: (f64, f64)) -> f64 {
         let order = if self.method.is_adaptive() {
             1.0
         } else {
@@ -240,7 +247,10 @@ impl Search<'_> {
         };
         let measured = before.map(|before| (before.1 / last.1).ln() / (before.0 / last.0).ln());
         match measured {
-            Some(measured) if (AS_PREDICTED.0..AS_PREDICTED.1).contains(&(measured / order)) => {
+            Some(measured)
+                if (TRUSTED_ORDER_RATIOS.0..TRUSTED_ORDER_RATIOS.1)
+                    .contains(&(measured / order)) =>
+            {
                 last.0 * (0.5 * last.1).powf(-1.0 / order)
             }
             _ => last.0,
@@ -254,14 +264,16 @@ fn between(good: Control, bad: f64, until: f64) -> Option<Control> {
     let middle = (good.value() * bad).sqrt();
     match good {
         Control::Tolerance(good) => {
-            // As someone would type it: the run that is recommended is one that was made.
+            // Rounded as a user would type it, so that the recommended tolerance is one that was
+            // run.
             let typed = format!("{middle:.1e}").parse().unwrap_or(middle);
-            (bad > CLOSE_TOLERANCE * good).then_some(Control::Tolerance(typed))
+            (bad > MAX_TOLERANCE_RATIO * good).then_some(Control::Tolerance(typed))
         }
         Control::Step(good) => {
             let (most, least) = ((until / good).round() as u64, (until / bad).round() as u64);
-            let count = ((until / middle).round() as u64).clamp(least + 1, most.max(FEWEST));
-            (bad > CLOSE * good && count < most).then_some(Control::Step(until / count as f64))
+            let count = ((until / middle).round() as u64).clamp(least + 1, most.max(MIN_STEPS));
+            (bad > MAX_STEP_RATIO * good && count < most)
+                .then_some(Control::Step(until / count as f64))
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Errors of states, and which of them count.
+//! Errors of states, and the scope in which they are taken.
 
 /// Particles and times at which errors are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,22 +25,22 @@ pub struct Errors {
     /// Time (s) by which the run is ahead of the reference or behind it: the error of the positions
     /// along the reference velocities, over the largest speed squared of the reference.
     pub phase: f64,
-    /// Error of the penetration of surfaces that touch: the largest share of its thickness by which
-    /// anything is within it. 0 where surfaces do not touch.
+    /// Error of the penetration of surfaces in contact: the largest depth over the thickness. 0
+    /// where surfaces do not touch.
     pub penetration: f64,
-    /// Error of the first impact (s): that of the time at which surfaces first touch, or that at
-    /// which nothing touches any more, whichever is larger. 0 where surfaces do not touch.
+    /// Error of the first impact (s): the larger of the errors of its beginning and of its end. 0
+    /// where surfaces do not touch.
     pub impact: f64,
 }
 
 impl Errors {
-    /// Errors that are all the same.
+    /// Errors with the same value of each quantity.
     pub(super) fn with_all(error: f64) -> Self {
         let zero = Self::default();
         zero.with(zero, |_, _| error)
     }
 
-    /// Result of a function of each quantity of both errors.
+    /// Applies a function to each quantity of both errors.
     fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         Self {
             position: f(self.position, other.position),

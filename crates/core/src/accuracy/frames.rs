@@ -2,7 +2,7 @@
 
 use crate::simulation::Simulation;
 
-/// Function that is called between frames and returns whether to go on.
+/// Function that is called between frames and returns whether to continue.
 pub type GoOn<'a> = &'a dyn Fn() -> bool;
 
 /// Times at which runs are compared: the ends of `count` equal parts of the time from 0 to `until`.
@@ -43,6 +43,8 @@ impl Frames {
     /// Number of steps of h (s) that reach the last frame; the last step may be shorter.
     #[must_use]
     pub fn steps(&self, h: f64) -> u64 {
-        (self.until / h - Simulation::SLIVER).ceil().max(1.0) as u64
+        (self.until / h - Simulation::STEP_END_TOLERANCE)
+            .ceil()
+            .max(1.0) as u64
     }
 }

@@ -6,7 +6,7 @@
 ///
 /// With `count` data at each of m nodes the polynomial has the degree m `count` - 1.
 pub(super) fn weights(nodes: &[f64], count: usize, at: f64) -> Vec<f64> {
-    // Each node as often as it has data.
+    // Each node is repeated as often as it has data.
     let z: Vec<_> = (0..nodes.len() * count).map(|k| nodes[k / count]).collect();
     let weight = |datum: usize| {
         let (node, derivative) = (datum / count, datum % count);
@@ -14,7 +14,7 @@ pub(super) fn weights(nodes: &[f64], count: usize, at: f64) -> Vec<f64> {
             let is_it = k / count == node && order == derivative;
             f64::from(u8::from(is_it)) / (1..=order).product::<usize>() as f64
         };
-        // Divided differences of all data 0 but this one, which is 1.
+        // Divided differences of data that are all 0, except this one, which is 1.
         let mut differences: Vec<_> = (0..z.len()).map(|k| value(k, 0)).collect();
         let mut sum = differences[0];
         let mut product = 1.0;
@@ -39,7 +39,7 @@ pub(super) fn weights(nodes: &[f64], count: usize, at: f64) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// A polynomial of the highest degree that the data determine comes back as it is.
+    /// A polynomial of the highest degree that the data determine is reproduced exactly.
     #[test]
     fn polynomials_are_reproduced() {
         let nodes = [-1.0, 0.25, 1.5];

@@ -1,4 +1,4 @@
-//! Time for which errors are meaningful: chaotic motion makes the smallest errors large.
+//! Time during which errors are meaningful: in chaotic motion the smallest errors grow large.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -11,53 +11,55 @@ use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::stability::{largest_step, spectrum};
 
-/// Largest factor by which errors may grow by the motion of the scene alone.
-const AMPLIFICATION: f64 = 1e4;
-/// Length of the steps of both runs, over the largest stable step, at most.
-const SHARE: f64 = 1.0 / 6.0;
+/// Largest factor by which the motion of the scene alone may amplify errors within the horizon.
+const MAX_AMPLIFICATION: f64 = 1e4;
+/// Longest step of both runs, over the largest stable step.
+const MAX_STEP_SHARE: f64 = 1.0 / 6.0;
 /// Least number of steps of the longest run.
-const STEPS: f64 = 600.0;
-/// Least number of steps in which runs may part for good, and number of times that steps are halved
-/// until they take as many: contact that the state at the start does not have may be far stiffer
-/// than all else, and steps that are too long for it part any runs at once.
-const RESOLVED: f64 = 100.0;
-const HALVINGS: u32 = 6;
+const MIN_STEPS: f64 = 600.0;
+/// Least number of steps before both runs have separated, and the largest number of times that the
+/// step is halved to reach it. Contact that the start state does not have may be far stiffer than
+/// everything else, and steps that are too long for it separate any two runs at once.
+const MIN_RESOLVED_STEPS: f64 = 100.0;
+const MAX_HALVINGS: u32 = 6;
 /// Largest displacement of a coordinate between the two runs at the start, over the scene's radius.
 const SEPARATION: f64 = 1e-8;
-/// Number of looks at both runs from one of these times to the next.
-const PARTS: u32 = 10;
-/// Horizons to choose from, round numbers (s).
-const ROUND: [f64; 11] = [0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0];
+/// Number of comparisons of both runs between one round time and the next.
+const CHECKS_PER_ROUND: u32 = 10;
+/// Horizons to choose from: round numbers (s).
+const ROUND_TIMES: [f64; 11] = [0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0];
 
 /// Predictability of a scene's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Horizon {
-    /// Round time until which the distance of two runs that start side by side grows by less than
-    /// 10,000 times (s).
+    /// Round time (s) until which the distance of two runs that start side by side grows less than
+    /// 10,000-fold.
     pub until: f64,
-    /// Lyapunov time, in which that distance grows by the factor e (s); infinite if it grows by no
-    /// more than 30 times in all.
+    /// Lyapunov time (s), in which that distance grows by the factor e; infinite if it grows
+    /// 30-fold at most.
     pub lyapunov: f64,
     /// Whether the particles start and move in a plane, and the distance grows mostly out of it:
     /// then it is not chaos that makes small errors grow, but springs that buckle out of the plane
     /// under compression.
     pub buckles: bool,
-    /// Largest root mean square distance of the particles from where they start, until then (m).
+    /// Largest root mean square distance of the particles from their start positions, until then
+    /// (m).
     pub motion: f64,
 }
 
-/// Horizon of a scene, estimated from two runs that start side by side. They run for up to 10 s, or
-/// for up to 3 s if the period of the scene's fastest mode is below 0.1 s, and no longer than
-/// `until` (s), which may be infinite. `None` if `go_on` returned false.
+/// Estimates the horizon of a scene from two runs that start side by side. They last up to 10 s, or
+/// up to 3 s if the period of the scene's fastest mode is below 0.1 s, and no longer than `until`
+/// (s), which may be infinite. `None` if `go_on` returned false.
 ///
 /// Both runs take the same fixed steps, so that their distance is that of the motion and not of two
-/// sequences of steps. These are shorter where a hundred of them part the runs.
+/// sequences of steps. The steps are shorter where a hundred of them separate the runs.
 ///
 /// # Errors
 /// The scene cannot be run.
 pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>, Error> {
-    let method = find("rk4")
-        .ok_or_else(|| Error::Invalid("no method to look ahead with is in the table".into()))?;
+    let method = find("rk4").ok_or_else(|| {
+        Error::Invalid("no method that estimates the horizon is in the table".into())
+    })?;
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     let fastest = modes.first().map_or(1.0, crate::stability::Mode::frequency);
     let longest = if fastest > 20.0 * std::f64::consts::PI {
@@ -66,31 +68,34 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
         10.0
     };
     let limit = largest_step(method, &modes)?.map_or(f64::INFINITY, |limit| limit.step);
-    let mut step = (SHARE * limit).min(longest / STEPS);
+    let mut step = (MAX_STEP_SHARE * limit).min(longest / MIN_STEPS);
     let longest = longest.min(until);
-    let mut found = Ahead::look(scene, method, step, longest, go_on)?;
-    for _ in 0..HALVINGS {
-        let is_resolved = |ahead: &Ahead| ahead.parted_at.is_none_or(|time| time > RESOLVED * step);
+    let mut found = TwoRuns::start(scene, method, step, longest, go_on)?;
+    for _ in 0..MAX_HALVINGS {
+        let is_resolved = |runs: &TwoRuns| {
+            runs.parted_at
+                .is_none_or(|time| time > MIN_RESOLVED_STEPS * step)
+        };
         if found.as_ref().is_none_or(is_resolved) {
             break;
         }
         step *= 0.5;
-        found = Ahead::look(scene, method, step, longest, go_on)?;
+        found = TwoRuns::start(scene, method, step, longest, go_on)?;
     }
-    Ok(found.map(|ahead| ahead.horizon))
+    Ok(found.map(|runs| runs.horizon))
 }
 
-/// Outcome of two runs that start side by side.
-struct Ahead {
+/// Result of two runs that start side by side.
+struct TwoRuns {
     horizon: Horizon,
-    /// Time at which they had parted, or could not go on (s).
+    /// Time (s) at which they had separated, or one of them failed.
     parted_at: Option<f64>,
 }
 
-impl Ahead {
-    /// Runs a scene by steps of that length (s) twice, for up to `longest` (s). `None` if `go_on`
+impl TwoRuns {
+    /// Runs a scene twice in steps of that length (s), for up to `longest` (s). `None` if `go_on`
     /// returned false.
-    fn look(
+    fn start(
         scene: &Scene,
         method: &'static Method,
         step: f64,
@@ -115,17 +120,17 @@ impl Ahead {
             squares.sum::<f64>().sqrt()
         };
         let first = distance(run.state(), beside.state());
-        let rounds = ROUND.into_iter().filter(|t| *t < longest);
-        let (mut until, mut motion) = (ROUND[0], 0.0f64);
+        let rounds = ROUND_TIMES.into_iter().filter(|t| *t < longest);
+        let (mut until, mut motion) = (ROUND_TIMES[0], 0.0f64);
         let (mut time, mut most, mut parted_at) = (0.0, 1.0f64, None);
         let mut grown = (until, most);
         'rounds: for round in rounds.chain([longest]) {
             let begin = time;
-            for part in 1..=PARTS {
+            for part in 1..=CHECKS_PER_ROUND {
                 if !go_on() {
                     return Ok(None);
                 }
-                time = begin + (round - begin) * f64::from(part) / f64::from(PARTS);
+                time = begin + (round - begin) * f64::from(part) / f64::from(CHECKS_PER_ROUND);
                 if run.advance_to(time).is_err() || beside.advance_to(time).is_err() {
                     parted_at = Some(time);
                     break 'rounds;
@@ -133,7 +138,7 @@ impl Ahead {
                 most = most.max(distance(run.state(), beside.state()) / first);
                 let moved = distance(run.state(), &scene.state) / (n as f64 / 3.0).sqrt();
                 motion = motion.max(moved);
-                if most > AMPLIFICATION {
+                if most > MAX_AMPLIFICATION {
                     (grown, parted_at) = ((time, most), Some(time));
                     break 'rounds;
                 }
@@ -157,7 +162,8 @@ impl Ahead {
     }
 }
 
-/// Whether particles start in a plane, with velocities in it, and two runs part mostly out of it.
+/// Whether particles start in a plane, with velocities in it, and two runs separate mostly out of
+/// it.
 fn leaves_plane(start: &[f64], run: &Simulation, beside: &Simulation) -> bool {
     let n = run.particles();
     let at = |y: &[f64], i: usize| Vector3::new(y[i], y[n + i], y[2 * n + i]);

@@ -1,13 +1,13 @@
-//! First impact of a run: when surfaces first touch, and when nothing touches any more.
+//! First impact of a run: the times at which surfaces first touch, and at which nothing touches any
+//! more.
 //!
-//! Both times are found between the frames by which a run is looked at, on cubic polynomials
-//! through the positions and velocities of two frames. They are functions of these states alone,
-//! the same for every method, so their errors fall with the order of the method. A touch that
-//! begins and ends between two frames is not seen.
+//! Both times are found on cubic polynomials through the positions and velocities of two frames.
+//! They are functions of these states alone, the same for every method, so their errors fall with
+//! the order of the method. A touch that begins and ends between two frames is not detected.
 
 use crate::contact::ContactLayer;
 
-/// Times of the first impact: where it has not begun or ended yet, the time of the state.
+/// Times of the first impact; one that has not begun or ended yet has the time of the state.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Impact {
     /// Time of the state (s).
@@ -28,7 +28,7 @@ impl Impact {
         Self { t, times }
     }
 
-    /// Impact at time t (s), if nothing moves until then, where surfaces `touch` or do not.
+    /// Impact at time t (s), if nothing moves until then, and surfaces touch or do not.
     pub fn still(&self, t: f64, touch: bool) -> Self {
         let mut later = self.later(t);
         if touch {
@@ -37,8 +37,8 @@ impl Impact {
         later
     }
 
-    /// Impact at time t (s), with positions (m) and velocities (m/s) here and there, and whether
-    /// surfaces touch here and there.
+    /// Impact at time t (s). `ends` are the positions (m) and velocities (m/s) of the state before
+    /// and now, and `touch` tells whether surfaces touch then and now.
     pub fn next(
         &self,
         layer: &ContactLayer,
@@ -53,7 +53,7 @@ impl Impact {
         }
         let mut x = vec![0.0; ends[0][0].len()];
         let (mut low, mut high) = (0.0, 1.0);
-        // Until the times next to each other are as close as double precision tells.
+        // Until both times agree to double precision.
         for _ in 0..50 {
             let middle = f64::midpoint(low, high);
             between(ends, t - self.t, middle, &mut x);
@@ -68,20 +68,20 @@ impl Impact {
         next
     }
 
-    /// Larger difference of both times of another impact from those of this one (s).
+    /// The larger difference (s) between the times of two impacts.
     pub fn error_of(&self, other: &Self) -> f64 {
         let [begins, ends] = [0, 1].map(|k| (self.times[k] - other.times[k]).abs());
         begins.max(ends)
     }
 
-    /// Combination of both times of two runs.
+    /// Applies a function to both times of two runs.
     pub fn extrapolate(coarse: &Self, fine: &Self, both: impl Fn(&f64, &f64) -> f64) -> Self {
         let times = [0, 1].map(|k| both(&coarse.times[k], &fine.times[k]));
         Self { t: fine.t, times }
     }
 }
 
-/// Writes the positions (m) at a share s of the time (s) between two states to x.
+/// Writes the positions (m) at a fraction s of the time (s) between two states to x.
 fn between([[xa, va], [xb, vb]]: [[&[f64]; 2]; 2], time: f64, s: f64, x: &mut [f64]) {
     let r = 1.0 - s;
     let [a, b] = [(1.0 + 2.0 * s) * r * r, (1.0 + 2.0 * r) * s * s];

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::errors::Errors;
 use super::frames::GoOn;
 use super::reference::Reference;
-use super::run::{Look, Looks, looked_at};
+use super::run::{FrameState, Observer, run_observed};
 use crate::contact::Guarded;
 use crate::control::Control;
 use crate::error::{BlowUp, Error};
@@ -23,7 +23,7 @@ pub struct Outcome {
     pub work: Work,
     /// Actions of the collision safeguard: a run that it changed is not the method's own.
     pub guarded: Guarded,
-    /// Blow-up of the run, if it was lost.
+    /// Blow-up of the run, if there was one.
     pub lost: Option<BlowUp>,
     /// Computing time of the run alone, by the clock that was given.
     pub time: Duration,
@@ -45,7 +45,7 @@ pub fn measure(
 }
 
 /// As [`measure`], with the computing time by a clock: a function that returns the time since some
-/// moment. The largest error of each coordinate over the frames that count (m) is written to
+/// fixed moment. The largest error of each coordinate over the frames that count (m) is written to
 /// `coordinates`, n x 3, unless that is empty.
 ///
 /// # Errors
@@ -63,13 +63,13 @@ pub fn measure_by(
     let mut simulation = Simulation::new(scene.clone(), method, control)?;
     let mut errors = Errors::default();
     let mut last = reference.start.clone();
-    let mut visit = |look: &Look| {
-        let (k, model) = (look.frame, look.run.model());
-        last = last.next(model, reference.frames.time(k), look.state);
+    let mut visit = |seen: &FrameState| {
+        let (k, model) = (seen.frame, seen.run.model());
+        last = last.next(model, reference.frames.time(k), seen.state);
         if reference.counts(k) {
             let mut here = reference.errors(k, &last);
             let mut at = (reference.frames.time(k), last.positions());
-            if let Some(step) = &look.within {
+            if let Some(step) = &seen.within {
                 let at_end = reference.errors_between(model, k, step);
                 if at_end.position < here.position {
                     at = step.nearest;
@@ -87,14 +87,19 @@ pub fn measure_by(
             }
         }
     };
-    let mut looks = Looks {
+    let mut observer = Observer {
         visit: &mut visit,
         clock,
         spent: Duration::ZERO,
     };
     let begun = clock();
-    let end = looked_at(&mut simulation, &reference.frames, go_on, Some(&mut looks))?;
-    let time = clock().saturating_sub(begun + looks.spent);
+    let end = run_observed(
+        &mut simulation,
+        &reference.frames,
+        go_on,
+        Some(&mut observer),
+    )?;
+    let time = clock().saturating_sub(begun + observer.spent);
     Ok(end.map(|lost| Outcome {
         time,
         errors,

@@ -1,5 +1,5 @@
-//! Accuracy of methods on a scene: errors against a reference solution whose own uncertainty is
-//! known, and the choice of the cheapest method for an error.
+//! Accuracy of methods on a scene: errors against a reference solution of known uncertainty, and
+//! the choice of the cheapest method for an error.
 
 mod choose;
 mod errors;
@@ -21,4 +21,4 @@ pub use horizon::{Horizon, horizon};
 pub use ladder::{coarser, ladder};
 pub use measure::{Outcome, measure, measure_by};
 pub use reference::{Precision, Reference};
-pub use run::{Between, Look, Visit, run};
+pub use run::{EnclosingStep, FrameState, Visit, run};

@@ -4,8 +4,8 @@
 //! tolerance ten times as large, and with a method of another family at the steps h, h/2, h/4, ...,
 //! extrapolated to zero step (Richardson; Hairer, Norsett, Wanner, *Solving Ordinary Differential
 //! Equations I*, 1993, II.9). That method is PEFRL, or the classical Runge-Kutta method where
-//! forces depend on the velocity. Where particles rest and slide on obstacles, it is Verner's pair
-//! at smaller and smaller tolerances: fixed steps are too long for friction that begins. Its
+//! forces depend on the velocity; where particles rest and slide on obstacles, it is Verner's pair
+//! at smaller and smaller tolerances, since fixed steps are too long for the onset of friction. Its
 //! disagreement with the reference is the uncertainty: two tolerances of one method may share an
 //! error, two families do not.
 
@@ -13,7 +13,7 @@ use std::borrow::Cow;
 
 use super::errors::{Errors, Metric, Scope};
 use super::frames::{Frames, GoOn};
-use super::run::{Between, Look, run};
+use super::run::{EnclosingStep, FrameState, run};
 use super::snapshot::Snapshot;
 use super::trajectory::Trajectory;
 use crate::control::Control;
@@ -24,49 +24,48 @@ use crate::simulation::{Simulation, may_rest};
 use crate::stability::{LargestMode, Mode, largest_step, spectrum};
 use crate::system::Mechanics;
 
-/// Largest and smallest tolerance of the reference. A tighter one loses more to rounding than it
-/// gains.
+/// Largest and smallest tolerance of the reference. Below the smallest, rounding errors outweigh
+/// the gain.
 const TOLERANCES: (f64, f64) = (1e-6, 1e-12);
-/// Tolerance of the run that is compared with the reference, over that of the reference.
-const LOOSER: f64 = 10.0;
+/// Ratio of the tolerance of the run that is compared with the reference to its own.
+const RATIO: f64 = 10.0;
 /// Longest step of the other method over its largest stable step.
-const SHARE: f64 = 0.25;
+const MAX_STEP_SHARE: f64 = 0.25;
 /// Order of the other methods.
 const ORDER: i32 = 4;
 /// If both methods differ by less than this fraction of the difference between tolerances, the
-/// reference is trusted: the looser tolerance makes nearly all of that.
-const SURE: f64 = 0.3;
-/// The same, where tighter tolerances no longer agree better: where friction of surfaces, a limit
-/// of strain or the guard acts after each step, the reference itself is known no better.
-const BLURRED: f64 = 2.0;
-/// Most times that the step is halved.
-const REFINEMENTS: usize = 12;
-/// Uncertainty of a reference until something happens, over that afterwards.
-const CLEAR: f64 = 1e-4;
-/// Most powers of the step that are extrapolated away.
-const POWERS: usize = 3;
-/// Disagreement after two refinements over that before them, above which it no longer falls.
-const FALLS: f64 = 0.5;
+/// reference is trusted: nearly all of that difference is the error of the looser tolerance.
+const TRUSTED_SHARE: f64 = 0.3;
+/// The same fraction, if tighter tolerances no longer agree better: where friction, a limit of
+/// strain or the collision safeguard acts after each step, the reference is not more certain.
+const STUCK_TRUSTED_SHARE: f64 = 2.0;
+/// Largest number of times that the step is halved.
+const MAX_REFINEMENTS: usize = 12;
+/// Uncertainty, over the largest of all frames, below which positions count as precisely known.
+const CLEAR_SHARE: f64 = 1e-4;
+/// Largest number of powers of the step that are extrapolated away.
+const MAX_POWERS: usize = 3;
+/// Ratio of disagreements before and after two refinements, above which they no longer fall.
+const STUCK_RATIO: f64 = 0.5;
 
-/// Precision that is asked of a reference: it is made no finer than this.
+/// Precision required of a reference; it is made no more precise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
-    /// Quantity that has to be precise.
+    /// Quantity that the precision is of.
     pub metric: Metric,
-    /// Uncertainty that is enough, in the unit of the metric.
+    /// Sufficient uncertainty, in the unit of the metric.
     pub uncertainty: f64,
-    /// Most work of the runs at tolerances, each by what those before it predict, and of all runs
-    /// at steps together, in evaluations. Infinite where the uncertainty has to be reached at any
-    /// cost.
-    pub most: f64,
+    /// Largest work, in evaluations: of each run at a tolerance, as predicted by those before it,
+    /// and of all runs at steps together. Infinite if the uncertainty must be reached at any cost.
+    pub max_work: f64,
 }
 
 impl Precision {
-    /// The finest precision that double precision allows.
+    /// The highest precision that double precision allows.
     pub const FINEST: Self = Self {
         metric: Metric::Position,
         uncertainty: 0.0,
-        most: f64::INFINITY,
+        max_work: f64::INFINITY,
     };
 }
 
@@ -77,7 +76,7 @@ pub struct Reference {
     /// Uncertainty of the reference: the largest disagreement over the frames with a method of
     /// another family.
     pub floor: Errors,
-    /// Errors of a run in which nothing moves: larger errors say nothing.
+    /// Errors of a run in which nothing moves: larger errors are meaningless.
     pub still: Errors,
     /// Work of all runs that make the reference.
     pub work: Work,
@@ -90,7 +89,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Finest reference of a scene from its start, for errors of all particles at all frames.
+    /// Most precise reference of a scene from its start, for errors of all particles at all frames.
     /// `None` if `go_on` returned false.
     ///
     /// # Errors
@@ -99,8 +98,8 @@ impl Reference {
         Self::new(scene, frames, Scope::default(), Precision::FINEST, go_on)
     }
 
-    /// Reference of a scene from its start, for errors in a scope, as precise as asked for or as
-    /// possible. `None` if `go_on` returned false.
+    /// Reference of a scene from its start, for errors in a scope, with the required precision or
+    /// the highest possible. `None` if `go_on` returned false.
     ///
     /// # Errors
     /// The scene cannot be run, the run of the reference blows up, or the scope's particle does not
@@ -135,10 +134,10 @@ impl Reference {
                 uncertain: vec![f64::INFINITY; frames.count as usize],
             },
         };
-        let Some((own, sure)) = making.by_tolerances()? else {
+        let Some((own, trusted)) = making.by_tolerances()? else {
             return Ok(None);
         };
-        let Some(others) = making.by_another(sure * making.precision.metric.of(&own))? else {
+        let Some(others) = making.by_another(trusted * making.precision.metric.of(&own))? else {
             return Ok(None);
         };
         let mut reference = making.reference;
@@ -155,14 +154,14 @@ impl Reference {
         self.trajectory.errors(k, found, self.scope)
     }
 
-    /// Errors at the nearest end of a step of a model that frame k, counted from 1, is within.
-    pub(super) fn errors_between(&self, model: &Model, k: u64, step: &Between) -> Errors {
+    /// Errors at the nearest end of a step that encloses frame k, counted from 1.
+    pub(super) fn errors_between(&self, model: &Model, k: u64, step: &EnclosingStep) -> Errors {
         let start = (&self.start, self.frames);
         self.trajectory
             .errors_between(start, (model, k, step), self.scope)
     }
 
-    /// Positions (m) of a model at frame k, counted from 1, or at another time t (s) near it.
+    /// Positions (m) of a model at time t (s), at or near frame k, counted from 1.
     pub(super) fn positions(&self, model: &Model, k: u64, t: f64) -> Cow<'_, [f64]> {
         if t == self.frames.time(k) {
             return Cow::Borrowed(self.trajectory.snapshots[k as usize - 1].positions());
@@ -172,11 +171,11 @@ impl Reference {
     }
 
     /// Time (s) until which positions are known to less than a ten-thousandth of the
-    /// [`floor`](Self::floor), and their uncertainty (m) until then: something happens afterwards
-    /// that is known less well. `None` if that is so from the beginning.
+    /// [`floor`](Self::floor), and their uncertainty (m) until then: a later event is less certain.
+    /// `None` if no positions are known so precisely.
     #[must_use]
     pub fn clear_until(&self) -> Option<(f64, f64)> {
-        let most = CLEAR * self.floor.position;
+        let most = CLEAR_SHARE * self.floor.position;
         let count = self.uncertain.iter().take_while(|u| **u < most).count();
         let worst = self.uncertain[..count].iter().copied().fold(0.0, f64::max);
         (count > 0).then(|| (self.frames.time(count as u64), worst))
@@ -188,7 +187,7 @@ impl Reference {
         !self.scope.at_end || k == self.frames.count
     }
 
-    /// Notes the uncertainty at each frame by another trajectory.
+    /// Updates the uncertainty at each frame by another trajectory.
     fn note_uncertainty(&mut self, others: &[Snapshot]) {
         for (k, (uncertain, other)) in (1..).zip(self.uncertain.iter_mut().zip(others)) {
             let errors = self.trajectory.errors(k, other, self.scope);
@@ -229,9 +228,9 @@ impl Making<'_> {
         let frames = self.reference.frames;
         let start = &self.reference.start;
         let mut snapshots: Vec<Snapshot> = Vec::with_capacity(frames.count as usize);
-        let mut visit = |look: &Look| {
+        let mut visit = |seen: &FrameState| {
             let last = snapshots.last().unwrap_or(start);
-            let next = last.next(look.run.model(), frames.time(look.frame), look.state);
+            let next = last.next(seen.run.model(), frames.time(seen.frame), seen.state);
             snapshots.push(next);
         };
         let end = run(&mut simulation, &frames, self.go_on, Some(&mut visit))?;
@@ -249,17 +248,17 @@ impl Making<'_> {
     }
 
     /// Finds the reference by DOP853 at smaller and smaller tolerances. Returns the disagreement of
-    /// the last two, and the share of it below which that with the other method tells no more.
+    /// the last two, and the share of it below which that with the other method is meaningless.
     fn by_tolerances(&mut self) -> Result<Option<(Errors, f64)>, Error> {
         let method = find("dop853").ok_or_else(missing)?;
         let (loosest, tightest) = TOLERANCES;
-        let mut tolerance = if self.precision.most.is_finite() {
+        let mut tolerance = if self.precision.max_work.is_finite() {
             loosest
         } else {
             self.precision.uncertainty.clamp(tightest, loosest)
         };
         let Some((mut looser, mut work)) =
-            self.run(method, Control::Tolerance(LOOSER * tolerance))?
+            self.run(method, Control::Tolerance(RATIO * tolerance))?
         else {
             return Ok(None);
         };
@@ -274,19 +273,22 @@ impl Making<'_> {
             history.push(self.precision.metric.of(&found));
             let predicted = next * next / work;
             if is_stuck(&history) {
-                return Ok(Some((found, BLURRED)));
+                return Ok(Some((found, STUCK_TRUSTED_SHARE)));
             }
-            if self.is_enough(&found) || tolerance <= tightest || predicted > self.precision.most {
-                return Ok(Some((found, SURE)));
+            if self.is_enough(&found)
+                || tolerance <= tightest
+                || predicted > self.precision.max_work
+            {
+                return Ok(Some((found, TRUSTED_SHARE)));
             }
             work = next;
             looser = std::mem::take(&mut self.reference.trajectory.snapshots);
-            tolerance = (tolerance / LOOSER).max(tightest);
+            tolerance = (tolerance / RATIO).max(tightest);
         }
     }
 
-    /// Fastest mode at each frame, where surfaces touch: contact may be much stiffer than all that
-    /// is there at the start. Longer steps than its limit would show what the guard does.
+    /// Fastest mode at each frame, if surfaces touch: contact may be much stiffer than all forces
+    /// at the start. Steps beyond its limit would measure the collision safeguard.
     fn contact_modes(&self) -> Vec<Mode> {
         let network = self.scene.model.network();
         let Some(network) = network.filter(|network| network.contact_layer().is_some()) else {
@@ -295,14 +297,14 @@ impl Making<'_> {
         let frames = self.reference.trajectory.snapshots.iter().zip(1..);
         let fastest = frames.filter_map(|(snapshot, k)| {
             let time = self.reference.frames.time(k);
-            // Another contact is another shape, so each estimate begins anew.
+            // Other contacts have other shapes, so each estimate starts from scratch.
             LargestMode::default().estimate(network, time, snapshot.positions())
         });
         fastest.collect()
     }
 
-    /// The other method, and the setting that it begins with: PEFRL takes four evaluations for each
-    /// kick of forces that depend on the velocity, and serves no first-order system.
+    /// The other method and its first setting. PEFRL takes four evaluations for each kick of forces
+    /// that depend on the velocity, and does not support first-order systems.
     fn other(&self) -> Result<(&'static Method, Control), Error> {
         let model = &self.scene.model;
         if model.network().is_some_and(may_rest) {
@@ -315,16 +317,15 @@ impl Making<'_> {
         let longest = |modes: &[Mode]| -> Result<f64, Error> {
             Ok(largest_step(method, modes)?.map_or(f64::INFINITY, |limit| limit.step))
         };
-        let limit = SHARE * longest(&spectrum(model.system(), 0.0, &self.scene.state))?;
+        let limit = MAX_STEP_SHARE * longest(&spectrum(model.system(), 0.0, &self.scene.state))?;
         let limit = limit.min(longest(&self.contact_modes())?);
         let spacing = self.reference.frames.spacing();
         let step = spacing / (spacing / limit).ceil().max(1.0);
         Ok((method, Control::Step(step)))
     }
 
-    /// Disagreement of the reference with the other method, whose step or tolerance is made
-    /// smaller until that is as small as asked for, or as `own`, which the reference leaves in
-    /// doubt itself, or no longer falls.
+    /// Disagreement of the reference with the other method, whose step or tolerance is reduced
+    /// until it is sufficient, or at most `own`, the reference's own uncertainty, or stuck.
     fn by_another(&mut self, own: f64) -> Result<Option<Errors>, Error> {
         let (method, mut control) = self.other()?;
         let metric = self.precision.metric;
@@ -334,9 +335,8 @@ impl Making<'_> {
         loop {
             match self.run(method, control) {
                 Ok(None) => return Ok(None),
-                // Steps that are too long to stay in shape.
                 Err(Error::BlowUp(lost)) => {
-                    if history.len() == REFINEMENTS {
+                    if history.len() == MAX_REFINEMENTS {
                         return Err(Error::BlowUp(lost));
                     }
                     row.clear();
@@ -357,8 +357,8 @@ impl Making<'_> {
                     if self.is_enough(&least)
                         || metric.of(&least) <= own
                         || is_stuck(&history)
-                        || sum + 2.0 * work > self.precision.most
-                        || history.len() > REFINEMENTS
+                        || sum + 2.0 * work > self.precision.max_work
+                        || history.len() > MAX_REFINEMENTS
                         || control == Control::Tolerance(TOLERANCES.1)
                     {
                         return Ok(Some(least));
@@ -367,7 +367,7 @@ impl Making<'_> {
             }
             control = match control {
                 Control::Step(step) => Control::Step(0.5 * step),
-                Control::Tolerance(loose) => Control::Tolerance(TOLERANCES.1.max(loose / LOOSER)),
+                Control::Tolerance(loose) => Control::Tolerance(TOLERANCES.1.max(loose / RATIO)),
             };
         }
     }
@@ -376,7 +376,7 @@ impl Making<'_> {
 /// Whether disagreements no longer fall.
 fn is_stuck(history: &[f64]) -> bool {
     match history {
-        [.., before, _, last] => before.is_finite() && *last > FALLS * before,
+        [.., before, _, last] => before.is_finite() && *last > STUCK_RATIO * before,
         _ => false,
     }
 }
@@ -390,7 +390,7 @@ fn missing() -> Error {
 /// before, each of which lacks one more power of the step.
 fn extrapolate(row: Vec<Vec<Snapshot>>, halved: Vec<Snapshot>) -> Vec<Vec<Snapshot>> {
     let mut next = vec![halved];
-    for (power, coarse) in row.into_iter().take(POWERS).enumerate() {
+    for (power, coarse) in row.into_iter().take(MAX_POWERS).enumerate() {
         let share = 1.0 / (f64::powi(2.0, ORDER + power as i32) - 1.0);
         let pairs = coarse.iter().zip(&next[power]);
         let column = pairs.map(|(coarse, fine)| Snapshot::extrapolate(coarse, fine, share));

@@ -1,4 +1,4 @@
-//! Runs that are looked at in frames, at whatever times their steps end.
+//! Runs that are observed at frames, wherever their steps end.
 
 use std::time::Duration;
 
@@ -7,50 +7,50 @@ use super::hermite::weights;
 use crate::error::{BlowUp, Error};
 use crate::simulation::Simulation;
 
-/// Share of a step by which its end may miss a frame and yet count as the frame.
-const CLOSE: f64 = 1e-9;
+/// Largest distance of the end of a step from a frame, relative to the time, at which it counts as
+/// the frame.
+const FRAME_TOLERANCE: f64 = 1e-9;
 /// Number of ends of steps through which states between them are interpolated.
 const NODES: u64 = 3;
-/// Most steps between two questions whether to go on, and most of their work.
-const PORTION: (u64, f64) = (1000, 4e5);
+/// Largest number of steps, and largest work of these, between two calls of `go_on`.
+const MAX_PORTION: (u64, f64) = (1000, 4e5);
 
-/// Look at a run.
+/// State of a run at a frame.
 #[derive(Clone, Copy)]
-pub struct Look<'a> {
+pub struct FrameState<'a> {
     /// Number of the frame, counted from 1.
     pub frame: u64,
-    /// The run, which may be past the frame.
+    /// The run, which may be beyond the frame.
     pub run: &'a Simulation,
     /// State at the frame.
     pub state: &'a [f64],
-    /// Step that the frame is within, where none ends at the frame, and the state there is
-    /// interpolated.
-    pub within: Option<Between<'a>>,
+    /// Step that encloses the frame, if no step ends there and the state is interpolated.
+    pub within: Option<EnclosingStep<'a>>,
 }
 
-/// Step between two frames or around one.
+/// Step that encloses a frame.
 #[derive(Clone, Copy)]
-pub struct Between<'a> {
+pub struct EnclosingStep<'a> {
     /// Times at its beginning and its end (s).
     pub times: [f64; 2],
     /// Time (s) and state at the nearest end of a step.
     pub nearest: (f64, &'a [f64]),
 }
 
-/// Use of a look.
-pub type Visit<'a> = &'a mut dyn FnMut(&Look);
+/// Callback for each frame.
+pub type Visit<'a> = &'a mut dyn FnMut(&FrameState);
 
-/// Looks at a run, and the time that they take, which is not the run's.
-pub(super) struct Looks<'a> {
+/// Observer of a run, with the time that it takes, which does not count as the run's.
+pub(super) struct Observer<'a> {
     pub(super) visit: Visit<'a>,
-    /// The time that has passed since some moment.
+    /// Clock: the time since some fixed moment.
     pub(super) clock: &'a dyn Fn() -> Duration,
     pub(super) spent: Duration,
 }
 
-impl Looks<'_> {
-    /// Does what only a look needs.
-    fn look(&mut self, work: impl FnOnce(&mut dyn FnMut(&Look))) {
+impl Observer<'_> {
+    /// Does work that only the observer needs, and measures its time.
+    fn observe(&mut self, work: impl FnOnce(&mut dyn FnMut(&FrameState))) {
         let begun = (self.clock)();
         work(&mut *self.visit);
         self.spent += (self.clock)().saturating_sub(begun);
@@ -62,40 +62,40 @@ impl Looks<'_> {
 ///
 /// Where no step ends at a frame, the state there is interpolated through the last three ends of
 /// steps: positions by a polynomial of degree 8, from positions, velocities and accelerations, and
-/// velocities by one of degree 5. No step is shortened, so the run costs the same whatever the
-/// frames. Returns the blow-up, if the run was lost, and `None` if `go_on` returned false.
+/// velocities by one of degree 5. No step is shortened, so the cost of a run does not depend on the
+/// frames. Returns the blow-up, if there was one, and `None` if `go_on` returned false.
 ///
 /// # Errors
-/// The run cannot go on for a reason other than a blow-up.
+/// The run fails for a reason other than a blow-up.
 pub fn run(
     simulation: &mut Simulation,
     frames: &Frames,
     go_on: GoOn,
     visit: Option<Visit>,
 ) -> Result<Option<Option<BlowUp>>, Error> {
-    let mut looks = visit.map(|visit| Looks {
+    let mut observer = visit.map(|visit| Observer {
         visit,
         clock: &|| Duration::ZERO,
         spent: Duration::ZERO,
     });
-    looked_at(simulation, frames, go_on, looks.as_mut())
+    run_observed(simulation, frames, go_on, observer.as_mut())
 }
 
-/// As [`run`], with the time of its looks.
+/// As [`run`], with an observer that measures its own time.
 #[expect(clippy::option_option, reason = "this is what `run` returns")]
-pub(super) fn looked_at(
+pub(super) fn run_observed(
     simulation: &mut Simulation,
     frames: &Frames,
     go_on: GoOn,
-    looks: Option<&mut Looks>,
+    observer: Option<&mut Observer>,
 ) -> Result<Option<Option<BlowUp>>, Error> {
-    let result = match (simulation.control().step(), looks) {
-        (Some(step), Some(looks)) => in_steps(simulation, frames, step, go_on, looks),
+    let result = match (simulation.control().step(), observer) {
+        (Some(step), Some(observer)) => in_steps(simulation, frames, step, go_on, observer),
         (Some(step), None) => to_step(simulation, frames, frames.steps(step), go_on),
-        (None, looks) => to_a_tolerance(simulation, frames, go_on, looks),
+        (None, observer) => to_a_tolerance(simulation, frames, go_on, observer),
     };
     let ended = result.and_then(|ended| {
-        // It may have been lost since the last look at its energy.
+        // The energy may have grown too large since its last check.
         if ended {
             simulation.conclude()?;
         }
@@ -109,28 +109,28 @@ pub(super) fn looked_at(
     }
 }
 
-/// Visits frames between the steps of an adaptive method. `false` if it was told to stop.
+/// Visits frames between the steps of an adaptive method. `false` if `go_on` returned false.
 fn to_a_tolerance(
     simulation: &mut Simulation,
     frames: &Frames,
     go_on: GoOn,
-    mut looks: Option<&mut Looks>,
+    mut observer: Option<&mut Observer>,
 ) -> Result<bool, Error> {
     for k in 1..=frames.count {
         if !go_on() {
             return Ok(false);
         }
         simulation.advance_to(frames.time(k))?;
-        if let Some(looks) = &mut looks {
-            looks.look(|visit| visit(&at_end(simulation, k)));
+        if let Some(observer) = &mut observer {
+            observer.observe(|visit| visit(&at_end(simulation, k)));
         }
     }
     Ok(true)
 }
 
-/// Look at a run that is at a frame.
-fn at_end(run: &Simulation, frame: u64) -> Look<'_> {
-    Look {
+/// State of a run that has arrived at a frame.
+fn at_end(run: &Simulation, frame: u64) -> FrameState<'_> {
+    FrameState {
         frame,
         run,
         state: run.state(),
@@ -138,7 +138,7 @@ fn at_end(run: &Simulation, frame: u64) -> Look<'_> {
     }
 }
 
-/// Goes on to the end of step n, counted from the beginning. `false` if it was told to stop.
+/// Advances to the end of step n, counted from the beginning. `false` if `go_on` returned false.
 fn to_step(
     simulation: &mut Simulation,
     frames: &Frames,
@@ -146,13 +146,13 @@ fn to_step(
     go_on: GoOn,
 ) -> Result<bool, Error> {
     let last = simulation.control().step().map(|step| frames.steps(step));
-    let most = ((PORTION.1 / simulation.model().work()) as u64).clamp(1, PORTION.0);
+    let most = ((MAX_PORTION.1 / simulation.model().work()) as u64).clamp(1, MAX_PORTION.0);
     while simulation.steps() < n {
         if !go_on() {
             return Ok(false);
         }
         let mut portion = (n - simulation.steps()).min(most);
-        // The last step ends at the last frame, whatever rounding or a sliver of time is left.
+        // The last step ends at the last frame, so rounding leaves no tiny step.
         if last == Some(simulation.steps() + portion) {
             portion -= 1;
             simulation.take_steps(portion)?;
@@ -172,13 +172,13 @@ struct End {
     f: Vec<f64>,
 }
 
-/// Visits frames between fixed steps. `false` if it was told to stop.
+/// Visits frames between fixed steps. `false` if `go_on` returned false.
 fn in_steps(
     simulation: &mut Simulation,
     frames: &Frames,
     step: f64,
     go_on: GoOn,
-    looks: &mut Looks,
+    observer: &mut Observer,
 ) -> Result<bool, Error> {
     let last = frames.steps(step);
     let (mut ends, mut state) = (vec![], simulation.state().to_vec());
@@ -186,19 +186,19 @@ fn in_steps(
         let time = frames.time(k);
         let steps = time / step;
         let nearest = steps.round();
-        if (steps - nearest).abs() < CLOSE * steps.max(1.0) || k == frames.count {
+        if (steps - nearest).abs() < FRAME_TOLERANCE * steps.max(1.0) || k == frames.count {
             let n = (nearest as u64).min(last);
-            // A state past this one may be kept for interpolation.
+            // For interpolation, the run may already be beyond this frame.
             if n >= simulation.steps() {
                 let n = if k == frames.count { last } else { n };
                 if !to_step(simulation, frames, n, go_on)? {
                     return Ok(false);
                 }
-                looks.look(|visit| visit(&at_end(simulation, k)));
+                observer.observe(|visit| visit(&at_end(simulation, k)));
                 continue;
             }
         }
-        // Ends before and after the frame, and one more before these if there is one.
+        // Both ends of the step that encloses the frame, and one end before them if there is one.
         let begun = (steps.floor() as u64).min(last);
         let oldest = begun
             .saturating_sub(1)
@@ -209,7 +209,7 @@ fn in_steps(
         }
         if ends.last().is_none_or(|end: &End| end.number != at) {
             ends.clear();
-            looks.look(|_| keep(&mut ends, simulation));
+            observer.observe(|_| remember_end(&mut ends, simulation));
         }
         let newest = (begun + 1).max(ends[0].number + NODES - 1).min(last);
         while simulation.steps() < newest {
@@ -217,17 +217,17 @@ fn in_steps(
             if !to_step(simulation, frames, next, go_on)? {
                 return Ok(false);
             }
-            looks.look(|_| keep(&mut ends, simulation));
+            observer.observe(|_| remember_end(&mut ends, simulation));
         }
-        looks.look(|visit| {
+        observer.observe(|visit| {
             interpolate(simulation, &ends, time, &mut state);
             let far = |end: &&End| (end.t - time).abs();
             let nearest = ends.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-            visit(&Look {
+            visit(&FrameState {
                 frame: k,
                 run: simulation,
                 state: &state,
-                within: nearest.map(|end| Between {
+                within: nearest.map(|end| EnclosingStep {
                     times: [begun, begun + 1].map(|n| (n as f64 * step).min(frames.until)),
                     nearest: (end.t, &end.y[..]),
                 }),
@@ -237,8 +237,8 @@ fn in_steps(
     Ok(true)
 }
 
-/// Keeps the state at the end of the last step, and forgets the oldest one of too many.
-fn keep(ends: &mut Vec<End>, simulation: &Simulation) {
+/// Remembers the state at the end of the last step, in place of the oldest if there are enough.
+fn remember_end(ends: &mut Vec<End>, simulation: &Simulation) {
     let y = simulation.state();
     let mut end = if ends.len() < NODES as usize {
         End {
@@ -257,10 +257,10 @@ fn keep(ends: &mut Vec<End>, simulation: &Simulation) {
     ends.push(end);
 }
 
-/// Writes the state at a time (s) within the steps whose ends are given to `state`.
+/// Interpolates the state at a time (s) between the ends of steps, and writes it to `state`.
 fn interpolate(simulation: &Simulation, ends: &[End], time: f64, state: &mut [f64]) {
     let system = simulation.model().system();
-    // Times in units of a step, so that the weights are of ordinary size.
+    // Times are in units of a step, so that the weights are of ordinary size.
     let (first, last) = (&ends[0], &ends[ends.len() - 1]);
     let unit = ((last.t - first.t) / (ends.len().max(2) - 1) as f64).max(f64::MIN_POSITIVE);
     let nodes: Vec<_> = ends.iter().map(|end| (end.t - first.t) / unit).collect();

@@ -1,4 +1,4 @@
-//! Snapshot of a state: what of it is compared.
+//! Snapshot of a state: the quantities by which states are compared.
 
 use nalgebra::Vector3;
 
@@ -25,7 +25,7 @@ pub(super) struct Snapshot {
     momentum: Vector3<f64>,
     /// Length over rest length of each structural spring.
     strains: Vec<f64>,
-    /// Largest share of its thickness by which anything is within it.
+    /// Largest depth of penetration over the thickness.
     penetration: f64,
     /// First impact so far.
     impact: Impact,
@@ -54,7 +54,7 @@ impl Snapshot {
         }
     }
 
-    /// What follows from positions and velocities alone; the rest is 0.
+    /// The quantities that follow from positions and velocities alone; the rest is 0.
     fn of_motion(network: &Network, y: &[f64]) -> Self {
         let (positions, velocities) = network.halves(y);
         let inverse_masses = network.inverse_masses();
@@ -75,8 +75,8 @@ impl Snapshot {
         }
     }
 
-    /// Quantities of the state y of a model at time t (s) that errors between frames are of: not
-    /// those of contact, nor the energy where that or a rotation has a part in it.
+    /// Quantities of the state y of a model at time t (s) that are compared between frames: without
+    /// those of contact, and without the energy if contact or rotations contribute to it.
     pub fn between_frames(model: &Model, t: f64, y: &[f64]) -> Self {
         let Some(network) = model.network() else {
             return Self::of(model, t, y);
@@ -92,10 +92,10 @@ impl Snapshot {
         }
     }
 
-    /// Those quantities at time t (s), of a motion that is known at some times (s): positions by
-    /// the polynomial through positions and velocities, all else by that through the values.
+    /// The same quantities at time t (s), interpolated from known times (s): positions by the
+    /// polynomial through positions and velocities, all others by that through the values.
     pub fn interpolated(model: &Model, known: &[(f64, &Self)], t: f64) -> Self {
-        // Times in units of their distance, so that the weights are of ordinary size.
+        // Times are in units of their distance, so that the weights are of ordinary size.
         let (first, last) = (known[0].0, known[known.len() - 1].0);
         let unit = (last - first) / (known.len() - 1) as f64;
         let nodes: Vec<_> = known
@@ -128,7 +128,8 @@ impl Snapshot {
         }
     }
 
-    /// Quantities of the state y of a model at time t (s), by which the run has come from here.
+    /// Quantities of the state y of a model at time t (s), the next one of a run after this
+    /// snapshot.
     pub fn next(&self, model: &Model, t: f64, y: &[f64]) -> Self {
         let mut next = Self::of(model, t, y);
         if let Some(layer) = model.network().and_then(Network::contact_layer) {
@@ -141,7 +142,7 @@ impl Snapshot {
         next
     }
 
-    /// Quantities at time t (s) if nothing moves from here on.
+    /// Quantities at time t (s) if nothing moves any more.
     pub fn still(&self, t: f64) -> Self {
         Self {
             impact: self.impact.still(t, self.penetration > 0.0),
@@ -154,8 +155,8 @@ impl Snapshot {
         &self.positions
     }
 
-    /// Differences of another snapshot of the same scene from this one, which is exact. The phase
-    /// is not yet divided by the [`square_speed`](Self::square_speed).
+    /// Errors of another snapshot of the same scene against this one, which is exact. The phase is
+    /// not yet divided by the [`square_speed`](Self::square_speed).
     pub fn errors_of(&self, other: &Self, scope: Scope) -> Errors {
         let springs = self.strains.len().max(1) as f64;
         let stretch = self.strains.iter().zip(&other.strains);
@@ -189,7 +190,7 @@ impl Snapshot {
         }
     }
 
-    /// Extrapolation of fine + (fine - coarse) * `share` in each quantity.
+    /// Extrapolates each quantity to fine + (fine - coarse) * `share`.
     pub fn extrapolate(coarse: &Self, fine: &Self, share: f64) -> Self {
         let both = |coarse: &f64, fine: &f64| fine + (fine - coarse) * share;
         let all = |coarse: &[f64], fine: &[f64]| {

@@ -1,8 +1,8 @@
-//! States of a reference at the frames and between them, which errors are taken from.
+//! States of a reference at the frames and between them, against which errors are taken.
 
 use super::errors::{Errors, Scope};
 use super::frames::Frames;
-use super::run::Between;
+use super::run::EnclosingStep;
 use super::snapshot::Snapshot;
 use crate::scene::Model;
 
@@ -35,13 +35,13 @@ impl Trajectory {
         Snapshot::interpolated(model, &self.around(start, t), t)
     }
 
-    /// Errors at the nearest end of a step of a model that frame k, counted from 1, is within:
-    /// those of contact are infinite, since they are not known there. That of the positions is at
-    /// least what exact states at both ends of the step would not tell of the frame.
+    /// Errors at the nearest end of the step of a model that encloses frame k, counted from 1.
+    /// Those of contact are unknown there, and infinite. The error of the positions is at least
+    /// that of interpolating the frame from the exact states at both ends of the step.
     pub fn errors_between(
         &self,
         (start, frames): (&Snapshot, Frames),
-        (model, k, step): (&Model, u64, &Between),
+        (model, k, step): (&Model, u64, &EnclosingStep),
         scope: Scope,
     ) -> Errors {
         let at = |t: f64| self.at((start, frames), model, t);

@@ -1,4 +1,4 @@
-//! The numbers of a factor.
+//! Numeric factorisation.
 
 #![expect(
     clippy::inline_always,
@@ -11,32 +11,32 @@ use pulp::{Arch, Simd, WithSimd};
 use super::pattern::{Pattern, Place};
 use crate::fused::mul_add;
 
-/// Columns of a matrix of B x B numbers, each of P, of which those beyond B are zero.
+/// Columns of a matrix of B x B numbers, each padded with zeros to the length P.
 pub(crate) type Block<const B: usize, const P: usize> = [[f64; P]; B];
 
-/// No column.
+/// Marks the end of a linked list of columns.
 const NONE: u32 = u32::MAX;
 
-/// A factor of B x B blocks, which begins as the matrix.
+/// A factor of B x B blocks, initially the matrix.
 #[derive(Debug)]
 pub(crate) struct Factor<const B: usize, const P: usize> {
-    /// Blocks on the diagonal, with the inverses of their own diagonals once they are factorised.
+    /// Blocks on the diagonal; after factorisation, their own diagonals are inverted.
     pub(super) diagonal: Vec<Block<B, P>>,
     /// Blocks below the diagonal.
     pub(super) blocks: Vec<Block<B, P>>,
     /// Right-hand side, and later the solution.
     unknowns: Vec<[f64; P]>,
-    /// The block of each row in the column under way.
+    /// Index of each row's block in the current column.
     places: Vec<u32>,
-    /// Of the columns that a column is made of, one; and for each column the next one that goes
-    /// into the same, and its block there.
+    /// Linked lists of the columns that contribute to a column: the first one and, for each column,
+    /// the next one in the same list and its block there.
     first: Vec<u32>,
     next: Vec<u32>,
     reached: Vec<u32>,
 }
 
 impl<const B: usize, const P: usize> Factor<B, P> {
-    /// Room for a factor; `None` if there is not so much memory.
+    /// Creates room for a factor; `None` if memory is insufficient.
     pub fn new(pattern: &Pattern) -> Option<Self> {
         let (n, size) = (pattern.len(), pattern.size());
         let mut blocks = vec![];
@@ -69,20 +69,20 @@ impl<const B: usize, const P: usize> Factor<B, P> {
         &mut self.blocks[place.block as usize]
     }
 
-    /// Factorises the matrix that the blocks hold. Returns whether it is positive definite.
+    /// Factorises the matrix in the blocks. Returns whether it is positive definite.
     pub fn factorise(&mut self, pattern: &Pattern) -> bool {
         let factor = self;
         Arch::new().dispatch(Factorise { factor, pattern })
     }
 
-    /// The same by one number at a time.
+    /// The same without vector instructions.
     #[cfg(test)]
     pub fn factorise_by_numbers(&mut self, pattern: &Pattern) -> bool {
         let factor = self;
         Factorise { factor, pattern }.with_simd(pulp::Scalar::new())
     }
 
-    /// The least square of a number on the diagonal.
+    /// The least square of a number on the diagonal of the factor.
     pub fn least_square(&self) -> f64 {
         let inverses = |block: &Block<B, P>| std::array::from_fn::<_, B, _>(|k| block[k][k]);
         let largest = self.diagonal.iter().flat_map(inverses).fold(0.0, f64::max);
@@ -242,7 +242,7 @@ fn subtract<const B: usize, const P: usize>(y: &mut [f64; P], l: &Block<B, P>, x
     }
 }
 
-/// Adds the terms of lT x, of which each row is a sum.
+/// Adds the terms of lT x, whose sum over each row of `sums` is an element.
 #[inline(always)]
 fn add_terms<const B: usize, const P: usize>(
     sums: &mut Block<B, P>,
@@ -256,8 +256,8 @@ fn add_terms<const B: usize, const P: usize>(
     }
 }
 
-/// The lower triangle l of which a block is l lT, in its place, its diagonal inverted. Returns
-/// whether there is one.
+/// Replaces a block by the lower triangle l with a = l lT, its diagonal inverted. Returns whether
+/// it exists.
 #[inline(always)]
 fn root<const B: usize, const P: usize>(a: &mut Block<B, P>) -> bool {
     for c in 0..B {
@@ -267,7 +267,7 @@ fn root<const B: usize, const P: usize>(a: &mut Block<B, P>) -> bool {
                 a[c][r] = mul_add(-a[before][r], by, a[c][r]);
             }
         }
-        // Written so that not a number is none.
+        // Written so that NaN fails.
         if !(a[c][c] > 0.0 && a[c][c] < f64::INFINITY) {
             return false;
         }
@@ -280,7 +280,7 @@ fn root<const B: usize, const P: usize>(a: &mut Block<B, P>) -> bool {
     true
 }
 
-/// a times the inverse of lT, of which the diagonal is inverted.
+/// Multiplies a by the inverse of lT, where l has an inverted diagonal.
 #[inline(always)]
 fn divide<const B: usize, const P: usize>(a: &mut Block<B, P>, l: &Block<B, P>) {
     for c in 0..B {

@@ -1,20 +1,21 @@
-//! An order of elimination that keeps a factor sparse: the row that meets the fewest others comes
+//! An order of elimination that keeps a factor sparse: the row with the fewest neighbours comes
 //! next, by an upper bound of their number (approximate minimum degree; Amestoy, Davis, Duff, SIAM
-//! J. Matrix Anal. Appl. 17, 1996). All rows that an eliminated one meets will meet one another:
-//! they are kept as one list, an element, instead of pair by pair.
+//! J. Matrix Anal. Appl. 17, 1996). Elimination makes all neighbours of a row neighbours of one
+//! another: they are stored as one list, an element, instead of pair by pair.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Degree above which a row is dense and is ordered last, and the same over the root of the number
-/// of rows: its list would be gone through too often.
-const MANY: [f64; 2] = [40.0, 2.0];
+/// Degree above which a row counts as dense and is ordered last, because its list would be
+/// traversed too often: at least the first number, and at least the second times the root of the
+/// number of rows.
+const DENSE_DEGREES: [f64; 2] = [40.0, 2.0];
 
 /// Elimination order (approximate minimum degree) of a matrix given by its adjacency lists; `None`
 /// if the factor would have more than `most` blocks below its diagonal.
 pub(super) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
     let n = meets.len();
-    let many = MANY[0].max(MANY[1] * (n as f64).sqrt()) as usize;
+    let many = DENSE_DEGREES[0].max(DENSE_DEGREES[1] * (n as f64).sqrt()) as usize;
     let is_last: Vec<bool> = meets.iter().map(|others| others.len() > many).collect();
     for (others, last) in meets.iter_mut().zip(&is_last) {
         others.retain(|j| !last && !is_last[*j as usize]);
@@ -56,37 +57,37 @@ pub(super) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
     None
 }
 
-/// What is left of the rows, and the elements. An element has the number of the row whose
-/// elimination made it.
+/// The remaining rows, and the elements. An element has the number of the row whose elimination
+/// created it.
 struct Graph {
     /// Rows that have not been eliminated.
     left: u32,
-    /// Blocks below the diagonal in the columns of those that have, and at most in the rows that
-    /// come last.
+    /// Blocks below the diagonal in the columns of eliminated rows, and an upper bound of those in
+    /// the rows that come last.
     blocks: usize,
-    /// Bound of the number of rows that each meets, without those that it stands for.
+    /// Upper bound of the number of neighbours of each row, without the rows that it represents.
     degree: Vec<u32>,
-    /// Rows that each meets, except in elements.
+    /// Neighbours of each row that share no element with it.
     meets: Vec<Vec<u32>>,
-    /// Elements that each is in.
+    /// Elements that each row is in.
     elements: Vec<Vec<u32>>,
-    /// Number of rows that each stands for; 0 once it is eliminated, or another stands for it.
+    /// Number of rows that each row represents; 0 once it is eliminated, or another represents it.
     weight: Vec<u32>,
-    /// Rows that each stands for beside itself.
+    /// Other rows that each row represents.
     followers: Vec<Vec<u32>>,
-    /// Rows of each element; none once it lies within others.
+    /// Rows of each element; empty once it lies within others.
     members: Vec<Vec<u32>>,
-    /// Number of rows in each element, followers included.
+    /// Number of rows in each element, represented ones included.
     size: Vec<u32>,
-    /// Number of those that the element made last does not have.
+    /// Number of these that are not in the latest element.
     outside: Vec<u32>,
-    /// Last element for which a row, or an element, was looked at.
+    /// Latest element for which a row, or an element, was visited.
     seen: Vec<u32>,
     order: Vec<u32>,
 }
 
 impl Graph {
-    /// Eliminates a row: what it meets becomes an element.
+    /// Eliminates a row: its neighbours become an element.
     fn eliminate(&mut self, pivot: u32) {
         let (p, before) = (pivot as usize, self.left);
         self.finish(pivot);
@@ -103,7 +104,7 @@ impl Graph {
             is_new
         });
         self.measure(pivot, &members);
-        // Rows that meet nothing else would be next without making the factor any larger.
+        // Rows without other neighbours could be eliminated next without enlarging the factor.
         members.retain(|i| {
             self.shorten(pivot, *i);
             let i = *i as usize;
@@ -132,7 +133,7 @@ impl Graph {
         self.members[p] = members;
     }
 
-    /// Puts a row, and those that it stands for, into the order.
+    /// Appends a row, and those that it represents, to the order.
     fn finish(&mut self, row: u32) {
         self.left -= self.weight[row as usize];
         self.weight[row as usize] = 0;
@@ -143,7 +144,7 @@ impl Graph {
         }
     }
 
-    /// Counts for each element how many of its rows are not among these.
+    /// Counts for each element the rows that are not in `members`.
     fn measure(&mut self, pivot: u32, members: &[u32]) {
         for i in members {
             let weight = self.weight[*i as usize];
@@ -157,7 +158,7 @@ impl Graph {
         }
     }
 
-    /// Takes from the lists of a row what the element of the pivot has as well.
+    /// Removes neighbours and elements of a row that the pivot's element covers.
     fn shorten(&mut self, pivot: u32, i: u32) {
         let i = i as usize;
         let (members, outside) = (&mut self.members, &self.outside);
@@ -174,7 +175,7 @@ impl Graph {
         self.elements[i].sort_unstable();
     }
 
-    /// Lets one row stand for all of those that meet the same.
+    /// Lets one row represent all rows with the same neighbours.
     fn merge(&mut self, members: &mut Vec<u32>) {
         let key = |i: u32| {
             let lists = [&self.meets[i as usize], &self.elements[i as usize]];

@@ -1,5 +1,4 @@
-//! Where a factor has blocks: the pattern of a sparse matrix, eliminated in an order that keeps it
-//! sparse.
+//! Symbolic factorisation: the pattern of the factor of a sparse matrix.
 
 use std::ops::Range;
 
@@ -20,14 +19,14 @@ pub(crate) struct Pattern {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub block: u32,
-    /// Whether it is there transposed.
+    /// Whether it is stored transposed.
     pub transposed: bool,
 }
 
 impl Pattern {
-    /// Pattern for a matrix of n rows of blocks, with blocks at these rows and columns, each once
-    /// or several times, in either triangle; `None` if the factor would have more than so many
-    /// blocks below its diagonal.
+    /// Pattern for a matrix of n rows of blocks, with blocks at these rows and columns, in either
+    /// triangle and possibly repeated; `None` if the factor would have more than `most` blocks
+    /// below its diagonal.
     pub fn new(n: usize, pairs: impl Iterator<Item = [u32; 2]>, most: usize) -> Option<Self> {
         let mut meets = vec![vec![]; n];
         for [i, j] in pairs.filter(|[i, j]| i != j) {
@@ -82,7 +81,7 @@ impl Pattern {
         lengths.map(|m| 0.5 * m * (m + 3.0)).sum()
     }
 
-    /// Place of the block in row i and column j of the matrix, which is one of its pairs.
+    /// Place of the block in row i and column j of the matrix, which must be one of its pairs.
     pub fn place(&self, i: u32, j: u32) -> Place {
         let [row, column] = [i, j].map(|i| self.ranks[i as usize]);
         let (low, high) = (row.min(column), row.max(column));
@@ -109,7 +108,8 @@ fn columns(order: &[u32], meets: &[Vec<u32>]) -> (Vec<u32>, Vec<Vec<u32>>) {
         ranks[*row as usize] = rank;
     }
     let mut columns: Vec<Vec<u32>> = Vec::with_capacity(n);
-    // What a column hands on to that of its first row, its parent.
+    // Children of each column in the elimination tree: a column passes its rows to its parent, that
+    // of its first row.
     let mut children: Vec<Vec<u32>> = vec![vec![]; n];
     let mut seen = vec![u32::MAX; n];
     for (row, rank) in order.iter().zip(0u32..) {
@@ -133,8 +133,8 @@ fn columns(order: &[u32], meets: &[Vec<u32>]) -> (Vec<u32>, Vec<Vec<u32>>) {
     (ranks, columns)
 }
 
-/// Columns in an order that changes nothing but where they lie: those of which one is made come
-/// just before it.
+/// Columns in an order of the elimination tree with the children of each just before it. It changes
+/// nothing but the places of columns in memory.
 fn children_first(columns: &[Vec<u32>]) -> Vec<u32> {
     let mut children = vec![vec![]; columns.len()];
     let mut stack = vec![];
@@ -144,7 +144,7 @@ fn children_first(columns: &[Vec<u32>]) -> Vec<u32> {
             None => stack.push(column as u32),
         }
     }
-    // Parents before children, and turned round at the end.
+    // Parents before children, then reversed.
     let mut order = vec![];
     while let Some(column) = stack.pop() {
         order.push(column);

@@ -3,12 +3,12 @@
 use super::*;
 use crate::random::SplitMix;
 
-/// A random number below another.
+/// A random number from 0 to n - 1.
 fn below(n: usize, random: &mut SplitMix) -> usize {
     random.between(0.0, n as f64) as usize
 }
 
-/// A random matrix with blocks at some pairs, whose diagonal outweighs them, by rows.
+/// A random diagonally dominant matrix with blocks at some pairs, by rows.
 fn matrix<const B: usize>(n: usize, pairs: &[[u32; 2]], random: &mut SplitMix) -> Vec<Vec<f64>> {
     let dim = B * n;
     let mut a = vec![vec![0.0; dim]; dim];
@@ -30,7 +30,7 @@ fn matrix<const B: usize>(n: usize, pairs: &[[u32; 2]], random: &mut SplitMix) -
     a
 }
 
-/// Takes up a matrix.
+/// Copies a matrix into a factor.
 fn filled<const B: usize, const P: usize>(
     pattern: &Pattern,
     pairs: &[[u32; 2]],
@@ -110,7 +110,7 @@ fn grid(side: u32) -> Vec<[u32; 2]> {
 fn random_matrices_are_solved() {
     let mut random = SplitMix(11);
     for k in 0..60 {
-        // Some have a row that meets all others, and comes last.
+        // Some have a row that is linked to all others, and is ordered last.
         let hub = k % 6 == 5;
         let n = if hub { 60 } else { 1 + below(40, &mut random) };
         let links = below(3 * n, &mut random);
@@ -153,11 +153,11 @@ fn what_is_not_positive_definite_is_noticed() {
         let solved = residual::<3, 4>(36, &pairs, shift, &mut random);
         assert_eq!(solved.is_some(), shift == 0.0);
     }
-    // The last number too, after which there is none that could not be found.
+    // Also if only the last number fails.
     assert!(residual::<1, 1>(1, &[], 1.0, &mut random).is_none());
 }
 
-/// Products of an exact minimum degree order, pair by pair.
+/// Number of products by an exact minimum degree order, pair by pair.
 fn least_degree(n: usize, pairs: &[[u32; 2]]) -> f64 {
     let mut meets = vec![std::collections::BTreeSet::new(); n];
     for &[i, j] in pairs {
@@ -206,7 +206,7 @@ fn factors_are_about_as_sparse_as_by_exact_minimum_degree() {
         let found = pattern.products();
         println!("{n}: {found} products, {exact} by exact degrees");
         assert!(found < 1.15 * exact);
-        // What is too large is known before there is a list of it, and counted exactly.
+        // A factor that is too large is refused before its pattern is computed, by its exact size.
         let limited = |most| Pattern::new(n as usize, pairs.iter().copied(), most);
         assert!(limited(pattern.size()).is_some() && limited(pattern.size() - 1).is_none());
     }

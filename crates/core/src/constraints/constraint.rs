@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 
 use crate::error::{Error, positive};
 
-/// Nearer than this, in radii, to the centre of a circle or a sphere there is no way out of it to
-/// be told.
-const CENTER: f64 = 1e-12;
+/// Distance from the centre of a circle or a sphere, in radii, up to which the direction outwards
+/// is undefined.
+const CENTER_SHARE: f64 = 1e-12;
 
 /// A constraint on the positions of one or two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ pub enum Constraint {
         /// Radius (m).
         radius: f64,
     },
-    /// Two particles stay as far from one another: a rigid rod without mass.
+    /// Two particles keep their distance: a rigid rod without mass.
     Rod {
         /// Particle at one end.
         i: usize,
@@ -71,7 +71,7 @@ impl Constraint {
         }
     }
 
-    /// The same constraint with directions of length 1, or an error if its numbers make no sense.
+    /// The same constraint with directions of length 1, or an error if its numbers are invalid.
     pub(super) fn checked(self) -> Result<Self, Error> {
         match self {
             Self::Point { position, .. } => finite("a constraint's point", position)?,
@@ -102,8 +102,8 @@ impl Constraint {
         Ok(unit)
     }
 
-    /// Visits its equations, always as many, where its first particle is at x and moves with v;
-    /// those of a rod relative to its second particle.
+    /// Visits its equations, always the same number, where its first particle is at x with velocity
+    /// v; for a rod, relative to its second particle.
     pub(super) fn equations(
         &self,
         x: Vector3<f64>,
@@ -147,7 +147,7 @@ pub(super) struct Equation {
     pub gradient: Vector3<f64>,
     /// Error C (m).
     pub value: f64,
-    /// Change J' v of the gradient (m/s2).
+    /// Rate of change J' v of the gradient along the velocity (m/s2).
     pub bend: f64,
 }
 
@@ -164,7 +164,7 @@ impl Equation {
     /// |x| = radius
     fn distance(x: Vector3<f64>, v: Vector3<f64>, radius: f64) -> Self {
         let distance = x.norm();
-        let (gradient, bend) = if distance > CENTER * radius {
+        let (gradient, bend) = if distance > CENTER_SHARE * radius {
             let outwards = x / distance;
             let across = v - outwards * outwards.dot(&v);
             (outwards, across.norm_squared() / distance)
@@ -179,7 +179,7 @@ impl Equation {
     }
 }
 
-/// Two unit vectors, at right angles to a third and to one another.
+/// Two unit vectors, perpendicular to a third and to one another.
 fn normals(direction: Vector3<f64>) -> [Vector3<f64>; 2] {
     let mut axis = Vector3::zeros();
     axis[direction.iamin()] = 1.0;

@@ -1,6 +1,6 @@
-//! A Cholesky factorisation of A = J W J^T, for rows that do not depend on one another. Its order
-//! and pattern are found once: two rows meet where they move the same. A chain of n rods is
-//! factorised in time that grows as n.
+//! A Cholesky factorisation of A = J W J^T, for linearly independent rows. Its order and pattern
+//! are found once: an element of A is not zero if two rows move the same particle or body. A chain
+//! of n rods is factorised in time proportional to n.
 
 use std::fmt;
 use std::sync::Arc;
@@ -10,26 +10,27 @@ use nalgebra::Vector3;
 use super::row::Row;
 use crate::cholesky;
 
-/// Largest number of elements of A, and of its factor, for each row: what needs more is solved
-/// without either.
-const MOST: usize = 40;
+/// Largest number of elements of A, or of its factor, per row. Systems with more are solved without
+/// a factorisation.
+const MAX_ELEMENTS_PER_ROW: usize = 40;
 
-/// The least square of a diagonal element of the factor, which is 1 for a row that meets no other
-/// and 0 for one that depends on others.
-const INDEPENDENT: f64 = 1e-9;
+/// Least square of a diagonal element of the factor in independent rows. It is 1 for a row that
+/// shares nothing with others, and 0 for one that depends on others.
+const MIN_INDEPENDENT_SQUARE: f64 = 1e-9;
 
-/// Which elements of A are not zero.
+/// Pattern of the non-zero elements of A.
 pub(super) struct Pattern {
-    /// The rows that each one meets, of those after it; `None` if A or its factor would be too
-    /// large.
+    /// Pairs of rows that share something they move, the lower one first; `None` if A or its factor
+    /// would be too large.
     meeting: Option<(Vec<[u32; 2]>, cholesky::Pattern)>,
 }
 
 impl Pattern {
-    /// Pattern of rows with the places of what each moves, 0 where it moves less, of so many.
+    /// Pattern of rows, each with the places of all that it moves, or 0; there are `places` of
+    /// them.
     pub fn new(rows: &[[usize; 4]], places: usize) -> Self {
         let mut at_place = vec![vec![]; places];
-        let (mut meeting, most) = (vec![], MOST * rows.len());
+        let (mut meeting, most) = (vec![], MAX_ELEMENTS_PER_ROW * rows.len());
         for (r, moved) in rows.iter().enumerate() {
             let mut before = vec![];
             for place in moved.iter().filter(|place| **place != 0) {
@@ -66,7 +67,7 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// Room for a factor of that pattern; `None` if it would be too large.
+    /// Creates room for a factor of that pattern; `None` if it would be too large.
     pub fn new(pattern: &Arc<Pattern>) -> Option<Self> {
         let (meeting, symbolic) = pattern.meeting.as_ref()?;
         Some(Self {
@@ -84,8 +85,8 @@ impl Factor {
         Arc::ptr_eq(&self.pattern, pattern)
     }
 
-    /// Factorises A of these rows, with the inverse masses of what they move. Returns whether the
-    /// rows are independent.
+    /// Factorises A of these rows, with the inverse masses of all that they move. Returns whether
+    /// the rows are independent.
     pub fn factorise(&mut self, rows: &[Row], weights: &[Vector3<f64>]) -> bool {
         let Self {
             pattern,
@@ -104,7 +105,7 @@ impl Factor {
             let element = rows[*i as usize].element(&rows[*j as usize], weights);
             *numbers.block_mut(*place) = [[element]];
         }
-        numbers.factorise(pattern) && numbers.least_square() > INDEPENDENT
+        numbers.factorise(pattern) && numbers.least_square() > MIN_INDEPENDENT_SQUARE
     }
 
     /// Adds the solution of A x = r, with the residuals r of the rows, to their multipliers.

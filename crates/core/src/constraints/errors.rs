@@ -1,4 +1,4 @@
-//! How far constraints are from being met, and whether they can be met at all.
+//! Errors of constraints, and whether constraints can be met at all.
 
 use std::sync::Arc;
 
@@ -11,19 +11,19 @@ use super::solve::Scratch;
 use crate::error::{ConstraintName, Unmet};
 use crate::random::SplitMix;
 
-/// Largest number of Newton's steps towards positions that meet all constraints.
+/// Largest number of Newton steps towards positions that meet all constraints.
 const MAX_ITERATIONS: usize = 100;
 
-/// Share up to which a constraint counts as met by such positions, and from which on it cannot be
-/// met if no step leads nearer.
-const MET: f64 = 1e-9;
-const NOT_MET: f64 = 1e-6;
+/// Error, as a share, up to which a constraint counts as met by such positions.
+const MET_SHARE: f64 = 1e-9;
+/// Error, as a share, above which a constraint cannot be met if no step reduces it.
+const UNMET_SHARE: f64 = 1e-6;
 
 /// Largest displacement of Newton's method in one step, over the shortest length of a constraint.
 const MAX_DISPLACEMENT: f64 = 0.3;
 
-/// Displacement, over that length, of particles from places where Newton's method stays: what lies
-/// on a straight line knows of no way out of it.
+/// Random displacement, over that length, of particles at a point where Newton's method makes no
+/// progress, as on a straight line.
 const JITTER: f64 = 1e-2;
 
 impl Constraint {
@@ -54,7 +54,7 @@ impl Constraint {
 }
 
 impl Constraints {
-    /// The constraint that is farthest from being met at x, in a scene of that radius (m).
+    /// The constraint with the largest error at x, in a scene of that radius (m).
     pub fn worst(&self, x: &[f64], radius: f64) -> Option<Unmet> {
         let mut worst: Option<Unmet> = None;
         for (number, &constraint) in self.all.iter().enumerate() {
@@ -75,8 +75,8 @@ impl Constraints {
         worst
     }
 
-    /// A constraint that is not met by any positions near x (m), where particles without inverse
-    /// mass stay, if there is one. `None` too where constraints hold rigid bodies.
+    /// A constraint that no positions near x (m) can meet, if there is one; particles without
+    /// inverse mass are fixed. Always `None` if constraints hold rigid bodies.
     pub fn contradiction(
         &self,
         inverse_masses: &[f64],
@@ -104,13 +104,13 @@ impl Constraints {
     }
 
     /// Moves x towards positions that meet all constraints, by Newton's method with the smallest
-    /// displacement, weighted by the masses. Returns the worst constraint if it does not get there.
+    /// displacement, weighted by the masses. Returns the worst constraint if that fails.
     fn approach(&self, inverse_masses: &[f64], x: &mut [f64], radius: f64) -> Option<Unmet> {
         let most = MAX_DISPLACEMENT * self.shortest(radius);
         let mut scratch = Scratch::default();
         for _ in 0..MAX_ITERATIONS {
             let worst = self.worst(x, radius)?;
-            if worst.share <= MET || worst.share.is_nan() {
+            if worst.share <= MET_SHARE || worst.share.is_nan() {
                 return None;
             }
             self.displace(inverse_masses, x, &mut scratch);
@@ -125,11 +125,11 @@ impl Constraints {
                 }
             }
         }
-        self.worst(x, radius).filter(|worst| worst.share > NOT_MET)
+        self.worst(x, radius)
+            .filter(|worst| worst.share > UNMET_SHARE)
     }
 
-    /// Writes the displacements (m) of a step of Newton's method at x to the vectors of the
-    /// scratch.
+    /// Writes the displacements (m) of a Newton step at x to the vectors of the scratch.
     fn displace(&self, inverse_masses: &[f64], x: &[f64], scratch: &mut Scratch) {
         scratch.clear();
         for moved in &self.moved {
@@ -148,7 +148,7 @@ impl Constraints {
                 let mut row = Row::default();
                 row.add(first.place, equation.gradient);
                 row.add(second.place, -equation.gradient);
-                row.want(-equation.value, &scratch.weights);
+                row.set_target(-equation.value, &scratch.weights);
                 scratch.rows.push(row);
             });
         }
@@ -156,7 +156,7 @@ impl Constraints {
         scratch.spread();
     }
 
-    /// The place of the first particle of a constraint, relative to its second one if it has one.
+    /// Position of the first particle of a constraint, relative to the second one if it has one.
     pub(super) fn relative(&self, number: usize, x: &[f64]) -> Vector3<f64> {
         let (first, second) = self.all[number].ends();
         let from = second.map_or_else(Vector3::zeros, |j| vector(x, j));

@@ -1,12 +1,12 @@
-//! Scratch that evaluations of the same constraints borrow, on any thread.
+//! Scratch for evaluations of the same constraints, on any thread.
 
 use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::solve::Scratch;
 
-/// Scratch for one evaluation at a time; others that run meanwhile bring their own. It is no part
-/// of the value of what owns it: a clone has scratch of the same size.
+/// Scratch for one evaluation at a time; concurrent ones use fresh scratch. It is not part of its
+/// owner's value: a clone has new scratch of the same size.
 #[derive(Default)]
 pub(super) struct Pool(Mutex<Scratch>);
 
@@ -15,7 +15,7 @@ impl Pool {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Makes room for so many equations, and so many things that they move.
+    /// Makes room for `rows` equations, which move `moved` particles and rotations.
     pub fn reserve(&mut self, rows: usize, moved: usize) {
         self.lock().reserve(rows, moved);
     }

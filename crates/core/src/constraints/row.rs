@@ -1,16 +1,16 @@
-//! A row of J, with its numbers of the vectors of a solve.
+//! A row of J, with its elements of the vectors in a solution.
 
 use nalgebra::Vector3;
 
 /// A row of J, scaled so that the diagonal of J W J^T is 1.
 #[derive(Debug, Default)]
 pub(super) struct Row {
-    /// Places of what it moves, and its parts there.
+    /// Places of the particles and rotations that it moves, and its parts there.
     parts: [(usize, Vector3<f64>); 4],
     used: usize,
     scale: f64,
-    /// What it wants of J W J^T lambda.
-    pub wanted: f64,
+    /// Its element of J W J^T lambda in the solution.
+    pub target: f64,
     /// Multiplier lambda.
     pub multiplier: f64,
     /// Residual r = b - A lambda.
@@ -21,7 +21,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// Adds a part at a place, of which 0 moves nothing.
+    /// Adds a part at a place; place 0 moves nothing.
     pub fn add(&mut self, place: usize, part: Vector3<f64>) {
         if place == 0 {
             return;
@@ -36,7 +36,7 @@ impl Row {
         }
     }
 
-    /// Its parts, each with its place.
+    /// Its parts, with their places.
     fn parts(&self) -> &[(usize, Vector3<f64>)] {
         &self.parts[..self.used]
     }
@@ -67,9 +67,9 @@ impl Row {
         sum
     }
 
-    /// Sets what the row wants, and scales it. Where all that it moves has infinite mass, no force
-    /// can do what is wanted, and the row is left out.
-    pub fn want(&mut self, wanted: f64, weights: &[Vector3<f64>]) {
+    /// Sets the right-hand side of the row, and scales the row. If all that it moves has infinite
+    /// mass, no force can have the effect, and the row is left out.
+    pub fn set_target(&mut self, target: f64, weights: &[Vector3<f64>]) {
         let diagonal = self.element(self, weights);
         self.scale = if diagonal > 0.0 {
             1.0 / diagonal.sqrt()
@@ -79,10 +79,10 @@ impl Row {
         for (_, part) in &mut self.parts[..self.used] {
             *part *= self.scale;
         }
-        self.wanted = wanted * self.scale;
+        self.target = target * self.scale;
     }
 
-    /// Whether no force can do what is wanted.
+    /// Whether the row is left out, because no force has an effect.
     pub fn is_left_out(&self) -> bool {
         self.scale == 0.0
     }

@@ -1,4 +1,4 @@
-//! All constraints of a network, and the forces by which they hold its particles.
+//! All constraints of a network, and the forces by which they act on its particles.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -14,8 +14,8 @@ use super::turning::{Lever, Turning};
 use crate::error::{Error, positive};
 use crate::threads::each;
 
-/// A particle that is held, with the places of what moves it among all that is: its own motion or
-/// that of its body's centre, and the rotation of the body, or 0.
+/// A particle under a constraint, with the places of what moves it: the particle itself or its
+/// body's centre, and the rotation of the body, or 0.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held {
     particle: usize,
@@ -23,7 +23,7 @@ pub(super) struct Held {
     turn: usize,
 }
 
-/// What moves as one: a particle, or the rotation of a body. Place 0 is one that nothing moves.
+/// Unit of motion: a particle, or the rotation of a body. Place 0 stands for none.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Moved {
     Nothing,
@@ -35,20 +35,21 @@ pub(super) enum Moved {
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints {
     pub(super) all: Vec<Constraint>,
-    /// What constraints move: evaluations take time by its number, not by that of all particles.
+    /// Particles and rotations that constraints move: the time of an evaluation is proportional to
+    /// their number, not to that of all particles.
     pub(super) moved: Vec<Moved>,
-    /// Places of particles and of rotations among it.
+    /// Places of particles and of rotations in `moved`.
     pub(super) particles: BTreeMap<usize, usize>,
     pub(super) rotations: BTreeMap<usize, usize>,
-    /// The particles that each constraint holds.
+    /// The particles of each constraint.
     pub(super) ends: Vec<[Held; 2]>,
-    /// The constraint of each equation, and its number among those of the constraint.
+    /// The constraint of each equation, and its number within the constraint.
     pub(super) owners: Vec<(usize, usize)>,
-    /// Natural frequency (1/s) with which errors are taken back.
+    /// Natural frequency (1/s) with which errors decay.
     baumgarte_frequency: f64,
-    /// Which equations share what they move, once it is asked for.
+    /// Pattern of equations that move the same things, computed on first use.
     pub(super) pattern: OnceLock<Arc<Pattern>>,
-    /// Scratch of evaluations, no part of the value.
+    /// Scratch of evaluations, not part of the value.
     pub(super) scratch: Pool,
 }
 
@@ -69,8 +70,8 @@ impl Default for Constraints {
 }
 
 impl Constraints {
-    /// Adds a constraint whose particles exist. `carrier` gives the centre and the number of the
-    /// body that carries a particle.
+    /// Adds a constraint whose particles exist. `carrier` returns the centre and the number of the
+    /// body to which a particle belongs.
     pub fn add(
         &mut self,
         constraint: Constraint,
@@ -111,7 +112,7 @@ impl Constraints {
         Ok(())
     }
 
-    /// The same constraints, where other bodies carry what they hold.
+    /// The same constraints, after particles were assigned to other bodies.
     pub fn with_carriers(
         &self,
         carrier: impl Fn(usize) -> Option<(usize, usize)>,
@@ -131,12 +132,12 @@ impl Constraints {
         &self.all
     }
 
-    /// Natural frequency (1/s) with which errors are taken back.
+    /// Natural frequency (1/s) with which errors decay.
     pub fn baumgarte_frequency(&self) -> f64 {
         self.baumgarte_frequency
     }
 
-    /// Sets the natural frequency (1/s) with which errors are taken back.
+    /// Sets the natural frequency (1/s) with which errors decay.
     pub fn set_baumgarte_frequency(&mut self, w: f64) -> Result<(), Error> {
         positive("the feedback of constraints", w)?;
         self.baumgarte_frequency = w;
@@ -154,10 +155,10 @@ impl Constraints {
         largest
     }
 
-    /// Adds J^T lambda (N) to all other forces f: on pinned particles too. `motion` gives the
-    /// inverse mass (1/kg) of a particle that no body carries and its acceleration (m/s2) without
-    /// constraints, and `turning` how a body turns, both under the forces f. Returns whether the
-    /// constraints are too near to a singular state for exact multipliers.
+    /// Adds J^T lambda (N) to all other forces f, also on pinned particles. `motion` returns the
+    /// inverse mass (1/kg) of a particle on no body and its acceleration (m/s2) without
+    /// constraints, and `turning` the rotation of a body, both under the forces f. Returns whether
+    /// the constraints are too nearly singular for exact multipliers.
     pub fn add_forces(
         &self,
         motion: impl Fn(usize, &[f64]) -> (f64, Vector3<f64>),
@@ -224,7 +225,7 @@ impl Constraints {
                 }
                 let a = row.product(vectors);
                 let back = ks * equation.value + kd * gradient.dot(&v_relative);
-                row.want(-bend - a - back, weights);
+                row.set_target(-bend - a - back, weights);
             });
             let soft = scratch.solve(|| self.pattern.get_or_init(|| Arc::new(self.find_pattern())));
             let n = f.len() / 3;
@@ -241,7 +242,7 @@ impl Constraints {
         })
     }
 
-    /// What each equation moves.
+    /// Pattern of what each equation moves.
     pub(super) fn find_pattern(&self) -> Pattern {
         let rows = self.owners.iter().map(|(owner, _)| {
             let [a, b] = self.ends[*owner];

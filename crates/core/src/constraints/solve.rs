@@ -1,9 +1,9 @@
-//! A lambda = b with A = J W J^T. Many rows are solved by a sparse factorisation of A, unless it
-//! shows that rows depend on one another. Those, and few rows, are solved without A by conjugate
-//! residuals: conjugate gradients' sister, which takes the same products with A, and makes |b - A
-//! lambda| least at each step. Where A is singular it finds one of the solutions; where rows
-//! contradict one another there is none, and it finds what comes nearest, while conjugate gradients
-//! would go to infinity. Rows are scaled so that the diagonal of A is 1.
+//! Solves A lambda = b with A = J W J^T. Many rows are solved by a sparse factorisation of A,
+//! unless it shows that they are linearly dependent. Dependent rows and few rows are solved without
+//! A by conjugate residuals: a relative of conjugate gradients with the same products with A, which
+//! minimises |b - A lambda| in each step. If A is singular it finds one of the solutions; if rows
+//! contradict one another, there is none, and it finds the closest approximation, while conjugate
+//! gradients would diverge. Rows are scaled so that the diagonal of A is 1.
 
 use std::sync::Arc;
 
@@ -14,21 +14,21 @@ use super::row::Row;
 use super::turning::Turning;
 use crate::threads::each;
 
-/// Number of rows from which on a factorisation takes less time than conjugate residuals.
-const MANY: usize = 12;
-/// Residual at which the iteration ends, relative to b: rounding leaves as much.
+/// Number of rows from which on a factorisation is faster than conjugate residuals.
+const MIN_DIRECT_ROWS: usize = 12;
+/// Residual relative to b at which the iteration ends: that of rounding.
 const TOLERANCE: f64 = 1e-15;
-/// Largest number of iterations per row: one would be enough without rounding.
-const MOST: usize = 4;
-/// Largest b . lambda over b . b that is taken as it is: the least eigenvalue of A is then about
-/// the inverse of that, and what it stands for is hardly held, whatever the force.
-const NEARLY_SINGULAR: f64 = 1e5;
-/// Most of what is then added to the diagonal of A, when that number is ten times as large. A chain
-/// of two rods of 1 m, straight and level between two pins, sags by about a millimetre.
-const SOFTNESS: f64 = 1e-8;
+/// Largest number of iterations per row; without rounding, one would be enough.
+const MAX_ITERATIONS_PER_ROW: usize = 4;
+/// Largest allowed b . lambda over b . b, about the inverse of the least eigenvalue of A: along its
+/// eigenvector, even large forces have hardly any effect.
+const MAX_AMPLIFICATION: f64 = 1e5;
+/// Largest addition to the diagonal of A, when that ratio is ten times as large. A chain of two
+/// rods of 1 m, straight and level between two pins, then sags by about a millimetre.
+const MAX_SOFTNESS: f64 = 1e-8;
 
-/// Scratch of an evaluation: for each place of what moves its inverse mass (1/kg) or those of a
-/// rotation (1/kg m2), a vector, and how it turns, if it is a body; and the rows.
+/// Scratch of an evaluation: for each particle or rotation that moves, its inverse mass (1/kg) or
+/// inverse moments of inertia (1/kg m2), a vector, and the state of the body; and the rows.
 #[derive(Default)]
 pub(super) struct Scratch {
     pub weights: Vec<Vector3<f64>>,
@@ -39,14 +39,14 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// Forgets what moved in the last evaluation, but keeps its room.
+    /// Clears the data of the last evaluation, but keeps its memory.
     pub fn clear(&mut self) {
         self.weights.clear();
         self.vectors.clear();
         self.turnings.clear();
     }
 
-    /// Makes room for so many rows, and so many things that they move.
+    /// Makes room for a number of rows, and of particles and rotations that they move.
     pub fn reserve(&mut self, rows: usize, moved: usize) {
         self.clear();
         self.rows.clear();
@@ -56,32 +56,33 @@ impl Scratch {
         self.rows.reserve(rows);
     }
 
-    /// Finds the multipliers. Returns whether A is nearly singular, and was made softer.
+    /// Finds the multipliers. Returns whether A is nearly singular, so that its diagonal was
+    /// increased.
     pub fn solve<'a>(&mut self, pattern: impl Fn() -> &'a Arc<Pattern>) -> bool {
-        if self.rows.len() < MANY || !self.solve_directly(pattern()) {
+        if self.rows.len() < MIN_DIRECT_ROWS || !self.solve_directly(pattern()) {
             self.iterate(0.0);
         }
         let (mut all, mut amplified) = (0.0, 0.0);
         for row in &self.rows {
-            all += row.wanted * row.wanted;
-            amplified += row.wanted * row.multiplier;
+            all += row.target * row.target;
+            amplified += row.target * row.multiplier;
         }
-        // It grows from nothing, so that forces are continuous.
-        let excess = (amplified / (NEARLY_SINGULAR * all) - 1.0) / 9.0;
+        // The addition starts at zero, so that forces are continuous.
+        let excess = (amplified / (MAX_AMPLIFICATION * all) - 1.0) / 9.0;
         let soft = excess > 0.0;
         if soft {
-            self.iterate(SOFTNESS * excess.min(1.0));
+            self.iterate(MAX_SOFTNESS * excess.min(1.0));
         }
         soft
     }
 
-    /// Writes W J^T lambda to the vectors: the changes that the multipliers make.
+    /// Writes W J^T lambda, the changes by the multipliers, to the vectors.
     pub fn spread(&mut self) {
         transpose(&self.rows, |row| row.multiplier, &mut self.vectors);
         weigh(&self.weights, &mut self.vectors);
     }
 
-    /// Whether a factorisation of A finds the multipliers.
+    /// Solves by a factorisation of A. Returns whether that succeeded.
     fn solve_directly(&mut self, pattern: &Arc<Pattern>) -> bool {
         if !self.factor.as_ref().is_some_and(|f| f.is_of(pattern)) {
             self.factor = Factor::new(pattern);
@@ -92,9 +93,9 @@ impl Scratch {
         if !factor.factorise(&self.rows, &self.weights) {
             return false;
         }
-        // A solve, and a second one for what rounding left of the first.
+        // One solve, and another one for the residual that rounding leaves.
         for row in &mut self.rows {
-            (row.multiplier, row.residual) = (0.0, row.wanted);
+            (row.multiplier, row.residual) = (0.0, row.target);
         }
         for _ in 0..2 {
             factor.solve(&mut self.rows);
@@ -102,13 +103,13 @@ impl Scratch {
             weigh(&self.weights, &mut self.vectors);
             let vectors = &self.vectors;
             each(&mut self.rows, &|_, row| {
-                row.residual = row.wanted - row.product(vectors);
+                row.residual = row.target - row.product(vectors);
             });
         }
         true
     }
 
-    /// Finds the multipliers by conjugate residuals, beginning with zero, with `softness` added to
+    /// Finds the multipliers by conjugate residuals, starting from zero, with `softness` added to
     /// the diagonal of A.
     fn iterate(&mut self, softness: f64) {
         let Self {
@@ -118,12 +119,12 @@ impl Scratch {
             ..
         } = self;
         for row in &mut *rows {
-            (row.multiplier, row.residual) = (0.0, row.wanted);
+            (row.multiplier, row.residual) = (0.0, row.target);
         }
         let all: f64 = rows.iter().map(|row| row.residual * row.residual).sum();
         let mut last = f64::INFINITY;
-        for _ in 0..MOST * rows.len() {
-            // u = W J^T r, and r . A r from it: never below zero.
+        for _ in 0..MAX_ITERATIONS_PER_ROW * rows.len() {
+            // u = W J^T r, and r . A r from it, which is never negative.
             transpose(rows, |row| row.residual, u);
             let mut rest = weigh(weights, u);
             if softness > 0.0 {
@@ -141,7 +142,7 @@ impl Scratch {
                 }
                 square += row.image * row.image;
             }
-            // Written so that NaN ends it.
+            // Written so that NaN ends the iteration.
             if !(rest > TOLERANCE * TOLERANCE * all && square > 0.0) {
                 return;
             }
@@ -154,7 +155,7 @@ impl Scratch {
     }
 }
 
-/// Writes J^T to out, times the vector whose numbers `of` reads off the rows.
+/// Writes J^T times a vector to `out`; `of` returns the vector's element of each row.
 fn transpose(rows: &[Row], of: impl Fn(&Row) -> f64, out: &mut [Vector3<f64>]) {
     out.fill(Vector3::zeros());
     for row in rows {

@@ -1,12 +1,12 @@
-//! How rigid bodies turn under the forces of constraints at their points.
+//! Rotation of rigid bodies under the forces of constraints at their points.
 
 use nalgebra::{Matrix3, Vector3};
 
-/// How a rigid body turns.
+/// Rotational state of a rigid body.
 pub(crate) struct Turning {
-    /// Place of its centre (m).
+    /// Position of its centre (m).
     pub center: Vector3<f64>,
-    /// From its principal axes to the world.
+    /// Rotation matrix from its principal axes to the world.
     pub rotation: Matrix3<f64>,
     /// Angular velocity (rad/s).
     pub spin: Vector3<f64>,

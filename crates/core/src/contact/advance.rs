@@ -1,67 +1,70 @@
-//! Continuous collision detection: whether two primitives whose points move linearly through a
-//! step stay apart, by conservative advancement (Li, Kaufman, Jiang, *Codimensional incremental
+//! Continuous collision detection: whether two primitives, whose points move linearly during a
+//! step, stay apart; by conservative advancement (Li, Kaufman, Jiang, *Codimensional incremental
 //! potential contact*, 2021, additive CCD).
 //!
-//! At a time t, the closest points give a plane between the primitives, with normal n. Points i of
-//! the first and j of the second are apart along n by
+//! At a time t, the closest points give a plane between the primitives, with normal n. The distance
+//! of point i of the first from point j of the second along n is
 //!
 //! ```text
 //! n . (x_i - x_j) + s n . (u_i - u_j)     at the time t + s,
 //! ```
 //!
-//! and the primitives, being convex, by at least the least of these. So nothing nears the gap until
-//! the first of them does: the pair is advanced to that time, where it gets a new plane. The bound
-//! of the paper puts the sum of both lengths for the product with n, and advances less; a pair that
-//! slides or parts needs one plane here. Whatever the closest points are, a plane that lies between
-//! the primitives proves that they are apart, so errors of the closest points do no harm.
+//! and that of the primitives, being convex, is at least the smallest of these. So the primitives
+//! cannot come as near as the gap before the first of these distances does: the pair is advanced to
+//! that time, where it gets a new plane. The bound of the paper uses the sum of the lengths of both
+//! displacements instead of the product with n, and advances less; a pair that slides or separates
+//! needs only one plane here. Any plane between the primitives proves that they are apart, even if
+//! the closest points are inaccurate.
 //!
-//! Where the far end of a long primitive moves much, it cuts every plane near the other primitive
-//! soon. So where planes advance little, the longer primitive is halved, or the step is, and halves
-//! whose boxes stay apart are left out.
+//! If the far end of a long primitive moves much, it soon crosses every plane near the other
+//! primitive. Therefore, if planes advance little, the longer primitive or the step is halved, and
+//! halves whose boxes stay apart are dropped.
 
 use crate::geometry::{Closest, PairKind, closest, weighted};
 use nalgebra::Vector3;
 
-/// Distance (m) below which two primitives count as touching.
-const LEAST: f64 = 1e-10;
+/// Distance (m) up to which two primitives count as touching.
+const MIN_DISTANCE: f64 = 1e-10;
 
-/// Share of the sum of the magnitudes of all coordinates below which a distance counts as rounding.
+/// Share of the sum of the magnitudes of all coordinates below which a distance may be a rounding
+/// error.
 const ROUNDING: f64 = 1e-13;
 
-/// Share of that sum by which rounding alone may change a distance.
-const ROUNDED: f64 = 1e-15;
+/// Share of the same sum by which rounding may change a distance.
+const ROUNDING_ERROR: f64 = 1e-15;
 
-/// Share of the gap, or of what a pair has above it if that is less, by which a hit stays farther
-/// apart than the gap; and share of its room that a pair may lose which begins nearer.
-const NEAR: f64 = 0.1;
+/// Share of the gap, or of a pair's distance above it if that is less, by which a hit may be
+/// farther apart than the gap; also the share of its room that a pair which begins nearer than the
+/// gap may lose.
+const NEAR_SHARE: f64 = 0.1;
 
-/// Number of planes after which the time reached so far is given.
-const PLANES: usize = 20_000;
+/// Largest number of planes for a pair. The search then returns the time reached so far.
+const MAX_PLANES: usize = 20_000;
 
-/// Number of planes after which a pair is halved, ...
-const FEW: usize = 256;
+/// Number of planes after which a pair is halved.
+const MAX_PLANES_OF_PAIR: usize = 256;
 
-/// ... and after which a half is.
-const FEWER: usize = 16;
+/// Number of planes after which a half is halved again.
+const MAX_PLANES_OF_PART: usize = 16;
 
 /// Share of a step at which a pair comes as near as `gap`, or `None` if it never does.
 ///
-/// The points (m) move linearly from `from` to `from + moves` (m). Of round primitives, `radius` is
-/// the sum of the radii (m), which `gap` (m, at least 0) includes. `None` is a certificate: the
-/// pair is farther apart than the gap at every time of the step. `Some(t)` is conservative: the
-/// pair is so until t, and then apart by the gap and at most a tenth of it, or a tenth of what it
-/// had above the gap at first; by more only if 20 000 planes do not decide. Both allow for 1e-10 m
-/// and about 1e-12 of the largest coordinate, more than the rounding here and in the sums `from +
-/// moves`.
+/// The points (m) move linearly from `from` to `from + moves` (m). For round primitives, `radius`
+/// is the sum of the radii (m), and included in `gap` (m, at least 0). `None` is a certificate that
+/// the pair is farther apart than the gap during the whole step. `Some(t)` is conservative: the
+/// pair is farther apart than the gap until t, and by at most a tenth of the gap or of its distance
+/// above the gap at first; only if 20 000 planes do not decide, it may be farther apart at t. Both
+/// allow for 1e-10 m and about 1e-12 of the largest coordinate, more than rounding here and in the
+/// sums `from + moves`.
 ///
 /// A pair that begins nearer than the gap is hit at once, `Some(0.0)`, if its closest points
-/// approach. If they do not, the pair may part, slide and turn: it is only hit where it would lose
-/// a tenth of its room, the distance that it has above the radius. A pair that begins touching is
-/// hit whatever its motion, because the sides on which its primitives belong are not known; of
-/// round primitives they are, so that these may part, and lose up to 3e-10 m where they turn.
+/// approach. Otherwise it may separate, slide and turn: it is only hit if it would lose a tenth of
+/// its room, the distance above the radius. A pair that begins touching is hit whatever its motion,
+/// because it is unknown on which sides its primitives belong. For round primitives that is known,
+/// so they may separate, and lose up to 3e-10 m if they turn.
 ///
-/// Edges and triangles may be degenerate. A [`PairKind::VertexFloor`] is apart by the height of the
-/// vertex above the floor, with its sign; if it begins lower than the gap, it is hit if it sinks.
+/// Edges and triangles may be degenerate. The distance of a [`PairKind::VertexFloor`] is the signed
+/// height of the vertex above the floor; if it begins below the gap, it is hit if the vertex sinks.
 /// Numbers that are not finite are a hit.
 #[must_use]
 pub fn time_of_impact(
@@ -86,63 +89,64 @@ pub(super) fn time_and_planes(
     if !magnitude.is_finite() {
         return (Some(0.0), 0);
     }
-    let tolerance = LEAST + ROUNDING * magnitude;
-    // Approach (m) in the step from which on a pair is hit that begins nearer than the gap.
-    let approach = |room: f64| tolerance.min(NEAR * room.max(0.0)) + ROUNDED * magnitude;
+    let tolerance = MIN_DISTANCE + ROUNDING * magnitude;
+    // Approach (m) during the step above which a pair that begins nearer than the gap is hit.
+    let approach =
+        |room: f64| tolerance.min(NEAR_SHARE * room.max(0.0)) + ROUNDING_ERROR * magnitude;
     if kind == PairKind::VertexFloor {
         let (height, rise) = (from[0].y - from[1].y, moves[0].y - moves[1].y);
         let time = sinks_to(gap, height, rise, tolerance, approach(height - radius));
         return (time, 0);
     }
-    // As point 0 sees it: exact where coordinates are large and distances small.
+    // Relative to point 0, so that large coordinates do not spoil small distances.
     let (from, moves) = (from.map(|x| x - from[0]), moves.map(|u| u - moves[0]));
     let plane = Plane::between(kind, &from, &moves);
     let mut least = gap;
     if plane.apart <= gap + 2.0 * tolerance {
         let room = plane.apart - radius;
-        let touches = NEAR * room <= 2.0 * tolerance;
+        let touches = NEAR_SHARE * room <= 2.0 * tolerance;
         if plane.rate < -approach(room) || (touches && radius == 0.0) {
             return (Some(0.0), 1);
         }
-        least = plane.apart - (NEAR * room).max(2.0 * tolerance);
+        least = plane.apart - (NEAR_SHARE * room).max(2.0 * tolerance);
     }
-    let near = least + tolerance + NEAR * gap.min(plane.apart - least);
+    let near = least + tolerance + NEAR_SHARE * gap.min(plane.apart - least);
     let mut search = Search {
         kind,
         gaps: [least, near],
-        planes: PLANES,
+        planes: MAX_PLANES,
     };
-    let time = search.first_hit(&from, &moves, plane, FEW);
-    (time, PLANES - search.planes)
+    let time = search.first_hit(&from, &moves, plane, MAX_PLANES_OF_PAIR);
+    (time, MAX_PLANES - search.planes)
 }
 
-/// Search for the first time at which a pair, or a part of it, comes near.
+/// Search for the first time at which a pair, or a part of it, is hit.
 struct Search {
     kind: PairKind,
-    /// Distance (m) that is kept, and that which counts as near.
+    /// Distance (m) that is kept, and distance at which a pair counts as hit.
     gaps: [f64; 2],
-    /// Number of planes that are left.
+    /// Number of planes left.
     planes: usize,
 }
 
 impl Search {
-    /// Share of the motion at which primitives come near that have this plane between them at
-    /// first: by at most `few` planes, and then by their halves.
+    /// Share of the motion at which a pair is hit, whose first plane is given: by at most `most`
+    /// planes, and then by halves.
     fn first_hit(
         &mut self,
         from: &[Vector3<f64>; 4],
         moves: &[Vector3<f64>; 4],
         mut plane: Plane,
-        few: usize,
+        most: usize,
     ) -> Option<f64> {
         let [least, near] = self.gaps;
         let (mut t, mut at) = (0.0, *from);
-        for _ in 0..few.min(self.planes) {
+        for _ in 0..most.min(self.planes) {
             self.planes -= 1;
             if plane.apart <= near {
                 return Some(t);
             }
-            t += plane.holds_for(least + NEAR * (near - least));
+            t += plane.holds_for(least + NEAR_SHARE * (near - least));
             if t >= 1.0 {
                 return None;
             }
@@ -171,7 +175,7 @@ impl Search {
                 half[end] = 0.5 * (points[end] + points[other]);
                 half
             };
-            // The second half may only be hit before the first.
+            // The second half matters only if it is hit before the first.
             let until = hit.unwrap_or(1.0);
             let moves = halved(&moves).map(|u| u * until);
             let earlier = self.hit_of_part(&halved(&at), &moves);
@@ -180,13 +184,13 @@ impl Search {
         hit.map(|hit| t + left * hit)
     }
 
-    /// Share of a part's motion at which it comes near.
+    /// Share of a part's motion at which it is hit.
     fn hit_of_part(&mut self, from: &[Vector3<f64>; 4], moves: &[Vector3<f64>; 4]) -> Option<f64> {
         if are_apart(self.kind, from, moves, self.gaps[1]) {
             return None;
         }
         let plane = Plane::between(self.kind, from, moves);
-        self.first_hit(from, moves, plane, FEWER)
+        self.first_hit(from, moves, plane, MAX_PLANES_OF_PART)
     }
 }
 
@@ -206,23 +210,24 @@ fn magnitude(points: &[Vector3<f64>; 4]) -> f64 {
     points.iter().map(|x| x.abs().sum()).sum()
 }
 
-/// Distance (m) by which rounding alone may change that of primitives with these points.
-pub(super) fn rounded(points: &[Vector3<f64>; 4]) -> f64 {
-    ROUNDED * magnitude(points)
+/// Upper bound of the rounding error (m) of a distance between primitives with these points.
+pub(super) fn rounding_error(points: &[Vector3<f64>; 4]) -> f64 {
+    ROUNDING_ERROR * magnitude(points)
 }
 
-/// Share of a step at which a vertex, whose height above a floor and whose rise in the step are
-/// given (m), comes as low as `gap` (m). One that begins lower is hit if it sinks by `approach`.
+/// Share of a step at which a vertex sinks to `gap` (m), given its height above a floor and its
+/// rise in the step (m). One that begins lower is hit if it sinks by `approach` (m).
 fn sinks_to(gap: f64, height: f64, rise: f64, tolerance: f64, approach: f64) -> Option<f64> {
     let above = height - gap;
     if above <= 2.0 * tolerance {
         return (rise < -approach).then_some(0.0);
     }
-    let near = NEAR * (tolerance + NEAR * gap.min(above));
+    let near = NEAR_SHARE * (tolerance + NEAR_SHARE * gap.min(above));
     (above + rise < near).then(|| (above - near) / -rise)
 }
 
-/// Whether the boxes of two primitives, as point 0 sees them move, are farther apart than a gap.
+/// Whether the boxes of two primitives in motion, relative to point 0, are farther apart than a
+/// gap.
 pub(super) fn are_apart(
     kind: PairKind,
     from: &[Vector3<f64>; 4],
@@ -251,16 +256,16 @@ pub(super) fn are_apart(
     })
 }
 
-/// Plane between two primitives, across their closest points.
+/// Plane between two primitives, perpendicular to the line through their closest points.
 struct Plane {
-    /// Distances along the normal of each point of the first primitive from each of the second
+    /// Distance along the normal of each point of the first primitive from each point of the second
     /// (m).
     distances: [f64; 4],
-    /// Their changes in the whole step (m).
+    /// Changes of these distances in the whole step (m).
     rates: [f64; 4],
-    /// Least of the distances (m), by which the primitives are apart.
+    /// Smallest of these distances (m), a lower bound of that of the primitives.
     apart: f64,
-    /// Change in the whole step of the distance of the points that are closest now (m).
+    /// Change of the distance of the closest points in the whole step (m).
     rate: f64,
 }
 
@@ -268,7 +273,7 @@ impl Plane {
     fn between(kind: PairKind, at: &[Vector3<f64>; 4], moves: &[Vector3<f64>; 4]) -> Self {
         let Closest { weights, offset } = closest(kind, at);
         let distance = offset.norm();
-        let normal = if distance > LEAST {
+        let normal = if distance > MIN_DISTANCE {
             offset / distance
         } else {
             Vector3::zeros()
@@ -286,8 +291,8 @@ impl Plane {
         }
     }
 
-    /// Share of the step from now on for which the primitives are farther apart than `least` (m)
-    /// along the normal; infinite if that does not end.
+    /// Share of the step from now on during which the distance along the normal stays above `least`
+    /// (m); infinite if it always does.
     fn holds_for(&self, least: f64) -> f64 {
         let mut share = f64::INFINITY;
         for (apart, rate) in self.distances.iter().zip(&self.rates) {

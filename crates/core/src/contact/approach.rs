@@ -1,11 +1,11 @@
 //! First contact of a particle with an obstacle within a step.
 //!
 //! The particle follows a cubic, the obstacle its path. On an interval of the step, the distance is
-//! bounded from below: by the plane across the shortest line to a convex shape in the middle of the
-//! interval, and by the greatest speed of one past the other. Intervals on which the bound is not
-//! above 0 are halved, the earlier half first (conservative advancement: Mirtich, *Impulse-based
-//! dynamic simulation of rigid body systems*, 1996). No contact is missed, however fast or thin the
-//! obstacle.
+//! bounded from below: by the largest relative speed and, for a convex shape, by the plane
+//! perpendicular to the shortest line in the middle of the interval. Intervals whose bound is not
+//! above 0 are halved, and the earlier half is searched first (conservative advancement: Mirtich,
+//! *Impulse-based dynamic simulation of rigid body systems*, 1996). No contact is missed, however
+//! fast or thin the obstacle is.
 
 use nalgebra::Vector3;
 
@@ -13,26 +13,26 @@ use super::obstacle::Obstacle;
 use super::rebound::Course;
 use crate::geometry::nearest::Separation;
 
-/// Share of the step below which an interval is not halved.
-const FINEST: f64 = 1e-7;
+/// Length below which an interval is not halved, as a share of the step.
+const MIN_INTERVAL: f64 = 1e-7;
 
-/// Most intervals that are looked at: what is not decided by then counts as contact.
-const MOST_INTERVALS: usize = 10_000;
+/// Largest number of intervals in a search: if it does not decide, that counts as contact.
+const MAX_INTERVALS: usize = 10_000;
 
-/// Most times that an interval is halved.
-const MOST_HALVINGS: usize = 64;
+/// Largest number of halvings of an interval.
+const MAX_HALVINGS: usize = 64;
 
-/// Steps of Newton's method from an interval to the contact in it.
+/// Number of Newton steps from an interval to the contact in it.
 const NEWTON_STEPS: usize = 8;
 
-/// A particle and an obstacle in a step.
+/// Particle and obstacle during a step.
 pub(crate) struct Approach<'a> {
     obstacle: &'a Obstacle,
     course: &'a Course,
     /// Time at the beginning of the step (s).
     t: f64,
-    /// Bounds on the first and the second derivative by the share of the step of the particle's
-    /// position as the obstacle sees it (m).
+    /// Bounds of the first and the second derivative of the particle's position relative to the
+    /// obstacle, by the share of the step (m).
     speed: f64,
     bend: f64,
 }
@@ -68,20 +68,20 @@ impl<'a> Approach<'a> {
         }
     }
 
-    /// Position of the particle at a share of the step, seen from the obstacle's place before it
+    /// Position of the particle at a share of the step, in the obstacle's own frame, before it
     /// turned.
     fn seen(&self, share: f64) -> Vector3<f64> {
         let pose = self.obstacle.at(self.t + share * self.course.h);
         pose.inwards(self.course.position(share) - pose.place.position)
     }
 
-    /// Separation at a share of the step, seen by the obstacle before it turned.
+    /// Separation at a share of the step, in the obstacle's own frame.
     pub fn separation(&self, share: f64) -> Separation {
         self.obstacle.shape.separation(self.seen(share))
     }
 
-    /// Point of the surface nearest to the particle at a share of the step, and the normal, as the
-    /// obstacle saw them before it turned.
+    /// Point of the surface nearest to the particle at a share of the step, and the normal there,
+    /// in the obstacle's own frame.
     pub fn touched(&self, share: f64) -> (Vector3<f64>, Vector3<f64>) {
         let seen = self.seen(share);
         let Separation { distance, normal } = self.obstacle.shape.separation(seen);
@@ -103,22 +103,22 @@ impl<'a> Approach<'a> {
         least.max(plane)
     }
 
-    /// Share of the step, from `from` on, at which the particle is first within the obstacle by
-    /// `depth` (m), if it ever is.
+    /// First share of the step, from `from` on, at which the particle is within the obstacle by
+    /// `depth` (m), if there is one.
     pub fn first(&self, from: f64, depth: f64) -> Option<f64> {
         let may_touch = |interval| self.least(interval) + depth <= 0.0;
-        let found = earliest([from, 1.0], FINEST, may_touch)?;
+        let found = earliest([from, 1.0], MIN_INTERVAL, may_touch)?;
         Some(self.refine(found, depth))
     }
 
-    /// Share of the step near another one at which the depth is reached.
+    /// Share of the step near a given one at which the depth is reached.
     fn refine(&self, share: f64, depth: f64) -> f64 {
         let distance = |share: f64| self.separation(share).distance + depth;
         let mut now = share;
         for _ in 0..NEWTON_STEPS {
-            let (here, there) = (distance(now), distance(now + FINEST));
-            let next = now - here * FINEST / (there - here);
-            if !(next - share).is_finite() || (next - share).abs() > 4.0 * FINEST {
+            let (here, there) = (distance(now), distance(now + MIN_INTERVAL));
+            let next = now - here * MIN_INTERVAL / (there - here);
+            if !(next - share).is_finite() || (next - share).abs() > 4.0 * MIN_INTERVAL {
                 return share;
             }
             let is_found = (next - now).abs() < f64::EPSILON;
@@ -131,17 +131,17 @@ impl<'a> Approach<'a> {
     }
 }
 
-/// Beginning of the first part, shorter than `finest`, of an interval in which something may
-/// happen: intervals in which it may are halved.
+/// Beginning of the first part of an interval, shorter than `finest`, in which an event may happen:
+/// intervals in which it may are halved.
 pub(crate) fn earliest(
     whole: [f64; 2],
     finest: f64,
     may_happen: impl Fn([f64; 2]) -> bool,
 ) -> Option<f64> {
-    // Each halving leaves one more.
-    let mut left = [whole; MOST_HALVINGS];
+    // Each halving adds one interval.
+    let mut left = [whole; MAX_HALVINGS];
     let mut count = 1;
-    for _ in 0..MOST_INTERVALS {
+    for _ in 0..MAX_INTERVALS {
         if count == 0 {
             return None;
         }
@@ -150,7 +150,7 @@ pub(crate) fn earliest(
         if !may_happen([a, b]) {
             continue;
         }
-        if b - a < finest || count + 2 > MOST_HALVINGS {
+        if b - a < finest || count + 2 > MAX_HALVINGS {
             return Some(a);
         }
         let middle = 0.5 * (a + b);
@@ -161,9 +161,9 @@ pub(crate) fn earliest(
 }
 
 impl Course {
-    /// Bounds on the first and the second derivative of the position by the share of the step (m).
+    /// Bounds of the first and the second derivative of the position by the share of the step (m).
     pub fn bounds(&self) -> [f64; 2] {
-        // Points of the polynomial's Bézier form, whose convex hull it stays in.
+        // Control points of the polynomial's Bézier form, which stays within their convex hull.
         let [a, d] = self.x;
         let [b, c] = [
             a + self.v[0] * (self.h / 3.0),
@@ -178,7 +178,7 @@ impl Course {
     }
 
     /// Distance (m) from the middle of the chord within which the whole course stays, with room for
-    /// one that is not quite the cubic.
+    /// a polynomial that is not quite a cubic.
     pub fn reach(&self) -> f64 {
         let chord = self.x[1] - self.x[0];
         let bulges = self.v.map(|v| (v * self.h - chord).norm());
@@ -193,12 +193,12 @@ mod tests {
     use crate::path::Path;
     use crate::random::SplitMix;
 
-    /// Random vector whose coordinates are at most so large.
+    /// Random vector whose coordinates are at most `most` in magnitude.
     fn vector(random: &mut SplitMix, most: f64) -> Vector3<f64> {
         Vector3::from_fn(|_, _| random.between(-most, most))
     }
 
-    /// Small, thin, fast and turning obstacles against what a fine sampling of the distance finds.
+    /// Small, thin, fast and turning obstacles, compared with a fine sampling of the distance.
     #[test]
     fn no_contact_is_missed() {
         let mut random = SplitMix(5);
@@ -258,7 +258,7 @@ mod tests {
                     assert!(found > 0.0 && approach.separation(found).distance.abs() < 1e-5);
                 }
                 (Some(_), None) => panic!("missed: {obstacle:?}"),
-                // What touches between two samples.
+                // Contacts between two samples.
                 (None, Some(found)) => {
                     assert!(approach.separation(found).distance.abs() < 1e-5);
                 }

@@ -1,4 +1,4 @@
-//! Courses of vertices, and trees of the boxes of items on them.
+//! Courses of vertices, and trees of the boxes around items on them.
 
 use nalgebra::Vector3;
 
@@ -7,20 +7,20 @@ use super::surface::Surface;
 use crate::geometry::bvh::{Aabb, Bvh, least, most};
 
 /// Straight courses of all vertices, from which they may stray by half of the reach.
-pub(super) struct Course<'a> {
+pub(super) struct Courses<'a> {
     /// Positions at the beginning (m).
     pub base: &'a [Vector3<f64>],
     /// Velocities (m/s).
     pub speeds: &'a [Vector3<f64>],
     /// Mean velocity (m/s).
     pub mean: Vector3<f64>,
-    /// Time for which the courses go on (s).
+    /// Duration of the courses (s).
     pub horizon: f64,
     /// Gap below which pairs are listed (m).
     pub reach: f64,
 }
 
-/// Boxes along the axes at the beginning of the courses and at their end.
+/// Axis-aligned boxes at the beginning and at the end of the courses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     low: [[f64; 3]; 2],
@@ -38,8 +38,8 @@ impl Bounds {
         self
     }
 
-    /// Bound on the squared distance of what is within: along an axis, a gap between points on
-    /// straight courses is least at an end.
+    /// Lower bound of the squared distance of contents of two boxes: along an axis, the gap between
+    /// points on straight courses is smallest at an end.
     pub fn apart(&self, other: &Self) -> f64 {
         let mut squared = 0.0;
         for k in 0..3 {
@@ -70,12 +70,12 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Takes the boxes of the items on their courses, if these are new.
+    /// Updates the boxes of the items whose courses are new.
     pub fn take(
         &mut self,
         items: &Items,
         surface: &Surface,
-        course: &Course,
+        course: &Courses,
         is_new: &impl Fn(&[u32]) -> bool,
     ) {
         let around = |i: u32| {
@@ -119,13 +119,13 @@ impl Tree {
         self.bvh.refit();
     }
 
-    /// Box of an item in the tree: around both its boxes, with half of the reach.
+    /// Box of an item in the tree: around its boxes at both ends, enlarged by half of the reach.
     fn leaf(&self, item: &Bounds) -> Aabb {
         let ([a, b], [c, d]) = (item.low, item.high);
         Aabb::around([a, b, c, d].map(Vector3::from)).grown(self.half)
     }
 
-    /// Visits the items with new courses, each with every item of another tree that its box meets.
+    /// Visits the pairs of an item with a new course and an item of another tree whose boxes meet.
     pub fn meet(
         &self,
         other: &Self,

@@ -1,16 +1,16 @@
-//! How far surfaces stray from the straight courses that the guard takes them on.
+//! Distance of surfaces from the straight courses that the collision safeguard takes them along.
 
 use nalgebra::Vector3;
 
 use super::layer::{ContactLayer, Scratch};
 
-/// Distance of a cubic course from its chord, over the length of the step times the difference of
-/// the velocity at an end and that of the chord, at most.
+/// Largest distance of a cubic course from its chord, over the step times the difference between
+/// the velocity at one end and that of the chord.
 const BULGE: f64 = 4.0 / 27.0;
 
-/// Largest distance of a vertex from its straight course in a step of h (s) from the state y0
-/// at time t (s) to y1, over the least thickness that is not 0. Vertices of rigid bodies do
-/// not count; without any other surface it is 0.
+/// Largest distance of a vertex from its straight course in a step of h (s) from the state y0 at
+/// time t (s) to y1, over the least thickness that is not 0. Vertices of rigid bodies do not count;
+/// 0 if there are no others.
 pub(crate) fn bulge(layer: &ContactLayer, (t, h): (f64, f64), [y0, y1]: [&[f64]; 2]) -> f64 {
     let (surface, obstacles) = (layer.surface(), layer.obstacles());
     let is_soft = |vertex: &&u32| surface.solid(**vertex).is_none();

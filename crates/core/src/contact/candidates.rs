@@ -1,51 +1,52 @@
 //! Pairs of primitives that may touch: a list that stays valid until a vertex moves farther than a
 //! margin.
 //!
-//! The list is made for straight courses, on which vertices go on with their velocities. It has all
+//! The list is made for straight courses along the velocities of the vertices. It contains all
 //! pairs that may touch while no vertex strays from its course by more than a margin, apart from a
-//! displacement that all share. It is a cache and nothing else: who asks it gets every pair that is
-//! near enough, in one canonical order, and perhaps others, whenever and from whatever states it
-//! was made.
+//! displacement that all share. It is only a cache: a query returns every pair that is near enough,
+//! in one canonical order, and perhaps others, no matter when and from which states the list was
+//! made.
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::boxes::Course;
+use super::boxes::Courses;
 use super::listing::{CHUNK, Candidate, Listed, Listing};
 use super::surface::Surface;
 use crate::threads::threads;
 
-/// How far a vertex may stray from its course, as a share of the largest thickness.
-const MARGIN: f64 = 0.4;
+/// Largest distance of a vertex from its course, as a share of the largest thickness.
+const MARGIN_SHARE: f64 = 0.4;
 
-/// How far the fastest vertex, relative to the mean, goes on the courses for which a list is made,
-/// as a share of the largest thickness.
-const LENGTH: f64 = 4.0;
+/// Length of the course of the fastest vertex, relative to the mean, as a share of the largest
+/// thickness.
+const LENGTH_SHARE: f64 = 4.0;
 
-/// Time for which a list is made, as a share of that for which the one before it held.
-const HOLDING: f64 = 1.5;
+/// Duration of a list, as a multiple of the time for which the previous one was valid.
+const HORIZON_RATIO: f64 = 1.5;
 
-/// Only the vertices that moved too far get new courses, if they are at most 1 / FEW of all.
-const FEW: usize = 8;
+/// Least number of vertices for each one that moved too far, with which only those get new courses.
+/// With fewer, the whole list is made again.
+const VERTICES_PER_RENEWED: usize = 8;
 
-/// Share of the margin from which on a vertex then gets a new course.
-const STRAY: f64 = 0.5;
+/// Distance, as a share of the margin, from which on a vertex then gets a new course.
+const STRAY_SHARE: f64 = 0.5;
 
-/// Longest time for which a list is made (s).
-const LONGEST: f64 = 1.0;
+/// Longest duration of a list (s).
+const MAX_HORIZON: f64 = 1.0;
 
-/// Motion of all vertices in straight lines between two times, which may be the same one.
+/// Linear motion of all vertices between two times, which may be equal.
 pub(super) struct Stretch<'a> {
     /// Times (s).
     pub times: [f64; 2],
     /// Positions at these times (m).
     pub ends: [&'a [Vector3<f64>]; 2],
-    /// Velocities (m/s), if they are known.
+    /// Velocities (m/s), if known.
     pub speeds: Option<&'a [Vector3<f64>]>,
 }
 
 impl Stretch<'_> {
-    /// Velocity of a vertex (m/s); 0 if it is not known.
+    /// Velocity of a vertex (m/s); 0 if unknown.
     fn speed(&self, i: usize) -> Vector3<f64> {
         let duration = self.times[1] - self.times[0];
         if duration > 0.0 {
@@ -59,7 +60,7 @@ impl Stretch<'_> {
 /// List of pairs.
 #[derive(Debug)]
 pub(super) struct Candidates {
-    /// [`MARGIN`] and [`LENGTH`].
+    /// [`MARGIN_SHARE`] and [`LENGTH_SHARE`].
     shares: [f64; 2],
     listing: Listing,
     pairs: Vec<Listed>,
@@ -72,20 +73,20 @@ pub(super) struct Candidates {
     mean: Vector3<f64>,
     /// Whether a vertex has a new course.
     renewed: Vec<bool>,
-    /// Time for which the courses go on (s).
+    /// Duration of the courses (s).
     horizon: f64,
-    /// Time for which the list before this one held (s).
+    /// Time for which the previous list was valid (s).
     held: f64,
-    /// Length of the last stretch that was not a point in time (s): the courses begin so long
-    /// before such a point, because what follows is likely the stretch around it.
+    /// Length of the last stretch of positive duration (s). Courses of a list for one time begin
+    /// this much earlier, because the next stretch is likely to enclose that time.
     back: f64,
-    /// How far a vertex may stray (m).
+    /// Largest distance of a vertex from its course (m).
     margin: f64,
-    /// Times since the beginning that are covered (s).
+    /// Times since the beginning of the courses that are covered (s).
     since: [f64; 2],
     /// Displacement that all vertices share at the first of them (m).
     shared: Vector3<f64>,
-    /// How far each vertex strays in them, and the most of that (m).
+    /// Distance of each vertex from its course at these times, and the largest of these (m).
     travel: Vec<f64>,
     farthest: f64,
     parallel: bool,
@@ -94,7 +95,7 @@ pub(super) struct Candidates {
 impl Default for Candidates {
     fn default() -> Self {
         Self {
-            shares: [MARGIN, LENGTH],
+            shares: [MARGIN_SHARE, LENGTH_SHARE],
             listing: Listing::default(),
             pairs: vec![],
             begin: 0.0,
@@ -104,7 +105,7 @@ impl Default for Candidates {
             renewed: vec![],
             shared: Vector3::zeros(),
             horizon: 0.0,
-            held: LONGEST,
+            held: MAX_HORIZON,
             back: 0.0,
             margin: 0.0,
             since: [0.0; 2],
@@ -116,13 +117,14 @@ impl Default for Candidates {
 }
 
 impl Candidates {
-    /// Gives the list other margins and lengths of courses than [`MARGIN`] and [`LENGTH`].
+    /// Sets other margins and lengths of courses than [`MARGIN_SHARE`] and [`LENGTH_SHARE`].
     #[cfg(test)]
     pub fn set_shares(&mut self, shares: [f64; 2]) {
         self.shares = shares;
     }
 
-    /// Makes sure that the list has every pair that comes nearer than its thickness in a stretch.
+    /// Updates the list so that it contains every pair that comes nearer than its thickness in a
+    /// stretch.
     pub fn cover(&mut self, surface: &Surface, stretch: &Stretch) {
         let [first, last] = stretch.times;
         if last > first {
@@ -143,8 +145,8 @@ impl Candidates {
         self.make(surface, stretch);
     }
 
-    /// Finds how far each vertex strays from its course in a stretch. A displacement that all
-    /// vertices share is none.
+    /// Finds the distance of each vertex from its course in a stretch, apart from a displacement
+    /// that all vertices share.
     fn measure(&mut self, stretch: &Stretch) {
         self.since = stretch.times.map(|t| t - self.begin);
         let [first, last] = self.since;
@@ -179,15 +181,15 @@ impl Candidates {
         }
     }
 
-    /// Gives new courses to the vertices that stray, if they are few, and lists their pairs anew.
-    /// Returns whether the list covers a stretch then.
+    /// Gives new courses to the vertices that stray, if they are few, and lists their pairs again.
+    /// Returns whether the list then covers the stretch.
     fn renew(&mut self, surface: &Surface, stretch: &Stretch) -> bool {
-        let stray = STRAY * self.margin;
+        let stray = STRAY_SHARE * self.margin;
         self.renewed.clear();
         self.renewed
             .extend(self.travel.iter().map(|travel| *travel > stray));
         let count = self.renewed.iter().filter(|is_new| **is_new).count();
-        if count * FEW > self.base.len() {
+        if count * VERTICES_PER_RENEWED > self.base.len() {
             return false;
         }
         let [first, _] = self.since;
@@ -204,7 +206,7 @@ impl Candidates {
         true
     }
 
-    /// Makes the list anew, for courses that begin with a stretch.
+    /// Makes a new list, for courses that begin with a stretch.
     fn make(&mut self, surface: &Surface, stretch: &Stretch) {
         let from = stretch.ends[0];
         let duration = stretch.times[1] - stretch.times[0];
@@ -220,17 +222,17 @@ impl Candidates {
         let speeds = self.speeds.iter().map(|v| (v - self.mean).norm_squared());
         let fastest = speeds.fold(0.0, f64::max).sqrt();
         let thickest = surface.thickest();
-        let horizon = (self.shares[1] * thickest / fastest).min(HOLDING * self.held);
-        self.horizon = horizon.min(LONGEST).max(stretch.times[1] - self.begin);
+        let horizon = (self.shares[1] * thickest / fastest).min(HORIZON_RATIO * self.held);
+        self.horizon = horizon.min(MAX_HORIZON).max(stretch.times[1] - self.begin);
         self.measure(stretch);
         self.margin = (self.shares[0] * thickest).max(2.0 * self.farthest);
         self.parallel = threads(surface.particles()) > 1;
         self.list(surface, false);
     }
 
-    /// Lists the pairs anew: all, or those of vertices with new courses.
+    /// Lists pairs again: all, or those of vertices with new courses.
     fn list(&mut self, surface: &Surface, some: bool) {
-        let course = Course {
+        let course = Courses {
             base: &self.base,
             speeds: &self.speeds,
             mean: self.mean,
@@ -242,14 +244,14 @@ impl Candidates {
             .list(surface, &course, renewed, self.parallel, &mut self.pairs);
     }
 
-    /// Whether a pair may come nearer than a gap beyond its thickness (m) in what was covered last.
+    /// Whether a pair may come nearer than its thickness and a gap (m) in the stretch covered last.
     fn is_near(&self, pair: &Listed, gap: f64) -> bool {
         let room = pair.gap(self.since) - gap;
         room < 2.0 * self.farthest && room < pair.candidate.approach(&self.travel)
     }
 
-    /// The pairs, in canonical order, that may come nearer than a gap beyond their thickness (m),
-    /// which is at most 0, in the stretch that was covered last.
+    /// The pairs, in canonical order, that may come nearer than their thickness and a gap (m),
+    /// which is at most 0, in the stretch covered last.
     pub fn near(&self, gap: f64) -> impl Iterator<Item = &Candidate> {
         let near = self
             .pairs
@@ -258,8 +260,8 @@ impl Candidates {
         near.map(|pair| &pair.candidate)
     }
 
-    /// Visits what `find` has found for these pairs, in their order. Where there are many vertices,
-    /// `find` is called by several threads.
+    /// Calls `find` for these pairs, and `visit` for its results in their order. With many
+    /// vertices, several threads call `find`.
     pub fn each<R: Send>(
         &self,
         gap: f64,

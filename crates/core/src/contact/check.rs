@@ -1,8 +1,8 @@
-//! The exact check of a state: surfaces that pass through one another.
+//! Exact check of a state for surfaces that cross.
 
 use std::fmt;
 
-use super::advance::rounded;
+use super::advance::rounding_error;
 use super::candidates::Stretch;
 use super::exact::crossings;
 use super::layer::{ContactLayer, Scratch};
@@ -11,15 +11,15 @@ use crate::error::Vertex;
 use crate::geometry::bvh::{Aabb, Bvh};
 use crate::geometry::{PairKind, closest};
 
-/// Numbers of pairs of boxes that may meet at the beginning: in all, or for each box, of which a
-/// cloth has some fifteen.
-const MOST_PAIRS: usize = 1_000_000;
-const PAIRS_OF_ONE: usize = 50;
+/// Number of pairs of boxes that may meet at the beginning in any surface.
+const MAX_PAIRS: usize = 1_000_000;
+/// Number of pairs of boxes per box that may meet at the beginning; cloth has some fifteen.
+const MAX_PAIRS_PER_BOX: usize = 50;
 
 /// Two primitives that have a point in common, by their vertices.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Crossed {
-    /// Vertices of the first primitive: an edge, or what is inside a round obstacle or a floor.
+    /// Vertices of the first primitive: an edge, or whatever is inside a round obstacle or a floor.
     pub first: Vec<Vertex>,
     /// Vertices of the second primitive: a triangle, a round obstacle or a floor.
     pub second: Vec<Vertex>,
@@ -46,10 +46,10 @@ impl fmt::Display for Crossed {
     }
 }
 
-/// The pairs of an edge and a triangle that have a point in common at time t (s), with
-/// particles at x (m), n x 3: exactly, by signs of determinants; and what is inside a round
-/// obstacle or a floor, to rounding. Obstacles among themselves are not looked at, nor bodies
-/// among themselves that do not touch.
+/// The pairs of an edge and a triangle that have a point in common at time t (s), with particles at
+/// x (m), n x 3, found exactly by signs of determinants; and the primitives inside a round obstacle
+/// or a floor, up to rounding. Pairs of obstacles are not checked, nor are pairs of bodies if
+/// bodies cannot touch one another.
 ///
 /// # Panics
 /// x has not three numbers for each particle.
@@ -61,8 +61,8 @@ pub fn crossed(layer: &ContactLayer, t: f64, x: &[f64]) -> Vec<Crossed> {
     layer.with_scratch(|scratch| crossed_with(layer, scratch, t, x))
 }
 
-/// Whether more primitives of a thickness (m) are at one place at time t (s), with particles at
-/// x (m), n x 3, than their pairs can be listed for: those whose boxes meet.
+/// Whether too many primitives of a thickness (m) are close together at time t (s), with particles
+/// at x (m), n x 3, to list their pairs: those whose boxes meet.
 pub(crate) fn is_crowded(layer: &ContactLayer, t: f64, x: &[f64], thickness: f64) -> bool {
     let surface = layer.surface();
     let mut places = vec![];
@@ -76,7 +76,7 @@ pub(crate) fn is_crowded(layer: &ContactLayer, t: f64, x: &[f64], thickness: f64
         .iter()
         .chain(&surface.obstacles.corners);
     let boxes: Vec<_> = corners.map(around).collect();
-    let most = MOST_PAIRS.max(PAIRS_OF_ONE * boxes.len());
+    let most = MAX_PAIRS.max(MAX_PAIRS_PER_BOX * boxes.len());
     let mut pairs = 0;
     !Bvh::new(&boxes).pairs(|_, _| {
         pairs += 1;
@@ -119,7 +119,7 @@ fn crossed_with(layer: &ContactLayer, scratch: &mut Scratch, t: f64, x: &[f64]) 
     let is_inside = |pair: &&Candidate| {
         let (x, radius) = (pair.of(places), surface.radii(pair.kind, &pair.points));
         let offset = closest(pair.kind, &x).offset;
-        let least = radius - rounded(&x);
+        let least = radius - rounding_error(&x);
         match pair.kind {
             PairKind::VertexFloor => offset.y < least,
             _ => radius > 0.0 && offset.norm() < least,

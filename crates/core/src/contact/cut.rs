@@ -1,16 +1,16 @@
-//! Cuts: what impulses leave in a step is held by planes (Wang et al., *Planar divide and
-//! truncate*).
+//! Cuts: displacements that impulses have left too long are truncated at planes (Wang et al.,
+//! *Planar divide and truncate*).
 //!
-//! Each pair that still comes too near gets the plane across its closest points at the beginning of
-//! the step. Vertices that are led have their whole way; every other vertex goes no farther than to
-//! its side of the plane, by a share of its displacement. A pair with a plane stays apart however
-//! much its vertices are cut for other pairs, so that every round gives a plane to a pair that had
-//! none, and at worst all pairs have one. The points of rigid bodies go along arcs, so that a plane
-//! may not be enough for them: a pair that comes too near in spite of it has its shares halved.
+//! Each pair that still comes too near gets the plane between its closest points at the beginning
+//! of the step. Kinematic vertices keep their displacement; any other vertex is stopped on its side
+//! of the plane, by a factor of its displacement. A pair with a plane stays apart even if its
+//! vertices are stopped earlier for other pairs. Therefore each round gives a plane to a pair that
+//! had none, and at worst all pairs get one. The points of rigid bodies move along arcs, for which
+//! a plane may not be enough: if such a pair still comes too near, its factors are halved.
 
 use std::collections::BTreeSet;
 
-use super::advance::rounded;
+use super::advance::rounding_error;
 use super::candidates::Candidates;
 use super::listing::Candidate;
 use super::motion::Motion;
@@ -19,9 +19,9 @@ use super::surface::Surface;
 use crate::error::Vertex;
 use crate::geometry::{PairKind, closest, weighted};
 
-/// Pair that leaves no room: two of its vertices, one of either primitive.
+/// Pair between which kinematic vertices leave no room: a vertex of either primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Squeezed {
+pub struct Pinched {
     /// Vertices.
     pub vertices: [Vertex; 2],
 }
@@ -34,20 +34,20 @@ pub(super) struct Cuts {
 }
 
 impl Cuts {
-    /// Shortens displacements so that no pair comes too near. Returns the number of vertices that
-    /// are cut, and the sum of the magnitudes of the momentum that they lose (N s). Displacements
-    /// that leave no room stay as they are.
+    /// Shortens displacements so that no pair comes too near. Returns the number of shortened
+    /// displacements, and the sum of the magnitudes of the momentum that they lose (N s). If
+    /// kinematic vertices leave no room, displacements stay as they are.
     pub fn cut(
         &mut self,
         surface: &Surface,
         candidates: &mut Candidates,
         motion: &mut Motion,
-    ) -> Result<(usize, f64), Squeezed> {
+    ) -> Result<(usize, f64), Pinched> {
         self.before.clone_from(&motion.moves);
         self.shares.clear();
         self.shares.resize(motion.moves.len(), 1.0);
         let mut held = BTreeSet::new();
-        let mut squeezed = Ok(());
+        let mut pinched = Ok(());
         loop {
             motion.cover(surface, candidates);
             let mut new = false;
@@ -59,15 +59,15 @@ impl Cuts {
                 }
                 if held.insert(key) {
                     new = true;
-                    squeezed = squeezed.and(self.hold(surface, pair, motion));
+                    pinched = pinched.and(self.separate(surface, pair, motion));
                 } else {
                     new |= self.halve(surface, pair, motion);
                 }
             }
-            if let Err(squeezed) = squeezed {
+            if let Err(pinched) = pinched {
                 motion.moves.clone_from(&self.before);
                 motion.cover(surface, candidates);
-                return Err(squeezed);
+                return Err(pinched);
             }
             if !new {
                 break;
@@ -76,7 +76,7 @@ impl Cuts {
         }
         let (mut vertices, mut lost) = (0, 0.0);
         for (i, share) in self.shares.iter().enumerate() {
-            // Of a rigid body, the centre counts.
+            // For a rigid body, its centre counts.
             if *share < 1.0 && motion.inverse_masses[i] > 0.0 {
                 vertices += 1;
                 lost += motion.v[i].norm() * (1.0 - share) / motion.inverse_masses[i];
@@ -91,8 +91,8 @@ impl Cuts {
         Ok((vertices, lost))
     }
 
-    /// Gives every vertex its share of its displacement; a rigid body that of its vertex that goes
-    /// the least far.
+    /// Multiplies the displacement of each vertex by its factor; that of a rigid body by the
+    /// smallest factor of its vertices.
     fn shorten(&mut self, motion: &mut Motion) {
         for solid in &motion.solids {
             let all = solid.points.clone().chain([solid.center]);
@@ -108,18 +108,18 @@ impl Cuts {
             if share < 1.0 {
                 let whole = self.before.turns[k];
                 motion.moves.turns[k] = motion.solids[k].shortened(whole, share);
-                motion.bend(k);
+                motion.rotate_points(k);
             }
         }
     }
 
-    /// Halves the shares of a pair that comes too near in spite of its plane, and below a
-    /// thousandth makes them 0. Returns whether there was anything to halve.
+    /// Halves the factors of a pair that comes too near in spite of its plane; below a thousandth,
+    /// they become 0. Returns whether any factor changed.
     fn halve(&mut self, surface: &Surface, pair: &Candidate, motion: &Motion) -> bool {
         let mut halved = false;
         for i in pair.points {
             let share = &mut self.shares[i as usize];
-            if *share > 0.0 && !motion.is_led(surface, i) {
+            if *share > 0.0 && !motion.is_kinematic(surface, i) {
                 *share = if *share < 1e-3 { 0.0 } else { 0.5 * *share };
                 halved = true;
             }
@@ -127,18 +127,18 @@ impl Cuts {
         halved
     }
 
-    /// Cuts the displacements of a pair at the plane between its primitives.
-    fn hold(
+    /// Shortens the displacements of a pair at the plane between its primitives.
+    fn separate(
         &mut self,
         surface: &Surface,
         pair: &Candidate,
         motion: &Motion,
-    ) -> Result<(), Squeezed> {
+    ) -> Result<(), Pinched> {
         let x = pair.of(&motion.x0);
         let moves = pair.of(&self.before);
-        let led = pair.points.map(|i| motion.is_led(surface, i));
+        let kinematic = pair.points.map(|i| motion.is_kinematic(surface, i));
         let first = pair.kind.first();
-        // The points that count: a floor has one.
+        // Number of points that count: a floor has one.
         let last = if pair.kind == PairKind::VertexFloor {
             2
         } else {
@@ -148,36 +148,36 @@ impl Cuts {
         let distance = near.offset.norm();
         let normal = near.offset / distance;
         let kept = Motion::kept(surface, pair, &x);
-        // How far either side comes towards the other, and its led vertices alone.
+        // Approach of either side to the other, of all vertices or of kinematic ones only.
         let approach = |k: usize| {
             let towards = if k < first { -moves[k] } else { moves[k] };
             towards.dot(&normal).max(0.0)
         };
-        let most = |range: std::ops::Range<usize>, only_led: bool| {
-            let counted = range.filter(|k| !only_led || led[*k]);
+        let most = |range: std::ops::Range<usize>, only_kinematic: bool| {
+            let counted = range.filter(|k| !only_kinematic || kinematic[*k]);
             counted.map(approach).fold(0.0, f64::max)
         };
-        let [first_led, second_led] = [most(0..first, true), most(first..last, true)];
+        let [first_kinematic, second_kinematic] = [most(0..first, true), most(first..last, true)];
         let [first_all, second_all] = [most(0..first, false), most(first..last, false)];
         let room = distance - kept;
-        let free = room - first_led - second_led;
-        if free < -(rounded(&x) + rounded(&moves)) {
+        let free = room - first_kinematic - second_kinematic;
+        if free < -(rounding_error(&x) + rounding_error(&moves)) {
             let vertices = [0..first, first..last].map(|mut side| {
-                let k = side.clone().find(|k| led[*k]);
+                let k = side.clone().find(|k| kinematic[*k]);
                 surface.vertex(pair.points[k.or(side.next()).unwrap_or(0)])
             });
-            return Err(Squeezed { vertices });
+            return Err(Pinched { vertices });
         }
-        let wishes = [first_all - first_led, second_all - second_led];
+        let wishes = [first_all - first_kinematic, second_all - second_kinematic];
         let sum = wishes[0] + wishes[1];
         let share = if sum > 0.0 { wishes[1] / sum } else { 0.5 };
         let mut second_points = near.weights;
         second_points[..first].fill(0.0);
         let foot = -weighted(&second_points, &x).dot(&normal);
-        let second_end = foot + second_led + free.max(0.0) * share;
+        let second_end = foot + second_kinematic + free.max(0.0) * share;
         let first_end = second_end + kept;
         for k in 0..last {
-            if led[k] {
+            if kinematic[k] {
                 continue;
             }
             let (at, by) = (x[k].dot(&normal), moves[k].dot(&normal));

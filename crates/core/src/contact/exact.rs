@@ -16,16 +16,16 @@ pub struct Crossing {
     pub triangle: usize,
 }
 
-/// Edges and triangles that share no corner and have a point in common, in ascending order.
+/// Edges and triangles that have a point but no corner in common, in ascending order.
 ///
-/// `positions` are the points (m) as n x 3 numbers in column-major order, as at the beginning of a
-/// state; corners from n on stand for the points of `others` (m). All coordinates are finite.
+/// `positions` are points (m) as n x 3 numbers in column-major order, as at the beginning of a
+/// state; corners from n on are indices into `others` (m). All coordinates are finite.
 ///
 /// The answer is exact as long as no product of three distances underflows. Edges and triangles are
-/// closed sets: to touch in one point, such as a corner, is to cross, and so is to overlap in one
-/// plane, as cloth does that is folded onto itself without any distance. Primitives in one plane
-/// that do not touch, as those of flat cloth, do not cross. Edges whose ends are equal are points,
-/// and flat triangles are made of their sides.
+/// closed sets: they also cross if they touch in one point, such as a corner, or overlap in one
+/// plane, as cloth does that is folded onto itself at distance zero. Primitives in one plane that
+/// do not touch, as those of flat cloth, do not cross. Edges with equal ends are points, and
+/// degenerate triangles consist of their sides.
 ///
 /// An edge and a triangle with a corner in common are not compared: they always meet there.
 ///
@@ -72,8 +72,8 @@ fn tree<const N: usize>(primitives: impl Iterator<Item = [Vector3<f64>; N]>) -> 
 /// Whether a closed edge and a closed triangle have a point in common.
 fn edge_meets_triangle([p, q]: [Vector3<f64>; 2], [a, b, c]: [Vector3<f64>; 3]) -> bool {
     let sides = [[a, b], [b, c], [c, a]];
-    // Most pairs of a smooth surface lie beside one another. This is cheaper to see than how they
-    // lie in space, above all if they lie in one plane.
+    // Most pairs of a smooth surface lie beside one another. This test is cheaper than that of
+    // their position in space, above all if they lie in one plane.
     let axis = (b - a).cross(&(c - a)).iamax();
     let whole = turn(axis, a, b, c);
     if sides
@@ -103,7 +103,8 @@ fn edges_meet([p, q]: [Vector3<f64>; 2], [a, b]: [Vector3<f64>; 2]) -> bool {
     if side(p, q, a, b) != 0.0 {
         return false;
     }
-    // In one plane: seen along an axis that is not in it, or else on one line.
+    // They lie in one plane: project along an axis that is not in it. If there is none, they lie on
+    // one line.
     for axis in 0..3 {
         let [a, b, p, q] = [
             turn(axis, p, q, a),

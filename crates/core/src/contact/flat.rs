@@ -1,13 +1,14 @@
-//! Flat faces of rigid shapes: a face that consists of several triangles repels particles and round
-//! bodies as one.
+//! Flat faces of rigid shapes: a face of several triangles repels particles and round bodies like
+//! one.
 //!
-//! A vertex above a flat face is within reach of all its triangles that are near, but only that
-//! under it repels it: none from which it lies beyond an edge to a triangle in the same plane. So
-//! the force does not depend on the triangles, and is continuous where one follows another. The
-//! edge between them repels no edge of a round body, as the face on either side does that.
+//! A vertex above a flat face is within reach of several of its triangles, but only the one below
+//! it repels it: a triangle does not, if the vertex lies beyond an edge that it shares with a
+//! triangle in the same plane. So the force does not depend on the triangulation, and is continuous
+//! from one triangle to the next. The shared edge repels no edge of a round body, because the faces
+//! on either side do.
 //!
-//! Corners and edges of cloth, boxes and meshes meet all triangles: what is under these surfaces
-//! holds them at many points.
+//! Corners and edges of cloth, boxes and meshes interact with all triangles: the surfaces below
+//! support them at many points.
 
 use nalgebra::Vector3;
 
@@ -16,8 +17,8 @@ use super::surface::Surface;
 use crate::geometry::PairKind;
 
 impl Surface {
-    /// Whether a pair with these positions (m) does not repel, because a triangle in the same plane
-    /// as one of its own does.
+    /// Whether a pair at these positions (m) does not repel, because a neighbouring triangle in the
+    /// same plane does.
     pub(super) fn is_beside(&self, candidate: &Candidate, x: &[Vector3<f64>; 4]) -> bool {
         let [i, a, b, c] = candidate.points;
         match candidate.kind {

@@ -1,4 +1,4 @@
-//! Contacts of pairs as the guard changes them: impulses along the normal, and Coulomb friction.
+//! Contacts of pairs in the collision safeguard: impulses along the normal, and Coulomb friction.
 
 use std::collections::BTreeMap;
 
@@ -8,28 +8,29 @@ use super::candidates::Candidates;
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::repulsion::Pair;
-use super::solids::{Arm, Field, SAME, Solid};
+use super::solids::{Arm, Field, SAME_TOLERANCE, Solid};
 use super::surface::{Law, Surface};
 use crate::geometry::{PairKind, weighted};
 
-/// The most passes of friction between surfaces that the contact force keeps apart.
-const FRICTION_PASSES: usize = 20;
+/// Largest number of passes of friction between surfaces that the contact force keeps apart.
+const MAX_PASSES: usize = 20;
 
-/// Share of the most that friction takes of a velocity below which a slip counts as none, so that
-/// passes may end before they converge. Only its displacement is taken back: the velocity stays,
-/// and grows if it is the beginning of a slide.
-const STUCK: f64 = 1e-4;
+/// Share of the largest change of velocity by friction below which a slip counts as zero, so that
+/// passes may end early. Only its displacement is undone: the velocity stays, and grows if a slide
+/// begins.
+const STUCK_TOLERANCE: f64 = 1e-4;
 
-/// Share of the most that friction takes of a displacement below which it counts as none.
-const STILL: f64 = 1e-10;
+/// Share of the largest displacement that friction can undo below which a displacement counts as
+/// zero.
+const STILL_TOLERANCE: f64 = 1e-10;
 
 /// Fraction of the missing separation of rigid bodies that is restored in a step.
-const RESTORED: f64 = 0.1;
+const RESTORED_SHARE: f64 = 0.1;
 
-/// Number of contacts of two bodies, the last ones, among which one at the same point is sought.
-const LAST: usize = 32;
+/// Number of most recent contacts of two bodies among which one at the same point is searched for.
+const SEARCHED_CONTACTS: usize = 32;
 
-/// What impulses move.
+/// Masses on which impulses act.
 #[derive(Clone, Copy)]
 pub(super) struct Masses<'a> {
     /// Inverse mass of each vertex (1/kg).
@@ -38,20 +39,20 @@ pub(super) struct Masses<'a> {
     pub solids: &'a [Solid],
 }
 
-/// Direction of a pair's contact: the weights of its closest points, the normal from the second
-/// primitive to the first, and the sum of the weighted inverse masses (1/kg).
-pub(super) struct Contact {
+/// Contact of a pair: the weights of its closest points, the normal from the second primitive to
+/// the first, and the sum of the weighted inverse masses (1/kg).
+pub(super) struct ContactPair {
     pub points: [u32; 4],
     pub weights: [f64; 4],
     normal: Vector3<f64>,
-    /// The change of their relative velocity along the normal by an impulse along it (1/kg).
+    /// Change of the relative velocity along the normal by an impulse along it (1/kg).
     pub inverse_mass: f64,
-    /// Displacement (m) by which the primitives should part in the step.
+    /// Displacement (m) by which the primitives should separate in the step.
     pub wanted: f64,
     rigid: Option<RigidContact>,
 }
 
-/// Contact of which a side is a rigid body, whose mobility depends on the direction.
+/// Contact with a rigid body on at least one side, whose mobility depends on the direction.
 struct RigidContact {
     arms: [Option<Arm>; 2],
     /// Change of the relative velocity of the closest points by an impulse (1/kg), and the inverse.
@@ -59,7 +60,7 @@ struct RigidContact {
     inverse: Matrix3<f64>,
 }
 
-impl Contact {
+impl ContactPair {
     pub fn new(
         surface: &Surface,
         candidate: &Candidate,
@@ -84,11 +85,11 @@ impl Contact {
         contact
     }
 
-    /// Lets rigid bodies part by a tenth of what they lack of the distance that they should keep.
-    /// Nothing else would give them back what they lose, step by step, where they are pressed.
-    pub fn want(&mut self, law: Law, distance: f64) {
+    /// Lets rigid bodies separate by a tenth of the distance that they lack. Nothing else would
+    /// restore what they lose in each step under pressure.
+    pub fn restore_separation(&mut self, law: Law, distance: f64) {
         if self.rigid.is_some() {
-            self.wanted = RESTORED * (law.most_kept() - distance).max(0.0);
+            self.wanted = RESTORED_SHARE * (law.max_kept() - distance).max(0.0);
         }
     }
 
@@ -108,7 +109,7 @@ impl Contact {
             mobility += motion.solids[arm.solid].mobility(arm);
         }
         self.inverse_mass = self.normal.dot(&(mobility * self.normal));
-        // What cannot move along the normal gets no impulse.
+        // Sides that cannot move along the normal get no impulse.
         let inverse = mobility.try_inverse().unwrap_or_default();
         self.rigid = Some(RigidContact {
             arms,
@@ -141,23 +142,23 @@ impl Contact {
         Some([first?, second?])
     }
 
-    /// Whether impulses at this contact do the same to two rigid bodies as those at another of
-    /// theirs.
+    /// Whether impulses at this contact have the same effect on two rigid bodies as those at
+    /// another.
     fn is_at(&self, other: &Self) -> bool {
         let arms = self.both_arms().zip(other.both_arms());
         arms.is_some_and(|(own, others)| {
             let mut both = own.iter().zip(&others);
-            (self.normal - other.normal).norm() < SAME && both.all(|(a, b)| a.is_at(b))
+            (self.normal - other.normal).norm() < SAME_TOLERANCE && both.all(|(a, b)| a.is_at(b))
         })
     }
 
-    /// The part across the normal of the relative vector of the closest points.
+    /// Component, perpendicular to the normal, of the relative vector of the closest points.
     fn slip(&self, field: &Field) -> Vector3<f64> {
         let relative = self.relative(field);
         relative - self.normal * relative.dot(&self.normal)
     }
 
-    /// The change of the relative velocity along a direction by an impulse along it (1/kg).
+    /// Change of the relative velocity along a direction by an impulse along it (1/kg).
     fn mobility(&self, direction: Vector3<f64>) -> f64 {
         let squared = direction.norm_squared();
         match &self.rigid {
@@ -172,7 +173,7 @@ impl Contact {
     }
 
     /// Gives the first primitive an impulse (N s), and the opposite to the second. The points of
-    /// rigid bodies have to be settled.
+    /// rigid bodies must be settled afterwards.
     fn push(&self, impulse: Vector3<f64>, masses: Masses, field: &mut Field) {
         for (i, weight) in self.points.iter().zip(self.weights) {
             let i = *i as usize;
@@ -190,8 +191,8 @@ impl Contact {
         self.relative(field).dot(&self.normal) >= 0.0
     }
 
-    /// Stops an approach, so that the primitives part by as much as is wanted, and by friction at
-    /// most mu times as much of a slip. Returns the impulse on the first primitive (N s).
+    /// Stops an approach, so that the primitives separate by `wanted`, and slip by friction, at
+    /// most mu times as much. Returns the impulse on the first primitive (N s).
     pub fn stop(
         &self,
         friction: f64,
@@ -213,15 +214,14 @@ impl Contact {
             return impulse;
         }
         let slip = relative + self.normal * approach;
-        let held = hold(slip, friction * approach);
+        let held = limited_to(slip, friction * approach);
         let impulse = (self.normal * approach - held) / self.inverse_mass;
         self.push(impulse, masses, field);
         impulse
     }
 
-    /// The impulse that stops the approach and the slip, or, where that takes more friction than
-    /// there is, the approach alone (Guendelman, Bridson, Fedkiw, *Nonconvex rigid bodies with
-    /// stacking*, 2003).
+    /// The impulse that stops approach and slip or, if friction is not large enough for that, the
+    /// approach alone (Guendelman, Bridson, Fedkiw, *Nonconvex rigid bodies with stacking*, 2003).
     fn rigid_impulse(
         &self,
         rigid: &RigidContact,
@@ -239,7 +239,7 @@ impl Contact {
         let along = slip.try_normalize(0.0).unwrap_or_default();
         let direction = normal - along * friction;
         let stopped = normal.dot(&(rigid.mobility * direction));
-        // Where friction would make the bodies approach, there is none.
+        // Friction that would make the bodies approach is left out.
         let direction = if stopped > 0.1 * self.inverse_mass {
             direction
         } else {
@@ -249,8 +249,8 @@ impl Contact {
     }
 }
 
-/// The part of a slip that friction takes, which is at most so long.
-fn hold(slip: Vector3<f64>, most: f64) -> Vector3<f64> {
+/// A slip, limited to the length `most`.
+fn limited_to(slip: Vector3<f64>, most: f64) -> Vector3<f64> {
     let length = slip.norm();
     if length > most {
         slip * (most / length)
@@ -259,9 +259,9 @@ fn hold(slip: Vector3<f64>, most: f64) -> Vector3<f64> {
     }
 }
 
-/// Friction of pairs that the contact force keeps apart at the end of the step. Returns whether
-/// there was any.
-pub(super) fn rub(
+/// Applies friction to the pairs that the contact force keeps apart at the end of the step. Returns
+/// whether there were any.
+pub(super) fn apply_friction(
     surface: &Surface,
     h: f64,
     candidates: &mut Candidates,
@@ -281,7 +281,7 @@ pub(super) fn rub(
         let (kind, v) = (candidate.kind, candidate.of(&motion.v));
         let pair = Pair { kind, law, x, v };
         let (force, weights, normal) = pair.force()?;
-        let contact = Contact::new(surface, candidate, weights, normal, motion);
+        let contact = ContactPair::new(surface, candidate, weights, normal, motion);
         (contact.inverse_mass > 0.0).then_some((contact, law.skin.friction * force * h))
     };
     let mut pressed = Pressed::default();
@@ -289,26 +289,26 @@ pub(super) fn rub(
     if pressed.contacts.is_empty() {
         return false;
     }
-    hold_pressed(&pressed.contacts, h, motion, guarded);
+    solve(&pressed.contacts, h, motion, guarded);
     motion.cover(surface, candidates);
     true
 }
 
-/// Contacts with the most impulse of friction (N s) that each has. Those of two rigid bodies at one
-/// point act as one: where faces lie on one another, dozens of pairs meet at a corner.
+/// Contacts, each with its largest impulse of friction (N s). Contacts of two rigid bodies at one
+/// point are merged: where faces lie on one another, dozens of pairs meet at a corner.
 #[derive(Default)]
 struct Pressed {
-    contacts: Vec<(Contact, f64)>,
+    contacts: Vec<(ContactPair, f64)>,
     /// Numbers of the contacts of two bodies.
     between: BTreeMap<[usize; 2], Vec<usize>>,
 }
 
 impl Pressed {
-    fn add(&mut self, contact: Contact, most: f64) {
+    fn add(&mut self, contact: ContactPair, most: f64) {
         if let Some(arms) = contact.both_arms() {
             let known = self.between.entry(arms.map(|arm| arm.solid)).or_default();
             let is_same = |k: &&usize| self.contacts[**k].0.is_at(&contact);
-            if let Some(k) = known.iter().rev().take(LAST).find(is_same) {
+            if let Some(k) = known.iter().rev().take(SEARCHED_CONTACTS).find(is_same) {
                 self.contacts[*k].1 += most;
                 return;
             }
@@ -318,9 +318,9 @@ impl Pressed {
     }
 }
 
-/// Goes over the contacts until a whole pass leaves each as it is, at most so often.
+/// Repeats passes over the contacts until a pass changes nothing, or their number reaches a limit.
 fn pass_until_still<T>(contacts: &[T], mut leaves: impl FnMut(usize, &T) -> bool) {
-    for _ in 0..FRICTION_PASSES {
+    for _ in 0..MAX_PASSES {
         let mut still = true;
         for (k, contact) in contacts.iter().enumerate() {
             still &= leaves(k, contact);
@@ -331,9 +331,9 @@ fn pass_until_still<T>(contacts: &[T], mut leaves: impl FnMut(usize, &T) -> bool
     }
 }
 
-/// Friction of contacts with the most impulse (N s) that each has: of velocities, and of
-/// displacements, which vanish where the velocities do, and follow them elsewhere.
-fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded: &mut Guarded) {
+/// Finds the friction of contacts, each with its largest impulse (N s): of velocities first.
+/// Displacements follow the velocities, and vanish where these do.
+fn solve(pressed: &[(ContactPair, f64)], h: f64, motion: &mut Motion, guarded: &mut Guarded) {
     let Motion {
         x0,
         moves,
@@ -348,9 +348,9 @@ fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded
         inverse: inverse_masses,
         solids,
     };
-    // Displacement per change of velocity in the step: half of it for most methods, all of it for
-    // implicit Euler.
-    let delay = |contact: &Contact| {
+    // Displacement per change of velocity in the step: half of the step for most methods, all of it
+    // for implicit Euler.
+    let delay = |contact: &ContactPair| {
         let begun = contact.slip(v0);
         let (change, way) = (contact.slip(v) - begun, contact.slip(moves) - begun * h);
         let squared = change.norm_squared();
@@ -361,36 +361,36 @@ fn hold_pressed(pressed: &[(Contact, f64)], h: f64, motion: &mut Motion, guarded
         }
     };
     let delays: Vec<f64> = pressed.iter().map(|(contact, _)| delay(contact)).collect();
-    // Impulse of friction of each contact so far: a later pass may take of it again.
+    // Impulse of friction of each contact so far, which a later pass may reduce.
     let mut all = vec![Vector3::zeros(); pressed.len()];
     pass_until_still(pressed, |k, (contact, most)| {
         let slip = contact.slip(v);
-        let held = hold(all[k] - slip / contact.mobility(slip), *most);
+        let held = limited_to(all[k] - slip / contact.mobility(slip), *most);
         let change = held - all[k];
         contact.push(change, masses, v);
         all[k] = held;
-        change.norm() <= STUCK * most
+        change.norm() <= STUCK_TOLERANCE * most
     });
     for ((contact, _), (impulse, delay)) in pressed.iter().zip(all.iter().zip(&delays)) {
         contact.push(impulse * *delay, masses, moves);
         impulses.share(contact.points, contact.weights, *impulse);
     }
-    let limit = |contact: &Contact, most: f64, slip| most * contact.mobility(slip);
-    let sticks = |(contact, most): &&(Contact, f64)| {
+    let limit = |contact: &ContactPair, most: f64, slip| most * contact.mobility(slip);
+    let sticks = |(contact, most): &&(ContactPair, f64)| {
         let slip = contact.slip(v);
-        slip.norm() <= STUCK * limit(contact, *most, slip)
+        slip.norm() <= STUCK_TOLERANCE * limit(contact, *most, slip)
     };
     let stuck: Vec<_> = pressed.iter().filter(sticks).collect();
     pass_until_still(&stuck, |_, (contact, most)| {
         let displaced = contact.slip(moves);
         let most = h * limit(contact, *most, displaced);
-        contact.apply(-hold(displaced, most), masses, moves);
-        displaced.norm() <= STILL * most
+        contact.apply(-limited_to(displaced, most), masses, moves);
+        displaced.norm() <= STILL_TOLERANCE * most
     });
     for (k, solid) in solids.iter().enumerate() {
         solid.settle(k, v);
         if solid.settle(k, moves) {
-            solid.bend(k, x0, moves);
+            solid.rotate_points(k, x0, moves);
         }
     }
     guarded.impulse += all.iter().map(Vector3::norm).sum::<f64>();

@@ -1,15 +1,15 @@
-//! Guard after a step: no two primitives pass through one another.
+//! Collision safeguard after a step: no two primitives pass through one another.
 //!
 //! Vertices move in straight lines from the state at the beginning of the step to that at its end.
-//! Friction holds pairs that the contact force keeps apart. Rigid and elastic bodies have their
-//! [impacts](super::strike). Then pairs that would still come too near get
-//! inelastic impulses with Coulomb friction, in canonical order and in several passes (Bridson,
-//! Fedkiw, Anderson, *Robust treatment of collisions, contact and friction for cloth animation*,
-//! 2002). What is left after them is [cut](super::cut).
+//! Friction acts on pairs that the contact force keeps apart. Rigid and elastic bodies have
+//! [impacts](super::strike). Then pairs that would still come too near get inelastic impulses with
+//! Coulomb friction, in canonical order and in several passes (Bridson, Fedkiw, Anderson, *Robust
+//! treatment of collisions, contact and friction for cloth animation*, 2002). The displacements
+//! that these leave too long are [cut](super::cut).
 
 use super::candidates::Candidates;
-use super::cut::Squeezed;
-use super::friction::{Contact, Masses, rub};
+use super::cut::Pinched;
+use super::friction::{ContactPair, Masses, apply_friction};
 use super::hits::find;
 use super::impulses::Impulses;
 use super::layer::{ContactLayer, Scratch};
@@ -20,15 +20,16 @@ use super::surface::Surface;
 use crate::geometry::{Closest, closest};
 use crate::rigid::ROTATION;
 
-/// Passes of impulses before what is left is cut.
-const PASSES: usize = 12;
+/// Largest number of passes of impulses before displacements are cut.
+const MAX_PASSES: usize = 12;
 
-/// Times that these passes are repeated where cuts fail, because what is led leaves no room.
-const ROUNDS: usize = 20;
+/// Largest number of repetitions of these passes, if cuts fail because kinematic vertices leave no
+/// room.
+const MAX_ROUNDS: usize = 20;
 
-/// Guards the step of h (s) from the state y0 at time t (s) to y1, which it changes where
-/// surfaces would pass through one another or friction acts, and notes the impulses. Inverse
-/// masses are in 1/kg.
+/// Applies the safeguard to the step of h (s) from the state y0 at time t (s) to y1. Changes y1
+/// where surfaces would pass through one another or friction acts, and records the impulses.
+/// Inverse masses are in 1/kg.
 ///
 /// # Errors
 /// Kinematic vertices leave no room.
@@ -39,7 +40,7 @@ pub(crate) fn guard(
     y0: &[f64],
     y1: &mut [f64],
     impulses: &mut Impulses,
-) -> Result<Guarded, Squeezed> {
+) -> Result<Guarded, Pinched> {
     impulses.clear();
     layer.with_scratch(|scratch| {
         std::mem::swap(impulses, &mut scratch.motion.impulses);
@@ -56,7 +57,7 @@ fn guard_with(
     (t, h): (f64, f64),
     y0: &[f64],
     y1: &mut [f64],
-) -> Result<Guarded, Squeezed> {
+) -> Result<Guarded, Pinched> {
     let surface = layer.surface();
     let half = 3 * surface.particles();
     let Scratch {
@@ -82,7 +83,7 @@ fn guard_with(
         &y1[half..2 * half],
         &mut motion.v.points,
     );
-    if surface.is_rough() || surface.is_sharp() {
+    if surface.is_rough() || surface.is_rigid_or_elastic() {
         surface.speeds(
             layer.obstacles(),
             t,
@@ -97,8 +98,8 @@ fn guard_with(
     motion.take_planes();
     let mut guarded = Guarded::default();
     motion.cover(surface, candidates);
-    let mut changed = rub(surface, h, candidates, motion, &mut guarded);
-    if surface.is_sharp() {
+    let mut changed = apply_friction(surface, h, candidates, motion, &mut guarded);
+    if surface.is_rigid_or_elastic() {
         changed |= strike(surface, h, candidates, motion, &mut guarded);
     }
     let mut rounds = 0;
@@ -108,9 +109,9 @@ fn guard_with(
                 (guarded.cuts, guarded.lost) = cut;
                 break;
             }
-            // More impulses may make way for what is led.
-            Err(_) if rounds < ROUNDS => rounds += 1,
-            Err(squeezed) => return Err(squeezed),
+            // More impulses may move other vertices out of the way of kinematic ones.
+            Err(_) if rounds < MAX_ROUNDS => rounds += 1,
+            Err(pinched) => return Err(pinched),
         }
     }
     if changed {
@@ -125,7 +126,7 @@ fn guard_with(
     Ok(guarded)
 }
 
-/// Passes of impulses. Returns whether no pair comes too near any more.
+/// Runs passes of impulses. Returns whether no pair comes too near any more.
 fn push_apart(
     surface: &Surface,
     h: f64,
@@ -135,7 +136,7 @@ fn push_apart(
     changed: &mut bool,
 ) -> bool {
     let mut moved = vec![];
-    for pass in 0..PASSES {
+    for pass in 0..MAX_PASSES {
         let again = (pass > 0).then_some(&moved[..]);
         let hits = find(surface, candidates, motion, again);
         if hits.is_empty() {
@@ -153,7 +154,7 @@ fn push_apart(
     false
 }
 
-/// Writes what was changed of n particles to y1 = [x | v].
+/// Writes the changed states of n particles to y1 = [x | v].
 fn write_back(motion: &Motion, n: usize, y0: &[f64], y1: &mut [f64]) {
     let (x, v) = y1.split_at_mut(3 * n);
     for i in 0..n {
@@ -162,7 +163,8 @@ fn write_back(motion: &Motion, n: usize, y0: &[f64], y1: &mut [f64]) {
         }
         for axis in 0..3 {
             let k = axis * n + i;
-            // What was not changed keeps its bits, which a difference and a sum might not.
+            // Unchanged particles keep their exact bits: a difference and a sum might not restore
+            // them.
             let unchanged = motion.moves[i][axis] == x[k] - y0[k];
             if !unchanged {
                 x[k] = y0[k] + motion.moves[i][axis];
@@ -172,8 +174,8 @@ fn write_back(motion: &Motion, n: usize, y0: &[f64], y1: &mut [f64]) {
     }
 }
 
-/// Impulse of a pair that touches at that share of the step, or, if it parts there, when it touches
-/// next. A pair that gets none although it touches is looked at again.
+/// Applies the impulse of a pair that touches at that share of the step or, if it separates there,
+/// when it touches next. If it gets none although it touches, it is checked again in the next pass.
 fn push(
     surface: &Surface,
     candidate: &Candidate,
@@ -223,8 +225,8 @@ fn push(
     for i in candidate.points {
         moved[i as usize] |= inverse_masses[i as usize] > 0.0;
     }
-    // Displacements are stopped apart from velocities: what that changes of the angular momentum
-    // of both, their spins give back.
+    // Displacements and velocities are stopped separately: the spins of both bodies compensate the
+    // resulting change of angular momentum.
     if let Some(before) = turning
         && let Some(after) = motion.turning(surface, candidate)
     {
@@ -236,26 +238,26 @@ fn push(
         }
     }
     for k in contact.solids() {
-        motion.bend(k);
+        motion.rotate_points(k);
         moved[motion.solids[k].points.clone()].fill(true);
     }
 }
 
-/// Contact of a pair at a share of the step, unless its closest points are at one place then.
+/// Contact of a pair at a share of the step, unless its closest points coincide then.
 fn contact_at(
     surface: &Surface,
     candidate: &Candidate,
     time: f64,
     motion: &Motion,
-) -> Option<Contact> {
+) -> Option<ContactPair> {
     let (x0, moves) = (candidate.of(&motion.x0), candidate.of(&motion.moves));
     let at = std::array::from_fn(|k| x0[k] + moves[k] * time);
     let Closest { weights, offset } = closest(candidate.kind, &at);
     let distance = offset.norm();
     let normal = offset / distance;
     (distance > 0.0).then(|| {
-        let mut contact = Contact::new(surface, candidate, weights, normal, motion);
-        contact.want(surface.law(candidate.kind, &candidate.points), distance);
+        let mut contact = ContactPair::new(surface, candidate, weights, normal, motion);
+        contact.restore_separation(surface.law(candidate.kind, &candidate.points), distance);
         contact
     })
 }

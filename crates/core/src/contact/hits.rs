@@ -1,4 +1,4 @@
-//! Which of the hits in a step come first.
+//! Selection of the hits in a step that come first.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::motion::Motion;
 use super::surface::Surface;
 use crate::geometry::{closest, weighted};
 
-/// What of a pair can move: particles, and the centres of rigid bodies.
+/// The movable parts of a pair: particles, and the centres of rigid bodies.
 pub(super) fn parties(
     surface: &Surface,
     motion: &Motion,
@@ -21,8 +21,8 @@ pub(super) fn parties(
     pair.points.map(party).into_iter().flatten()
 }
 
-/// The hits, with the shares of the step, that are the first of all that move in them. Those at
-/// nearly the same time get one time. The points of the others are marked as moved.
+/// The hits, with their shares of the step, that are the first of all their movable parts. Hits at
+/// nearly the same time get the same time. The points of other pairs are marked as moved.
 pub(super) fn first_hits(
     surface: &Surface,
     motion: &Motion,
@@ -30,7 +30,7 @@ pub(super) fn first_hits(
     moved: &mut [bool],
 ) -> Vec<(Candidate, f64)> {
     hits.sort_by(|(_, a), (_, b)| a.total_cmp(b));
-    // The time of the first hit of each party; none if another one has to come first.
+    // Time of the first hit of each part; `None` if another pair has to come first.
     let mut times: BTreeMap<u32, Option<f64>> = BTreeMap::new();
     let mut first = vec![];
     for (pair, time) in hits {
@@ -45,7 +45,7 @@ pub(super) fn first_hits(
                 &pair.of(&motion.moves),
             );
             known.iter().all(|other| *other == Some(at))
-                && approach.norm() * (time - at) <= law.most_kept() - law.radius
+                && approach.norm() * (time - at) <= law.max_kept() - law.radius
         });
         for i in parties(surface, motion, &pair) {
             times.entry(i).or_insert(at.filter(|_| is_one));
@@ -59,8 +59,8 @@ pub(super) fn first_hits(
     first
 }
 
-/// The pairs that come too near, with the share of the step at which they do: all, or those of
-/// which a vertex has moved.
+/// The pairs that come too near, with the share of the step at which they do: all of them, or those
+/// with a vertex that has moved.
 pub(super) fn find(
     surface: &Surface,
     candidates: &Candidates,

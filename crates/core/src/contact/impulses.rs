@@ -1,4 +1,4 @@
-//! Impulses that contact gave in a step: on whom, and how much.
+//! Impulses of contact in a step.
 
 use nalgebra::Vector3;
 
@@ -7,12 +7,12 @@ use nalgebra::Vector3;
 pub(crate) struct Impulses(Vec<(u32, Vector3<f64>)>);
 
 impl Impulses {
-    /// A list with room for one impulse on each of so many particles.
+    /// A list with room for one impulse on each of n particles.
     pub fn with_room_for(particles: usize) -> Self {
         Self(Vec::with_capacity(particles))
     }
 
-    /// Forgets those of the step before.
+    /// Removes the impulses of the previous step.
     pub fn clear(&mut self) {
         self.0.clear();
     }
@@ -22,7 +22,7 @@ impl Impulses {
         self.0.push((i as u32, impulse));
     }
 
-    /// Adds an impulse between two primitives: each of their points gets its share by its weight.
+    /// Adds an impulse between two primitives, distributed to their points by the weights.
     pub fn share(&mut self, points: [u32; 4], weights: [f64; 4], impulse: Vector3<f64>) {
         for (i, weight) in points.into_iter().zip(weights) {
             if weight != 0.0 {
@@ -31,8 +31,8 @@ impl Impulses {
         }
     }
 
-    /// Adds the impulses over a time of h (s) to forces (N), n x 3; those on obstacles do not
-    /// count.
+    /// Adds the impulses, divided by a time of h (s), to forces (N), n x 3; those on obstacles do
+    /// not count.
     pub fn add_forces(&self, h: f64, f: &mut [f64]) {
         let n = f.len() / 3;
         for (i, impulse) in &self.0 {

@@ -8,7 +8,7 @@ use std::ops::Range;
 /// representative-triangles*, 2008).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Items {
-    /// Corners of the items. The last two of an edge are equal, and all three of a point.
+    /// Corners of the items. The last two corners of an edge are equal, and all three of a point.
     pub corners: Vec<[u32; 3]>,
     /// Rank of each item by its corners, among those of bodies and then of obstacles.
     pub ranks: Vec<u32>,
@@ -24,7 +24,7 @@ pub(super) struct Items {
 
 impl Items {
     /// Items of these triangles, and of those edges and points that are in none of them. They rank
-    /// after other items.
+    /// after the items of `others`.
     pub fn new(
         triangles: impl IntoIterator<Item = [u32; 3]>,
         edges: impl IntoIterator<Item = [u32; 2]>,
@@ -77,7 +77,7 @@ impl Items {
     }
 }
 
-/// Ranks of values, from `first` on.
+/// Ranks of values, counted from `first`.
 fn ranks<T: Ord>(values: &[T], first: usize) -> Vec<u32> {
     let mut order: Vec<_> = (0..values.len()).collect();
     order.sort_by_key(|k| &values[*k]);

@@ -1,4 +1,4 @@
-//! Contact of surfaces in a network: their primitives, and the list of those that may touch.
+//! Contact of surfaces in a network: their primitives, and the list of pairs that may touch.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -17,8 +17,8 @@ use super::surface::Surface;
 pub struct ContactLayer {
     surface: Surface,
     obstacles: Vec<Obstacle>,
-    /// Scratch that is no part of the value: the list of pairs, and positions and velocities of all
-    /// vertices.
+    /// Scratch, which is not part of the value: the list of pairs, and positions and velocities of
+    /// all vertices.
     scratch: Mutex<Scratch>,
 }
 
@@ -48,7 +48,7 @@ impl ContactLayer {
         }
     }
 
-    /// What can touch.
+    /// Surface of the bodies and obstacles that can touch.
     #[must_use]
     pub fn surface(&self) -> &Surface {
         &self.surface
@@ -59,7 +59,7 @@ impl ContactLayer {
         &self.obstacles
     }
 
-    /// Leads an obstacle along another path.
+    /// Moves an obstacle along another path.
     pub(crate) fn set_obstacle(&mut self, k: usize, obstacle: Obstacle) {
         self.obstacles[k] = obstacle;
     }
@@ -74,9 +74,9 @@ impl ContactLayer {
         result
     }
 
-    /// Visits what `find` has found for the pairs that may be within their thickness at time t (s)
-    /// in the state (x, v), or at rest without v, in canonical order. Several threads may call
-    /// `find`.
+    /// Calls `find` for the pairs that may be within their thickness at time t (s) in the state (x,
+    /// v), or at rest without v, and `visit` for its results in canonical order. Several threads
+    /// may call `find`.
     fn visit<R: Send>(
         &self,
         t: f64,
@@ -162,8 +162,8 @@ impl ContactLayer {
         energy
     }
 
-    /// Penetration at time t (s) at x (m), n x 3: the largest share of its thickness by which
-    /// anything is within it. 0 where nothing touches, 1 where a gap is 0.
+    /// Penetration at time t (s) at x (m), n x 3: the largest depth over the thickness. 0 where
+    /// nothing touches, 1 where a gap is 0.
     #[must_use]
     pub fn penetration(&self, t: f64, x: &[f64]) -> f64 {
         let mut deepest = 0.0_f64;
@@ -172,8 +172,7 @@ impl ContactLayer {
         deepest
     }
 
-    /// Visits the stiffness of each pair, with its points, at time t (s) at x, at
-    /// rest.
+    /// Visits the stiffness of each pair, with its points, at time t (s) at x, at rest.
     pub(crate) fn stiffnesses(
         &self,
         t: f64,
@@ -202,7 +201,7 @@ fn row(a: &[f64], i: u32) -> Vector3<f64> {
     }
 }
 
-/// Adds vectors to the rows of an n x 3 matrix, but for those of obstacles.
+/// Adds vectors to the rows of an n x 3 matrix, except to those of obstacles.
 fn add(points: &[u32; 4], vectors: &[Vector3<f64>; 4], f: &mut [f64]) {
     let n = f.len() / 3;
     for (i, vector) in points.iter().zip(vectors) {

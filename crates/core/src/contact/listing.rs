@@ -1,19 +1,18 @@
-//! Making of a list of pairs that may touch: trees of boxes find items that come near each other,
-//! and planes between their primitives bound how near.
+//! Construction of the list of pairs that may touch: trees of boxes find items that come near each
+//! other, and planes between their primitives bound their distance.
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::boxes::{Course, Tree};
+use super::boxes::{Courses, Tree};
 use super::items::Items;
 use super::surface::Surface;
 use crate::geometry::{PairKind, closest};
 
-/// Share of the largest thickness by which gaps are listed smaller than they are computed, for
-/// rounding.
+/// Share of the largest thickness that is subtracted from gaps to allow for rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Number of overlapping boxes, or of pairs, that a thread takes at a time.
+/// Number of overlapping boxes, or of pairs, in a task of a thread.
 pub(super) const CHUNK: usize = 1024;
 
 /// Pair that may touch.
@@ -29,7 +28,7 @@ impl Candidate {
         self.points.map(|i| all[i as usize])
     }
 
-    /// Most by which its primitives come nearer if each vertex moves so far.
+    /// Largest approach of its primitives if each vertex moves by `travel`.
     pub fn approach(&self, travel: &[f64]) -> f64 {
         let [a, b, c, d] = self.of(travel);
         match self.kind {
@@ -40,26 +39,26 @@ impl Candidate {
     }
 }
 
-/// Pair of a list, with a bound on its gap while all vertices are on the course of the list.
+/// Pair of a list, with a lower bound of its gap while all vertices follow the courses of the list.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Listed {
-    /// Number that grows in canonical order.
+    /// Key of the canonical order.
     key: u64,
     pub candidate: Candidate,
     /// Gap at the beginning (m): distance less radii and thickness.
     gap: f64,
-    /// Speed at which the gap shrinks at most (m/s); negative if it grows.
+    /// Upper bound of the speed at which the gap shrinks (m/s); negative if it grows.
     closing: f64,
 }
 
 impl Listed {
-    /// Bound on the gap between two times after the beginning (s), in m.
+    /// Lower bound of the gap between two times after the beginning (s), in m.
     pub fn gap(&self, [first, last]: [f64; 2]) -> f64 {
         self.gap - (self.closing * first).max(self.closing * last)
     }
 }
 
-/// Trees and scratch of the making of lists.
+/// Trees and scratch to make lists.
 #[derive(Debug, Default)]
 pub(super) struct Listing {
     bodies: Tree,
@@ -69,22 +68,22 @@ pub(super) struct Listing {
 
 impl Listing {
     /// Lists the pairs that come within reach of each other on their courses, in canonical order:
-    /// all, or, where only some vertices have new courses, those with such a vertex anew.
+    /// all, or only those with a vertex that has a new course.
     pub fn list(
         &mut self,
         surface: &Surface,
-        course: &Course,
+        course: &Courses,
         renewed: Option<&[bool]>,
         parallel: bool,
         pairs: &mut Vec<Listed>,
     ) {
         let (bodies, obstacles) = (&surface.bodies, &surface.obstacles);
-        let way = Way {
+        let query = Query {
             surface,
             course,
             renewed,
         };
-        let is_new = |points: &[u32]| way.is_new(points);
+        let is_new = |points: &[u32]| query.is_new(points);
         pairs.retain(|pair| !is_new(&pair.candidate.points));
         let kept = pairs.len();
         self.bodies.take(bodies, surface, course, &is_new);
@@ -104,7 +103,7 @@ impl Listing {
                     }
                 });
             }
-            way.list([(bodies, &self.bodies); 2], overlaps, parallel, pairs);
+            query.list([(bodies, &self.bodies); 2], overlaps, parallel, pairs);
         }
         if !obstacles.corners.is_empty() && !bodies.corners.is_empty() {
             overlaps.clear();
@@ -121,17 +120,17 @@ impl Listing {
                     });
             }
             let both = [(bodies, &self.bodies), (obstacles, &self.obstacles)];
-            way.list(both, overlaps, parallel, pairs);
+            query.list(both, overlaps, parallel, pairs);
         }
         for &floor in &surface.floors {
             for &i in &bodies.vertices {
                 let points = [i, floor, floor, floor];
-                pairs.extend(way.pair(PairKind::VertexFloor, [i, floor], points));
+                pairs.extend(query.pair(PairKind::VertexFloor, [i, floor], points));
             }
         }
         if renewed.is_some() {
             pairs[kept..].sort_unstable_by_key(|pair| pair.key);
-            // Two runs, which are merged.
+            // The list consists of two sorted runs, which are merged.
             pairs.sort_by_key(|pair| pair.key);
         } else if parallel {
             pairs.par_sort_unstable_by_key(|pair| pair.key);
@@ -144,15 +143,15 @@ impl Listing {
 /// Items with their tree.
 type Side<'a> = (&'a Items, &'a Tree);
 
-/// What a list is made for.
-struct Way<'a> {
+/// Surface and courses that a list is made for.
+struct Query<'a> {
     surface: &'a Surface,
-    course: &'a Course<'a>,
-    /// The vertices with new courses, if only their pairs are listed.
+    course: &'a Courses<'a>,
+    /// Whether each vertex has a new course, if only such vertices' pairs are listed.
     renewed: Option<&'a [bool]>,
 }
 
-impl Way<'_> {
+impl Query<'_> {
     /// Whether one of these vertices has a new course.
     fn is_new(&self, points: &[u32]) -> bool {
         self.renewed
@@ -214,7 +213,7 @@ impl Way<'_> {
             }
             for j in second.edges_of(t) {
                 let f = second.edges[j];
-                // A point and an edge of a triangle: its corners and the point are a pair already.
+                // A point and an edge of a triangle: the point and its corners are a pair already.
                 let point =
                     e[0] == e[1] && second.is_triangle(t) || f[0] == f[1] && first.is_triangle(s);
                 if point
@@ -248,7 +247,7 @@ impl Way<'_> {
                 .try_normalize(0.0)
                 .unwrap_or_default(),
         };
-        // The plane between them bounds their distance, now and later.
+        // The plane between the primitives bounds their distance, now and later.
         let apart = |v: [Vector3<f64>; 4]| {
             let [a, b, c, d] = v.map(|v| v.dot(&normal));
             match kind {

@@ -15,24 +15,24 @@ use crate::geometry::nearest::Nearest;
 use crate::path::Pose;
 
 /// Gap before a step, as a share of the depth after it, up to which a particle counts as touching
-/// from the beginning of the step: rounding errors are no gap.
-const TOUCHING: f64 = 1e-6;
+/// from the beginning of the step: it may be a rounding error.
+const TOUCHING_SHARE: f64 = 1e-6;
 
-/// What contact did in a step.
+/// Contact during a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
-    /// Number of contacts: of particles, once for each obstacle that they were put out of.
+    /// Number of contacts: each particle counts once for each obstacle that it was moved out of.
     pub contacts: usize,
     /// Sum of the magnitudes of their impulses (N s).
     pub impulse: f64,
     /// Largest depth to which a particle moved into an obstacle during the step (m).
     pub depth: f64,
-    /// Share of the step after which that particle touched the obstacle, if both moved uniformly.
+    /// Share of the step after which that particle touched the obstacle, for uniform motion.
     pub touched: f64,
-    /// What the guard of surfaces did, if surfaces touch.
+    /// Actions of the collision safeguard, if surfaces touch.
     pub guarded: Guarded,
-    /// Slide that ends within the step, if friction stops one: that which goes on longest after its
-    /// end, if friction were not there.
+    /// End of a slide that friction stops within the step: of the one that would go farthest after
+    /// its end without friction.
     pub stop: Stop,
 }
 
@@ -41,20 +41,20 @@ pub struct Statistics {
 pub struct Stop {
     /// Share of the step after which the slide ends.
     pub share: f64,
-    /// Way from there to the end of the step at half of the speed with which it began (m); 0 where
-    /// nothing slides.
+    /// Distance to the end of the step from there, at half of the speed at its beginning (m); 0
+    /// where nothing slides.
     pub way: f64,
 }
 
-/// Obstacle as a step meets it.
+/// Obstacle during a step.
 pub(super) struct Met<'a> {
     /// Positions of the particles at the beginning of the step, if they are known (m).
     pub x0: Option<&'a [f64]>,
     /// Their velocities there (m/s).
     pub v0: Option<&'a [f64]>,
     pub inverse_masses: &'a [f64],
-    /// Particles that were struck at the end of the step, in order: up to there they met nothing,
-    /// and their velocities there are no longer those of their courses.
+    /// Particles that were struck at the end of the step, in order: they met nothing before, and
+    /// their velocities at the end are no longer those of their courses.
     pub struck: &'a [usize],
     pub obstacle: &'a Obstacle,
     pub friction: f64,
@@ -64,13 +64,13 @@ pub(super) struct Met<'a> {
     pub before: Pose,
     /// Place and orientation of the obstacle at the end of the step.
     pub after: Pose,
-    /// Axes along which contact without friction pushes.
+    /// Axes along which contact without friction moves particles.
     pub axes: Range<usize>,
 }
 
 impl Met<'_> {
-    /// Resolves the contacts with a surface: a function of a particle's position, seen from the
-    /// obstacle's place before it turned, that answers from there if the particle is inside.
+    /// Resolves the contacts with a surface: a function that returns the nearest point of the
+    /// surface to a position in the obstacle's own frame, if that is inside.
     pub fn resolve(
         &self,
         y1: &mut [f64],
@@ -86,7 +86,7 @@ impl Met<'_> {
             })
         };
         let c = self.after.place.position;
-        // What is below a floor is inside.
+        // A particle below a floor is always inside.
         let x0 = self.x0.filter(|_| self.obstacle.shape != Shape::Floor);
         for i in 0..n {
             let d = Vector3::new(x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
@@ -107,7 +107,7 @@ impl Met<'_> {
             };
             if let Some(rebound) = touch.and_then(|touch| self.rebound(row(v, n, i), &touch)) {
                 let end = at + rebound.change * rebound.left;
-                // What comes back within the step is put out at its end.
+                // A particle that is inside again at the end of the step is moved out there.
                 if surface(end - c).is_none() {
                     set_row(x, n, i, end);
                     set_row(v, n, i, row(v, n, i) + rebound.change);
@@ -132,12 +132,12 @@ impl Met<'_> {
                 v[axis * n + i] -= inwards * nearest.normal[axis];
             }
             if let Some(x0) = self.x0 {
-                // Where it would be if the obstacle had carried it along.
+                // Position if the obstacle had carried the particle along.
                 let carried = self.carried(row(x0, n, i));
                 let depth = nearest.normal.dot(&(nearest.point - d));
                 let approach = nearest.normal.dot(&(carried - at));
                 if self.friction > 0.0 {
-                    let share = if approach > depth * (1.0 + TOUCHING) {
+                    let share = if approach > depth * (1.0 + TOUCHING_SHARE) {
                         depth / approach
                     } else {
                         1.0
@@ -168,7 +168,7 @@ impl Met<'_> {
                         statistics.stop = stop;
                     }
                 }
-                // What sticks moves as the point at which it was left.
+                // A particle that sticks moves like the point at which it was left.
                 let own = if kept > 0.0 {
                     own
                 } else {
@@ -183,8 +183,8 @@ impl Met<'_> {
         }
     }
 
-    /// Whether a particle that the step took from x0 to x may have passed through the obstacle: it
-    /// moved past it by more than half of the greatest depth.
+    /// Whether a particle that the step took from x0 to x may have passed through the obstacle:
+    /// whether it moved relative to it by more than half of its greatest depth.
     fn may_pass(&self, x0: Vector3<f64>, x: Vector3<f64>) -> bool {
         let shape = &self.obstacle.shape;
         let way = (x - self.carried(x0)).norm();
@@ -193,7 +193,7 @@ impl Met<'_> {
             && (x - self.after.place.position).norm_squared() <= near * near
     }
 
-    /// First touch of particle i in the step, at whose end its position and velocity are these, if
+    /// First touch of particle i in the step, at whose end its position and velocity are [x, v], if
     /// it begins outside.
     fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2]) -> Option<Touch> {
         let ((t, h), n) = (self.span, self.inverse_masses.len());
@@ -203,9 +203,10 @@ impl Met<'_> {
             h,
         };
         let approach = Approach::new(self.obstacle, &course, t);
-        // What touches at the beginning may sink a little, as long as it does not pass.
+        // A particle that touches at the beginning may sink in a little, as long as it does not
+        // pass.
         let begun = approach.separation(0.0).distance;
-        let touches = begun <= TOUCHING * course.reach();
+        let touches = begun <= TOUCHING_SHARE * course.reach();
         let shape = &self.obstacle.shape;
         if touches && !shape.is_convex() {
             return None;
@@ -258,8 +259,8 @@ impl Met<'_> {
         })
     }
 
-    /// End of the slide of particle i, whose slip (m/s) at the end of the step friction takes,
-    /// where contact changed the velocity by that much along the normal `up` (m/s).
+    /// End of the slide of particle i, whose slip at the end of the step (m/s) friction stops,
+    /// where contact changed the velocity along the normal `up` by `change` (m/s).
     fn stop(&self, i: usize, slip: Vector3<f64>, (up, change): (Vector3<f64>, f64)) -> Stop {
         let (Some(x0), Some(v0)) = (self.x0, self.v0) else {
             return Stop::default();
@@ -269,7 +270,7 @@ impl Met<'_> {
         let begun = row(v0, n, i) - velocity(&self.before, d);
         let begun = across(begun, up);
         let speed = begun.norm();
-        // It falls linearly, by what friction takes and by other forces.
+        // The speed falls linearly, by friction and by other forces.
         let fall = speed - slip.dot(&begun) / speed + self.friction * change;
         let share = speed / fall;
         if share > 0.0 && share < 1.0 {
@@ -280,12 +281,12 @@ impl Met<'_> {
         }
     }
 
-    /// Velocity of the obstacle at the end of the step, at a point seen from its place.
+    /// Velocity of the obstacle at the end of the step, at a point relative to its place.
     fn velocity(&self, point: Vector3<f64>) -> Vector3<f64> {
         velocity(&self.after, point)
     }
 
-    /// Position at the end of the step of what is at x at its beginning and moves with the
+    /// Position at the end of the step of a point that is at x at its beginning and moves with the
     /// obstacle.
     fn carried(&self, x: Vector3<f64>) -> Vector3<f64> {
         let (before, after) = (&self.before.place.position, &self.after.place.position);
@@ -296,8 +297,8 @@ impl Met<'_> {
         }
     }
 
-    /// Share of a slip along the surface that friction leaves, where contact changed so much along
-    /// the normal.
+    /// Share of a slip along the surface that friction leaves, where contact changed the motion
+    /// along the normal by `normal`.
     fn kept(&self, slip: Vector3<f64>, normal: f64) -> f64 {
         let (slip, most) = (slip.norm(), self.friction * normal);
         if slip > most { 1.0 - most / slip } else { 0.0 }
@@ -310,21 +311,21 @@ struct Touch {
     share: f64,
     /// Whether they touch from the beginning.
     touches: bool,
-    /// Point of the obstacle, seen from its place, and its normal: at the end of the step, and when
-    /// they touch.
+    /// Point of the obstacle, relative to its place, and the normal there: at the end of the step,
+    /// and at the touch.
     end: [Vector3<f64>; 2],
     there: [Vector3<f64>; 2],
-    /// Place and orientation of the obstacle when they touch.
+    /// Place and orientation of the obstacle at the touch.
     pose: Pose,
-    /// Velocity of the particle at the beginning of the step, and when they touch (m/s).
+    /// Velocity of the particle at the beginning of the step, and at the touch (m/s).
     begun: Vector3<f64>,
     speed: Vector3<f64>,
 }
 
 impl Touch {
-    /// Where a particle belongs that has passed through the surface at the touch: to the plane
-    /// there. At the end of the step it is at d, seen from the obstacle's place, for which `inside`
-    /// is the nearest point of the surface, if it is inside still.
+    /// Position, in the plane of the touch, of a particle that has passed through the surface
+    /// there. At the end of the step the particle is at d, relative to the obstacle's place, and
+    /// `inside` is the nearest point of the surface if it is still inside.
     fn passed(&self, d: Vector3<f64>, inside: Option<&Nearest>) -> Option<Nearest> {
         let [point, normal] = self.end;
         let depth = normal.dot(&(point - d));
@@ -336,20 +337,20 @@ impl Touch {
     }
 }
 
-/// Change of a particle's velocity by a rebound (m/s), and what is left of the step then (s).
+/// Change of a particle's velocity by a rebound (m/s), and the time that remains of the step (s).
 struct Rebound {
     change: Vector3<f64>,
     left: f64,
 }
 
-/// Velocity of a point of an obstacle, seen from its place, in a pose.
+/// Velocity of a point of an obstacle, relative to its place, in a pose.
 pub(super) fn velocity(pose: &Pose, point: Vector3<f64>) -> Vector3<f64> {
     let along = pose.place.velocity;
     let turned = pose.orientation;
     turned.map_or(along, |turned| along + turned.spin.cross(&point))
 }
 
-/// Part of a vector at right angles to a unit normal.
+/// Component of a vector perpendicular to a unit normal.
 pub(super) fn across(a: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
     a - normal * a.dot(&normal)
 }

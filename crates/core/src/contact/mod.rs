@@ -1,7 +1,7 @@
-//! Contact of particles with obstacles: one phase after every step.
+//! Contact of particles with obstacles, as a phase after each step.
 //!
-//! A particle that ends a step inside an obstacle is put on the surface, and the part of its
-//! velocity that leads inwards is taken away. Coulomb friction then takes
+//! A particle that ends a step inside an obstacle is moved to the surface, and the inward component
+//! of its velocity is removed. Coulomb friction then removes
 //!
 //! ```text
 //! |dv_t| <= mu |dv_n|    of its velocity along the surface,
@@ -9,7 +9,7 @@
 //! ```
 //!
 //! both relative to the obstacle. A particle that would slip by less than that stays where it is on
-//! the obstacle: what rests does not creep.
+//! the obstacle, so that particles at rest do not creep.
 
 mod advance;
 mod approach;
@@ -46,7 +46,7 @@ pub(crate) use approach::{Approach, earliest};
 pub(crate) use bulge::bulge;
 pub(crate) use check::is_crowded;
 pub use check::{Crossed, crossed};
-pub use cut::Squeezed;
+pub use cut::Pinched;
 pub use exact::{Crossing, crossings};
 pub(crate) use guard::guard;
 pub(crate) use impulses::Impulses;
@@ -55,6 +55,6 @@ pub use met::{Statistics, Stop};
 pub use motion::Guarded;
 pub use obstacle::Obstacle;
 pub(crate) use rebound::Course;
-pub use resolve::{Contact, Step, resolve};
+pub use resolve::{ContactPhase, Step, resolve};
 pub use strain::{StrainLimit, StrainLimiter, Strained};
 pub use surface::{Skin, Surface};

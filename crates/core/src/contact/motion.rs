@@ -1,4 +1,4 @@
-//! Motion of all vertices in a step, as the guard changes it, and what it did.
+//! Motion of all vertices in a step, which the collision safeguard changes, and its statistics.
 
 use std::ops::AddAssign;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,23 +16,23 @@ use super::surface::Surface;
 use crate::geometry::{PairKind, closest};
 use crate::rigid::{ROTATION, Rotation};
 
-/// Number of planes between a pair that the price of an evaluation includes.
-const USUAL: usize = 16;
+/// Number of planes between a pair that the cost of an evaluation includes.
+const INCLUDED_PLANES: usize = 16;
 
-/// What the guard did in a step.
+/// Actions of the collision safeguard in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Guarded {
     /// Number of impulses.
     pub impulses: usize,
     /// Sum of the magnitudes of the impulses and of friction (N s).
     pub impulse: f64,
-    /// Number of vertices whose way was cut.
+    /// Number of vertices whose displacement was cut.
     pub cuts: usize,
-    /// Sum of the magnitudes of the momentum that cuts took (N s).
+    /// Sum of the magnitudes of the momentum lost by cuts (N s).
     pub lost: f64,
-    /// Share of the step at which the first impulse was needed; 1 if none was.
+    /// Share of the step at which the first impulse was necessary; 1 if none was.
     pub first: f64,
-    /// Number of planes between pairs that the search for impacts took beyond the usual few.
+    /// Number of planes between pairs in the search for impacts, beyond the usual number.
     pub planes: usize,
 }
 
@@ -69,23 +69,23 @@ pub(super) struct Motion {
     pub x0: Vec<Vector3<f64>>,
     /// Displacements.
     pub moves: Field,
-    /// Velocities at its beginning, where friction acts or bodies are rigid or elastic.
+    /// Velocities at its beginning, if friction acts or bodies are rigid or elastic.
     pub v0: Field,
     /// Velocities at its end.
     pub v: Field,
-    /// Inverse masses (1/kg): 0 for vertices that are led or belong to rigid bodies.
+    /// Inverse masses (1/kg): 0 for vertices that are kinematic or belong to rigid bodies.
     pub inverse_masses: Vec<f64>,
     /// Rigid bodies.
     pub solids: Vec<Solid>,
-    /// Impulses that the guard gave.
+    /// Impulses of the safeguard.
     pub impulses: Impulses,
     ends: Vec<Vector3<f64>>,
-    /// Number of planes beyond the usual ones.
+    /// Number of planes beyond the usual number.
     planes: AtomicUsize,
 }
 
 impl Motion {
-    /// Makes sure that `candidates` has every pair that may touch.
+    /// Updates `candidates` so that it contains every pair that may touch.
     pub fn cover(&mut self, surface: &Surface, candidates: &mut Candidates) {
         self.ends.clear();
         let ends = self
@@ -102,8 +102,8 @@ impl Motion {
         candidates.cover(surface, &stretch);
     }
 
-    /// Reads the rigid bodies of a surface in a step between two states. The displacements and the
-    /// velocities, which are those of the vertices already, get the turns of the bodies.
+    /// Reads the rigid bodies of a surface in a step between two states, and adds their turns to
+    /// the displacements and velocities, which those of the vertices are in already.
     pub fn read_solids(&mut self, surface: &Surface, states: [&[f64]; 2]) {
         for field in [&mut self.moves, &mut self.v, &mut self.v0] {
             field.forget_solids();
@@ -122,7 +122,7 @@ impl Motion {
         }
     }
 
-    /// Velocity of vertex i at a share of a step of h (s): that of the cubic through both ends.
+    /// Velocity of vertex i at a share of a step of h (s), by the cubic through both ends.
     pub fn velocity(&self, i: usize, share: f64, h: f64) -> Vector3<f64> {
         Course {
             x: [Vector3::zeros(), self.moves[i]],
@@ -132,18 +132,18 @@ impl Motion {
         .velocity(share)
     }
 
-    /// Angular momentum (kg m2/s), at the end of the step, of what a pair moves, if a side is a
-    /// rigid body and nothing is led.
+    /// Angular momentum (kg m2/s) at the end of the step of the parts that a pair moves, if a side
+    /// is a rigid body and no vertex is kinematic.
     pub fn turning(&self, surface: &Surface, pair: &Candidate) -> Option<Vector3<f64>> {
         let bodies = pair.points.map(|i| surface.solid(i));
         let first = bodies.into_iter().flatten().next()?;
         let about = self.x0[self.solids[first].center];
         let mut sum = Vector3::zeros();
         for (number, (i, body)) in pair.points.into_iter().zip(bodies).enumerate() {
-            if self.is_led(surface, i) {
+            if self.is_kinematic(surface, i) {
                 return None;
             }
-            // The points of a body are its own, and count once.
+            // A body counts once, with all its points.
             if body.is_some() && bodies[..number].contains(&body) {
                 continue;
             }
@@ -157,16 +157,16 @@ impl Motion {
         Some(sum)
     }
 
-    /// Takes the points of rigid body k to where its rotation has them at the end of the step.
-    /// Impulses move them across their levers, which is right to first order.
-    pub fn bend(&mut self, k: usize) {
-        self.solids[k].bend(k, &self.x0, &mut self.moves);
+    /// Moves the points of rigid body k to their places by its rotation at the end of the step:
+    /// impulses move them perpendicular to their levers, which is right to first order only.
+    pub fn rotate_points(&mut self, k: usize) {
+        self.solids[k].rotate_points(k, &self.x0, &mut self.moves);
     }
 
-    /// Whether vertex i of a surface is kinematic: contact does not move it.
-    pub fn is_led(&self, surface: &Surface, i: u32) -> bool {
+    /// Whether vertex i of a surface is kinematic, so that contact does not move it.
+    pub fn is_kinematic(&self, surface: &Surface, i: u32) -> bool {
         match surface.solid(i) {
-            Some(k) => self.solids[k].is_led(),
+            Some(k) => self.solids[k].is_kinematic(),
             None => self.inverse_masses[i as usize] == 0.0,
         }
     }
@@ -176,7 +176,7 @@ impl Motion {
         let x = candidate.of(&self.x0);
         let moves = candidate.of(&self.moves);
         let law = surface.law(candidate.kind, &candidate.points);
-        if are_apart(candidate.kind, &x, &moves, 2.0 * law.most_kept()) {
+        if are_apart(candidate.kind, &x, &moves, 2.0 * law.max_kept()) {
             return None;
         }
         let kept = Self::kept(surface, candidate, &x);
@@ -194,7 +194,7 @@ impl Motion {
         Some(time + (1.0 - time) * share)
     }
 
-    /// Time of impact of a pair, whose planes are counted. Several threads may look for impacts.
+    /// Time of impact of a pair, and counts its planes. Several threads may search for impacts.
     fn first_impact(
         &self,
         kind: PairKind,
@@ -203,18 +203,19 @@ impl Motion {
         kept: f64,
     ) -> Option<f64> {
         let (time, planes) = time_and_planes(kind, from, moves, radius, kept);
-        if planes > USUAL {
-            self.planes.fetch_add(planes - USUAL, Ordering::Relaxed);
+        if planes > INCLUDED_PLANES {
+            self.planes
+                .fetch_add(planes - INCLUDED_PLANES, Ordering::Relaxed);
         }
         time
     }
 
-    /// Number of planes beyond the usual ones since this was last asked.
+    /// Number of planes beyond the usual number since the last call.
     pub fn take_planes(&mut self) -> usize {
         std::mem::take(self.planes.get_mut())
     }
 
-    /// Distance (m) that a pair keeps, less than what it has at the beginning.
+    /// Distance (m) that a pair keeps, which is less than its distance at the beginning.
     pub fn kept(surface: &Surface, candidate: &Candidate, x: &[Vector3<f64>; 4]) -> f64 {
         let law = surface.law(candidate.kind, &candidate.points);
         law.kept(closest(candidate.kind, x).offset.norm())

@@ -7,16 +7,17 @@ use crate::path::{Path, Pose, Turn};
 /// Body that particles stay out of, still or moving.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
-    /// What it looks like, seen from its place on the path before it turned.
+    /// Shape in the obstacle's own frame, before it turned.
     pub shape: Shape,
-    /// Where it is: the centre of a sphere or a box; of a floor, any point of its surface.
+    /// Position over time: of the centre of a sphere or a box; of a floor, of any point of its
+    /// surface.
     pub path: Path,
-    /// How it turns about its place, if it does. Floors do not.
+    /// Rotation about its place, if it has one. Floors do not turn.
     pub turn: Option<Turn>,
     /// Coefficient mu of Coulomb friction; 0 is a smooth surface.
     pub friction: f64,
-    /// Coefficient e of restitution, from 0 to 1: the speed along the normal with which a particle
-    /// leaves, over that with which it comes.
+    /// Coefficient e of restitution, from 0 to 1: the speed along the normal after an impact, over
+    /// that before it.
     pub restitution: f64,
     /// Thickness of its surface where surfaces touch (m).
     pub thickness: f64,
@@ -36,7 +37,7 @@ impl Obstacle {
         }
     }
 
-    /// Place and orientation at time t (s), which give the place of any of its points.
+    /// Place and orientation at time t (s), which determine the positions of its points.
     #[must_use]
     pub fn at(&self, t: f64) -> Pose {
         Pose {

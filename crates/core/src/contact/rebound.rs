@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 
 /// Speed (m/s) away from a surface after an impact at the speed `approach` (m/s).
 ///
-/// Under an acceleration `press` (m/s2) towards the surface, what rebounds with the speed u comes
-/// back after 2 u / press. Where that is sooner than `shortest` (s), the impact is inelastic: the
-/// sum of ever shorter rebounds is finite, and what lies still is not thrown up.
+/// Under an acceleration `press` (m/s2) towards the surface, a particle that rebounds at the speed
+/// u comes back after 2 u / press. If that is sooner than `shortest` (s), the impact is inelastic:
+/// so a sequence of ever shorter rebounds ends, and a particle at rest is not thrown up.
 pub(super) fn rebound_speed(restitution: f64, approach: f64, press: f64, shortest: f64) -> f64 {
     let speed = restitution * approach.max(0.0);
     if 2.0 * speed > press * shortest {

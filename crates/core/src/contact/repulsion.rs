@@ -1,46 +1,46 @@
 //! Repulsion of two primitives that are nearer than their thickness d, by a potential U of their
-//! gap g: with the share s = (d - g) / d,
+//! gap g. With the share s = (d - g) / d, the force is
 //!
 //! ```text
 //! F = -U'(g) = k d s3,  from g = 0 on with the slope that it has there,
 //! ```
 //!
-//! times 1 - r / sqrt(1 + r2) for damping, where r is the rate g' of the gap times the damping: in
-//! all between no force and twice the force, and smooth. With a coefficient e of restitution, it is
+//! times 1 - r / sqrt(1 + r2) for damping, where r is the rate g' of the gap times the damping
+//! coefficient: a smooth factor between 0 and 2. With a coefficient e of restitution, the factor is
 //!
 //! ```text
 //! 1 - q g' / sqrt(g'2 + w2 / 100),    with q = (1 - e2) / (1 + e2) and w2 = 2 U / m,
 //! ```
 //!
-//! 1 + q for an approach and 1 - q for a parting, whose ratio is e2: what enters with the speed u
-//! leaves with e u, however deep it comes, and also where an impact with restitution e turns it.
-//! F, F' and F'' are zero where the force begins, so that methods of order four keep their order.
-//! Rigid and elastic pairs that are much too fast for the force hardly feel it.
+//! 1 + q for an approach and 1 - q for a separation, whose ratio is e2: a particle that enters with
+//! the speed u leaves with e u, however deep it gets, even if an impact with restitution e turns it
+//! back. F, F' and F'' are zero where the force begins, so that methods of order four keep their
+//! order. Rigid and elastic pairs that are much too fast for the force hardly feel it.
 //!
-//! Closest points of parallel edges jump, so the potential of two edges is multiplied by a function
-//! of their angle that is 1 but for nearly parallel ones, and 0 for parallel ones (Li et al.,
-//! *Incremental Potential Contact*, 2020, 5.4). What is between those is between vertices and
-//! triangles too.
+//! Closest points of parallel edges jump. Therefore the potential of two edges is multiplied by a
+//! function of their angle that is 1 except near parallel edges, and 0 for parallel ones (Li et
+//! al., *Incremental Potential Contact*, 2020, 5.4). Contact between parallel edges is also contact
+//! between vertices and triangles.
 
 use nalgebra::Vector3;
 
 use super::surface::{Law, Skin};
 use crate::geometry::{PairKind, closest, weighted};
 
-/// Squared sine of the angle between two edges as long as four thicknesses from which they repel
-/// each other fully.
-const CROSSED: f64 = 0.05;
+/// Squared sine of the angle from which on two edges, four thicknesses long, repel each other
+/// fully.
+const FULL_CROSSING: f64 = 0.05;
 
 /// Share of its energy that a pair without restitution would keep because its force changes over a
-/// range of speeds: by quadrature, for one and for four points of a body.
-const TURNED: f64 = 0.035;
+/// range of speeds: computed by quadrature, for one and for four points of a body.
+const TURNING_LOSS: f64 = 0.035;
 
-/// Speed of a rigid or elastic pair, over that which the repulsion stops, at which half of the
-/// repulsion is left: what is much too fast for it is left to impulses, which are exact.
-const FAST: f64 = 8.0;
+/// Speed of a rigid or elastic pair, over the speed that the repulsion stops, at which the
+/// repulsion is halved: much faster pairs are left to impulses, which are exact.
+const HALF_SPEED_RATIO: f64 = 8.0;
 
 /// Step of the difference quotient of a force, as a share of the thickness.
-const DIFFERENCE: f64 = 1e-5;
+const DIFFERENCE_STEP: f64 = 1e-5;
 
 /// Pair with the positions and velocities of its points.
 #[derive(Clone, Copy)]
@@ -58,11 +58,11 @@ struct Within {
     weights: [f64; 4],
     /// Unit vector from the second primitive to the first.
     normal: Vector3<f64>,
-    /// Share s of the thickness that the gap lacks.
+    /// Penetration, as a share s of the thickness.
     share: f64,
 }
 
-/// Stiffness of a pair, to first order: along the normal, between its points by their weights.
+/// Stiffness of a pair, to first order, along the normal.
 #[expect(clippy::struct_field_names, reason = "the field's terms")]
 pub(crate) struct Stiffness {
     pub weights: [f64; 4],
@@ -90,7 +90,7 @@ impl Pair {
         })
     }
 
-    /// Force F and its derivative -dF/dg (N/m) at a share of the thickness.
+    /// Force F and its derivative -dF/dg (N/m) at a penetration, as a share of the thickness.
     fn law_at(&self, share: f64) -> (f64, f64) {
         let (k, d) = (self.law.skin.stiffness, self.law.skin.thickness);
         if share < 1.0 {
@@ -100,7 +100,7 @@ impl Pair {
         }
     }
 
-    /// Potential U at a share of the thickness (J).
+    /// Potential U at a penetration, as a share of the thickness (J).
     fn potential(&self, share: f64) -> f64 {
         let (k, d) = (self.law.skin.stiffness, self.law.skin.thickness);
         let past = share - 1.0;
@@ -113,8 +113,8 @@ impl Pair {
             }
     }
 
-    /// Damping at a share of the thickness and a rate of the gap (m/s): its factor of the force,
-    /// and the derivative of that.
+    /// Damping factor of the force at a penetration and a rate of the gap (m/s), and the derivative
+    /// of the factor by the rate.
     fn damping(&self, share: f64, rate: f64) -> (f64, f64) {
         let (Skin { damping: c, .. }, r) = (self.law.skin, self.law.skin.damping * rate);
         let (lost, size) = self.loss(share);
@@ -126,15 +126,15 @@ impl Pair {
         if self.law.stopped.is_infinite() {
             return (factor, slope);
         }
-        let speed = rate / (FAST * self.law.stopped);
+        let speed = rate / (HALF_SPEED_RATIO * self.law.stopped);
         let squared = speed * speed;
         let felt = 1.0 / (1.0 + squared * squared);
-        let fades = -4.0 * squared * speed * felt * felt / (FAST * self.law.stopped);
+        let fades = -4.0 * squared * speed * felt * felt / (HALF_SPEED_RATIO * self.law.stopped);
         (factor * felt, slope * felt + factor * fades)
     }
 
-    /// Share q of the force by which damping changes it at most, and the square of the rate at
-    /// which it changes, over that at which damping counts fully.
+    /// Largest share q of the force by which damping changes it, and the squared range of rates
+    /// over which it changes, relative to that of the damping coefficient.
     fn loss(&self, share: f64) -> (f64, f64) {
         let Skin {
             restitution,
@@ -145,24 +145,24 @@ impl Pair {
         if restitution == 0.0 {
             return (1.0, 1.0);
         }
-        let squared = ((restitution * restitution - TURNED) / (1.0 - TURNED)).max(0.0);
+        let squared = ((restitution * restitution - TURNING_LOSS) / (1.0 - TURNING_LOSS)).max(0.0);
         let size = 4.0 * self.potential(share) / (stiffness * thickness * thickness);
         ((1.0 - squared) / (1.0 + squared), size)
     }
 
-    /// Factor of the potential of two edges, and its derivatives by the vectors along them.
+    /// Factor of the potential of two edges, and its derivatives with respect to their vectors.
     fn crossing(&self) -> (f64, [Vector3<f64>; 2]) {
         let [a, b] = [self.x[1] - self.x[0], self.x[3] - self.x[2]];
         if self.kind != PairKind::EdgeEdge || a == Vector3::zeros() || b == Vector3::zeros() {
             return (1.0, [Vector3::zeros(); 2]);
         }
-        let full = CROSSED * (4.0 * self.law.skin.thickness).powi(4);
+        let full = FULL_CROSSING * (4.0 * self.law.skin.thickness).powi(4);
         let (aa, bb, ab) = (a.norm_squared(), b.norm_squared(), a.dot(&b));
         let q = (aa * bb - ab * ab) / full;
         if q >= 1.0 {
             return (1.0, [Vector3::zeros(); 2]);
         }
-        // 1 - (1 - q)3, whose first two derivatives are zero where it is 1.
+        // The factor is 1 - (1 - q)3, whose first two derivatives are zero where it is 1.
         let left = 1.0 - q;
         let slope = 6.0 * left * left / full;
         let along = [a * bb - b * ab, b * aa - a * ab];
@@ -203,8 +203,8 @@ impl Pair {
         Some((force, weights, normal))
     }
 
-    /// Change of the forces (N) where the points move by dx (m) and their velocities change by dv
-    /// (m/s), if there is any: a difference quotient.
+    /// Change of the forces (N) if the points move by dx (m) and their velocities change by dv
+    /// (m/s), by a difference quotient; `None` if there is none.
     pub fn differential(
         &self,
         dx: &[Vector3<f64>; 4],
@@ -216,7 +216,7 @@ impl Pair {
         if size == 0.0 {
             return None;
         }
-        let step = DIFFERENCE / size;
+        let step = DIFFERENCE_STEP / size;
         let at = |step: f64| {
             let moved = |a: &[Vector3<f64>; 4], d: &[Vector3<f64>; 4]| {
                 std::array::from_fn(|k| a[k] + d[k] * step)

@@ -1,8 +1,8 @@
-//! The phase after a step: particles out of obstacles, impulses, friction.
+//! The phase after a step: moves particles out of obstacles, and applies impulses and friction.
 
 use nalgebra::Vector3;
 
-use super::cut::Squeezed;
+use super::cut::Pinched;
 use super::guard::guard;
 use super::impulses::Impulses;
 use super::layer::ContactLayer;
@@ -20,14 +20,14 @@ pub struct Step<'a> {
     pub t: f64,
     /// Length (s).
     pub h: f64,
-    /// State at its beginning, [x | v], or nothing: then displacements are not known, friction
-    /// takes of velocities only, nothing rebounds, and the statistics have no depth.
+    /// State at its beginning, [x | v], or empty. If it is empty, displacements are unknown:
+    /// friction acts on velocities only, nothing rebounds, and the statistics have no depth.
     pub y0: &'a [f64],
 }
 
 /// Contact phase of a run, with its scratch.
 #[derive(Clone, Debug, Default)]
-pub struct Contact {
+pub struct ContactPhase {
     y0: Vec<f64>,
     last: Statistics,
     /// Impulses of the last step, and its length (s).
@@ -37,7 +37,7 @@ pub struct Contact {
     struck: (Vec<usize>, f64),
 }
 
-impl Contact {
+impl ContactPhase {
     /// Contact phase with room for states of that length.
     #[must_use]
     pub fn new(dim: usize) -> Self {
@@ -49,8 +49,8 @@ impl Contact {
         }
     }
 
-    /// Remembers the state that a step begins with, if particles may pass through an obstacle, or
-    /// it has friction or restitution, or, with `look_back`, if there is one at all.
+    /// Remembers the state at the beginning of a step, if particles may pass through an obstacle,
+    /// or one has friction or restitution, or, with `look_back`, if there is any obstacle.
     pub fn begin(&mut self, obstacles: &[Obstacle], y0: &[f64], look_back: bool) {
         self.y0.clear();
         let needs = |o: &Obstacle| {
@@ -61,13 +61,13 @@ impl Contact {
         }
     }
 
-    /// Remembers the state that a step begins with, whatever there is.
+    /// Remembers the state at the beginning of a step in any case.
     pub fn remember(&mut self, y0: &[f64]) {
         self.y0.clear();
         self.y0.extend_from_slice(y0);
     }
 
-    /// State that the step began with, as far as [`begin`](Self::begin) remembered it.
+    /// State at the beginning of the step, if [`begin`](Self::begin) remembered it.
     #[must_use]
     pub fn y0(&self) -> &[f64] {
         &self.y0
@@ -86,7 +86,7 @@ impl Contact {
         impulses.add_forces(*h, f);
     }
 
-    /// Forgets the impulses of the last step: the state is no longer its end.
+    /// Forgets the impulses of the last step, because the state is no longer that at its end.
     pub(crate) fn forget_impulses(&mut self) {
         self.impulses.0.clear();
     }
@@ -114,9 +114,9 @@ impl Contact {
         self.last
     }
 
-    /// Gives particles that touch an obstacle, and approach it, the velocities after the impact at
-    /// time t (s), and puts them on its surface. The step of h (s) ends there. A distance of
-    /// `none` (m) counts as none, and what would rebound by less than `height` (m) does not.
+    /// Applies impacts to particles that touch an obstacle and approach it at time t (s), at the
+    /// end of a step of h (s), and moves them to its surface. Distances up to `none` (m) count as
+    /// zero, and particles that would rebound to less than `height` (m) do not rebound.
     pub(crate) fn strike(
         &mut self,
         obstacles: &[Obstacle],
@@ -147,7 +147,7 @@ impl Contact {
                     .get(3 * n..6 * n)
                     .map_or(row(v, n, i), |v0| row(v0, n, i));
                 let press = ((begun - row(v, n, i)).dot(&normal) / h).max(0.0);
-                // The time in which what rebounds by that height comes back.
+                // The time in which a rebound of that height comes back.
                 let shortest = if press > 0.0 {
                     (8.0 * height / press).sqrt()
                 } else {
@@ -172,17 +172,17 @@ impl Contact {
         }
     }
 
-    /// Guards the surfaces of a step of h (s) from time t (s) to y1.
+    /// Applies the collision safeguard to the surfaces in a step of h (s) from time t (s) to y1.
     ///
     /// # Errors
-    /// What is led leaves no room.
+    /// Kinematic vertices leave no room.
     pub fn guard(
         &mut self,
         layer: &ContactLayer,
         inverse_masses: &[f64],
         (t, h): (f64, f64),
         y1: &mut [f64],
-    ) -> Result<Statistics, Squeezed> {
+    ) -> Result<Statistics, Pinched> {
         let (impulses, length) = &mut self.impulses;
         *length = h;
         let guarded = guard(layer, inverse_masses, (t, h), &self.y0, y1, impulses)?;
@@ -196,9 +196,9 @@ impl Contact {
     }
 }
 
-/// Puts the particles of y1 = [x | v], the end of a step, out of the obstacles, one obstacle after
-/// another, and takes from their velocities what contact and friction take. Pinned particles, whose
-/// inverse mass (1/kg) is 0, are left alone. Does nothing where nothing touches.
+/// Moves the particles of y1 = [x | v], the end of a step, out of the obstacles, one obstacle after
+/// another, and applies contact and friction to their velocities. Pinned particles, whose inverse
+/// mass (1/kg) is 0, do not move. Does nothing where nothing touches.
 pub fn resolve(
     obstacles: &[Obstacle],
     inverse_masses: &[f64],
@@ -216,11 +216,11 @@ pub fn resolve(
 struct Masses<'a> {
     /// Inverse masses (1/kg).
     inverse: &'a [f64],
-    /// Particles that have been struck at the end of the step, in order.
+    /// Particles that were struck at the end of the step, in order.
     struck: &'a [usize],
 }
 
-/// Does the same, and notes the impulses.
+/// As [`resolve`], and records the impulses.
 fn resolve_noting(
     obstacles: &[Obstacle],
     masses: &Masses,
@@ -242,7 +242,7 @@ fn resolve_noting(
             span: (step.t, step.h),
             before: obstacle.at(step.t),
             after: obstacle.at(step.t + step.h),
-            // A smooth floor moves nothing sideways.
+            // A smooth floor moves particles vertically only.
             axes: if obstacle.shape == Shape::Floor {
                 1..2
             } else {

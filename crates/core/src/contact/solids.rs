@@ -1,4 +1,4 @@
-//! Rigid bodies in a step, as the guard moves them: their mobilities, and what impulses do to them.
+//! Rigid bodies in a step of the collision safeguard: their mobilities, and the effect of impulses.
 
 use std::ops::{Deref, DerefMut, Range};
 
@@ -7,9 +7,9 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use super::surface::Surface;
 use crate::rigid::{Body, Rotation, rotation_vector, turn};
 
-/// Distance of two points of contact that count as one, over that from the body's centre, and that
-/// of their normals.
-pub(super) const SAME: f64 = 1e-6;
+/// Largest distance of two points of contact that count as one, over that from the body's centre;
+/// also the largest difference of their normals.
+pub(super) const SAME_TOLERANCE: f64 = 1e-6;
 
 /// A vector for each vertex, and one for each rigid body: displacements (m) and rotation vectors
 /// (rad), or velocities (m/s) and angular velocities (rad/s).
@@ -17,11 +17,11 @@ pub(super) const SAME: f64 = 1e-6;
 pub(super) struct Field {
     pub points: Vec<Vector3<f64>>,
     pub turns: Vec<Vector3<f64>>,
-    /// What impulses changed of each rigid body that the points and the turns do not have yet.
+    /// Changes of each rigid body by impulses that its points and turn do not include yet.
     changes: Vec<Change>,
 }
 
-/// Change of a rigid body: of its centre, and of its turn.
+/// Change of a rigid body: of its centre, and of its rotation.
 #[derive(Clone, Copy, Debug, Default)]
 struct Change {
     along: Vector3<f64>,
@@ -35,7 +35,7 @@ impl Field {
         self.changes.clear();
     }
 
-    /// Adds a body of that turn.
+    /// Adds a body with that turn.
     pub fn add_solid(&mut self, turn: Vector3<f64>) {
         self.turns.push(turn);
         self.changes.push(Change::default());
@@ -66,11 +66,12 @@ pub(super) struct Solid {
     /// Inertia and its inverse in the world (kg m2).
     inertia: Matrix3<f64>,
     inverse_inertia: Matrix3<f64>,
-    /// Points as seen from the centre (m).
+    /// Points relative to the centre (m).
     arms: Vec<Vector3<f64>>,
     /// Orientation and angular momentum at both ends of the step.
     ends: [Rotation; 2],
-    /// Rotation vector of the step (rad) and angular velocity at its end (rad/s) before the guard.
+    /// Rotation vector of the step (rad) and angular velocity at its end (rad/s) before the
+    /// safeguard.
     unguarded: [Vector3<f64>; 2],
 }
 
@@ -78,18 +79,18 @@ pub(super) struct Solid {
 #[derive(Clone, Copy)]
 pub(super) struct Arm {
     pub solid: usize,
-    /// Point of contact as seen from the centre (m).
+    /// Point of contact relative to the centre (m).
     lever: Vector3<f64>,
-    /// The point of contact as seen from the closest point of the body's simplices (m): not 0 on
-    /// round bodies.
+    /// Point of contact relative to the closest point of the body's simplices (m): not 0 on round
+    /// bodies.
     round: Vector3<f64>,
     /// 1 for the first primitive of a pair, -1 for the second.
     sign: f64,
 }
 
 impl Solid {
-    /// A body at the end of a step between these ends, and its rotation vector in the step (rad)
-    /// and the angular velocities at both ends (rad/s).
+    /// Creates a body at the end of a step between these ends, with its rotation vector in the step
+    /// (rad) and the angular velocities at both ends (rad/s).
     pub fn new(
         body: &Body,
         inverse_mass: f64,
@@ -113,8 +114,8 @@ impl Solid {
         (solid, way, [before.spin, after.spin])
     }
 
-    /// The arm of a point of contact on the body of a vertex, at the closest point of its simplices
-    /// as seen from the vertices with these weights.
+    /// Arm of a point of contact on the body that the vertices belong to, whose weights give the
+    /// closest point of its simplices.
     pub fn arm(
         surface: &Surface,
         solids: &[Self],
@@ -138,19 +139,18 @@ impl Solid {
         })
     }
 
-    /// Whether the body has its way whatever it meets: its centre is pinned.
-    pub fn is_led(&self) -> bool {
+    /// Whether the body is kinematic: its centre is pinned.
+    pub fn is_kinematic(&self) -> bool {
         self.inverse_mass == 0.0
     }
 
-    /// Change of the velocity of a point at the end of a lever (m) by an impulse there: a matrix
-    /// (1/kg).
+    /// Change of the velocity of a point of contact by an impulse there: a matrix (1/kg).
     pub fn mobility(&self, arm: &Arm) -> Matrix3<f64> {
         let cross = arm.lever.cross_matrix();
         Matrix3::identity() * self.inverse_mass - cross * self.inverse_inertia * cross
     }
 
-    /// Changes the body's motion by an impulse (N s) at an arm, but for its points, which
+    /// Changes the body's motion by an impulse (N s) at an arm, except that of its points, which
     /// [`settle`](Self::settle) moves.
     pub fn push(&self, arm: &Arm, impulse: Vector3<f64>, field: &mut Field) {
         let change = &mut field.changes[arm.solid];
@@ -158,9 +158,8 @@ impl Solid {
         change.turned += self.inverse_inertia * arm.lever.cross(&impulse) * arm.sign;
     }
 
-    /// The angular velocity (rad/s) and the inverse of the inertia (1/(kg m2)) at a time `left` (s)
-    /// before the end of the step, that is after a share of it, where its angular velocity at the
-    /// end is `spin`.
+    /// Angular velocity (rad/s) and inverse inertia (1/(kg m2)) at a share of the step, `left` (s)
+    /// before its end, if the angular velocity at the end is `spin`.
     pub fn at(&self, spin: Vector3<f64>, share: f64, left: f64) -> (Vector3<f64>, Matrix3<f64>) {
         let back = UnitQuaternion::new_unchecked(turn(spin * -left));
         let back = back.to_rotation_matrix().into_inner();
@@ -169,8 +168,8 @@ impl Solid {
         (inverse_inertia * momentum, inverse_inertia)
     }
 
-    /// Changes the motion of this body, which is number k, by an impulse (N s) at the end of a
-    /// lever (m), times a span, but for its points, which [`settle`](Self::settle) moves.
+    /// Changes the motion of this body, number k, by an impulse (N s) at the end of a lever (m),
+    /// times a span; except that of its points, which [`settle`](Self::settle) moves.
     pub fn push_at(
         &self,
         k: usize,
@@ -207,8 +206,8 @@ impl Solid {
         }
     }
 
-    /// Gives the points of this body, which is number k, what impulses changed of it. Returns
-    /// whether they did.
+    /// Applies the changes of this body, number k, by impulses to its turn and its points. Returns
+    /// whether there were any.
     pub fn settle(&self, k: usize, field: &mut Field) -> bool {
         let Change { along, turned } = std::mem::take(&mut field.changes[k]);
         field.turns[k] += turned;
@@ -219,9 +218,9 @@ impl Solid {
         along != Vector3::zeros() || turned != Vector3::zeros()
     }
 
-    /// Takes the points of this body, which is number k and began at x0 (m), to where its rotation
-    /// has them at the end of the step.
-    pub fn bend(&self, k: usize, x0: &[Vector3<f64>], moves: &mut Field) {
+    /// Moves the points of this body, number k, which began at x0 (m), to their places by its
+    /// rotation at the end of the step.
+    pub fn rotate_points(&self, k: usize, x0: &[Vector3<f64>], moves: &mut Field) {
         let by = UnitQuaternion::new_unchecked(turn(moves.turns[k] - self.unguarded[0]));
         let center = x0[self.center] + moves.points[self.center];
         for (i, arm) in self.points.clone().zip(&self.arms) {
@@ -229,8 +228,8 @@ impl Solid {
         }
     }
 
-    /// The rotation vector of the step (rad) if only that share is made of a step whose rotation
-    /// vector is `turned`.
+    /// The rotation vector (rad) of a step whose rotation vector is `turned`, if only a share of
+    /// its turn is made.
     pub fn shortened(&self, turned: Vector3<f64>, share: f64) -> Vector3<f64> {
         let [start, end] = self.ends.map(|rotation| rotation.q);
         let whole = rotation_vector(self.orientation(turned), start);
@@ -247,8 +246,8 @@ impl Solid {
         }
     }
 
-    /// The rotation and angular momentum at the end of the step, whose rotation vector (rad) the
-    /// guard has made `turned`, and whose angular velocity `turning` (rad/s).
+    /// The rotation and angular momentum at the end of the step, if the safeguard has changed its
+    /// rotation vector (rad) to `turned`, and its angular velocity to `turning` (rad/s).
     pub fn end(&self, turned: Vector3<f64>, turning: Vector3<f64>) -> Rotation {
         let spin = self.unguarded[1];
         let mut momentum = self.ends[1].momentum;
@@ -265,11 +264,11 @@ impl Solid {
 impl Arm {
     /// Whether another arm of the body ends at the same point.
     pub fn is_at(&self, other: &Self) -> bool {
-        (self.lever - other.lever).norm() < SAME * self.lever.norm()
+        (self.lever - other.lever).norm() < SAME_TOLERANCE * self.lever.norm()
     }
 
-    /// The part of the velocity of the point of contact that the points of its body do not have: a
-    /// round body's turn beyond the closest point of its simplices, and what is not settled.
+    /// Velocity of the point of contact beyond that of its body's points: by the turn of a round
+    /// body beyond the closest point of its simplices, and by changes that are not settled.
     pub fn beyond_points(&self, field: &Field) -> Vector3<f64> {
         let Change { along, turned } = field.changes[self.solid];
         let roll = field.turns[self.solid].cross(&self.round);

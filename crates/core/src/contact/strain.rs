@@ -5,26 +5,28 @@
 //!
 //! An impulse moves the two ends of a spring by w dx, where w is the inverse mass, in opposite
 //! directions: momentum is conserved. Springs follow one another in sweeps, over-relaxed, until
-//! none is too long by more than a small tolerance. Each sweep begins with tethers, because what a
-//! sweep corrects travels from one spring to the next only: no particle is farther from the nearest
-//! pin than all springs on the way at their longest (Kim, Chentanez, Mueller-Fischer, *Long range
-//! attachments*, 2012). Where springs are within their limits, tethers are too.
+//! none is too long by more than a small tolerance. Corrections of a sweep travel only from one
+//! spring to the next, so each sweep begins with tethers: no particle may be farther from the
+//! nearest pin than the sum of the longest lengths of the springs between them (Kim, Chentanez,
+//! Mueller-Fischer, *Long range attachments*, 2012). If springs are within their limits, tethers
+//! are too.
 //!
 //! The velocities change by dx / h in a step of h. All limits together are a convex set, so a
-//! motion that was within them loses kinetic energy, but for what pins do. One that was not could
-//! gain some: the change of velocity is then so much smaller that it does not.
+//! motion that started within them loses kinetic energy, apart from the work of pins. Another
+//! motion could gain some: then the change of velocity is reduced until it does not.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Most sweeps in a step.
-const SWEEPS: usize = 10;
-/// Excess of length, over the longest length, that ends the sweeps.
+/// Largest number of sweeps in a step.
+const MAX_SWEEPS: usize = 10;
+/// Excess length, over the longest length, at which the sweeps end.
 const TOLERANCE: f64 = 5e-4;
-/// Factor of each correction of a spring: those of springs beside one another partly undo it.
+/// Over-relaxation factor of each correction of a spring: corrections of adjacent springs partly
+/// undo one another.
 const RELAXATION: f64 = 1.7;
 
-/// Springs to which one limit applies: count springs from i + k to j + k.
+/// Springs with the same limit: `count` springs from i + k to j + k.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Row {
     i: usize,
@@ -33,7 +35,7 @@ struct Row {
     longest: f64,
 }
 
-/// Longest distance of a particle from a pin.
+/// Largest distance of a particle from a pin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Tether {
     pin: usize,
@@ -41,17 +43,17 @@ struct Tether {
     longest: f64,
 }
 
-/// Longest lengths of springs, and of what they hold at pins.
+/// Longest lengths of springs, and of tethers to pins.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StrainLimit {
     rows: Vec<Row>,
     tethers: Vec<Tether>,
 }
 
-/// Outcome of a limit of strain after a step.
+/// Result of a limit of strain after a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Strained {
-    /// Largest length that a spring had, over its longest, less 1; 0 where none was too long.
+    /// Largest length of a spring over its longest length, less 1; 0 if none was too long.
     pub excess: f64,
     /// Number of sweeps over the springs.
     pub sweeps: usize,
@@ -89,7 +91,7 @@ impl StrainLimit {
         Self { rows, tethers }
     }
 
-    /// Largest length of a spring at x (m) over its longest, less 1; 0 where none is too long.
+    /// Largest length of a spring at x (m) over its longest length, less 1; 0 if none is too long.
     #[must_use]
     pub fn excess(&self, x: &[f64]) -> f64 {
         let n = x.len() / 3;
@@ -131,8 +133,8 @@ impl StrainLimiter {
     }
 
     /// Shortens springs that are too long in y1 = [x | v], the end of a step of h (s), and changes
-    /// velocities by as much. Changes nothing where none is too long, and no pinned particle, whose
-    /// inverse mass (1/kg) is 0.
+    /// the velocities accordingly. Changes nothing if none is too long, and no pinned particle,
+    /// whose inverse mass (1/kg) is 0.
     pub fn resolve(
         &mut self,
         limit: &StrainLimit,
@@ -156,14 +158,14 @@ impl StrainLimiter {
             moments: &mut self.moments,
             inverse_masses,
         };
-        while strained.sweeps < SWEEPS {
+        while strained.sweeps < MAX_SWEEPS {
             strained.sweeps += 1;
             for tether in &limit.tethers {
                 ends.shorten([tether.pin, tether.particle], tether.longest, 1.0);
             }
             let mut excess: f64 = 0.0;
-            // A sheet is listed from its first row on, and often hangs by it: what its other end
-            // pulls at is gathered on the way there.
+            // A sheet is listed from its first row on, by which it often hangs: in reverse order,
+            // the corrections of the other rows arrive there in one sweep.
             for row in limit.rows.iter().rev() {
                 for k in (0..row.count).rev() {
                     let over = ends.shorten([row.i + k, row.j + k], row.longest, RELAXATION);
@@ -178,8 +180,8 @@ impl StrainLimiter {
         strained
     }
 
-    /// Adds the changes of position over h (s) to the velocities, or such a part of them that the
-    /// kinetic energy does not grow by more than pins give.
+    /// Adds the changes of position over h (s) to the velocities, or as large a part of them that
+    /// the kinetic energy does not grow by more than the work of pins.
     fn change_velocities(&self, inverse_masses: &[f64], h: f64, v: &mut [f64]) {
         let n = inverse_masses.len();
         // The energy grows by a s / h + b s^2 / (2 h^2) for the share s of the changes.
@@ -208,8 +210,8 @@ struct Ends<'a> {
 }
 
 impl Ends<'_> {
-    /// Brings particles i and j nearer to one another if their distance is above `longest` (m): by
-    /// the excess of it times a factor. Returns the excess (m).
+    /// Moves particles i and j towards each other, by their excess distance over `longest` (m)
+    /// times a factor. Returns the excess (m).
     fn shorten(&mut self, [i, j]: [usize; 2], longest: f64, factor: f64) -> f64 {
         let n = self.inverse_masses.len();
         let x = &mut *self.x;
@@ -231,12 +233,12 @@ impl Ends<'_> {
     }
 }
 
-/// Tethers of all particles that springs join to a pin, to the nearest one along springs at their
-/// longest (Dijkstra, 1959).
+/// Tethers of all particles that springs connect to a pin: to the nearest pin, by the sum of
+/// longest lengths along springs (Dijkstra, 1959).
 fn tethers(rows: &[Row], inverse_masses: &[f64]) -> Vec<Tether> {
     let n = inverse_masses.len();
     let mut nearest = vec![(f64::INFINITY, 0); n];
-    // The bits of numbers that are not negative are in the order of the numbers.
+    // The bits of non-negative numbers have the order of the numbers.
     let mut reached = BinaryHeap::new();
     for i in (0..n).filter(|i| inverse_masses[*i] == 0.0) {
         nearest[i] = (0.0, i);

@@ -1,12 +1,12 @@
-//! Impacts of rigid and of elastic bodies, at the time in the step at which they touch.
+//! Impacts of rigid and of elastic bodies, at the time within the step at which they touch.
 //!
-//! Pairs that touch at one time get impulses along the normal that leave each of them with at least
-//! the speed that restitution says, and Coulomb friction, by projected Gauss-Seidel iteration over
-//! all of them (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988).
-//! An impulse J acts at one point p of both bodies, a time s before the end of the step. A free
-//! body ends the step at x + s J / m with the angular momentum L + (p - x + s v) x J: as if it had
-//! flown from x - s v on with the momentum m v + J. Its momentum and its angular momentum about any
-//! point change by J and p x J, so that both of the whole are conserved to rounding.
+//! Pairs that touch at one time get impulses along the normal, after which each separates at least
+//! at the speed of restitution, and Coulomb friction, by projected Gauss-Seidel iteration over all
+//! of them (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988). An
+//! impulse J acts at one point p of both bodies, a time s before the end of the step. A free body
+//! ends the step at x + s J / m with the angular momentum L + (p - x + s v) x J: as if it had moved
+//! from x - s v with the momentum m v + J. Its momentum and its angular momentum about any point
+//! change by J and p x J, so that both totals are conserved to rounding.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -15,32 +15,32 @@ use super::hits::{find, first_hits, parties};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::rebound::rebound_speed;
-use super::solids::SAME;
+use super::solids::SAME_TOLERANCE;
 use super::surface::{Law, Surface};
 use crate::geometry::{Closest, PairKind, closest, weighted};
 
-/// The most times in a step at which a body has impacts.
-const TIMES: usize = 12;
+/// Largest number of times in a step at which a body has impacts.
+const MAX_TIMES: usize = 12;
 
-/// The most passes over the impacts of one time.
-const SWEEPS: usize = 200;
+/// Largest number of passes over the impacts of one time.
+const MAX_SWEEPS: usize = 200;
 
-/// Share of the speed of an impact to which these are solved.
-const SOLVED: f64 = 1e-13;
+/// Accuracy of the solution, as a share of the speed of an impact.
+const TOLERANCE: f64 = 1e-13;
 
 /// Share of its approach by which a pair that does not rebound stays farther apart than where it
-/// touched: rounding makes no hit of it again.
-const MARGIN: f64 = 1e-6;
+/// touched, so that rounding does not make it a hit again.
+const MARGIN_SHARE: f64 = 1e-6;
 
-/// Share that bodies get back in a step of what they lack of the distance that they keep.
-const RESTORED: f64 = 0.1;
+/// Fraction of the missing separation of bodies that is restored in a step.
+const RESTORED_SHARE: f64 = 0.1;
 
 /// Side of an impact that is a rigid body.
 struct Arm {
     solid: usize,
     /// 1 for the first primitive of a pair, -1 for the second.
     sign: f64,
-    /// Point of the impact as seen from the centre (m).
+    /// Point of the impact relative to the centre (m).
     lever: Vector3<f64>,
     inverse_mass: f64,
     /// Inverse of the inertia at the time of the impact (1/(kg m2)).
@@ -50,7 +50,7 @@ struct Arm {
 /// Pair that touches.
 struct Impact {
     candidate: Candidate,
-    /// Weights of the closest points: 0 for those of rigid bodies.
+    /// Weights of the closest points: 0 for points of rigid bodies.
     weights: [f64; 4],
     /// Weights of all closest points.
     all_weights: [f64; 4],
@@ -59,7 +59,7 @@ struct Impact {
     arms: [Option<Arm>; 2],
     /// Relative velocity before the impact (m/s).
     before: Vector3<f64>,
-    /// Speed at which the bodies part at least (m/s), and whether that is a rebound.
+    /// Least speed at which the bodies separate (m/s), and whether that is a rebound.
     speed: f64,
     rebounds: bool,
     friction: f64,
@@ -67,7 +67,8 @@ struct Impact {
     mobility: Matrix3<f64>,
     /// Time from the impact to the end of the step (s).
     left: f64,
-    /// Distance (m) by which the bodies come nearer, or should part, from the touch on.
+    /// Change (m) of the displacement along the normal after the touch: it cancels the approach
+    /// and restores missing separation.
     wanted: f64,
     impulse: Vector3<f64>,
 }
@@ -78,8 +79,8 @@ struct Changes {
     solids: Vec<[Vector3<f64>; 2]>,
 }
 
-/// Gives the pairs that touch in a step of h (s) their impulses, time after time, as long as there
-/// are any with a side that is rigid or with a restitution.
+/// Applies impulses to the pairs that touch in a step of h (s), one time after another, as long as
+/// there are pairs with a rigid side or with restitution.
 pub(super) fn strike(
     surface: &Surface,
     h: f64,
@@ -90,10 +91,10 @@ pub(super) fn strike(
     let mut changed = false;
     let mut struck = vec![false; motion.x0.len()];
     let mut moved = vec![];
-    for time in 0..TIMES {
+    for time in 0..MAX_TIMES {
         let again = (time > 0).then_some(&moved[..]);
         let mut hits = find(surface, candidates, motion, again);
-        hits.retain(|(pair, _)| surface.is_sharp_pair(pair.kind, &pair.points));
+        hits.retain(|(pair, _)| surface.is_rigid_or_elastic_pair(pair.kind, &pair.points));
         moved.clear();
         moved.resize(motion.x0.len(), false);
         let hits = first_hits(surface, motion, hits, &mut moved);
@@ -102,7 +103,10 @@ pub(super) fn strike(
             let Some(impact) = Impact::new(surface, &pair, (time, h), motion, &struck) else {
                 continue;
             };
-            if !impacts.iter().any(|other| impact.is_as(other, surface)) {
+            if !impacts
+                .iter()
+                .any(|other| impact.is_same_as(other, surface))
+            {
                 guarded.first = guarded.first.min(time);
                 impacts.push(impact);
             }
@@ -129,7 +133,7 @@ pub(super) fn strike(
         for k in 0..motion.solids.len() {
             motion.solids[k].settle(k, &mut motion.v);
             if motion.solids[k].settle(k, &mut motion.moves) {
-                motion.bend(k);
+                motion.rotate_points(k);
                 moved[motion.solids[k].points.clone()].fill(true);
             }
         }
@@ -138,9 +142,9 @@ pub(super) fn strike(
     changed
 }
 
-/// Impulses of all impacts of a time, which change velocities.
+/// Finds the impulses of all impacts of one time, and the changes of velocities.
 fn solve(impacts: &mut [Impact], changes: &mut Changes, inverse_masses: &[f64]) {
-    for _ in 0..SWEEPS {
+    for _ in 0..MAX_SWEEPS {
         let mut solved = true;
         for impact in &mut *impacts {
             let relative = impact.relative(changes);
@@ -155,14 +159,14 @@ fn solve(impacts: &mut [Impact], changes: &mut Changes, inverse_masses: &[f64]) 
             impact.push(change, changes, inverse_masses);
             impact.impulse += change;
             if impact.friction > 0.0 {
-                let held = impact.held(pressed, changes);
+                let held = impact.friction_impulse(pressed, changes);
                 let rubbed = held - (impact.impulse - impact.normal * pressed);
                 impact.push(rubbed, changes, inverse_masses);
                 impact.impulse += rubbed;
                 change += rubbed;
             }
             let size = impact.speed + impact.before.norm();
-            solved &= (impact.mobility * change).norm() <= SOLVED * size;
+            solved &= (impact.mobility * change).norm() <= TOLERANCE * size;
         }
         if solved {
             break;
@@ -171,7 +175,7 @@ fn solve(impacts: &mut [Impact], changes: &mut Changes, inverse_masses: &[f64]) 
 }
 
 impl Impact {
-    /// The impact of a pair that touches at a share of a step of h (s). Parties that were `struck`
+    /// The impact of a pair that touches at a share of a step of h (s). Parts that were `struck`
     /// earlier in the step have the velocities of its end.
     fn new(
         surface: &Surface,
@@ -263,18 +267,19 @@ impl Impact {
         impact.speed = rebound_speed(law.skin.restitution, -speed, press, h);
         impact.rebounds = impact.speed > 0.0;
         if !impact.rebounds {
-            // At the end of the step, they do not approach either.
+            // They do not approach at the end of the step either.
             impact.speed = (speed - end).max(0.0);
             let approach = weighted(&weights, &moves).dot(&normal);
-            impact.wanted = RESTORED * (law.most_kept() - distance).max(0.0)
+            impact.wanted = RESTORED_SHARE * (law.max_kept() - distance).max(0.0)
                 - (1.0 - time) * approach
-                + MARGIN * approach.abs();
+                + MARGIN_SHARE * approach.abs();
         }
         Some(impact)
     }
 
-    /// Whether impulses of this impact do the same as those of another one between two bodies.
-    fn is_as(&self, other: &Self, surface: &Surface) -> bool {
+    /// Whether impulses of this impact have the same effect as those of another one between the
+    /// same bodies.
+    fn is_same_as(&self, other: &Self, surface: &Surface) -> bool {
         let first = self.candidate.kind.first();
         let bodies = |impact: &Self| {
             let pair = &impact.candidate;
@@ -293,8 +298,8 @@ impl Impact {
         is_rigid
             && is_solid
             && bodies(self) == bodies(other)
-            && (self.normal - other.normal).norm() < SAME
-            && (self.point - other.point).norm() < SAME * lever
+            && (self.normal - other.normal).norm() < SAME_TOLERANCE
+            && (self.point - other.point).norm() < SAME_TOLERANCE * lever
     }
 
     /// The relative velocity, with changes.
@@ -321,8 +326,8 @@ impl Impact {
         }
     }
 
-    /// The impulse of friction that takes the slip, as far as it goes.
-    fn held(&self, pressed: f64, changes: &Changes) -> Vector3<f64> {
+    /// The impulse of friction that stops the slip, as far as the normal impulse allows.
+    fn friction_impulse(&self, pressed: f64, changes: &Changes) -> Vector3<f64> {
         let relative = self.relative(changes);
         let slip = relative - self.normal * relative.dot(&self.normal);
         let so_far = self.impulse - self.normal * pressed;
@@ -342,7 +347,8 @@ impl Impact {
     /// Changes the motion by the impulse.
     fn apply(&self, changes: &Changes, h: f64, motion: &mut Motion) {
         let changed = (self.relative(changes) - self.before).dot(&self.normal);
-        // What does not rebound stays where it touched; else the way from there on is new.
+        // A pair that does not rebound stays where it touched; for others, the course from there on
+        // is new.
         let span = if self.rebounds {
             self.left
         } else {

@@ -1,4 +1,4 @@
-//! What of a network can touch: vertices, edges and triangles of its bodies and of its obstacles.
+//! Surface of a network: vertices, edges and triangles of its bodies and of its obstacles.
 
 use nalgebra::Vector3;
 
@@ -11,11 +11,11 @@ use crate::path::Place;
 use crate::rigid::Body;
 
 /// Least gap that is kept between two surfaces, as a share of their thickness.
-const KEPT: f64 = 1e-3;
+const KEPT_SHARE: f64 = 1e-3;
 
-/// Speed over which the force of an elastic pair changes from that of an approach to that of a
-/// parting, over the speed that its repulsion alone would give.
-const TURN: f64 = 0.1;
+/// Range of speeds over which the force of an elastic pair changes from approach to separation,
+/// over the speed that its repulsion alone would give.
+const TURN_SHARE: f64 = 0.1;
 
 /// Contact material of a surface. Where two surfaces meet, the thickness and the damping are the
 /// means of theirs, the stiffness is the smaller one, and the friction and the restitution are the
@@ -26,19 +26,20 @@ pub struct Skin {
     pub thickness: f64,
     /// Stiffness k of their repulsion (N/m).
     pub stiffness: f64,
-    /// Damping of their repulsion: one over the speed at which it counts fully (s/m).
+    /// Damping coefficient of their repulsion: one over the speed at which damping is fully
+    /// effective (s/m).
     pub damping: f64,
     /// Coefficient mu of Coulomb friction.
     pub friction: f64,
-    /// Coefficient e of restitution, from 0 to 1. With one above 0, it takes the place of damping.
+    /// Coefficient e of restitution, from 0 to 1. If it is above 0, it replaces damping.
     pub restitution: f64,
-    /// Mass with which a point of it meets others (kg), if it is rigid or has a restitution.
+    /// Effective mass of one of its points in an impact (kg), if it is rigid or has a restitution.
     pub mass: f64,
 }
 
 impl Skin {
     /// # Errors
-    /// A number is negative or not finite, or a restitution above 1.
+    /// A number is negative or not finite, or the restitution is above 1.
     pub(crate) fn check(&self) -> Result<(), Error> {
         at_least(0.0, "a thickness", self.thickness)?;
         at_least(0.0, "the stiffness of contact", self.stiffness)?;
@@ -49,34 +50,33 @@ impl Skin {
     }
 }
 
-/// What holds between the two primitives of a pair.
+/// Contact law between the two primitives of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Law {
     /// Their skin.
     pub skin: Skin,
-    /// Sum of the radii of round obstacles and bodies, which count as solid (m).
+    /// Sum of the radii of round obstacles and bodies, whose interior is solid (m).
     pub radius: f64,
-    /// Speed of an approach that the repulsion stops where the gap is 0 (m/s), if a side is rigid
-    /// or elastic.
+    /// Speed of an approach that the repulsion stops at gap 0 (m/s), if a side is rigid or elastic.
     pub stopped: f64,
 }
 
 impl Law {
-    /// Distance of the pair that is kept at most (m).
-    pub fn most_kept(&self) -> f64 {
-        self.radius + KEPT * self.skin.thickness
+    /// Largest distance that the pair keeps (m).
+    pub fn max_kept(&self) -> f64 {
+        self.radius + KEPT_SHARE * self.skin.thickness
     }
 
-    /// Least distance of the pair that is kept (m), less than what it has at first; what is within
-    /// a round body keeps the distance that it has.
+    /// Distance that the pair keeps (m), which is less than its distance at first; a pair within a
+    /// round body keeps the distance that it has.
     pub fn kept(&self, distance: f64) -> f64 {
         let room = distance - self.radius;
-        self.radius + (KEPT * self.skin.thickness).min(0.9 * room).min(room)
+        self.radius + (KEPT_SHARE * self.skin.thickness).min(0.9 * room).min(room)
     }
 }
 
-/// Vertices, edges and triangles of bodies and obstacles. Vertices are the particles and, after
-/// them, the points of obstacles.
+/// Vertices, edges and triangles of bodies and obstacles. Vertices are the particles, followed by
+/// the points of obstacles.
 #[derive(Clone, Debug, Default)]
 pub struct Surface {
     particles: usize,
@@ -86,24 +86,24 @@ pub struct Surface {
     solids: Vec<u32>,
     /// Rigid bodies.
     rigid: Vec<Body>,
-    /// Points of each obstacle, as seen from its place before it turned (m).
+    /// Points of each obstacle in its own frame, before it turned (m).
     anchors: Vec<Vec<Vector3<f64>>>,
     pub(super) bodies: Items,
     pub(super) obstacles: Items,
-    /// Edges of rigid shapes between triangles in one plane, in order.
+    /// Edges of rigid shapes between coplanar triangles, sorted.
     flat: Vec<[u32; 2]>,
     /// Whether each particle has no triangles and no edges, and belongs to no rigid body.
     singles: Vec<bool>,
-    /// Vertices that stand for floors.
+    /// Vertices that represent floors.
     pub(super) floors: Vec<u32>,
-    /// Whether bodies can touch bodies.
+    /// Whether bodies can touch themselves and one another.
     pub(super) touches_itself: bool,
     thickest: f64,
     thinnest: f64,
 }
 
 impl Surface {
-    /// Surface of particles with these skins, of which some are corners of triangles, ends of edges
+    /// Surface of particles with these skins, some of which are corners of triangles, ends of edges
     /// or points of rigid bodies, and of obstacles. An edge with equal ends is a point.
     #[must_use]
     pub fn new(
@@ -260,12 +260,12 @@ impl Surface {
         (solid > 0).then(|| solid as usize - 1)
     }
 
-    /// Whether an edge of a rigid shape is between triangles in one plane.
+    /// Whether an edge of a rigid shape is between coplanar triangles.
     pub(super) fn is_flat(&self, [a, b]: [u32; 2]) -> bool {
         !self.flat.is_empty() && self.flat.binary_search(&[a.min(b), a.max(b)]).is_ok()
     }
 
-    /// Whether a vertex is a particle without triangles and edges, or a point of something round.
+    /// Whether a vertex is a particle without triangles and edges, or a point of a round shape.
     pub(super) fn is_single(&self, vertex: u32) -> bool {
         let is_alone = || self.singles.get(vertex as usize).is_some_and(|is| *is);
         self.radius(vertex) > 0.0 || is_alone()
@@ -294,29 +294,30 @@ impl Surface {
     }
 
     /// Whether anything is rigid or elastic.
-    pub(super) fn is_sharp(&self) -> bool {
+    pub(super) fn is_rigid_or_elastic(&self) -> bool {
         !self.rigid.is_empty() || self.skins.iter().any(|skin| skin.restitution > 0.0)
     }
 
     /// Whether a side of a pair is rigid, or the pair elastic.
-    pub(super) fn is_sharp_pair(&self, kind: PairKind, points: &[u32; 4]) -> bool {
+    pub(super) fn is_rigid_or_elastic_pair(&self, kind: PairKind, points: &[u32; 4]) -> bool {
         let sides = [points[0], points[kind.first()]];
         sides
             .iter()
             .any(|i| self.solid(*i).is_some() || self.skins[*i as usize].restitution > 0.0)
     }
 
-    /// Gap beyond their thickness (m) below which surfaces may come nearer than what they keep.
+    /// Gap beyond their thickness (m) below which surfaces may come nearer than the distance that
+    /// they keep.
     pub(super) fn nearest(&self) -> f64 {
-        2.0 * KEPT * self.thickest - self.thinnest
+        2.0 * KEPT_SHARE * self.thickest - self.thinnest
     }
 
-    /// Radius of a vertex (m): 0 but for those of round obstacles and bodies.
+    /// Radius of a vertex (m): 0 except for those of round obstacles and bodies.
     pub(super) fn radius(&self, vertex: u32) -> f64 {
         self.radii[vertex as usize]
     }
 
-    /// What holds between the primitives of a pair.
+    /// Contact law between the primitives of a pair.
     pub(super) fn law(&self, kind: PairKind, points: &[u32; 4]) -> Law {
         let [a, b] = [points[0], points[kind.first()]].map(|i| self.skins[i as usize]);
         let mut skin = Skin {
@@ -327,14 +328,14 @@ impl Surface {
             restitution: a.restitution.max(b.restitution),
             mass: 1.0 / (a.mass.recip() + b.mass.recip()),
         };
-        // The speed at which the repulsion alone stops a body where the gap is 0.
-        let stopped = if self.is_sharp_pair(kind, points) {
+        // The speed at which the repulsion alone stops a body at gap 0.
+        let stopped = if self.is_rigid_or_elastic_pair(kind, points) {
             skin.thickness * (skin.stiffness / (2.0 * skin.mass)).sqrt()
         } else {
             f64::INFINITY
         };
         if skin.restitution > 0.0 {
-            skin.damping = 1.0 / (TURN * stopped);
+            skin.damping = 1.0 / (TURN_SHARE * stopped);
         }
         Law {
             skin,
@@ -389,7 +390,7 @@ impl Surface {
     }
 }
 
-/// Writes the rows of an n x 3 matrix to `out`, in place of what it holds.
+/// Writes the rows of an n x 3 matrix to `out`, replacing its contents.
 fn particles_of(x: &[f64], out: &mut Vec<Vector3<f64>>) {
     let n = x.len() / 3;
     let (xs, ys, zs) = (&x[..n], &x[n..2 * n], &x[2 * n..]);

@@ -1,4 +1,4 @@
-//! Tests of the lists of pairs, with all pairs one by one as the oracle.
+//! Tests of the lists of pairs, against all pairs one by one.
 
 use nalgebra::Vector3;
 
@@ -12,7 +12,7 @@ use crate::geometry::{PairKind, closest};
 use crate::path::Path;
 use crate::random::SplitMix;
 
-/// Shares of margins and lengths of courses; the first pair are those that lists have.
+/// Shares of margins and lengths of courses; the first entry is the default.
 const SHARES: [Option<[f64; 2]>; 4] = [None, Some([0.05, 1.0]), Some([0.5, 0.0]), Some([2.0, 9.0])];
 
 fn skin(thickness: f64) -> Skin {
@@ -43,8 +43,8 @@ fn obstacles() -> Vec<Obstacle> {
     places.map(obstacle).to_vec()
 }
 
-/// Keys of the pairs that are within their thickness at these positions (m), in canonical order:
-/// every pair is looked at.
+/// Keys of the pairs that are within their thickness at these positions (m), in canonical order,
+/// from a check of every pair.
 fn all_within(surface: &Surface, x: &[Vector3<f64>]) -> Vec<(PairKind, [u32; 4])> {
     let n = surface.particles() as u32;
     let (triangles, edges): (Vec<_>, Vec<_>) =
@@ -91,9 +91,9 @@ fn all_within(surface: &Surface, x: &[Vector3<f64>]) -> Vec<(PairKind, [u32; 4])
     pairs
 }
 
-/// Two bodies of random triangles that fly about, some of whose vertices are kicked: the list gives
-/// all pairs that touch on a stretch, each once and in canonical order, and at an instant those
-/// that touch then, whatever its margins.
+/// Two bodies of random triangles that fly about, some of whose vertices are kicked. The list has
+/// all pairs that touch during a stretch, each once and in canonical order, and at an instant those
+/// that touch then, for any margins.
 #[test]
 #[cfg_attr(miri, ignore = "takes hours there")]
 fn lists_are_complete_and_in_order() {
@@ -163,7 +163,7 @@ fn lists_are_complete_and_in_order() {
     assert!(touching > 10_000, "{touching} pairs touched");
 }
 
-/// Forces on triangles that fly about have the same bits whatever the margins of the list.
+/// Forces on triangles that fly about are bitwise equal for any margins of the list.
 #[test]
 #[cfg_attr(miri, ignore = "takes hours there")]
 fn no_bit_depends_on_the_list() {

@@ -1,4 +1,4 @@
-//! Axis-aligned boxes, and trees of them that find which boxes meet, or which primitive is nearest
+//! Axis-aligned boxes, and trees of them to find boxes that meet, or the nearest primitive
 //! (bounding volume hierarchies; Ericson, *Real-Time Collision Detection*, 2005, chapter 6).
 
 use nalgebra::Vector3;
@@ -13,7 +13,7 @@ pub(crate) fn most(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Box along the axes.
+/// Axis-aligned box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aabb {
     low: [f64; 3],
@@ -33,7 +33,7 @@ impl Aabb {
         }
     }
 
-    /// Box whose sides are farther out by so much (m).
+    /// Box enlarged by a distance (m) on all sides.
     pub fn grown(self, by: f64) -> Self {
         Self {
             low: self.low.map(|x| x - by),
@@ -41,7 +41,7 @@ impl Aabb {
         }
     }
 
-    /// The smallest box around both.
+    /// The smallest box around two boxes.
     fn with(&self, other: &Self) -> Self {
         Self {
             low: [0, 1, 2].map(|k| least(self.low[k], other.low[k])),
@@ -49,7 +49,7 @@ impl Aabb {
         }
     }
 
-    /// Whether they have a point in common, such as a corner.
+    /// Whether two boxes have a point in common, such as a corner.
     fn meets(&self, other: &Self) -> bool {
         // One branch for all axes.
         let gap = |k: usize| most(self.low[k] - other.high[k], other.low[k] - self.high[k]);
@@ -66,13 +66,14 @@ impl Aabb {
         [0, 1, 2].map(|k| outside(k).powi(2)).iter().sum()
     }
 
-    /// Twice the middle.
+    /// Twice the centre.
     fn center(&self) -> [f64; 3] {
         [0, 1, 2].map(|k| self.low[k] + self.high[k])
     }
 }
 
-/// Node of a tree. That of one item has no children; the first child of another follows it.
+/// Node of a tree. A node of one item has no children; the first child of any other node follows
+/// it.
 #[derive(Clone, Debug)]
 struct Node {
     bounds: Aabb,
@@ -87,13 +88,13 @@ struct Node {
 pub(crate) struct Bvh {
     /// Parents before their children.
     nodes: Vec<Node>,
-    /// Nodes of the items.
+    /// Node of each item.
     places: Vec<u32>,
 }
 
 impl Bvh {
-    /// Tree of these boxes: half of those of a node, along the axis on which they are spread most,
-    /// are in each child.
+    /// Tree of these boxes: each child of a node gets half of its boxes, split along the axis on
+    /// which their centres are spread most.
     pub fn new(boxes: &[Aabb]) -> Self {
         let mut tree = Self {
             nodes: Vec::with_capacity((2 * boxes.len()).saturating_sub(1)),
@@ -107,7 +108,7 @@ impl Bvh {
         tree
     }
 
-    /// Adds the nodes of these items. Their bounds follow.
+    /// Adds the nodes of these items. Their bounds are set later.
     fn add(&mut self, boxes: &[Aabb], items: &mut [u32]) {
         let (place, item) = (self.nodes.len(), items[0]);
         self.nodes.push(Node {
@@ -140,7 +141,7 @@ impl Bvh {
         self.nodes.first().map(|root| root.bounds)
     }
 
-    /// Changes the box of an item. [`refit`](Self::refit) follows.
+    /// Changes the box of an item. [`refit`](Self::refit) must follow.
     pub fn set(&mut self, item: usize, bounds: Aabb) {
         self.nodes[self.places[item] as usize].bounds = bounds;
     }
@@ -175,10 +176,10 @@ impl Bvh {
         }
     }
 
-    /// Visits each two items whose boxes meet, until that returns false. Returns whether it never
-    /// did.
+    /// Visits each pair of items whose boxes meet, until `visit` returns false. Returns whether it
+    /// never did.
     pub fn pairs(&self, mut visit: impl FnMut(u32, u32) -> bool) -> bool {
-        // Any two items are below different children of one node.
+        // Any two items are below different children of exactly one node.
         let mut nodes = self.nodes.iter().enumerate();
         nodes.all(|(place, node)| {
             let children = [place + 1, node.second as usize];
@@ -186,7 +187,7 @@ impl Bvh {
         })
     }
 
-    /// Visits each item with each of another tree whose box meets its own.
+    /// Visits each pair of an item and an item of another tree whose boxes meet.
     pub fn pairs_with(&self, other: &Self, mut visit: impl FnMut(u32, u32)) {
         let mut visit = |a, b| {
             visit(a, b);
@@ -216,8 +217,8 @@ impl Bvh {
         }
     }
 
-    /// The item with the least squared distance from a point, by this measure, and what else that
-    /// finds; of several at the same distance the first. `None` if the point is outside all boxes.
+    /// The item with the least squared distance from a point by `measure`, and the other result of
+    /// that; of several at the same distance, the first. `None` if the point is outside all boxes.
     pub fn nearest<T>(
         &self,
         point: &Vector3<f64>,
@@ -267,7 +268,7 @@ mod tests {
     use super::*;
     use crate::random::SplitMix;
 
-    /// Boxes of all sizes at random places of a grid, on which many touch or are the same.
+    /// Boxes of various sizes at random places of a grid, on which many touch or are equal.
     fn random_boxes(count: usize, random: &mut SplitMix) -> Vec<Aabb> {
         let boxes = (0..count).map(|_| {
             let low = Vector3::from_fn(|_, _| random.between(0.0, 12.0).floor());
@@ -283,7 +284,7 @@ mod tests {
         list
     }
 
-    /// All pairs of items that meet, by comparing each with each.
+    /// All pairs of items that meet, by comparison of each with each.
     fn all_pairs(first: &[Aabb], second: &[Aabb]) -> Vec<(u32, u32)> {
         let all = (0..first.len()).flat_map(|a| (0..second.len()).map(move |b| (a, b)));
         let meet = all.filter(|(a, b)| first[*a].meets(&second[*b]));
@@ -296,7 +297,7 @@ mod tests {
         for count in [0, 1, 2, 3, 7, 64, 200] {
             let mut boxes = random_boxes(count, &mut random);
             let mut tree = Bvh::new(&boxes);
-            // Once as it was made and once with boxes elsewhere.
+            // First as it was built, then after boxes have moved.
             for _ in 0..2 {
                 let mut found = vec![];
                 assert!(tree.pairs(|a, b| {

@@ -1,5 +1,5 @@
-//! Closed surfaces of triangles: the nearest of their points, and what is inside (Baerentzen and
-//! Aanaes, *Signed distance computation using the angle weighted pseudonormal*, 2005).
+//! Closed surfaces of triangles: their nearest points, and whether points are inside (Baerentzen
+//! and Aanaes, *Signed distance computation using the angle weighted pseudonormal*, 2005).
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,8 @@ use super::nearest::{Nearest, Separation};
 use super::parts::split;
 use crate::error::{Error, finite};
 
-/// Closed surfaces of triangles, each around a solid. Solids may overlap: a point in any of them is
-/// inside.
+/// Closed surfaces of triangles, each of which bounds a solid. Solids may overlap: a point in any
+/// of them is inside.
 #[derive(Clone, Debug)]
 pub struct ClosedMesh {
     points: Vec<Vector3<f64>>,
@@ -47,7 +47,7 @@ struct Face {
 }
 
 impl PartialEq for ClosedMesh {
-    /// Whether points and triangles are the same, on which all else depends.
+    /// Compares points and triangles, which determine everything else.
     fn eq(&self, other: &Self) -> bool {
         (&self.points, &self.triangles) == (&other.points, &other.triangles)
     }
@@ -57,15 +57,15 @@ impl ClosedMesh {
     /// Largest number of triangles.
     pub const MAX_TRIANGLES: usize = 200_000;
 
-    /// Surface with these points (m) and triangles, whose corners are numbers of points. Each
-    /// connected part decides by itself what is inside: its triangles are turned around if they
-    /// wind clockwise as seen from outside, unless it lies within another part, in which it is a
-    /// hole then. Points and edges that parts have in common become one for each.
+    /// Surface with these points (m) and triangles, whose corners are indices of points. Each
+    /// connected part bounds its own solid: its triangles are reversed if they wind clockwise as
+    /// seen from outside, unless it lies within another part, in which it then is a hole. Points
+    /// and edges that parts share are duplicated.
     ///
     /// # Errors
     /// There are no triangles or more than [`MAX_TRIANGLES`](Self::MAX_TRIANGLES); a corner does
-    /// not exist; a number is not finite; the triangles at an edge are no pairs that wind alike; or
-    /// nothing is enclosed.
+    /// not exist; a number is not finite; the triangles at an edge do not form pairs of the same
+    /// orientation; or no volume is enclosed.
     pub fn new(points: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>) -> Result<Self, Error> {
         let invalid = |why: String| Err(Error::Invalid(why));
         let (count, most) = (triangles.len(), Self::MAX_TRIANGLES);
@@ -85,7 +85,7 @@ impl ClosedMesh {
         }
         let volume: f64 = triangles.iter().map(|t| volume(&points, t)).sum();
         if volume == 0.0 {
-            // An open surface is named first.
+            // If the surface is open, that is the better message.
             split(points, &triangles)?;
             return invalid("a closed mesh must enclose a volume".into());
         }
@@ -94,13 +94,13 @@ impl ClosedMesh {
         let parts = split(points, &triangles)?;
         let mesh = Self::of_parts(parts.points, parts.triangles, &parts.part_of, parts.count);
         Ok(if parts.count > 1 {
-            mesh.sorted_out(parts.part_of, parts.count)
+            mesh.with_oriented_parts(parts.part_of, parts.count)
         } else {
             mesh
         })
     }
 
-    /// Surface of so many parts, each of which bounds a solid.
+    /// Surface of a number of parts, each of which bounds a solid.
     fn of_parts(
         points: Vec<Vector3<f64>>,
         triangles: Vec<[u32; 3]>,
@@ -144,14 +144,14 @@ impl ClosedMesh {
         }
     }
 
-    /// The surface with parts that wind the other way round turned around, but for those within
-    /// another part, which bound a hole of it.
-    fn sorted_out(self, mut part_of: Vec<u32>, count: usize) -> Self {
+    /// Reverses the triangles of parts that wind clockwise, except for parts within another one, in
+    /// which they are holes.
+    fn with_oriented_parts(self, mut part_of: Vec<u32>, count: usize) -> Self {
         let mut volumes = vec![0.0; count];
         for (t, part) in self.triangles.iter().zip(&part_of) {
             volumes[*part as usize] += volume(&self.points, t);
         }
-        // For each part the one that it belongs to, or none if it is to be turned around.
+        // The solid that each part belongs to, or `None` if the part is to be reversed.
         let mut owners: Vec<_> = (0..count).map(Some).collect();
         for part in (0..count).filter(|part| volumes[*part] < 0.0) {
             let own = self.solids[part].triangles.iter();
@@ -182,7 +182,7 @@ impl ClosedMesh {
         Self::of_parts(self.points, triangles, &part_of, count)
     }
 
-    /// Whether a point d is in a solid.
+    /// Whether a point d is inside a solid.
     fn is_inside(&self, solid: &Tree, d: Vector3<f64>) -> bool {
         self.offset_from(solid, d)
             .is_some_and(|(offset, normal)| normal.dot(&offset) < 0.0)
@@ -213,8 +213,8 @@ impl ClosedMesh {
         &self.edges
     }
 
-    /// Nearest point of the surface to a point d inside; where solids overlap, the one by which d
-    /// is led out of all of them, one after another.
+    /// Nearest point of the surface to a point d inside; where solids overlap, the point at which d
+    /// is outside all of them after it was moved out of one after another.
     pub(crate) fn nearest(&self, d: Vector3<f64>) -> Option<Nearest> {
         let mut left = vec![];
         let (mut point, mut last) = (d, None);
@@ -228,11 +228,11 @@ impl ClosedMesh {
         })
     }
 
-    /// Of the solids that a point d is in, but for some, the one from whose surface it is farthest,
-    /// with the vector from there and the normal there.
+    /// Of the solids that contain a point d, without those in `but`, the one from whose surface it
+    /// is farthest, with the vector from there and the normal there.
     fn deepest(&self, d: Vector3<f64>, but: &[u32]) -> Option<(u32, Vector3<f64>, Vector3<f64>)> {
         let mut deepest: Option<(u32, Vector3<f64>, Vector3<f64>)> = None;
-        let mut look = |k: u32, solid: &Tree| {
+        let mut check = |k: u32, solid: &Tree| {
             let Some((offset, normal)) = self.offset_from(solid, d) else {
                 return;
             };
@@ -245,12 +245,12 @@ impl ClosedMesh {
         };
         if self.solids.is_empty() {
             if but.is_empty() {
-                look(0, &self.whole);
+                check(0, &self.whole);
             }
         } else {
             self.places.meeting(&Aabb::around([d]), |k| {
                 if !but.contains(&k) {
-                    look(k, &self.solids[k as usize]);
+                    check(k, &self.solids[k as usize]);
                 }
             });
         }
@@ -275,7 +275,7 @@ impl ClosedMesh {
     }
 
     /// Vector to a point d from the nearest point of the surface, and the outward normal there, of
-    /// any length: of the solid that d is in, if it is in one.
+    /// any length. If d is in solids, the surface is that of the one in which it is deepest.
     fn offset(&self, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let inside = (!self.solids.is_empty())
             .then(|| self.deepest(d, &[]))
@@ -286,7 +286,7 @@ impl ClosedMesh {
         }
     }
 
-    /// The same, from the nearest of the triangles in a tree.
+    /// The same, for the triangles in a tree.
     fn offset_from(&self, tree: &Tree, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let (k, nearest) = tree.boxes.nearest(&d, |k| {
             let t = self.triangles[tree.triangles[k as usize] as usize];
@@ -298,7 +298,7 @@ impl ClosedMesh {
         Some((nearest.offset, self.normal(k, &nearest.weights)))
     }
 
-    /// Normal at the point of triangle k with these weights, of which the last three are those of
+    /// Normal at the point of triangle k with these weights, the last three of which are those of
     /// its corners.
     fn normal(&self, k: usize, weights: &[f64; 4]) -> Vector3<f64> {
         let zero = |k: usize| weights[k + 1] == 0.0;
@@ -312,7 +312,7 @@ impl ClosedMesh {
     }
 }
 
-/// Normals of the points, and those of the triangles and their sides.
+/// Normals of the points, of the triangles and of their sides.
 fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>>, Vec<Face>) {
     let mut corners = vec![Vector3::zeros(); points.len()];
     let mut sides: BTreeMap<[u32; 2], Vector3<f64>> = BTreeMap::new();
@@ -343,13 +343,13 @@ fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>
     (corners, faces.collect())
 }
 
-/// The triangle the other way round.
+/// The triangle with the opposite orientation.
 fn reversed([a, b, c]: [u32; 3]) -> [u32; 3] {
     [a, c, b]
 }
 
-/// Volume between a triangle and the origin (m3), below 0 where it winds clockwise as seen from
-/// outside.
+/// Signed volume between a triangle and the origin (m3), negative if it winds clockwise as seen
+/// from outside.
 fn volume(points: &[Vector3<f64>], triangle: &[u32; 3]) -> f64 {
     let [a, b, c] = triangle.map(|i| points[i as usize]);
     a.cross(&b).dot(&c) / 6.0

@@ -3,13 +3,13 @@
 
 use nalgebra::Vector3;
 
-/// Squared sine of the angle between two edges below which their closest points are also looked
-/// for at their ends: the system for points within both is too ill-conditioned then.
-const PARALLEL: f64 = 1e-6;
+/// Squared sine of the angle between two edges up to which their ends are also tried as closest
+/// points: the linear system for interior points is then too ill-conditioned.
+const PARALLEL_SINE_SQUARED: f64 = 1e-6;
 
-/// Share of the product of the squared sides of a triangle below which its squared double area
-/// counts as none: its points are then those of its edges.
-const FLAT: f64 = 1e-12;
+/// Squared double area of a triangle, as a share of the product of two of its squared sides, up to
+/// which the triangle counts as degenerate: it then consists of its edges.
+const FLAT_SHARE: f64 = 1e-12;
 
 /// Kind of a pair of primitives. Its four points are the vertices of the first primitive, then
 /// those of the second.
@@ -19,7 +19,7 @@ pub enum PairKind {
     VertexTriangle,
     /// Edge (points 0, 1) and edge (points 2, 3). An edge whose ends are equal is a point.
     EdgeEdge,
-    /// Vertex (point 0) and the horizontal plane through point 1; points 2 and 3 are not used.
+    /// Vertex (point 0) and the horizontal plane through point 1; points 2 and 3 are unused.
     VertexFloor,
 }
 
@@ -50,7 +50,7 @@ impl Closest {
         }
     }
 
-    /// The one of two that is closer.
+    /// The closer of two pairs of points.
     fn nearer(self, other: Self) -> Self {
         if other.offset.norm_squared() < self.offset.norm_squared() {
             other
@@ -86,7 +86,7 @@ fn vertex_triangle(points: &[Vector3<f64>; 4]) -> Closest {
     let [p, a, b, c] = *points;
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let on = |u: f64, v: f64, w: f64| Closest::new([1.0, -u, -v, -w], points);
-    if ab.cross(&ac).norm_squared() <= FLAT * ab.norm_squared() * ac.norm_squared() {
+    if ab.cross(&ac).norm_squared() <= FLAT_SHARE * ab.norm_squared() * ac.norm_squared() {
         let [s, t, u] = [[a, b], [b, c], [c, a]].map(|side| share(p, side));
         return on(1.0 - s, s, 0.0)
             .nearer(on(0.0, 1.0 - t, t))
@@ -145,7 +145,7 @@ fn edge_edge(points: &[Vector3<f64>; 4]) -> Closest {
         }
     });
     match within {
-        Some(within) if cross > PARALLEL * a * e => within,
+        Some(within) if cross > PARALLEL_SINE_SQUARED * a * e => within,
         _ => {
             let ends = [
                 on(0.0, share(p, [r, s])),
@@ -163,7 +163,7 @@ fn edge_edge(points: &[Vector3<f64>; 4]) -> Closest {
     }
 }
 
-/// Share of the way along an edge at which it is nearest to p; 0 for an edge that is a point.
+/// Position along an edge, as a share, of its point nearest to p; 0 if the edge is a point.
 fn share(p: Vector3<f64>, [a, b]: [Vector3<f64>; 2]) -> f64 {
     let along = b - a;
     let squared = along.norm_squared();

@@ -1,5 +1,4 @@
-//! Shapes: their points, edges and triangles, the points of them that are nearest, and what is
-//! inside.
+//! Shapes: their points, edges and triangles, their nearest points, and whether points are inside.
 
 pub(crate) mod bvh;
 pub(crate) mod closed_mesh;

@@ -1,4 +1,4 @@
-//! Nearest points of the surfaces of obstacles, seen from their places.
+//! Nearest points of the surfaces of obstacles, in the obstacle's own frame.
 
 use nalgebra::Vector3;
 
@@ -17,8 +17,8 @@ pub(crate) struct Separation {
     pub normal: Vector3<f64>,
 }
 
-/// Nearest point of a sphere around the origin to a point d inside it; to the centre, that in the
-/// direction of `aside`.
+/// Nearest point of a sphere around the origin to a point d inside it; for its centre, the point in
+/// the direction of `aside`.
 pub(crate) fn of_sphere(
     d: Vector3<f64>,
     radius: f64,
@@ -92,7 +92,8 @@ pub(crate) fn of_floor(d: Vector3<f64>) -> Option<Nearest> {
     })
 }
 
-/// Unit vector across an axis that leads upwards most steeply; along x from an upright axis.
+/// Unit vector perpendicular to an axis that points upwards most steeply; along x if the axis is
+/// vertical.
 fn upwards(axis: Vector3<f64>) -> Vector3<f64> {
     let squared = axis.norm_squared();
     if squared == 0.0 {

@@ -1,5 +1,4 @@
-//! Parts of closed surfaces. Where several touch in an edge or a point, each gets edges and points
-//! of its own.
+//! Connected parts of closed surfaces. If several share an edge or a point, each gets its own copy.
 
 use std::collections::BTreeMap;
 
@@ -8,22 +7,22 @@ use nalgebra::Vector3;
 use crate::error::Error;
 use crate::sets::Sets;
 
-/// Angle (rad) between two triangles at an edge that lie on one another.
-const SAME: f64 = 1e-9;
+/// Angle (rad) between two triangles at an edge up to which they count as lying on one another.
+const ANGLE_TOLERANCE: f64 = 1e-9;
 
-/// Way of a triangle along an edge, whose lower end comes first: the triangle, its corner at the
-/// lower end and that at the upper one.
+/// Passage of a triangle along an edge: its corners at the lower and at the upper end of the edge,
+/// and whether it passes upwards.
 #[derive(Clone, Copy)]
 struct Side {
     corners: [u32; 2],
     is_up: bool,
 }
 
-/// Closed surface of which each edge has two triangles, and each point one ring of them.
+/// Closed surface in which each edge has two triangles, and each point one ring of them.
 pub(super) struct Parts {
     pub points: Vec<Vector3<f64>>,
     pub triangles: Vec<[u32; 3]>,
-    /// Number of the part of each triangle, from 0 on.
+    /// Part of each triangle, counted from 0.
     pub part_of: Vec<u32>,
     /// Number of parts.
     pub count: usize,
@@ -32,10 +31,9 @@ pub(super) struct Parts {
 /// Parts of the surface with these points and triangles.
 ///
 /// # Errors
-/// An edge has not as many triangles that pass it upwards as downwards.
+/// The numbers of triangles that pass an edge upwards and downwards differ.
 pub(super) fn split(points: Vec<Vector3<f64>>, triangles: &[[u32; 3]]) -> Result<Parts, Error> {
-    // Corners around a point between which there are edges, and those of triangles beside one
-    // another.
+    // Sets of corners around a point that are connected by edges, and sets of connected triangles.
     let mut rings = Sets::new(3 * triangles.len());
     let mut parts = Sets::new(triangles.len());
     for same in sides(triangles).chunk_by(|(a, _), (b, _)| a == b) {
@@ -90,7 +88,7 @@ pub(super) fn split(points: Vec<Vector3<f64>>, triangles: &[[u32; 3]]) -> Result
     })
 }
 
-/// The ways of triangles along edges, edge by edge.
+/// The passages of triangles along edges, sorted by edge.
 fn sides(triangles: &[[u32; 3]]) -> Vec<([u32; 2], Side)> {
     let mut sides = Vec::with_capacity(3 * triangles.len());
     for (k, t) in triangles.iter().enumerate() {
@@ -109,9 +107,9 @@ fn sides(triangles: &[[u32; 3]]) -> Vec<([u32; 2], Side)> {
     sides
 }
 
-/// Sorts the triangles at an edge by their angle around it, as seen against its direction; `third`
-/// is the corner of each that is not on it. Of those at one angle, the ones behind which their
-/// solid is come first.
+/// Sorts the triangles at an edge by their angle around it, seen against its direction; `third` is
+/// each one's corner off the edge. Of triangles at the same angle, those whose solid is behind them
+/// come first.
 fn sort(sides: &mut Vec<Side>, [a, b]: [Vector3<f64>; 2], third: impl Fn(&Side) -> Vector3<f64>) {
     let along = (b - a).try_normalize(0.0).unwrap_or_default();
     let from_edge = |side: &Side| {
@@ -124,23 +122,31 @@ fn sort(sides: &mut Vec<Side>, [a, b]: [Vector3<f64>; 2], third: impl Fn(&Side) 
     let angle = |side: &Side| {
         let d = from_edge(side);
         let angle = libm::atan2(ahead.dot(&d), along.norm() * zero.dot(&d));
-        let angle = if angle < -SAME { angle + turn } else { angle };
-        if angle > turn - SAME { 0.0 } else { angle }
+        let angle = if angle < -ANGLE_TOLERANCE {
+            angle + turn
+        } else {
+            angle
+        };
+        if angle > turn - ANGLE_TOLERANCE {
+            0.0
+        } else {
+            angle
+        }
     };
     let mut sorted: Vec<_> = sides.iter().map(|side| (angle(side), *side)).collect();
     sorted.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    for same in sorted.chunk_by_mut(|(a, _), (b, _)| b - a < SAME) {
+    for same in sorted.chunk_by_mut(|(a, _), (b, _)| b - a < ANGLE_TOLERANCE) {
         same.sort_by_key(|(_, side)| !side.is_up);
     }
     *sides = sorted.into_iter().map(|(_, side)| side).collect();
 }
 
-/// Pairs of triangles at an edge that bound the same solid, which begins behind one that passes the
-/// edge downwards and ends at one that passes it upwards.
+/// Pairs of triangles at an edge that bound the same solid. It begins behind a triangle that passes
+/// the edge downwards and ends at one that passes it upwards.
 fn pairs(sides: &[Side]) -> Vec<[Side; 2]> {
     let (mut begun, mut pairs) = (vec![], vec![]);
     let mut is_paired = vec![false; sides.len()];
-    // Twice around, as a solid may lie across the beginning.
+    // Twice around, as a solid may extend across the first angle.
     for k in (0..sides.len()).chain(0..sides.len()) {
         if is_paired[k] || begun.contains(&k) {
             continue;
@@ -155,7 +161,7 @@ fn pairs(sides: &[Side]) -> Vec<[Side; 2]> {
     pairs
 }
 
-/// Error of an edge that has not as many triangles on either side.
+/// Error for an edge with different numbers of triangles in its two directions.
 fn open(points: &[Vector3<f64>], [a, b]: [u32; 2], count: usize) -> Error {
     let place = |i: u32| {
         let [x, y, z]: [f64; 3] = points[i as usize].into();

@@ -6,7 +6,7 @@ use super::nearest::Separation;
 use super::shape::Shape;
 
 impl Shape {
-    /// Separation of a point d, seen from the shape's place.
+    /// Separation of a point d, in the shape's own frame.
     pub(crate) fn separation(&self, d: Vector3<f64>) -> Separation {
         match self {
             Self::Sphere { radius } => around(d, *radius),
@@ -32,14 +32,14 @@ impl Shape {
         }
     }
 
-    /// Whether the shape is convex: the plane across the normal of a separation is then nowhere
-    /// farther from a point than the shape is.
+    /// Whether the shape is convex: then the tangent plane at the nearest point is a lower bound of
+    /// the distance.
     pub(crate) fn is_convex(&self) -> bool {
         !matches!(self, Self::Mesh(_))
     }
 
-    /// Depth (m) of the deepest point inside, which is half of the least width; 0 for a mesh, of
-    /// which it is not known.
+    /// Depth (m) of the deepest point inside, half of the least width; 0 for a mesh, because it is
+    /// unknown.
     pub(crate) fn greatest_depth(&self) -> f64 {
         match self {
             Self::Sphere { radius } | Self::Capsule { radius, .. } => *radius,
@@ -49,7 +49,7 @@ impl Shape {
         }
     }
 
-    /// Radius (m) of a ball around the place that contains the shape.
+    /// Radius (m) of a sphere around the place that contains the shape.
     pub(crate) fn reach(&self) -> f64 {
         match self {
             Self::Sphere { radius } => *radius,
@@ -64,7 +64,7 @@ impl Shape {
     }
 }
 
-/// Separation of d from a ball of that radius (m) around the origin.
+/// Separation of d from a sphere of that radius (m) around the origin.
 fn around(d: Vector3<f64>, radius: f64) -> Separation {
     let distance = d.norm();
     Separation {

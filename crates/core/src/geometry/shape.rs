@@ -12,7 +12,7 @@ use crate::path::rotation;
 /// Shape of an obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// All that is within a radius of the place.
+    /// All points within a radius of the place.
     Sphere {
         /// Radius (m).
         radius: f64,
@@ -21,23 +21,23 @@ pub enum Shape {
     Box {
         /// Half the length along each of the axes (m).
         half_extents: Vector3<f64>,
-        /// Directions of the edges: unit vectors at right angles to one another.
+        /// Directions of the edges: perpendicular unit vectors.
         axes: [Vector3<f64>; 3],
     },
-    /// All that is within a radius of a line segment.
+    /// All points within a radius of a line segment.
     Capsule {
-        /// Ends of the segment, seen from the place (m).
+        /// Ends of the segment, relative to the place (m).
         ends: [Vector3<f64>; 2],
         /// Radius (m).
         radius: f64,
     },
-    /// All that a closed surface of triangles encloses.
+    /// All points that a closed surface of triangles encloses.
     Mesh(Arc<ClosedMesh>),
-    /// All that is lower than the place.
+    /// All points below the place.
     Floor,
 }
 
-/// All within a radius of points, edges and triangles, seen from the place before the obstacle
+/// All points within a radius of points, edges and triangles, in the obstacle's own frame before it
 /// turned.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Simplices {
@@ -51,11 +51,11 @@ pub struct Simplices {
     pub radius: f64,
 }
 
-/// Sine of the angle of two triangles up to which they are in one plane.
-const FLAT: f64 = 1e-9;
+/// Sine of the angle between two triangles up to which they count as coplanar.
+const COPLANAR_SINE: f64 = 1e-9;
 
 impl Simplices {
-    /// Edges between triangles in one plane, as numbers of points, the lower one first.
+    /// Edges between coplanar triangles, as indices of points, the lower one first.
     pub(crate) fn flat_edges(&self) -> Vec<[u32; 2]> {
         let mut sides = BTreeMap::new();
         let mut flat = vec![];
@@ -67,7 +67,7 @@ impl Simplices {
                 let Some(other) = sides.insert(edge, normal) else {
                     continue;
                 };
-                if normal.cross(&other).norm() < FLAT && normal.dot(&other) > 0.0 {
+                if normal.cross(&other).norm() < COPLANAR_SINE && normal.dot(&other) > 0.0 {
                     flat.push(edge);
                 }
             }
@@ -77,7 +77,7 @@ impl Simplices {
 }
 
 impl Shape {
-    /// Box that is turned from the upright about the vector `turn` by its length (rad).
+    /// Box rotated from the upright about the vector `turn` by its length (rad).
     ///
     /// # Errors
     /// A half extent is not above 0, or a number is not finite.
@@ -90,10 +90,10 @@ impl Shape {
         Ok(shape)
     }
 
-    /// The shape turned by a rotation matrix about its place.
+    /// The shape rotated by a matrix about its place.
     ///
     /// # Errors
-    /// Rounding leaves a mesh no volume.
+    /// Rounding reduces the volume of a mesh to zero.
     pub fn turned(&self, by: &Matrix3<f64>) -> Result<Self, Error> {
         Ok(match self {
             Self::Box { half_extents, axes } => Self::Box {
@@ -125,8 +125,7 @@ impl Shape {
         }
     }
 
-    /// Surface as points, edges and triangles with a radius; none of them for a floor, which has
-    /// no end.
+    /// Surface as points, edges and triangles with a radius; none for a floor, which is unbounded.
     #[must_use]
     pub fn simplices(&self) -> Simplices {
         match self {
@@ -200,7 +199,7 @@ impl Shape {
                 ends.try_for_each(|end| finite("the end of a capsule", *end))?;
                 positive("a capsule's radius", *radius)
             }
-            // A closed mesh was checked when it was made.
+            // A closed mesh was checked at its construction.
             Self::Mesh(_) | Self::Floor => Ok(()),
         }
     }

@@ -23,7 +23,7 @@ fn cuboid(low: [f64; 3], high: [f64; 3], first: u32) -> (Vec<Vector3<f64>>, Vec<
     (points.collect(), triangles.collect())
 }
 
-/// One mesh of boxes, of which some are turned inside out, and whose equal points are one.
+/// One mesh of boxes, some of them inside out, with equal points merged.
 fn boxes(of: &[([f64; 3], [f64; 3], bool)]) -> ClosedMesh {
     let (mut points, mut triangles): (Vec<Vector3<f64>>, Vec<[u32; 3]>) = (vec![], vec![]);
     for (low, high, is_turned) in of {
@@ -56,8 +56,8 @@ fn random_point(random: &mut SplitMix) -> Vector3<f64> {
     Vector3::from_fn(|_, _| random.between(0.01, 3.99))
 }
 
-/// What is in one of the boxes is inside, however they overlap, touch or wind, and is led out of
-/// all of them.
+/// Points in any of the boxes are inside, whether these overlap, touch or wind clockwise, and are
+/// moved out of all of them.
 #[test]
 fn parts_decide_by_themselves_what_is_inside() {
     let corner = ([0.0; 3], [4.0; 3]);
@@ -70,7 +70,7 @@ fn parts_decide_by_themselves_what_is_inside() {
         ("the same", corner),
         ("within", ([1.0; 3], [2.0; 3])),
     ] {
-        // Within another, one that is turned is a hole.
+        // A reversed box within another is a hole.
         for turned in [[false, false], [true, true], [false, true], [true, false]] {
             if turned[0] != turned[1] && what != "overlap" && what != "apart" {
                 continue;
@@ -99,7 +99,8 @@ fn parts_decide_by_themselves_what_is_inside() {
     }
 }
 
-/// A hole stays one, a solid in it is one, and a box in a box that winds alike is no hole.
+/// A hole stays a hole, a solid in it a solid, and a box in a box of the same orientation is no
+/// hole.
 #[test]
 fn holes_are_outside() {
     let at = |low: f64| ([low; 3], [4.0 - low; 3]);
@@ -127,7 +128,7 @@ fn holes_are_outside() {
     }
 }
 
-/// Points that parts have in common are one for each.
+/// Each part gets its own copy of shared points.
 #[test]
 fn parts_have_their_own_points() {
     let count = |second: ([f64; 3], [f64; 3])| {

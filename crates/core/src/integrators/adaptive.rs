@@ -1,4 +1,4 @@
-//! Adaptive steps: as long as a method's estimate of its error stays within the tolerance (Hairer,
+//! Adaptive steps, as long as a method's error estimate stays within the tolerance (Hairer,
 //! Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.4).
 
 use std::ops::Range;
@@ -15,13 +15,14 @@ use crate::system::ParticleSystem;
 use crate::threads::{Columns, copy, threads};
 use crate::work::Work;
 
-/// Shortest step, as a share of the time at which it begins or of the step that was tried first: an
-/// equation that asks for less has no solution, or a tolerance below what double precision holds.
-const SHORTEST: f64 = 1e-12;
-/// Longest first step (s), and that of a motion that has not begun.
-const FIRST: (f64, f64) = (1e-2, 1e-6);
-/// Least and greatest ratio of a step to the one before it.
-const CHANGE: (f64, f64) = (0.2, 8.0);
+/// Shortest step, as a share of the time at which it begins or of the first trial step. If an
+/// equation needs a shorter one, it has no solution, or the tolerance is too small for double
+/// precision.
+const MIN_STEP_SHARE: f64 = 1e-12;
+/// Longest first step (s), and first step of a motion that starts from rest (s).
+const FIRST_STEPS: (f64, f64) = (1e-2, 1e-6);
+/// Least and greatest ratio of a step to the previous one.
+const STEP_RATIOS: (f64, f64) = (0.2, 8.0);
 
 /// A step that an adaptive method took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -34,18 +35,18 @@ pub struct Taken {
     pub work: Work,
 }
 
-/// What an adaptive method remembers between steps.
+/// Memory of an adaptive method between steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AdaptiveState {
     /// Length to try next (s); 0 before the first step.
     next: f64,
     last: Taken,
-    /// The last step, if the next one may go on from its end.
+    /// The last step, if the next one can start from its end.
     step: Option<LastStep>,
 }
 
 impl AdaptiveState {
-    /// `Ok` if the lengths of its steps are ones that a method takes.
+    /// Checks that the lengths of its steps are possible.
     fn check(&self) -> Result<(), Error> {
         let Taken { t, h, .. } = self.last;
         let within = self.step.as_ref().map_or(0.0, |step| step.h);
@@ -59,9 +60,9 @@ impl AdaptiveState {
     }
 }
 
-/// An adaptive method: one that estimates its error, with its tolerance.
+/// An adaptive method, which estimates its error, with its tolerance.
 ///
-/// Beside scratch it remembers the length of its last step, as the first guess for the next, and
+/// Besides scratch it remembers the length of its last step, as the first guess for the next, and
 /// the derivative at its end, which [`restart`](Self::restart) forgets.
 pub struct Adaptive {
     trial: Box<dyn Trial>,
@@ -69,13 +70,13 @@ pub struct Adaptive {
     /// The length to try next (s); 0 before the first step.
     next: f64,
     last: Taken,
-    /// Whether the method may go on from the end of its last step.
-    goes_on: bool,
+    /// Whether the next step can start from the end of the last one.
+    can_continue: bool,
     /// Scratch of the first step: f, a state, and f there.
     first: [Vec<f64>; 3],
 }
 
-/// Whether two states are the same but for what rigid bodies carry, which follows from the rest.
+/// Whether two states are equal, except for particles on rigid bodies, which follow from the rest.
 fn is_same(system: &dyn ParticleSystem, a: &[f64], b: &[f64]) -> bool {
     match system.rigid() {
         None => {
@@ -86,7 +87,7 @@ fn is_same(system: &dyn ParticleSystem, a: &[f64], b: &[f64]) -> bool {
     }
 }
 
-/// The number of numbers that differ.
+/// Counts the numbers that differ.
 struct Different<'a>(&'a [f64], &'a [f64]);
 
 impl OnBlock<0, 1> for Different<'_> {
@@ -109,7 +110,7 @@ impl Adaptive {
             tolerance,
             next: 0.0,
             last: Taken::default(),
-            goes_on: false,
+            can_continue: false,
             first,
         }
     }
@@ -120,29 +121,29 @@ impl Adaptive {
         self.last
     }
 
-    /// What the method remembers: all of it, or without the `stages` of the last step, after which
-    /// it [restarts](Self::restart).
+    /// Memory of the method: all of it, or without the `stages` of the last step; then it
+    /// [restarts](Self::restart).
     #[must_use]
     pub fn state(&self, stages: bool) -> AdaptiveState {
         AdaptiveState {
             next: self.next,
             last: self.last,
-            step: (stages && self.goes_on).then(|| self.trial.last()),
+            step: (stages && self.can_continue).then(|| self.trial.last()),
         }
     }
 
-    /// Goes on from what the same method remembered.
+    /// Continues with a saved memory of the same method.
     ///
     /// # Errors
-    /// The state is of another method or of another system, or its step is no step; nothing
-    /// changes then.
+    /// The state is of another method or of another system, or the length of its step is
+    /// impossible; nothing changes then.
     pub fn resume(&mut self, state: &AdaptiveState) -> Result<(), Error> {
         state.check()?;
         if let Some(step) = &state.step {
             self.trial.resume(step)?;
         }
         (self.next, self.last) = (state.next, state.last);
-        self.goes_on = state.step.is_some();
+        self.can_continue = state.step.is_some();
         Ok(())
     }
 
@@ -151,23 +152,23 @@ impl Adaptive {
         self.next = h;
     }
 
-    /// Tries no longer step than h (s) next.
+    /// Tries a step of at most h (s) next.
     pub fn try_at_most(&mut self, h: f64) {
         self.next = self.next.min(h);
     }
 
-    /// Forgets what depends on the system and the state. To be called when either changes between
-    /// steps.
+    /// Forgets everything that depends on the system and the state. To be called when either
+    /// changes between steps.
     pub fn restart(&mut self) {
-        self.goes_on = false;
+        self.can_continue = false;
     }
 
-    /// Takes y from t to the end of one step of at most `longest` (s).
+    /// Advances y from t by one step of at most `longest` (s).
     ///
     /// # Errors
-    /// The state has another length than the system's; a force depends on the velocity, and the
-    /// method does not serve such forces; f is not finite at y; or no step that gets anywhere meets
-    /// the tolerance. y is as it was then.
+    /// The state and the system differ in length; a force depends on the velocity, and the method
+    /// does not support that; f is not finite at y; or no step that advances the time meets the
+    /// tolerance. y then stays as it was.
     pub fn advance(
         &mut self,
         system: &dyn ParticleSystem,
@@ -179,14 +180,14 @@ impl Adaptive {
         self.trial.check(system)?;
         let mut work = Work::default();
         // Contact may have changed y after the last step: then f must be evaluated again.
-        if !self.goes_on {
+        if !self.can_continue {
             work += self.trial.begin(system, t, y);
         } else if is_same(system, self.trial.end(), y) {
-            self.trial.go_on();
+            self.trial.start_from_end();
         } else {
             work += self.trial.begin_again(system, t, y);
         }
-        self.goes_on = false;
+        self.can_continue = false;
         let mut norm = ErrorNorm {
             system,
             tolerance: self.tolerance,
@@ -196,11 +197,11 @@ impl Adaptive {
             norm.h = self.first_step(t, y, &norm);
             work += Work::of(1);
         }
-        let shortest = SHORTEST * norm.h.max(t.abs());
+        let shortest = MIN_STEP_SHARE * norm.h.max(t.abs());
         let wanted = norm.h;
         norm.h = wanted.min(longest);
         loop {
-            // The shortest step is tried too.
+            // The shortest step is also tried.
             norm.h = norm.h.max(shortest.min(longest));
             let h = norm.h;
             let (cost, error) = self.trial.attempt(system, t, h, &norm);
@@ -208,15 +209,19 @@ impl Adaptive {
             let change = self.trial.change(error);
             if error <= 1.0 {
                 copy(self.trial.end(), y);
-                // Not longer at once after it had to be shorter.
-                let most = if work.rejections > 0 { 1.0 } else { CHANGE.1 };
-                self.next = h * change.clamp(CHANGE.0, most);
+                // After a rejection, the next step is not longer than this one.
+                let most = if work.rejections > 0 {
+                    1.0
+                } else {
+                    STEP_RATIOS.1
+                };
+                self.next = h * change.clamp(STEP_RATIOS.0, most);
                 if h == longest {
-                    // Not the error has made it shorter.
+                    // It was shortened by `longest`, not because of its error.
                     self.next = self.next.max(wanted);
                 }
                 self.last = Taken { t, h, work };
-                self.goes_on = true;
+                self.can_continue = true;
                 return Ok(self.last);
             }
             work.rejections += 1;
@@ -230,33 +235,37 @@ impl Adaptive {
                         .then_some(Error::StepTooSmall { time: t, step: h }),
                 };
                 if let Some(failure) = failure {
-                    // A guess for whoever tries again.
+                    // Makes the next attempt guess the first step again.
                     self.next = 0.0;
                     return Err(failure);
                 }
             }
-            // NaN is as bad as can be.
-            norm.h *= if change >= CHANGE.0 { change } else { CHANGE.0 };
+            // NaN counts as the worst error.
+            norm.h *= if change >= STEP_RATIOS.0 {
+                change
+            } else {
+                STEP_RATIOS.0
+            };
         }
     }
 
     /// Writes the state at a time (s) within the last step to `out`. Returns the work, which is 0
-    /// from the second time on within one step.
+    /// from the second call within a step on.
     pub fn interpolate(&mut self, system: &dyn ParticleSystem, time: f64, out: &mut [f64]) -> Work {
         let Taken { t, h, .. } = self.last;
         self.trial.interpolate(system, t, (time - t) / h, out)
     }
 
-    /// A guess of the first step (s), from the times in which f and, by a step of Euler's method,
-    /// its derivative change the state.
+    /// Guess of the first step (s), from the times in which f and, estimated by a step of Euler's
+    /// method, its derivative change the state.
     fn first_step(&mut self, t: f64, y: &[f64], norm: &ErrorNorm) -> f64 {
         let (system, [f0, y1, f1]) = (norm.system, &mut self.first);
         self.trial.derivative(system, f0);
         let slope = norm.time_scale(y, f0, 1);
         if slope.is_nan() {
-            return FIRST.0;
+            return FIRST_STEPS.0;
         }
-        let h = (0.01 * slope).min(FIRST.0);
+        let h = (0.01 * slope).min(FIRST_STEPS.0);
         scaled_sum(y1, y, h, f0);
         system.eval_f(t + h, y1, f1);
         for (f1, f0) in f1.iter_mut().zip(f0) {
@@ -265,9 +274,9 @@ impl Adaptive {
         let bend = norm.time_scale(y, f1, 2);
         let time = slope.min(bend);
         if time == f64::INFINITY {
-            return FIRST.1;
+            return FIRST_STEPS.1;
         }
         let least = 0.01 * self.tolerance.relative;
-        (time * libm::pow(least, 1.0 / self.trial.exponent())).min(FIRST.0)
+        (time * libm::pow(least, 1.0 / self.trial.exponent())).min(FIRST_STEPS.0)
     }
 }

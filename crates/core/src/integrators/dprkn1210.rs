@@ -2,9 +2,10 @@
 //! (*High-order embedded Runge-Kutta-Nyström formulae*, IMA J. Numer. Anal. 7, 1987). Seventeen
 //! stages.
 //!
-//! The polynomial for x has degree 11 and needs no further stage but the first of the next step. It
-//! meets all conditions up to order 6 and both ends of the step exactly, and those of orders 7 to
-//! 11 in the sense of least squares: its error within a step is of the size of that of the step.
+//! The polynomial for x has degree 11 and needs no further stage except the first of the next step.
+//! It satisfies all conditions up to order 6 and at both ends of the step exactly, and those of
+//! orders 7 to 11 in the least-squares sense: its error within a step is similar to that of the
+//! step.
 
 use super::dprkn1210_dense::DENSE;
 use super::method::{Method, View};

@@ -1,8 +1,8 @@
-//! The polynomial through a step of the Nyström pair of orders 12 and 10: its weights were found by
-//! least squares over the conditions of orders 7 to 11, under those up to order 6 and those of both
-//! ends.
+//! The polynomial through a step of the Nyström pair of orders 12 and 10. Its weights are a
+//! least-squares solution of the conditions of orders 7 to 11, subject to those up to order 6 and
+//! at both ends.
 
-/// Coefficients of each stage's weight, from that of the fraction squared on.
+/// Coefficients of each stage's weight, starting with the fraction of the step squared.
 pub(super) static DENSE: &[&[f64]] = &[
     &[
         0.497_017_576_540_638_6,

@@ -2,9 +2,9 @@
 //! embedded Runge-Kutta-Nyström formulae*, IMA J. Numer. Anal. 7, 1987). Nine stages, of which the
 //! last is the first of the next step.
 //!
-//! The polynomial for x has degree 8 and needs no further stage. It meets all conditions up to
-//! order 6 and both ends of the step exactly, and those of orders 7 and 8 in the sense of least
-//! squares: its error within a step is of the size of that of the step.
+//! The polynomial for x has degree 8 and needs no further stage. It satisfies all conditions up to
+//! order 6 and at both ends of the step exactly, and those of orders 7 and 8 in the least-squares
+//! sense: its error within a step is similar to that of the step.
 
 use super::method::{Method, View};
 use super::nystrom::{NystromPair, NystromTableau};

@@ -15,30 +15,30 @@ use crate::system::ParticleSystem;
 use crate::threads::{Columns, fork, threads};
 use crate::work::Work;
 
-/// Coefficients of a pair. After its stages comes k = f(t + h, y1), the first stage of the next
-/// step, and after that the stages that only the polynomial needs.
+/// Coefficients of a pair. Its stages are followed by k = f(t + h, y1), the first stage of the next
+/// step, and then by the stages that only the polynomial needs.
 #[derive(Debug)]
 pub(super) struct Tableau {
     /// Time `c_i` and weights `a_ij` of each stage from the second on.
     pub(super) stages: &'static [(f64, &'static [f64])],
     /// Weights of y1.
     pub(super) weights: &'static [f64],
-    /// Weights of the error estimates: of one, or of the two, of orders 5 and 3, that DOP853
+    /// Weights of the error estimates: of one, or of the two of orders 5 and 3 that DOP853
     /// combines.
     pub(super) errors: &'static [&'static [f64]],
-    /// Power of h with which the estimated local error falls.
+    /// Power of h to which the estimated local error is proportional.
     pub(super) exponent: f64,
     /// Times and weights of the polynomial's own stages.
     pub(super) extra: &'static [(f64, &'static [f64])],
-    /// Weights of the polynomial's terms of degree 4 and more; the terms below follow from both
+    /// Weights of the polynomial's terms of degree 4 and more; the lower terms follow from both
     /// ends.
     pub(super) dense: &'static [&'static [f64]],
 }
 
 /// Largest number of terms of a polynomial.
-const TERMS: usize = 7;
+const MAX_TERMS: usize = 7;
 
-/// A pair with its scratch: a method of fixed steps by itself, and an adaptive one in
+/// A pair with its scratch: by itself a method of fixed steps, and an adaptive one in
 /// [`Adaptive`](super::Adaptive).
 pub(super) struct EmbeddedPair {
     tableau: &'static Tableau,
@@ -57,8 +57,8 @@ impl EmbeddedPair {
         }
     }
 
-    /// Evaluates the stages of a step of h (s) from where [`begin`](Self::begin) or
-    /// [`go_on`](Self::go_on) left it. Returns their number.
+    /// Evaluates the stages of a step of h (s) after [`begin`](Self::begin) or
+    /// [`start_from_end`](Self::start_from_end). Returns their number.
     fn stages(&mut self, system: &dyn ParticleSystem, t: f64, h: f64) -> u64 {
         let tableau = self.tableau;
         self.last.h = h;
@@ -85,7 +85,7 @@ struct End<'a> {
     h: f64,
     y0: &'a [f64],
     k: &'a [Vec<f64>],
-    /// Whether y1 is still to be formed.
+    /// Whether y1 still has to be computed.
     forms: bool,
 }
 
@@ -128,7 +128,7 @@ impl Trial for EmbeddedPair {
         Work::of(1)
     }
 
-    fn go_on(&mut self) {
+    fn start_from_end(&mut self) {
         let last = self.tableau.stages.len() + 1;
         self.last.k.swap(0, last);
         std::mem::swap(&mut self.last.y0, &mut self.last.y1);
@@ -148,7 +148,7 @@ impl Trial for EmbeddedPair {
         let mut work = Work::of(self.stages(system, t, h));
         let tableau = self.tableau;
         let reads_end = tableau.errors[0].len() > tableau.stages.len() + 1;
-        // What bodies carry is in no sum.
+        // Particles on rigid bodies are in no sum.
         let forms = reads_end || system.rigid().is_some();
         if forms {
             let LastStep { y0, y1, k, .. } = &mut self.last;
@@ -205,7 +205,7 @@ impl Trial for EmbeddedPair {
         // y0 + theta (F0 + (1 - theta) (F1 + theta (F2 + (1 - theta) (F3 + ...)))): the factor of
         // each term.
         let mut factor = 1.0;
-        let factors: [f64; TERMS] = std::array::from_fn(|i| {
+        let factors: [f64; MAX_TERMS] = std::array::from_fn(|i| {
             factor *= if i % 2 == 0 { theta } else { 1.0 - theta };
             factor
         });
@@ -269,7 +269,7 @@ fn combine_block(
     add_to_block(start, out, h, weights, k);
 }
 
-/// Adds h sum weights k to a block of numbers, of which `start` is the first.
+/// Adds h sum weights k to a block of numbers, whose index of the first is `start`.
 pub(super) fn add_to_block(start: usize, out: &mut [f64], h: f64, weights: &[f64], k: &[Vec<f64>]) {
     let block = start..start + out.len();
     let mut terms = weights
@@ -307,8 +307,8 @@ impl WithSimd for Add<'_> {
     }
 }
 
-/// Visits blocks of numbers, each with its first index, on several threads if there are many: so
-/// many numbers for each particle.
+/// Runs `run` on blocks of numbers, each with its first index, on several threads if there are
+/// many. Each particle has `each` numbers.
 pub(super) fn blocks(each: usize, out: &mut [f64], run: impl Fn(usize, &mut [f64]) + Sync) {
     let bands = threads(out.len() / each);
     let rows = out.len().div_ceil(BLOCK);

@@ -12,7 +12,7 @@ use crate::sums::{OnBlock, add_up, dot};
 use crate::system::{Measure, ParticleSystem};
 use crate::threads::{Columns, threads};
 
-/// Error that a step may make.
+/// Error that a step is allowed to make.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Relative to the motion, without unit.
@@ -22,7 +22,7 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// Tolerance of a system about 1 m large: a relative one (without unit), and as many metres.
+    /// Tolerance of a system about 1 m in size: the same number relatively, and in metres.
     ///
     /// # Errors
     /// It is not a finite number above 0.
@@ -41,21 +41,21 @@ impl Tolerance {
     }
 }
 
-/// Share of the absolute tolerance that is tolerated of a quantity that vanishes.
-const FLOOR: f64 = 1e-3;
+/// Share of the absolute tolerance that is allowed for a quantity that vanishes.
+const FLOOR_SHARE: f64 = 1e-3;
 
-/// Numbers whose squares are added up together, and few enough for all that they are computed from
-/// to stay in the cache.
+/// Numbers whose squares are summed together: few enough that all data they are computed from stay
+/// in the cache.
 pub(super) const BLOCK: usize = 2048;
 
-/// Norm of the error of a step: for each quantity that the state consists of, the root mean square
-/// of the error over the tolerated one; of these, the largest.
+/// Norm of the error of a step: the root mean square of the error of each quantity in the state,
+/// over the allowed one; of these, the largest.
 ///
 /// Positions may be wrong by the absolute tolerance, wherever the origin is. Any other quantity may
 /// be wrong by the relative tolerance times its own root mean square: velocities, the rotations of
-/// bodies as lengths at their radius, and their angular momenta as speeds there. No unit matters,
-/// nor any mass. Where such a quantity vanishes, an error is tolerated that moves nothing by more
-/// than a thousandth of the absolute tolerance within the step.
+/// bodies as lengths at their radius, and their angular momenta as speeds there. The norm depends
+/// neither on units nor on masses. If such a quantity vanishes, an error is allowed that moves
+/// nothing by more than a thousandth of the absolute tolerance within the step.
 pub(super) struct ErrorNorm<'a> {
     pub system: &'a dyn ParticleSystem,
     pub tolerance: Tolerance,
@@ -63,7 +63,7 @@ pub(super) struct ErrorNorm<'a> {
     pub h: f64,
 }
 
-/// Sums of squares over the numbers that measure one quantity.
+/// Sums of squares over the numbers that belong to one quantity.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     count: f64,
@@ -75,27 +75,27 @@ struct Sums {
 /// Number of quantities.
 const QUANTITIES: usize = 5;
 
-/// Error of a quantity that is tolerated in a step of h: `fixed + rate / h`.
+/// Allowed error of a quantity in a step of h: `fixed + rate / h`.
 struct Tolerated {
     fixed: f64,
     rate: f64,
 }
 
 impl ErrorNorm<'_> {
-    /// The error over the tolerated one, of the quantity of which that is largest.
+    /// The largest ratio of a quantity's error to the allowed one.
     pub fn of(&self, y0: &[f64], y1: &[f64], error: &[f64]) -> f64 {
         let [error, _] = self.of_sums(squares([y0, y1, error]));
         error
     }
 
-    /// The same of two errors, by the sums of squares over a range of numbers: of y0, of y1 and of
-    /// both errors.
+    /// The same for two errors, from the sums of squares over a range of numbers: of y0, of y1 and
+    /// of both errors.
     pub fn of_sums(&self, sums: impl FnMut(Range<usize>) -> [f64; 4]) -> [f64; 2] {
         let mut largest = [0.0; 2];
         for (errors, Tolerated { fixed, rate }) in self.quantities(sums) {
             for (largest, error) in largest.iter_mut().zip(errors) {
                 let ratio = error / (fixed + rate / self.h);
-                // NaN has to come out as such.
+                // NaN is returned as such.
                 if ratio > *largest || ratio.is_nan() {
                     *largest = ratio;
                 }
@@ -104,8 +104,8 @@ impl ErrorNorm<'_> {
         largest
     }
 
-    /// Time (s) in which a quantity changes by as much as it is itself, at the state y with this
-    /// derivative of y of order 1 or 2; infinite if nothing changes. h does not matter.
+    /// Time (s) in which a quantity changes by its own size, at the state y with this derivative of
+    /// y of order 1 or 2; infinite if nothing changes. It does not depend on h.
     pub fn time_scale(&self, y: &[f64], derivative: &[f64], order: i32) -> f64 {
         let root = |a: f64, order: i32| libm::pow(a, 1.0 / f64::from(order));
         let sums = squares([y, y, derivative]);
@@ -118,7 +118,7 @@ impl ErrorNorm<'_> {
             root(fixed, order).max(root(rate, order + 1))
         });
         times.fold(f64::INFINITY, |least, time| {
-            // NaN has to come out as such.
+            // NaN is returned as such.
             if time < least || time.is_nan() {
                 time
             } else {
@@ -127,7 +127,7 @@ impl ErrorNorm<'_> {
         })
     }
 
-    /// The quantities that the state consists of: their errors, and those that are tolerated.
+    /// The quantities in the state: their errors, and the allowed ones.
     fn quantities(
         &self,
         mut sums: impl FnMut(Range<usize>) -> [f64; 4],
@@ -164,8 +164,8 @@ impl ErrorNorm<'_> {
                 let own = relative * mean(sums.y0).max(mean(sums.y1));
                 let (fixed, rate) = match quantity {
                     1 => (absolute, 0.0),
-                    2 | 4 => (own, FLOOR * absolute),
-                    _ => (own + FLOOR * absolute, 0.0),
+                    2 | 4 => (own, FLOOR_SHARE * absolute),
+                    _ => (own + FLOOR_SHARE * absolute, 0.0),
                 };
                 (sums.errors.map(mean), Tolerated { fixed, rate })
             })

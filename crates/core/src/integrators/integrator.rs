@@ -1,4 +1,4 @@
-//! What takes the steps of a method.
+//! Interface of a method that steps a system.
 
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -6,7 +6,7 @@ use crate::work::Work;
 
 /// Integrator of a system: a method with its scratch.
 pub trait Integrator: Send {
-    /// Takes the state y from t to t + h (s), and returns the work. The result depends on the
+    /// Advances the state y from t to t + h (s), and returns the work. The result depends on the
     /// arguments alone. Allocates nothing.
     ///
     /// # Errors
@@ -21,7 +21,7 @@ pub trait Integrator: Send {
     ) -> Result<Work, Error>;
 }
 
-/// `Ok` if `y` has the length `expected`, else [`Error::Dimension`].
+/// Checks that `y` has the length `expected`.
 pub(super) fn check_dim(expected: usize, y: &[f64]) -> Result<(), Error> {
     if y.len() == expected {
         Ok(())

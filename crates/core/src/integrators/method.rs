@@ -15,19 +15,19 @@ pub(super) const MAX_DENSE: usize = 1024;
 /// Creates an integrator for a system.
 type Create<T> = fn(system: &dyn ParticleSystem) -> Box<T>;
 
-/// View of a system by which a method takes its steps.
+/// View of a system that a method steps with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
     /// The derivative f(t, y) of any system.
     Derivative,
-    /// The derivative and how it changes with the state: a step solves equations.
+    /// The derivative and its change with the state: a step solves equations.
     Tangent,
     /// Kicks of the velocities by forces, and drifts of the positions.
     Kicks,
-    /// Accelerations that depend on positions and time alone, but for viscous drag.
+    /// Accelerations that depend on positions and time alone, except for viscous drag.
     Accelerations,
-    /// Springs one by one, solved by a fixed number of iterations in a step. The springs are then
-    /// softer than they should be in a long step, even where the motion is slow.
+    /// Springs one by one, solved by a fixed number of iterations in a step. In a long step the
+    /// springs are then too soft, even where the motion is slow.
     Springs,
 }
 
@@ -50,11 +50,11 @@ pub struct Method {
     pub evaluations: u32,
     /// Number of evaluations in a step where springs are damped.
     pub damped_evaluations: u32,
-    /// View of a system by which the method takes its steps.
+    /// View of a system that the method steps with.
     pub view: View,
     /// Creates the method's integrator.
     pub(super) create: Create<dyn Integrator>,
-    /// Creates what an adaptive method, which chooses its steps to a tolerance, tries them by;
+    /// Creates the trial steps of an adaptive method, which chooses its steps to a tolerance;
     /// `None` for other methods.
     pub(super) trial: Option<Create<dyn Trial>>,
 }
@@ -66,19 +66,19 @@ impl Method {
         matches!(self.view, View::Tangent | View::Springs)
     }
 
-    /// Whether the method needs forces and masses, and does not support an arbitrary f(t, y).
+    /// Whether the method needs forces and masses, instead of an arbitrary f(t, y).
     #[must_use]
     pub fn needs_mechanics(&self) -> bool {
         !matches!(self.view, View::Derivative | View::Tangent)
     }
 
-    /// Whether the method serves only forces that depend on positions and time, drag aside.
+    /// Whether the method supports only forces that depend on positions and time, apart from drag.
     #[must_use]
     pub fn positions_only(&self) -> bool {
         self.view == View::Accelerations
     }
 
-    /// Whether the method solves spring by spring, and supports no other couplings of particles.
+    /// Whether the method solves spring by spring, and supports no other forces between particles.
     #[must_use]
     pub fn needs_springs(&self) -> bool {
         self.view == View::Springs
@@ -98,7 +98,7 @@ impl Method {
         }
     }
 
-    /// Why the method does not support a system; `None` if it does.
+    /// Reason why the method does not support a system; `None` if it does.
     fn refusal(&self, system: &dyn ParticleSystem) -> Option<Refusal> {
         let Some(mechanics) = system.mechanics() else {
             return match self.view {
@@ -152,7 +152,7 @@ impl Method {
         self.trial.is_some()
     }
 
-    /// `Ok` if the method can be controlled like this.
+    /// Checks that the method supports a control.
     ///
     /// # Errors
     /// The value is not a finite number above 0, or it is a tolerance and the method estimates no

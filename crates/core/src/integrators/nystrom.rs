@@ -1,8 +1,8 @@
-//! Runge-Kutta-Nyström pairs by their tables, for `x'' = a(t, x)` and, by a substitution, for
-//! `x'' = a(t, x) - 2 g x'`: `X_i = x0 + c_i h v0 + h^2 sum a_ij k_j`, `k_i = a(t + c_i h, X_i)`,
-//! `x1 = x0 + h v0 + h^2 sum b_i k_i`, `v1 = v0 + h sum b'_i k_i` (Hairer, Norsett, Wanner,
-//! *Solving Ordinary Differential Equations I*, 1993, II.14). They take fewer stages than a
-//! Runge-Kutta method of the same order, but the forces must not depend on the velocity.
+//! Runge-Kutta-Nyström pairs by their tables, for `x'' = a(t, x)` and, by a substitution, for `x''
+//! = a(t, x) - 2 g x'`: `X_i = x0 + c_i h v0 + h^2 sum a_ij k_j`, `k_i = a(t + c_i h, X_i)`, `x1 =
+//! x0 + h v0 + h^2 sum b_i k_i`, `v1 = v0 + h sum b'_i k_i` (Hairer, Norsett, Wanner, *Solving
+//! Ordinary Differential Equations I*, 1993, II.14). They take fewer stages than a Runge-Kutta
+//! method of the same order, but forces must not depend on the velocity.
 //!
 //! Viscous drag of coefficient c is the exception. With g = c / (2 m) and x = x0 + exp(-g s) w,
 //! where s is the time since the step began, w'' = exp(g s) (a + g^2 (x - x0)) is free of w', and
@@ -19,7 +19,7 @@ use crate::error::{Error, Refusal};
 use crate::system::{Mechanics, ParticleSystem, depends_on_positions, place_pins};
 use crate::work::Work;
 
-/// Coefficients of a pair. After its stages comes the acceleration at the end of the step, the
+/// Coefficients of a pair. Its stages are followed by the acceleration at the end of the step, the
 /// first of the next step, which error estimate and polynomial may use as a stage.
 #[derive(Debug)]
 pub(super) struct NystromTableau {
@@ -29,17 +29,17 @@ pub(super) struct NystromTableau {
     pub weights: [&'static [f64]; 2],
     /// Weights of the estimated errors of x1 and of v1.
     pub errors: [&'static [f64]; 2],
-    /// Power of h with which the estimated local error falls.
+    /// Power of h to which the estimated local error is proportional.
     pub exponent: f64,
-    /// Coefficients of each stage's weight in the polynomial for x, from that of the fraction
-    /// squared on.
+    /// Coefficients of each stage's weight in the polynomial for x, starting with the fraction of
+    /// the step squared.
     pub dense: &'static [&'static [f64]],
 }
 
 /// Largest number of stages of a polynomial.
-const STAGES: usize = 18;
+const MAX_STAGES: usize = 18;
 
-/// A pair with its scratch: a method of fixed steps by itself, and an adaptive one in
+/// A pair with its scratch: by itself a method of fixed steps, and an adaptive one in
 /// [`Adaptive`](super::Adaptive).
 pub(super) struct NystromPair {
     /// Full title of the method.
@@ -47,12 +47,12 @@ pub(super) struct NystromPair {
     tableau: &'static NystromTableau,
     /// Position at which a stage is evaluated.
     x: Vec<f64>,
-    /// Velocity with which a stage is evaluated: 0, but for pins.
+    /// Velocity with which a stage is evaluated: 0, except at pins.
     v: Vec<f64>,
     /// Estimated error of the state.
     error: Vec<f64>,
-    /// The last step, whose last but one k is the acceleration at its end as a stage, and whose
-    /// last k is that acceleration itself.
+    /// The last step. Its last k is the acceleration at its end, and the one before it that
+    /// acceleration as a stage.
     last: LastStep,
 }
 
@@ -66,7 +66,7 @@ fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, Drag<'_>)> {
     depends_on_positions(mechanics).then_some((mechanics, drag))
 }
 
-/// Error of a method that meets forces which depend on the velocity.
+/// Error of a method if forces depend on the velocity.
 fn refused(method: &'static str) -> Error {
     Error::Unsupported {
         method,
@@ -84,8 +84,8 @@ struct Drag<'a> {
 }
 
 impl Drag<'_> {
-    /// Visits runs of equal masses among some numbers of an n x 3 matrix, counted from the first of
-    /// them, with g = c / (2 m) (1/s) of each; none without drag.
+    /// Visits runs of equal masses in a range of numbers of an n x 3 matrix, counted from its
+    /// start, with g = c / (2 m) (1/s) of each; none without drag.
     fn runs(&self, numbers: Range<usize>, mut visit: impl FnMut(Range<usize>, f64)) {
         if self.coefficient == 0.0 {
             return;
@@ -104,7 +104,7 @@ impl Drag<'_> {
     }
 }
 
-/// A system of forces without velocities beside drag, and the step that is taken with it.
+/// A system whose forces depend on velocities by drag only, and a step of it.
 struct Step<'a> {
     mechanics: &'a dyn Mechanics,
     drag: Drag<'a>,
@@ -115,8 +115,8 @@ struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// Writes `h^2 sum weights k` to `x`, and x0 and s v0 on top of it from a state `y0`, by which
-    /// drag has shrunk w to x - x0.
+    /// Writes `h^2 sum weights k` to `x`, plus s v0; then multiplies by exp(-g s), by which w
+    /// becomes x - x0, and adds x0. Without `y0`, leaves out v0 and x0.
     fn positions(
         &self,
         s: f64,
@@ -145,7 +145,7 @@ impl Step<'_> {
     }
 
     /// Writes the state at the time s (s) into the step from `y0` to `out`, by the weights of x and
-    /// of v; without `y0`, the differences that other weights make.
+    /// of v; without `y0`, the differences by other weights.
     fn state(
         &self,
         s: f64,
@@ -178,7 +178,7 @@ impl Step<'_> {
         }
     }
 
-    /// Makes w'' of the accelerations `k` at the positions x, at the time s (s) into the step.
+    /// Converts accelerations `k` at the positions x, at the time s (s) into the step, to w''.
     fn substitute(&self, s: f64, x: &[f64], x0: &[f64], k: &mut [f64]) {
         let drag = self.drag;
         if drag.coefficient == 0.0 {
@@ -222,8 +222,8 @@ impl NystromPair {
         })
     }
 
-    /// Evaluates the stages of a step from where [`begin`](Trial::begin) or
-    /// [`go_on`](Trial::go_on) left it, and finds its end. Returns the cost.
+    /// Evaluates the stages of a step after [`begin`](Trial::begin) or
+    /// [`start_from_end`](Trial::start_from_end), and computes its end. Returns the cost.
     fn stages(&mut self, step: &Step) -> Work {
         let tableau = self.tableau;
         let LastStep { h, y0, y1, k, .. } = &mut self.last;
@@ -285,7 +285,7 @@ impl Trial for NystromPair {
         Work::of(1)
     }
 
-    fn go_on(&mut self) {
+    fn start_from_end(&mut self) {
         let end = self.last.k.len() - 1;
         self.last.k.swap(0, end);
         std::mem::swap(&mut self.last.y0, &mut self.last.y1);
@@ -340,7 +340,7 @@ impl Trial for NystromPair {
         let Some(step) = Self::of(system, t, self.last.h) else {
             return Work::default();
         };
-        let (mut of_x, mut of_v) = ([0.0; STAGES], [0.0; STAGES]);
+        let (mut of_x, mut of_v) = ([0.0; MAX_STAGES], [0.0; MAX_STAGES]);
         let stages = of_x.iter_mut().zip(&mut of_v).zip(self.tableau.dense);
         for ((of_x, of_v), coefficients) in stages {
             // Horner's scheme for the sum of r theta^m from m = 2 on, and for its derivative.

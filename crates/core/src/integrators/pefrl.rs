@@ -2,9 +2,9 @@
 //! Forest-Ruth- and Suzuki-like algorithms for integration of motion in many-body systems*, Comput.
 //! Phys. Commun. 146, 2002): a symmetric sequence of five drifts and four kicks. Order 4.
 //!
-//! Each drift is the exact flow under drag and gravity. Where the other forces depend on the
-//! velocity, as those of damped springs do, each kick is one step of the classical Runge-Kutta
-//! method in v at fixed x. A method of lower order there would reduce the order of the whole.
+//! Each drift is the exact flow under drag and gravity. If the other forces depend on the velocity,
+//! as those of damped springs do, each kick is one step of the classical Runge-Kutta method in v at
+//! fixed x. A kick of lower order would reduce the order of the whole.
 
 use super::method::{Method, View};
 use super::runge_kutta::{EULER, RK4, Table};

@@ -1,7 +1,7 @@
-//! Prediction of a step without springs, from which methods that solve spring by spring begin: with
-//! masses m, drag c and the other forces F, v* = (m v + h F(t, x, v)) / (m + h c), x* = x + h v*.
-//! Drag is that of implicit Euler, so that it is stable at any step; it adds h c to the masses with
-//! which springs are solved. Pinned particles are put in their places at t + h.
+//! Prediction of a step without springs, for methods that then solve spring by spring: with masses
+//! m, drag c and the other forces F, v* = (m v + h F(t, x, v)) / (m + h c), x* = x + h v*. Drag is
+//! treated as in implicit Euler, so it is stable at any step; it adds h c to the masses for the
+//! solution of springs. Pinned particles move to their places at t + h.
 
 use crate::error::{Error, Refusal};
 use crate::system::{Compliant, Linearized, Mechanics, ParticleSystem, place_pins};
@@ -15,7 +15,7 @@ pub(super) struct Prediction {
 }
 
 impl Prediction {
-    /// Prediction for a system of so many particles.
+    /// Prediction for a system of n particles.
     pub fn new(particles: usize) -> Self {
         Self {
             f: vec![0.0; 3 * particles],
@@ -23,7 +23,7 @@ impl Prediction {
         }
     }
 
-    /// Takes x and v from t to t + h (s) as if there were no springs.
+    /// Advances x and v from t to t + h (s) as if there were no springs.
     pub fn take(&mut self, system: &dyn Compliant, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
         let Self { f, inverse_masses } = self;
         system.other_forces(t, x, v, f);
@@ -62,8 +62,8 @@ pub(super) fn springs_of<'a>(
         })
 }
 
-/// Work of so many iterations over all springs: each counts as an evaluation, and what it takes
-/// longer as linear algebra, at this price in evaluations of forces spring by spring.
+/// Work of iterations over all springs: each counts as an evaluation and, for the rest of its cost
+/// (in evaluations of forces spring by spring), as linear algebra.
 pub(super) fn work(system: &dyn Compliant, iterations: u32, price: f64) -> Work {
     let speed = system.linearized().map_or(1.0, Linearized::speed);
     Work {

@@ -1,6 +1,6 @@
-//! Explicit Runge-Kutta methods each of whose stages reads only the one before it:
-//! k1 = f(t, y), k2 = f(t + c2 h, y + c2 h k1), k3 = f(t + c3 h, y + c3 h k2), ...,
-//! y1 = y + h (b1 k1 + b2 k2 + ...).
+//! Explicit Runge-Kutta methods in which each stage depends only on the one before it: k1 = f(t,
+//! y), k2 = f(t + c2 h, y + c2 h k1), k3 = f(t + c3 h, y + c3 h k2), ..., y1 = y + h (b1 k1 + b2 k2
+//! + ...).
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -89,7 +89,7 @@ impl Integrator for RungeKutta {
                 sweeper.step(system, None, &self.stages, y);
             }
             _ => {
-                // An integrator that was made for rows has no scratch for whole arrays yet.
+                // An integrator made for rows has no scratch for whole arrays yet.
                 for scratch in [&mut self.stage, &mut self.sum, &mut self.k] {
                     scratch.resize(self.dim, 0.0);
                 }
@@ -111,9 +111,9 @@ impl Integrator for RungeKutta {
     }
 }
 
-/// Step from one stage to the next on whole arrays: adds the stage's k to the sum and forms the
-/// next stage, or the new state. A stage that is to be ahead of the sum is at the sum then, and y
-/// is how far it is to be ahead.
+/// Step from one stage to the next on whole arrays: adds the stage's k to the sum and computes the
+/// next stage or the new state. For [`Next::Ahead`], `next` is the sum, and y the distance by which
+/// the next stage will be ahead of it.
 pub(super) struct Combine<'a> {
     pub stage: &'a Stage,
     pub y: &'a mut [f64],

@@ -1,7 +1,6 @@
-//! Splitting methods: alternate drifts, which move x by v, and kicks, which change v by the forces
-//! at fixed x. Where forces depend on v too, as those of damped springs do, a method has other
-//! kicks: each a step of an explicit Runge-Kutta method in v, or by forces at velocities ahead of
-//! v.
+//! Splitting methods alternate drifts, which move x by v, and kicks, which change v by the forces
+//! at fixed x. If forces depend on v too, as those of damped springs do, a method has other kicks:
+//! each is a step of an explicit Runge-Kutta method in v, or uses forces at velocities ahead of v.
 
 use pulp::Arch;
 
@@ -16,20 +15,20 @@ use crate::system::{
 };
 use crate::work::Work;
 
-/// Largest number of stages of a sweep through several kicks: with more, the rows no longer fit in
+/// Largest number of stages in a sweep through several kicks: with more, the rows no longer fit in
 /// the cache.
-const STAGES: usize = 4;
+const MAX_SWEEP_STAGES: usize = 4;
 
 /// Splitting method as a table of drifts and kicks.
 pub(super) struct Plan {
     /// Name of the method.
     pub name: &'static str,
-    /// Terms that act in kicks: [`Terms::KickForces`] if drifts carry gravity and drag exactly, and
-    /// otherwise [`Terms::AllForces`].
+    /// Forces that act in kicks: [`Terms::KickForces`] if drifts handle gravity and drag exactly,
+    /// and otherwise [`Terms::AllForces`].
     pub terms: Terms,
-    /// Drifts and kicks where forces do not depend on v.
+    /// Drifts and kicks for forces that do not depend on v.
     pub free: Kicks,
-    /// Drifts and kicks where they do; `None` for a method that does not serve such forces.
+    /// Drifts and kicks for forces that do; `None` for a method that does not support such forces.
     pub damped: Option<Kicks>,
 }
 
@@ -42,8 +41,9 @@ pub(super) struct Kicks {
     pub last: f64,
     /// Runge-Kutta method in v of each kick.
     pub table: Table,
-    /// How far ahead of v each kick after the first takes its forces, e = k e + c h a, by k and c
-    /// and the acceleration a of the kick before. Without them, kicks take forces at v.
+    /// How far ahead of v each kick after the first evaluates its forces: e = k e + c h a, with
+    /// these k and c and the acceleration a of the previous kick. If it is empty, kicks evaluate
+    /// forces at v.
     pub ahead: &'static [(f64, f64)],
 }
 
@@ -54,9 +54,9 @@ pub(super) struct SplittingMethod {
     stages: Vec<Stage>,
     /// Scratch for systems of rows; `None` for others.
     sweeper: Option<Sweeper>,
-    /// Scratch for other systems: v at the beginning of the kick, or how far the stage is ahead of
-    /// v; the sum over its stages, or v; and the accelerations. With rigid bodies, of the whole
-    /// state.
+    /// Scratch for other systems: v at the beginning of the kick, or the distance of the stage
+    /// ahead of v; the sum over its stages, or v; and the accelerations. With rigid bodies, these
+    /// are of the whole state.
     y: Vec<f64>,
     sum: Vec<f64>,
     a: Vec<f64>,
@@ -69,7 +69,7 @@ impl Plan {
         self.with(system, sweeper)
     }
 
-    /// Integrator that steps with this sweeper, or by whole arrays if there is none.
+    /// Integrator that steps with this sweeper or, without one, on whole arrays.
     pub fn with(
         &'static self,
         system: &dyn ParticleSystem,
@@ -92,18 +92,18 @@ impl Plan {
         })
     }
 
-    /// Drifts and kicks for this system: those of forces without velocities, if the method does not
-    /// serve others.
+    /// Drifts and kicks for this system: those for forces without velocities, if the method
+    /// supports no others.
     fn kicks(&self, system: &dyn ParticleSystem) -> Kicks {
         self.damped
             .filter(|_| reads_velocity(system))
             .unwrap_or(self.free)
     }
 
-    /// Number of stages of a sweep: as many whole kicks as fit, at least one.
+    /// Number of stages in a sweep: as many whole kicks as fit, at least one.
     pub fn stages_of_sweep(&self, system: &dyn ParticleSystem) -> usize {
         let Kicks { steps, table, .. } = self.kicks(system);
-        table.len() * (STAGES / table.len()).clamp(1, steps.len())
+        table.len() * (MAX_SWEEP_STAGES / table.len()).clamp(1, steps.len())
     }
 }
 
@@ -188,11 +188,11 @@ impl Integrator for SplittingMethod {
 }
 
 impl SplittingMethod {
-    /// Takes y through the first drift of length `lead` (s) from t (s) and all stages by whole
+    /// Advances y through the first drift of length `lead` (s) from t (s) and all stages, on whole
     /// arrays.
     fn plain(&mut self, mechanics: &dyn Mechanics, (t, lead): (f64, f64), y: &mut [f64]) {
         let (x, v) = y.split_at_mut(self.dim / 2);
-        // An integrator that was made for rows has no scratch for whole arrays yet.
+        // An integrator made for rows has no scratch for whole arrays yet.
         for scratch in [&mut self.y, &mut self.sum, &mut self.a] {
             scratch.resize(v.len(), 0.0);
         }
@@ -224,8 +224,8 @@ impl SplittingMethod {
         }
     }
 
-    /// Does the same where rigid bodies are: kicks change velocities and angular momenta, and
-    /// drifts turn bodies freely.
+    /// As [`plain`](Self::plain), with rigid bodies: kicks change velocities and angular momenta,
+    /// and drifts rotate bodies freely.
     fn rigid(&mut self, system: &dyn Rigid, (t, lead): (f64, f64), y: &mut [f64]) {
         let terms = self.plan.terms;
         let drift = |t: f64, h: f64, y: &mut [f64]| {
@@ -255,7 +255,7 @@ impl SplittingMethod {
     }
 }
 
-/// Whether kicks depend on v, or the system does not say.
+/// Whether kicks depend on v; true if unknown.
 fn reads_velocity(system: &dyn ParticleSystem) -> bool {
     if let Some(rigid) = system.rigid() {
         return rigid.kick_reads_velocity();
@@ -263,7 +263,7 @@ fn reads_velocity(system: &dyn ParticleSystem) -> bool {
     system.mechanics().is_none_or(kick_reads_velocity)
 }
 
-/// Takes x and v through a drift from t to t + h (s), and pins to their places at its end.
+/// Drifts x and v from t to t + h (s), and moves pins to their places at its end.
 fn drift(mechanics: &dyn Mechanics, terms: Terms, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
     if h == 0.0 {
         return;

@@ -1,7 +1,6 @@
 //! A step in one sweep over a system's rows: each stage follows the one before it, a few rows
-//! behind, so that what passes between them is still in the cache. Patches of rows are swept one by
-//! one. On several threads, each sweeps over a band of rows, and over those beside it that its own
-//! depend on.
+//! behind, so that their data are still in the cache. Patches of rows are swept one by one. On
+//! several threads, each sweeps over a band of rows, and over the adjacent rows that it depends on.
 
 use std::array;
 use std::ops::Range;
@@ -10,14 +9,14 @@ use crate::rows::{Next, Patch, REACH, Registers, Rows, Stage, SweepScratch, Term
 use crate::system::ParticleSystem;
 use crate::threads::{Columns, split_off, threads};
 
-/// Number of particles that a stage goes through at a time.
+/// Number of particles that a stage processes at a time.
 const BLOCK: usize = 256;
 
-/// Number of particles below which what passes between up to three stages stays in the cache anyway
+/// Number of particles below which the data of up to three stages stay in the cache anyway
 /// (docs/performance.md).
-const MANY: usize = 4096;
-/// Columns above which what is kept of a few rows takes more room than the whole state.
-const WIDE: usize = 4096;
+const MIN_PARTICLES: usize = 4096;
+/// Number of columns above which the rows kept by a sweep take more memory than the whole state.
+const MAX_COLUMNS: usize = 4096;
 
 /// Scratch for steps of a system of rows.
 pub(super) struct Sweeper {
@@ -29,18 +28,18 @@ pub(super) struct Sweeper {
 }
 
 impl Sweeper {
-    /// A sweeper for a system of rows, where it pays.
+    /// A sweeper for a system of rows, if it is faster than whole arrays.
     pub fn new(system: &dyn ParticleSystem, stages: usize) -> Option<Self> {
         let rows = system.rows()?;
         let patches: Vec<_> = (0..rows.patches()).map(|k| rows.patch(k)).collect();
         let particles = patches.iter().map(Patch::particles).sum();
         let widest = patches.iter().map(|patch| patch.cols).max()?;
-        let pays = (stages > 3 || particles >= MANY) && widest <= WIDE;
+        let pays = (stages > 3 || particles >= MIN_PARTICLES) && widest <= MAX_COLUMNS;
         let share = |patch: &Patch| (threads(particles) * patch.particles()).div_ceil(particles);
         pays.then(|| Self::with_bands(rows, stages, share))
     }
 
-    /// A sweeper with so many bands of each patch.
+    /// A sweeper with a number of bands for each patch.
     pub fn with_bands(system: &dyn Rows, stages: usize, bands: impl Fn(&Patch) -> usize) -> Self {
         let patches: Vec<_> = (0..system.patches()).map(|k| system.patch(k)).collect();
         let mut all = vec![];
@@ -59,16 +58,16 @@ impl Sweeper {
         }
     }
 
-    /// Whether it is for such a system, and so many stages.
+    /// Whether the sweeper is for this system and number of stages.
     pub fn fits(&self, system: &dyn Rows, stages: usize) -> bool {
         let patches = (0..system.patches()).map(|k| system.patch(k));
         self.stages == stages && patches.eq(self.patches.iter().copied())
     }
 
-    /// Takes y through the stages, after a drift from some time on.
+    /// Advances y through the stages, after a drift if the step begins with one.
     pub fn step(&mut self, system: &dyn Rows, lead: Option<Lead>, stages: &[Stage], y: &mut [f64]) {
         for band in &mut self.bands {
-            band.look_around(y);
+            band.copy_neighbours(y);
         }
         let mut columns = y.chunks_exact_mut(y.len() / 6);
         let columns = array::from_fn(|_| columns.next().unwrap_or_default());
@@ -81,7 +80,7 @@ impl Sweeper {
     }
 }
 
-/// The drift with which a step begins: its time and its length (s).
+/// The drift at the beginning of a step: its terms, its time and its length (s).
 pub(super) type Lead = (Terms, (f64, f64));
 
 struct Job<'a> {
@@ -100,17 +99,17 @@ fn fork(bands: &mut [Band], job: &Job, mut y: Columns<6>) {
     rayon::join(|| fork(above, job, firsts), || fork(below, job, y));
 }
 
-/// Some rows of a patch, and what a thread needs to step them.
+/// Some rows of a patch, with everything that a thread needs to step them.
 struct Band {
     /// Number of the patch.
     number: usize,
     patch: Patch,
     rows: Range<usize>,
-    /// The rows that it sees, and y in those of them that belong to other bands.
+    /// All rows that it depends on; `above` and `below` are copies of y in those of other bands.
     seen: Range<usize>,
     above: Window,
     below: Window,
-    /// Number of rows that a stage goes through at a time.
+    /// Number of rows that a stage processes at a time.
     block: usize,
     registers: Registers,
     scratch: SweepScratch,
@@ -146,8 +145,8 @@ impl Band {
         self.patch.row(self.rows.start).start
     }
 
-    /// Copies the rows of other bands before these change them.
-    fn look_around(&mut self, y: &[f64]) {
+    /// Copies the rows of other bands that it depends on, before these change them.
+    fn copy_neighbours(&mut self, y: &[f64]) {
         let (n, patch) = (y.len() / 6, self.patch);
         let copy = |rows: Range<usize>, to: &mut Window| {
             for row in rows {
@@ -161,7 +160,7 @@ impl Band {
         copy(self.rows.end..self.seen.end, &mut self.below);
     }
 
-    /// Takes its rows of y through the stages.
+    /// Advances its rows of y through the stages.
     fn step(&mut self, job: &Job, mut y: Columns<6>) {
         let Job {
             system,
@@ -183,7 +182,8 @@ impl Band {
                 loaded += 1;
             }
             for (number, stage) in stages.iter().enumerate() {
-                // Fewer rows at either end than in the stage before, unless the system ends there.
+                // At either end a few rows less than in the stage before, unless the system ends
+                // there.
                 let more = REACH * (stages.len() - 1 - number);
                 let first = self.rows.start.saturating_sub(more + REACH);
                 let end = (self.rows.end + more).min(self.seen.end);
@@ -256,7 +256,7 @@ mod tests {
         Plan(&'static Plan),
     }
 
-    /// The state after some steps, in such bands, or with whole arrays.
+    /// The state after some steps, in a number of bands, or with whole arrays.
     fn after(scene: &Scene, method: &Kind, bands: Option<usize>) -> Vec<f64> {
         let system = scene.model.system();
         let sweeper = |stages| {
@@ -311,7 +311,7 @@ mod tests {
         }
     }
 
-    /// A state that was lost leaves nothing behind: what is beside the rows is zero again.
+    /// A state that blew up has no effect on the next one: scratch beside the rows is zero again.
     #[test]
     fn a_step_is_a_function_of_its_arguments() {
         let grid = Grid::new(11, 13).unwrap();

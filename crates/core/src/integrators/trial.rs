@@ -1,4 +1,4 @@
-//! Steps that are tried: what an adaptive method asks of the method whose steps it chooses.
+//! Trial steps: the interface of a method whose steps an adaptive integrator chooses.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,9 +11,9 @@ use crate::work::Work;
 /// Share of the tolerated error that a step aims at.
 const SAFETY: f64 = 0.8;
 
-/// A method that estimates the error of its step, and holds the state in the midst of it.
+/// A method that estimates the error of its step, and interpolates states within it.
 pub(super) trait Trial: Send {
-    /// `Ok` if the method serves the system as it is now.
+    /// Checks that the method supports the system as it is now.
     ///
     /// # Errors
     /// It does not.
@@ -24,7 +24,7 @@ pub(super) trait Trial: Send {
     /// Length of the state.
     fn dim(&self) -> usize;
 
-    /// Power of h with which the estimated local error falls.
+    /// Power of h to which the estimated local error is proportional.
     fn exponent(&self) -> f64;
 
     /// Factor for the next step, given this step's error relative to the tolerance.
@@ -32,22 +32,22 @@ pub(super) trait Trial: Send {
         SAFETY * libm::pow(error, -1.0 / self.exponent())
     }
 
-    /// Begins a step at y, of which nothing is known.
+    /// Begins a step at an unrelated state y.
     fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work;
 
-    /// Begins a step at y, to which contact has changed the end of the last step.
+    /// Begins a step at y, the end of the last step after changes by contact.
     fn begin_again(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
         self.begin(system, t, y)
     }
 
-    /// Begins a step at the end of the last one, with what is known there.
-    fn go_on(&mut self);
+    /// Begins a step at the end of the last one, and reuses its derivative.
+    fn start_from_end(&mut self);
 
     /// Writes f at the beginning of the step to `out`.
     fn derivative(&self, system: &dyn ParticleSystem, out: &mut [f64]);
 
-    /// Tries a step of h (s). Returns its cost, and its estimated error over the tolerated one,
-    /// which is at most 1 for an accepted step.
+    /// Tries a step of h (s). Returns its cost, and its estimated error over the allowed one, which
+    /// is at most 1 for an accepted step.
     fn attempt(
         &mut self,
         system: &dyn ParticleSystem,
@@ -72,15 +72,14 @@ pub(super) trait Trial: Send {
     /// Memory of the last step.
     fn last(&self) -> LastStep;
 
-    /// Goes on after another step.
+    /// Continues after a saved step.
     ///
     /// # Errors
     /// The step is of another method or of another system; nothing changes then.
     fn resume(&mut self, step: &LastStep) -> Result<(), Error>;
 }
 
-/// The last step of a method, from which the next one goes on, and off which states within it are
-/// read.
+/// The last step of a method: the next one starts from it, and states within it are interpolated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct LastStep {
     /// Length of the step (s).
@@ -91,18 +90,18 @@ pub(super) struct LastStep {
     pub y1: Vec<f64>,
     /// Derivatives or other vectors of the stages, in the method's own order.
     pub k: Vec<Vec<f64>>,
-    /// Whether the stages that only states within the step need have been computed.
+    /// Whether the stages for states within the step have been computed.
     pub dense: bool,
-    /// Counts beside these, in the method's own order.
+    /// Other integers, in the method's own order.
     #[serde(default)]
     pub counts: Vec<usize>,
-    /// Numbers beside these, in the method's own order.
+    /// Other numbers, in the method's own order.
     #[serde(default)]
     pub numbers: Vec<f64>,
 }
 
 impl LastStep {
-    /// Memory of a method with so many stages, of a system of this dimension.
+    /// Memory of a method with a number of stages, for a system of this dimension.
     pub fn new(dim: usize, stages: usize) -> Self {
         Self {
             h: 0.0,
@@ -115,7 +114,7 @@ impl LastStep {
         }
     }
 
-    /// Becomes another step of the same shape.
+    /// Copies another step of the same shape.
     ///
     /// # Errors
     /// The step is of another method or of another system; nothing changes then.

@@ -1,6 +1,6 @@
 //! Vertex block descent (Chen, Liu, Macklin, Yang, Yuksel, *Vertex Block Descent*, 2024): implicit
 //! Euler, solved by a fixed number of iterations over the particles. Each iteration takes a step of
-//! Newton's method for one particle after another (Gauss-Seidel), the others held: with the
+//! Newton's method for one particle after another (Gauss-Seidel), with the others fixed. With the
 //! prediction v* without springs, the mass m, and the forces F, stiffness K and damping C of the
 //! springs at the particle,
 //!
@@ -9,9 +9,9 @@
 //! Stiffness across compressed springs is left out of K, so that the 3 x 3 matrix is positive
 //! definite.
 //!
-//! Order 1 with any number of iterations, and implicit Euler in the limit of many. With few of them
-//! in a long step, what happens at one end of a chain of springs has not yet reached the other; nor
-//! is momentum conserved, since the ends of a spring see it at different times.
+//! Order 1 with any number of iterations, and implicit Euler in the limit of many. With few
+//! iterations in a long step, events at one end of a chain of springs do not reach the other end;
+//! nor is momentum conserved, since the ends of a spring are moved one after the other.
 
 use super::integrator::{Integrator, check_dim};
 use super::method::{Method, View};
@@ -22,7 +22,7 @@ use crate::spring::SpringLaw;
 use crate::system::{Compliant, ParticleSystem};
 use crate::work::Work;
 
-/// Price of an iteration, in evaluations of forces spring by spring: each spring is visited from
+/// Cost of an iteration, in evaluations of forces spring by spring: each spring is visited from
 /// both ends. It was measured on cloth of 15 x 15 to 64 x 64 particles and on a jelly (see the
 /// tests).
 const PRICE: f64 = 6.5;
@@ -60,7 +60,7 @@ impl Vbd {
             ends: Ends::default(),
         };
         if let Ok(system) = springs_of(system, METHOD.name) {
-            vbd.ends.gather(system);
+            vbd.ends.list(system);
         }
         Box::new(vbd)
     }
@@ -69,15 +69,15 @@ impl Vbd {
 /// The ends of all springs, particle by particle.
 #[derive(Default)]
 struct Ends {
-    /// Where those of each particle end in `springs`.
+    /// End index in `springs` of the springs of each particle.
     until: Vec<usize>,
     /// The particle at the other end, and the law.
     springs: Vec<(usize, SpringLaw)>,
 }
 
 impl Ends {
-    /// Gathers the springs of a system.
-    fn gather(&mut self, system: &dyn Compliant) {
+    /// Lists the springs of a system by their ends.
+    fn list(&mut self, system: &dyn Compliant) {
         let Self { until, springs } = self;
         until.clear();
         until.resize(system.inverse_masses().len(), 0);
@@ -101,7 +101,7 @@ impl Ends {
         });
     }
 
-    /// The springs at each particle, in its order.
+    /// The springs of each particle, in the order of particles.
     fn by_particle(&self) -> impl Iterator<Item = &[(usize, SpringLaw)]> {
         let starts = std::iter::once(0).chain(self.until.iter().copied());
         starts
@@ -129,7 +129,7 @@ impl Integrator for Vbd {
         let (x, v) = y.split_at_mut(predicted.len());
         prediction.take(system, t, h, x, v);
         predicted.copy_from_slice(v);
-        ends.gather(system);
+        ends.list(system);
         for _ in 0..*iterations {
             for ((i, springs), w) in
                 (ends.by_particle().enumerate()).zip(&prediction.inverse_masses)

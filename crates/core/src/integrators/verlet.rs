@@ -3,17 +3,17 @@
 //! gravity: xm = x + h/2 v, v1 = v + h M^-1 F(t + h/2, xm), x1 = xm + h/2 v1. Order 2, also with
 //! drag.
 //!
-//! The method is conjugate to velocity Verlet, kick-drift-kick, by half a drift, and so has the
+//! The method is conjugate to velocity Verlet, kick-drift-kick, by half a drift, and thus has the
 //! same order and the same stability limit. Kick-drift-kick evaluates the forces at both ends of a
-//! step, and would have to keep one evaluation from step to step in order to pay for it only once.
-//! Drift-kick-drift takes one evaluation in each step and keeps none.
+//! step, and would have to keep one evaluation for the next step. Drift-kick-drift takes one
+//! evaluation in each step and keeps none.
 //!
-//! Where forces depend on the velocity, as those of damped springs do, a step has three kicks of
-//! h/3, between drifts of h/6, h/3, h/3 and h/6. A kick by forces at the velocity before it would
-//! reduce the order to 1. The second one takes them at v0 + h/2 a1, the third at v0 + h (3/5 a1 +
-//! 2/5 a2), and v0 with what drifts add to it: at velocities of the beginning, the middle and the
-//! end of the step, whose mean is that of the middle. The weights 3/5 and 2/5 suit the limit of the
-//! step (docs/methods.md).
+//! If forces depend on the velocity, as those of damped springs do, a step has three kicks of h/3,
+//! between drifts of h/6, h/3, h/3 and h/6. Kicks by forces at the velocity before them would
+//! reduce the order to 1. The second kick evaluates them at v0 + h/2 a1, the third at v0 + h (3/5
+//! a1 + 2/5 a2), each with the contribution of the drifts to v0: at velocities of the beginning,
+//! the middle and the end of the step, whose mean is that of the middle. The weights 3/5 and 2/5
+//! are chosen for the limit of the step (docs/methods.md).
 
 use super::method::{Method, View};
 use super::runge_kutta::EULER;
@@ -52,7 +52,7 @@ pub(super) static PLAN: Plan = Plan {
         ],
         last: 1.0 / 6.0,
         table: EULER,
-        // h/2 a1 and h (3/5 a1 + 2/5 a2), less the kicks before.
+        // h/2 a1 and h (3/5 a1 + 2/5 a2), less the previous kicks.
         ahead: &[(0.0, 1.0 / 6.0), (8.0 / 5.0, 1.0 / 15.0)],
     }),
 };

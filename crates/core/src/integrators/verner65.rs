@@ -2,8 +2,8 @@
 //! optimal Runge-Kutta pairs with interpolants*, Numer. Algorithms 53, 2010). Nine stages, of which
 //! the last is the first of the next step.
 //!
-//! The dense output takes no further stage. Its polynomial has degree 6 and order 4, and meets the
-//! conditions of orders 5 and 6 in the sense of least squares.
+//! The dense output takes no further stage. Its polynomial has degree 6 and order 4, and satisfies
+//! the conditions of orders 5 and 6 in the least-squares sense.
 
 use super::embedded::{EmbeddedPair, Tableau};
 use super::method::{Method, View};

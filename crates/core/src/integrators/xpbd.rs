@@ -2,20 +2,20 @@
 //! Simulation of Compliant Constrained Dynamics*, 2016): implicit Euler, solved by a fixed number
 //! of iterations over the springs. Each iteration corrects the springs one after another
 //! (Gauss-Seidel), in their order. A spring of stiffness k, damping c, rest length r, length L and
-//! rate of stretch L' receives the impulse dp along its direction, where p is the sum of those
-//! before in the step:
+//! rate of stretch L' receives the impulse dp along its direction, where p is the sum of its
+//! previous impulses in the step:
 //!
 //! dp = -(h (k (L - r) + c L') + p) / (1 + (h^2 k + h c) (wi + wj)),
 //!
 //! with the inverse masses w of its ends. With its direction u, v += w dp u and x += h w dp u at
-//! the end i, and the opposite at j. That is the paper's multiplier with the compliance 1/k, over
-//! h, which keeps the digits of v in short steps and needs no stiffness above 0. An iteration
-//! conserves momentum.
+//! the end i, and the opposite at j. In terms of the paper, dp is the multiplier for the compliance
+//! 1/k, divided by h: this form is accurate in short steps and allows a stiffness of 0. An
+//! iteration conserves momentum.
 //!
-//! Order 1 with any number of iterations. In long steps a single one (Macklin et al., *Small Steps
-//! in Physics Simulation*, 2019, with many short steps) leaves springs softer than implicit Euler
-//! has them; only more iterations make them as stiff. Even without end these do not quite meet
-//! implicit Euler, because springs turn between the corrections that are summed up.
+//! Order 1 with any number of iterations. In long steps, a single iteration (Macklin et al., *Small
+//! Steps in Physics Simulation*, 2019, with many short steps) leaves springs softer than in
+//! implicit Euler; more iterations make them as stiff. Even infinitely many do not quite converge
+//! to implicit Euler, because springs turn between the corrections that are summed up.
 
 use super::integrator::{Integrator, check_dim};
 use super::method::{Method, View};
@@ -26,8 +26,9 @@ use crate::spring::SpringLaw;
 use crate::system::ParticleSystem;
 use crate::work::Work;
 
-/// Price of an iteration, in evaluations of forces spring by spring: each spring waits for the one
-/// before. It was measured on cloth of 15 x 15 to 64 x 64 particles and on a jelly (see the tests).
+/// Cost of an iteration, in evaluations of forces spring by spring: each spring waits for the
+/// previous one. It was measured on cloth of 15 x 15 to 64 x 64 particles and on a jelly (see the
+/// tests).
 const PRICE: f64 = 5.0;
 
 pub(super) const METHOD: Method = Method {
@@ -110,7 +111,7 @@ impl Integrator for Xpbd {
     }
 }
 
-/// Corrects a spring on which impulses of the sum p (N s) acted before. Returns the impulse.
+/// Corrects a spring with the sum p of its previous impulses (N s). Returns the impulse.
 #[inline]
 fn correct(
     [i, j]: [usize; 2],
@@ -129,7 +130,7 @@ fn correct(
     }
     let inverse = 1.0 / length;
     let (wi, wj) = (inverse_masses[i[0]], inverse_masses[j[0]]);
-    // What the last spring did to its ends is waited for, so little is left to do after it.
+    // Computed early, because the rest has to wait for the previous spring's effect on the ends.
     let share = 1.0 / (1.0 + h * (h * law.stiffness + law.damping) * (wi + wj));
     let mut pull = law.stiffness * (length - law.rest_length);
     if law.damping > 0.0 {
@@ -162,7 +163,7 @@ mod tests {
         residual(network, h, y, &end)
     }
 
-    /// On a straight chain no spring turns, and many iterations solve implicit Euler.
+    /// On a straight chain no spring turns, and many iterations converge to implicit Euler.
     #[test]
     fn many_iterations_on_a_straight_chain_are_implicit_euler() {
         let mut network = Network::new(vec![0.1; 6]).unwrap();
@@ -182,7 +183,7 @@ mod tests {
         assert!(few > 1e-3 && many < 1e-12, "{few:e} {many:e}");
     }
 
-    /// On a cloth springs turn between corrections: what is left of the error does not vanish.
+    /// On a cloth springs turn between corrections: the remaining error does not vanish.
     #[test]
     #[cfg_attr(miri, ignore = "takes hours there")]
     fn many_iterations_on_a_cloth_come_close_to_implicit_euler() {

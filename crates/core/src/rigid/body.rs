@@ -1,4 +1,4 @@
-//! Rigid bodies: their parts, their mass, and where their points are.
+//! Rigid bodies: their parts, their mass properties, and the places of their points.
 
 use std::ops::Range;
 
@@ -9,15 +9,15 @@ use crate::error::{Error, positive};
 use crate::geometry::Shape;
 use crate::path::{Orientation, Place, Pose};
 
-/// Share of a moment of inertia that rounding may add.
+/// Share of a moment of inertia that may be a rounding error.
 const ROUNDING: f64 = 1e-9;
 
-/// Part of a body, seen from its centre along the principal axes.
+/// Part of a body, relative to its centre and along the principal axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// Shape.
     pub shape: Shape,
-    /// Its place (m).
+    /// Place of the part (m).
     pub at: Vector3<f64>,
 }
 
@@ -26,14 +26,14 @@ pub struct Part {
 pub struct Body {
     center: usize,
     points: Range<usize>,
-    /// Places of the points, seen from the centre along the principal axes (m).
+    /// Places of the points, relative to the centre and along the principal axes (m).
     anchors: Vec<Vector3<f64>>,
     inertia: Vector3<f64>,
     radius: f64,
     parts: Vec<Part>,
 }
 
-/// Body as it moves: its rotation matrix and angular velocity (rad/s).
+/// Body in motion: its rotation matrix and angular velocity (rad/s).
 #[derive(Clone, Copy)]
 pub(crate) struct Moving {
     pub rotation: Matrix3<f64>,
@@ -43,12 +43,12 @@ pub(crate) struct Moving {
 
 impl Body {
     /// Body with these principal moments of inertia (kg m2), whose centre of mass is the particle
-    /// `center`. It carries as many particles, from number `first` on, as its parts have
-    /// [points](Shape::simplices).
+    /// `center`. The [points](Shape::simplices) of its parts are the particles from number `first`
+    /// on.
     ///
     /// # Errors
-    /// It has no parts or one that is a floor; or no body can have these moments: each is a finite
-    /// number above 0, and none is larger than the sum of the other two.
+    /// It has no parts, or only floors; or no body can have these moments: each has to be a finite
+    /// number above 0, and none larger than the sum of the other two.
     pub fn new(
         center: usize,
         first: usize,
@@ -78,7 +78,7 @@ impl Body {
         }
         if anchors.is_empty() {
             return Err(Error::Invalid(
-                "a body needs a part that is no floor".into(),
+                "a body needs a part that is not a floor".into(),
             ));
         }
         Ok(Self {
@@ -91,19 +91,19 @@ impl Body {
         })
     }
 
-    /// Particle that is its centre of mass, and has its mass.
+    /// Particle at its centre of mass, which has its mass.
     #[must_use]
     pub fn center(&self) -> usize {
         self.center
     }
 
-    /// Particles that it carries, which have no mass: the points of its parts.
+    /// Particles at the points of its parts, which have no mass.
     #[must_use]
     pub fn points(&self) -> Range<usize> {
         self.points.clone()
     }
 
-    /// The points with their places, seen from the centre along the principal axes (m).
+    /// The points with their places, relative to the centre and along the principal axes (m).
     pub(crate) fn anchors(&self) -> impl Iterator<Item = (usize, &Vector3<f64>)> {
         self.points.clone().zip(&self.anchors)
     }
@@ -120,7 +120,7 @@ impl Body {
         self.radius
     }
 
-    /// Speed of its surface for each unit of angular momentum, at most (1/(kg m)).
+    /// Largest speed of its surface per unit of angular momentum (1/(kg m)).
     pub(crate) fn speed(&self) -> f64 {
         self.radius / self.inertia.min()
     }
@@ -131,7 +131,7 @@ impl Body {
         &self.parts
     }
 
-    /// The body as it moves.
+    /// The body in motion.
     pub(crate) fn moving(&self, rotation: &Rotation) -> Moving {
         let (matrix, momentum) = (rotation.matrix(), rotation.momentum);
         Moving {

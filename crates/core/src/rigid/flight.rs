@@ -1,19 +1,19 @@
-//! Free rotation: that of a body on which no torque acts, as turns about its principal axes.
+//! Free rotation: that of a body without torque, by rotations about its principal axes.
 //!
-//! The energy of the rotation is the sum of three parts, one for each principal axis, and the
-//! motion by one part alone is a turn about that axis at a constant rate, which is computed
-//! exactly. Turns by half a step about the first two axes, by a whole one about the third, and
-//! again by half a step in reverse order are symplectic, reversible, keep the angular momentum to
-//! the bit, and are of order 2 (Dullweber, Leimkuhler, `McLachlan`, *Symplectic splitting methods
-//! for rigid body molecular dynamics*, 1997). Nine such turns by the shares of [`SHARES`] are of
-//! order 6. A body with equal moments turns about one axis, exactly.
+//! The energy of the rotation is the sum of three parts, one for each principal axis. The motion by
+//! one part alone is a rotation about that axis at a constant rate, which is computed exactly.
+//! Rotations by half a step about the first two axes, by a whole step about the third, and again by
+//! half steps in reverse order are symplectic and reversible, conserve the angular momentum
+//! exactly, and are of order 2 (Dullweber, Leimkuhler, `McLachlan`, *Symplectic splitting methods
+//! for rigid body molecular dynamics*, 1997). Nine of these compositions with the shares [`SHARES`]
+//! are of order 6. A body with equal moments rotates about one axis, exactly.
 
 use nalgebra::{Quaternion, Vector3};
 
 use super::body::Body;
 use super::rotation::{Rotation, turn};
 
-/// Shares of a step of a symmetric composition of order 6 (Kahan, Li, *Composition constants for
+/// Shares of a step in a symmetric composition of order 6 (Kahan, Li, *Composition constants for
 /// raising the orders of unconventional schemes for ordinary differential equations*, 1997): the
 /// first five of nine.
 const SHARES: [f64; 5] = [
@@ -25,9 +25,9 @@ const SHARES: [f64; 5] = [
 ];
 
 impl Body {
-    /// Rotation after h (s) without a torque, while the angular momentum decays at a rate (1/s).
+    /// Rotates freely for h (s), while the angular momentum decays at a rate (1/s).
     pub(crate) fn fly(&self, rotation: &mut Rotation, decay: f64, h: f64) {
-        // Turning slows down in proportion to L, so that time itself does.
+        // The rate of rotation is proportional to the decaying momentum, as if time slowed down.
         let (left, span) = if decay > 0.0 {
             (libm::exp(-decay * h), -libm::expm1(-decay * h) / decay)
         } else {
@@ -46,7 +46,7 @@ impl Body {
         rotation.momentum *= left;
     }
 
-    /// The five turns.
+    /// The five rotations of order 2.
     fn turns(&self, rotation: &mut Rotation, h: f64) {
         for (axis, share) in [(0, 0.5), (1, 0.5), (2, 1.0), (1, 0.5), (0, 0.5)] {
             let own = rotation.matrix().tr_mul(&rotation.momentum);

@@ -7,9 +7,9 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use crate::error::{Error, positive};
 use crate::geometry::Shape;
 
-/// Difference of two moments of inertia, as a share of the largest, below which products of inertia
-/// of that size count as none: the axes are then those of the shape.
-const ALIGNED: f64 = 1e-12;
+/// Products of inertia, as a share of the largest moment, up to which they count as zero: the
+/// principal axes are then those of the shape.
+const ALIGNED_SHARE: f64 = 1e-12;
 
 /// Mass, centre and moments of inertia of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,7 +62,7 @@ impl MassProperties {
         Ok(own)
     }
 
-    /// Properties of the same body at another place (m).
+    /// Properties of the same body, moved by a vector (m).
     #[must_use]
     pub fn moved(mut self, by: Vector3<f64>) -> Self {
         self.center += by;
@@ -74,7 +74,10 @@ impl MassProperties {
     pub fn principal(&self) -> (Vector3<f64>, Matrix3<f64>) {
         let largest = self.inertia.diagonal().max();
         let products = [(0, 1), (0, 2), (1, 2)].map(|at| self.inertia[at].abs());
-        if products.iter().all(|product| *product <= ALIGNED * largest) {
+        if products
+            .iter()
+            .all(|product| *product <= ALIGNED_SHARE * largest)
+        {
             return (self.inertia.diagonal(), Matrix3::identity());
         }
         let SymmetricEigen {
@@ -88,7 +91,7 @@ impl MassProperties {
     }
 }
 
-/// What two bodies are together.
+/// Combines two bodies.
 impl AddAssign for MassProperties {
     fn add_assign(&mut self, other: Self) {
         let mass = self.mass + other.mass;
@@ -103,12 +106,12 @@ impl AddAssign for MassProperties {
     }
 }
 
-/// Cylinder with two half balls, of density 1.
+/// Cylinder with two hemispheres, of density 1.
 fn capsule([a, b]: [Vector3<f64>; 2], r: f64) -> MassProperties {
     let pi = std::f64::consts::PI;
     let length = (b - a).norm();
     let (rod, ball) = (pi * r * r * length, 4.0 / 3.0 * pi * r.powi(3));
-    // The centre of a half ball is 3/8 r from that of the ball.
+    // The centre of a hemisphere is 3/8 r from that of the sphere.
     let half = 0.5 * length;
     let across = rod * (r * r / 4.0 + length * length / 12.0)
         + ball * (0.4 * r * r + half * half + 0.75 * half * r);
@@ -126,10 +129,10 @@ fn capsule([a, b]: [Vector3<f64>; 2], r: f64) -> MassProperties {
     }
 }
 
-/// What a closed surface of triangles encloses, of density 1: a sum of exact integrals over
-/// tetrahedra with signs.
+/// Solid enclosed by a closed surface of triangles, of density 1: a sum of exact integrals over
+/// signed tetrahedra.
 fn of_triangles(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> MassProperties {
-    // Seen from one of the points, lest digits are lost far from the origin.
+    // Relative to one of the points, so that no digits are lost far from the origin.
     let origin = points[0];
     let (mut mass, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
     for corners in triangles {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Quaternion, Vector3};
 
-/// Number of numbers in the state of a body beside those of its centre: q and L.
+/// Number of numbers in the state of a body, besides those of its centre: q and L.
 pub const ROTATION: usize = 7;
 
 /// Rotation and angular momentum of a body.

@@ -1,9 +1,9 @@
-//! Balance of energy: what a run gains beyond the work that was done on it, and how far constraints
-//! are from being met.
+//! Balance of energy: the energy that a run has gained beyond the work done on it, and the largest
+//! error of its constraints.
 //!
-//! The forces take energy from a motion or leave it as it is, unless something
-//! [works](super::power) on it: a pin or an obstacle that moves, wind, a hand. What a run has
-//! beyond that work was made by its method, by a step that is too long.
+//! The forces take energy from a motion or conserve it, unless something [works](super::power) on
+//! the run: a pin or an obstacle that moves, wind, or a hand. Any energy beyond that work is an
+//! error of the method: its step is too long.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,86 +11,87 @@ use super::power::{energy_of, fastest_particle};
 use crate::error::{Cause, Unmet};
 use crate::network::{Network, is_nearly_singular};
 
-/// Time from one look at the energy to the next (s), at least.
+/// Shortest time between two checks of the energy (s).
 const INTERVAL: f64 = 0.1;
 
-/// Gain, in energies of the scene, from which on a run is said to gain energy.
+/// Gain, over the energy of the scene, from which on users are warned that the run gains energy.
 const NOTABLE_GAIN: f64 = 0.5;
 
-/// Gain, in energies of the scene, from which on a run is lost.
+/// Gain, over the energy of the scene, at which a run counts as blown up.
 const MAX_GAIN: f64 = 100.0;
 
-/// Speed below which motion is rounding noise, in radii of the scene (1/s).
-const UNSEEN_SPEED: f64 = 1e-9;
+/// Speed below which motion counts as rounding noise, in radii of the scene per second (1/s).
+const ROUNDING_SPEED: f64 = 1e-9;
 
 /// Energy that nothing put into a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gain {
     /// The energy (J).
     pub energy: f64,
-    /// The energy over that of the scene: what it began with, what its weight gives it over its own
-    /// size, and the work that was done on it and by it.
+    /// The energy over that of the scene: the energy of its motion at the beginning, its weight
+    /// times its size, and the work done on it and by it.
     pub share: f64,
 }
 
 /// Balance of energy of a run (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
-    /// Time of the last look (s).
+    /// Time of the last check (s).
     time: f64,
     /// Energy at the beginning, with what hands and tears have changed since.
     begin: f64,
     /// Energy of the scene: kinetic and elastic at the beginning, its weight times its radius, and
-    /// that of a motion that nobody sees; at least that of the errors that its tolerance allows.
+    /// that of motion at the rounding speed; at least that of the errors that its tolerance allows.
     own: f64,
     /// Kinetic and elastic energy at the beginning.
     moving: f64,
-    /// Largest fall of the gravitational energy, and that energy at the beginning.
+    /// Largest loss of gravitational energy so far, and the gravitational energy at the beginning.
     fall: f64,
     gravitational: f64,
-    /// Work that was done on the run, less that which it did.
+    /// Work done on the run, less the work that it did.
     work: f64,
-    /// Work that was done on the run and by it.
+    /// Sum of the amounts of all work, done on the run and by it.
     turnover: f64,
-    /// Gain at the last look, and its share.
+    /// Gain at the last check, and its share.
     gain: f64,
     share: f64,
     /// Largest gain.
     most: Option<Gain>,
-    /// Number of the constraint that was farthest from being met, and its share.
+    /// Number of the constraint with the largest error so far, and that error, as a share.
     worst: Option<(usize, f64)>,
-    /// Whether constraints were nearly singular at a look.
+    /// Whether constraints were nearly singular at a check.
     singular: bool,
     /// Whether hands, contact or tears may have changed the energy.
     open: bool,
 }
 
 impl Balance {
-    /// Balance of a run at y at time t (s), whose scene has that radius (m).
+    /// Balance of a run that starts at y at time t (s), in a scene of that radius (m).
     pub(super) fn new(network: &Network, (t, y): (f64, &[f64]), radius: f64) -> Self {
         let energy = energy_of(network, t, y);
         let mass = network.masses().iter().sum::<f64>();
         let weight = network.gravity().map_or(0.0, |g| g.norm()) * mass;
-        let unseen = 0.5 * mass * (UNSEEN_SPEED * radius).powi(2);
-        // Rounding leaves a fluid at rest with less than none.
+        let rounding = 0.5 * mass * (ROUNDING_SPEED * radius).powi(2);
+        // Rounding may leave a fluid at rest with a slightly negative energy.
         let moving = (energy.kinetic + energy.elastic + energy.contact).max(0.0);
         Self {
             time: t,
             begin: energy.total(),
-            own: moving + weight * radius + unseen,
+            own: moving + weight * radius + rounding,
             moving,
             gravitational: energy.gravitational,
             ..Self::default()
         }
     }
 
-    /// Forgets what the run gained.
+    /// Forgets all gains and constraint errors so far.
     pub(super) fn start_over(&mut self) {
         (self.most, self.gain, self.share) = (None, 0.0, 0.0);
         (self.worst, self.singular) = (None, false);
     }
 
-    /// Energy that the gain of a run is compared with (J).
+    /// Energy of the scene, which gains are compared with (J): its own, what gravity has added to
+    /// its motion, and the work done on it and by it.
     fn scale(&self) -> f64 {
         let put_in = 0.5 * (self.turnover + self.work).max(0.0);
         let had = self.own + self.fall + put_in;
@@ -99,12 +100,12 @@ impl Balance {
         had + (self.turnover - put_in).max(0.0).min(had)
     }
 
-    /// Whether the run had gained little when it was last looked at.
+    /// Whether the gain was small at the last check.
     pub(super) fn is_sound(&self) -> bool {
         self.share < NOTABLE_GAIN
     }
 
-    /// Whether the last look was so long before time t (s) that another is due.
+    /// Whether another check is due at time t (s).
     pub(super) fn is_due(&self, t: f64) -> bool {
         t - self.time >= INTERVAL
     }
@@ -115,23 +116,25 @@ impl Balance {
         self.turnover += work.abs();
     }
 
-    /// Takes back work (J) that was added and not done.
+    /// Subtracts work (J) that was added but not done.
     pub(super) fn take_back(&mut self, work: f64) {
         self.work -= work;
     }
 
-    /// Takes a change of the energy (J) by a tear as no gain.
+    /// Changes the reference energy by the change (J) that a tear caused: that is no gain.
     pub(super) fn allow(&mut self, change: f64) {
         self.begin += change;
         self.open = true;
     }
 
-    /// Takes the energy (J), which a hand has changed since the last look, as no gain.
+    /// Sets the reference energy so that the energy now (J), which a hand may have changed, leaves
+    /// the gain as it was at the last check.
     pub(super) fn forgive(&mut self, energy: f64) {
         self.begin = energy - self.work - self.gain;
     }
 
-    /// Takes the energy (J) of errors that a run is allowed to make as the scene's own.
+    /// Raises the energy of the scene to at least that (J) of the errors that a run is allowed to
+    /// make.
     pub(super) fn tolerate(&mut self, errors: f64) {
         self.own = self.own.max(errors);
     }
@@ -141,14 +144,14 @@ impl Balance {
         self.open = true;
     }
 
-    /// Notes the constraint that is farthest from being met at the end of a step.
+    /// Records a constraint's error, if it is the largest so far.
     pub(super) fn note(&mut self, unmet: &Unmet) {
         if self.worst.is_none_or(|(_, share)| unmet.share > share) {
             self.worst = Some((unmet.number, unmet.share));
         }
     }
 
-    /// Whether the particles alone move with more energy than a run may gain.
+    /// Whether the kinetic energy alone exceeds the energy that a run may gain.
     pub(super) fn is_exceeded(&self, network: &Network, y: &[f64]) -> bool {
         let (_, v) = network.halves(y);
         let squared = |axis: usize| {
@@ -159,9 +162,9 @@ impl Balance {
         0.5 * (0..3).map(squared).sum::<f64>() > MAX_GAIN * self.scale()
     }
 
-    /// Looks at the energy of y at time t (s), with room for forces. Returns the gain by which the
-    /// run is lost.
-    pub(super) fn look(
+    /// Checks the energy of y at time t (s), with scratch for forces. Returns the cause of a
+    /// blow-up, if the gain is too large.
+    pub(super) fn check(
         &mut self,
         network: &Network,
         (t, y): (f64, &[f64]),
@@ -189,21 +192,21 @@ impl Balance {
         })
     }
 
-    /// Largest gain, if it is so large that the step is too long.
+    /// Largest gain, if it is large enough for a warning.
     pub(super) fn notable_gain(&self) -> Option<Gain> {
         self.most.filter(|gain| gain.share > NOTABLE_GAIN)
     }
 
-    /// Energy that the run has gained or lost, over that of its motion: `None` if nothing moves, or
-    /// hands, contact or tears may have changed it.
+    /// Energy gained or lost, over the energy of the motion; `None` if nothing moves, or if hands,
+    /// contact or tears may have changed it.
     pub(super) fn change(&self) -> Option<f64> {
         let motion = self.moving + self.fall;
-        let moves = motion > UNSEEN_SPEED * self.own;
+        let moves = motion > ROUNDING_SPEED * self.own;
         let energy = self.gain + self.work;
         (moves && !self.open).then_some(energy / motion)
     }
 
-    /// The constraint of a network that was farthest from being met, with its largest error.
+    /// The constraint with the largest error so far, and that error.
     pub(super) fn worst_constraint(&self, network: &Network) -> Option<Unmet> {
         let (number, share) = self.worst?;
         let constraint = network.constraints().get(number)?.name();
@@ -214,7 +217,7 @@ impl Balance {
         })
     }
 
-    /// Whether constraints were nearly singular at a look.
+    /// Whether constraints were nearly singular at a check.
     pub(super) fn was_singular(&self) -> bool {
         self.singular
     }

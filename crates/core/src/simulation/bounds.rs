@@ -9,15 +9,15 @@ use crate::network::contradiction;
 use crate::rigid::{Body, ROTATION};
 use crate::scene::Model;
 
-/// Distance from the scene's middle, in its radii, at which a particle is lost, unless it is there
-/// without gaining energy.
+/// Distance from the scene's middle, in its radii, beyond which a particle that has gained energy
+/// ends the run.
 const MAX_DISTANCE: f64 = 100.0;
 
-/// Distance, in radii, within which all particles of a state are that one goes back to: still a
-/// picture of the scene.
+/// Largest distance of particles from the middle, in radii, in a state that a run goes back to
+/// after a blow-up: it still shows the whole scene.
 const MAX_GOOD_DISTANCE: f64 = 3.0;
 
-/// Numbers that are looked at without a branch.
+/// Number of particles that are checked together, without a branch.
 const BLOCK_LENGTH: usize = 64;
 
 /// Bounds of a scene as it begins.
@@ -29,17 +29,19 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// Whether all particles of y are so near that one goes back to that state after a blow-up.
-    pub fn hold(&self, model: &Model, y: &[f64]) -> bool {
+    /// Whether all particles of y are close enough to the middle for a state to go back to after a
+    /// blow-up.
+    pub fn hold_closely(&self, model: &Model, y: &[f64]) -> bool {
         self.beyond(MAX_GOOD_DISTANCE, model, y).is_none()
     }
 
-    /// The cause of a blow-up, if a particle of y seems lost.
-    pub fn lost(&self, model: &Model, y: &[f64]) -> Option<Cause> {
+    /// The cause of a blow-up, if a particle of y is too far away or not finite.
+    pub fn violation(&self, model: &Model, y: &[f64]) -> Option<Cause> {
         self.beyond(MAX_DISTANCE, model, y)
     }
 
-    /// Constraints of a model that contradict one another in the state y at time t (s).
+    /// A constraint that contradicts others or pins, if there is one, in the state y at time
+    /// t (s).
     pub fn contradiction(&self, model: &Model, y: &[f64], t: f64) -> Option<Unmet> {
         let network = model.network()?;
         contradiction(network, t, network.halves(y).0, self.radius)
@@ -55,8 +57,7 @@ impl Bounds {
         let squared = |i: usize| {
             (x[i] - c.x).powi(2) + (x[n + i] - c.y).powi(2) + (x[2 * n + i] - c.z).powi(2)
         };
-        // By blocks without a branch inside. Written so that NaN, which compares as false, is lost
-        // too.
+        // In blocks without a branch inside. The comparison is written so that NaN fails it too.
         let near = |block: Range<usize>| block.fold(true, |near, i| near & (squared(i) <= limit));
         let mut blocks = (0..n).step_by(BLOCK_LENGTH);
         if !blocks.all(|start| near(start..n.min(start + BLOCK_LENGTH))) {

@@ -1,4 +1,4 @@
-//! Checkpoints of a run: what it needs to go on to the same bits.
+//! Checkpoints of a run: all data from which it continues bit for bit.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,12 +12,12 @@ use crate::network::Network;
 use crate::path::Path;
 use crate::scene::{Model, Scene};
 
-/// A run at one time: all that it needs, beside its scene, to go on to the same bits.
+/// A run at one time: all data, except its scene, from which it continues bit for bit.
 ///
-/// The scene is not in it, nor what was [adjusted](crate::Simulation::adjust) of the scene, such as
-/// the stiffness of springs: restore it in a run of the same scene, adjusted alike. The last step
-/// of an adaptive method is in it if [`checkpoint`](crate::Simulation::checkpoint) made it, and not
-/// if [`record`](crate::Simulation::record) did.
+/// It contains neither the scene nor its [adjustments](crate::Simulation::adjust), such as a
+/// changed stiffness of springs: restore it in a run of the same scene, adjusted alike. It contains
+/// the last step of an adaptive method if [`checkpoint`](crate::Simulation::checkpoint) made it,
+/// but not if [`record`](crate::Simulation::record) did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// State of the run.
@@ -52,13 +52,13 @@ impl Checkpoint {
         moment
     }
 
-    /// Becomes that checkpoint, in the memory of this one.
+    /// Overwrites this checkpoint with a new one, and reuses its memory.
     pub(super) fn record(&mut self, state: &RunState, model: &Model, driver: &Driver) {
         self.run.copy_from(state);
         self.record_changes(state, model, driver);
     }
 
-    /// Records what hands, time and tears changed of the model.
+    /// Records how hands, time and tears have changed the model.
     fn record_changes(&mut self, state: &RunState, model: &Model, driver: &Driver) {
         self.pins.clear();
         self.obstacles.clear();
@@ -98,7 +98,7 @@ impl Checkpoint {
             + size_of_val(&self.torn[..])
     }
 
-    /// `Ok` if the state is one of a system of this dimension.
+    /// Checks that the state is one of a system of this dimension, and finite.
     pub(super) fn check(&self, dim: usize) -> Result<(), Error> {
         let y = &self.run.y;
         if y.len() != dim {
@@ -115,7 +115,7 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Model of a scene with what hands, time and tears changed.
+    /// Model of a scene with this checkpoint's pins, obstacles, wind, contact and tears.
     pub(super) fn model(&self, scene: &Scene) -> Result<Model, Error> {
         let mut model = scene.model.clone();
         if let (Model::Network(network), Some(whole)) = (&mut model, scene.model.network()) {
@@ -153,8 +153,8 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Gives a network of the run what it had at this moment: springs that had not broken, the
-    /// paths of obstacles, and whether surfaces touched. Returns whether that changes its forces.
+    /// Restores torn springs, the paths of obstacles and self-contact in a network of the run.
+    /// Returns whether that changes its forces.
     fn mend(&self, network: &mut Network, scene: &Scene) -> Result<bool, Error> {
         let touching = network.touch().is_some_and(|touch| touch.bodies);
         for (k, path) in &self.obstacles {
@@ -170,7 +170,7 @@ impl Checkpoint {
         Ok(torn || self.touching != touching)
     }
 
-    /// Puts a run of a scene back to this moment, from where it goes on by its own method.
+    /// Sets a run of a scene back to this moment; it continues from there by its own method.
     ///
     /// # Errors
     /// The moment is of another scene.

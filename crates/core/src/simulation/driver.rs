@@ -1,13 +1,13 @@
-//! Driver of a run: it takes whole steps only. A time that is asked for may be within one: the run
-//! goes to the end of that step, and the state shown is read off the step's polynomial. How often a
-//! run is looked at changes nothing.
+//! Driver of a run, which takes whole steps only. If a requested time is within a step, the run
+//! continues to the end of that step, and the state at the time is interpolated by the step's
+//! polynomial. How often a run is shown therefore does not change it.
 
 use serde::{Deserialize, Serialize};
 
 use super::balance::Balance;
 use super::failure::Failure;
 use super::state::RunState;
-use super::step::{Pipeline, SLIVER};
+use super::step::{Pipeline, STEP_END_TOLERANCE};
 use super::stepper::Stepper;
 use super::within::{Span, Within};
 use crate::control::Control;
@@ -16,35 +16,35 @@ use crate::integrators::AdaptiveState;
 use crate::scene::Model;
 use crate::threads::among_threads;
 
-/// Progress of a run within a step, and what an adaptive method remembers.
+/// Progress of a run within a step, and the memory of an adaptive method.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// Memory of an adaptive method.
     pub method: Option<AdaptiveState>,
-    /// Step that the time shown is within.
+    /// Step that contains the time shown, if one does.
     pub within: Option<Span>,
 }
 
-/// Driver of a run, with the step that the time shown is within.
+/// Driver of a run.
 pub(super) struct Driver {
     pub pipeline: Pipeline,
     within: Within,
 }
 
 impl Driver {
-    /// Driver that begins.
+    /// Driver at the beginning of a run.
     pub fn new(pipeline: Pipeline) -> Self {
         let within = Within::default();
         Self { pipeline, within }
     }
 
-    /// Goes on by another stepper from the time shown.
+    /// Continues with another stepper from the time shown.
     pub fn change_stepper(&mut self, stepper: Stepper) {
         self.pipeline.stepper = stepper;
         self.within.leave();
     }
 
-    /// Goes on by another stepper, from another state of a system of that dimension.
+    /// Continues with another stepper, from saved progress in a system of that dimension.
     ///
     /// # Errors
     /// The progress is of another method or of another system.
@@ -62,7 +62,7 @@ impl Driver {
         Ok(())
     }
 
-    /// Forgets the last step: the run goes on from another state.
+    /// Forgets the last step, because the run continues from another state.
     pub fn forget(&mut self) {
         self.within.leave();
         self.pipeline.stepper.forget();
@@ -70,7 +70,7 @@ impl Driver {
         self.pipeline.phases.contact.forget_impulses();
     }
 
-    /// Progress of the run or, without `whole`, only what a new step needs.
+    /// Progress of the run: all of it or, without `whole`, only what a new step needs.
     pub fn progress(&self, whole: bool) -> Progress {
         Progress {
             method: self.pipeline.stepper.memory(whole),
@@ -89,14 +89,14 @@ impl Driver {
         watch.balance_at(model, state.balance, end).0
     }
 
-    /// Looks at the energy at the end of the last step.
+    /// Checks the energy at the end of the last step.
     ///
     /// # Errors
-    /// The run is lost.
+    /// The run has blown up.
     pub fn conclude(&self, model: &Model, state: &RunState) -> Result<(), Failure> {
         let (watch, end) = (&self.pipeline.watch, self.last_end(state));
         match watch.balance_at(model, state.balance, end).1 {
-            Some(cause) => Err(Failure::Lost { cause, time: end.0 }),
+            Some(cause) => Err(Failure::BlowUp { cause, time: end.0 }),
             None => Ok(()),
         }
     }
@@ -107,10 +107,11 @@ impl Driver {
         within.unwrap_or_else(|| (state.time(), &state.y))
     }
 
-    /// Takes `count` steps; one that the time shown is within is finished, and counts.
+    /// Takes `count` steps. If the time shown is within a step, that step is finished first, and
+    /// counts.
     ///
     /// # Errors
-    /// The run is lost, or a step failed.
+    /// The run blew up, or a step failed.
     pub fn take_steps(
         &mut self,
         model: &mut Model,
@@ -131,20 +132,25 @@ impl Driver {
     /// Takes steps up to `time` (s), and shows the state there.
     ///
     /// # Errors
-    /// The run is lost, or a step failed.
+    /// The run blew up, or a step failed.
     pub fn advance_to(
         &mut self,
         model: &mut Model,
         state: &mut RunState,
         time: f64,
     ) -> Result<(), Failure> {
-        among_threads(model.particles(), || self.go_on(model, state, time))
+        among_threads(model.particles(), || self.advance(model, state, time))
     }
 
-    fn go_on(&mut self, model: &mut Model, state: &mut RunState, time: f64) -> Result<(), Failure> {
+    fn advance(
+        &mut self,
+        model: &mut Model,
+        state: &mut RunState,
+        time: f64,
+    ) -> Result<(), Failure> {
         loop {
             let step = self.pipeline.stepper.step_size(state.control);
-            let sliver = SLIVER * step.unwrap_or(0.0);
+            let sliver = STEP_END_TOLERANCE * step.unwrap_or(0.0);
             if let Some(end) = self.within.until() {
                 if time <= state.time() {
                     return Ok(());
@@ -164,7 +170,7 @@ impl Driver {
                 return Ok(());
             }
             state.shown = None;
-            let ends_later = |h: f64| begin + h * (1.0 - SLIVER) > time;
+            let ends_later = |h: f64| begin + h * (1.0 - STEP_END_TOLERANCE) > time;
             if state.control.step().is_some_and(ends_later) {
                 self.within.begin(&state.y);
             }
@@ -179,8 +185,7 @@ impl Driver {
         }
     }
 
-    /// Goes on to the end of the step that the time shown is within. Returns whether it was within
-    /// one.
+    /// Finishes the step that contains the time shown. Returns whether there was one.
     fn arrive(&mut self, model: &mut Model, state: &mut RunState) -> bool {
         state.shown = None;
         let end = self.within.leave();
@@ -192,7 +197,7 @@ impl Driver {
         is_within
     }
 
-    /// Shows the state at a time (s) within the step: as its polynomial has it, with contact and
+    /// Shows the state at a time (s) within the step: interpolated, then corrected for contact and
     /// pins as at the end of a step.
     fn show(&mut self, model: &Model, state: &mut RunState, time: f64) {
         let (system, network) = (model.system(), model.network());
@@ -219,7 +224,7 @@ impl Driver {
     }
 
     /// Ends the step at the time shown, before the state or the system changes there: an adaptive
-    /// step by its polynomial, and a fixed one by a shorter step, whose end is as stable.
+    /// step by its polynomial, a fixed step by a shorter one, whose end is as stable.
     pub fn stop(&mut self, model: &Model, state: &mut RunState) {
         let time = state.time();
         let end = self.within.until().unwrap_or(time);
@@ -235,8 +240,8 @@ impl Driver {
         self.pipeline.watch.disturb(model, state, time, end);
     }
 
-    /// Takes the step that began at time t (s) again, to the time shown. A state that is read off
-    /// stays where that fails.
+    /// Takes the step that began at time t (s) again, up to the time shown. If that fails, the
+    /// interpolated state stays.
     fn shorten_step(&mut self, model: &Model, state: &mut RunState, t: f64, time: f64) {
         let Pipeline {
             stepper, phases, ..

@@ -1,9 +1,9 @@
 //! Events within a step: a particle touches an obstacle, or a spring is stretched so far that it
 //! breaks.
 //!
-//! They are found on the step's own polynomial. It is sampled at the ends of some pieces, and
-//! between these it is a cubic. On each piece, no first contact is missed, see
-//! [`Approach`](crate::contact::Approach), nor a spring that is too long for a moment. Newton's
+//! They are found on the step's own polynomial. It is sampled at the ends of some pieces, and each
+//! piece is replaced by a cubic. On a piece, neither a first contact is missed, see
+//! [`Approach`](crate::contact::Approach), nor a spring that is too long only briefly. Newton's
 //! method then finds the time on the polynomial itself.
 
 use nalgebra::Vector3;
@@ -14,19 +14,19 @@ use crate::network::Network;
 use crate::scene::Model;
 use crate::system::Mechanics;
 
-/// Pieces in which a step is searched.
+/// Number of pieces in which a step is searched.
 const PIECES: usize = 8;
 
-/// Steps of Newton's method from a piece's cubic to the polynomial.
+/// Largest number of Newton steps, from the time on a piece's cubic to that on the polynomial.
 const NEWTON_STEPS: usize = 8;
 
-/// Most times that a search of a piece goes on after what was no event.
+/// Largest number of touches on a piece's cubic that may turn out not to be on the polynomial.
 const MAX_GRAZES: usize = 8;
 
-/// Share of a piece after which a search goes on.
+/// Distance after such a touch at which the search continues, as a share of the piece.
 const GAP_AFTER_GRAZE: f64 = 1e-5;
 
-/// Share of a piece below which an interval of a spring's length is not halved.
+/// Shortest interval in the search for a spring that is too long, as a share of the piece.
 const MIN_INTERVAL: f64 = 1e-4;
 
 /// Kind of an event.
@@ -34,11 +34,11 @@ const MIN_INTERVAL: f64 = 1e-4;
 pub(super) enum EventKind {
     /// A particle touches an obstacle: their numbers.
     Touch { particle: usize, obstacle: usize },
-    /// A particle that rests on an obstacle sank into it by more than is allowed.
+    /// A particle that rests on an obstacle sank deeper into it than allowed.
     Sunk,
-    /// A particle no longer rests, sticks or slides on an obstacle as it did.
+    /// A particle ceases to stick or slide on an obstacle as it did.
     Rested,
-    /// A spring reaches the length (m) at which it breaks: its ends.
+    /// A spring between these ends reaches the length (m) at which it breaks.
     Tear { ends: [usize; 2], longest: f64 },
 }
 
@@ -50,7 +50,7 @@ pub(super) struct Event {
     pub kind: EventKind,
 }
 
-/// Step whose events are sought, between two times and states.
+/// Step that is searched for events, between two times and states.
 pub(super) struct Searched<'a> {
     pub network: &'a Network,
     pub t: f64,
@@ -59,15 +59,15 @@ pub(super) struct Searched<'a> {
     pub depths: Depths,
 }
 
-/// State at a share of the step, written to the slice.
+/// Writes the state at a share of the step to the slice.
 type StateAt<'a> = &'a mut dyn FnMut(f64, &mut [f64]);
 
-/// Particle that comes near an obstacle.
+/// Particle that comes close to an obstacle.
 #[derive(Clone, Copy, Debug)]
 struct Pair {
     particle: usize,
     obstacle: usize,
-    /// Whether it touches since the beginning of the step.
+    /// Whether it has touched the obstacle since the beginning of the step.
     touches: bool,
 }
 
@@ -221,7 +221,7 @@ impl Events {
                 let course = course(&step.ends, particle, step.h, n);
                 let middle = 0.5 * (course.x[0] + course.x[1]) - place;
                 let is_near = is_floor || middle.norm_squared() <= (reach + course.reach()).powi(2);
-                // What is not finite is reported elsewhere.
+                // States that are not finite are reported elsewhere.
                 if is_near {
                     let seen = begun.inwards(course.x[0] - begun.place.position);
                     self.pairs.push(Pair {
@@ -234,7 +234,7 @@ impl Events {
         }
     }
 
-    /// Lists the springs that may become longer than where they break.
+    /// Lists the springs that may become long enough to break.
     fn list_springs(&mut self, step: &Searched) {
         self.springs.clear();
         let Some(limit) = step.network.tear_limit() else {
@@ -246,7 +246,7 @@ impl Events {
             let ends = [spring.i, spring.j];
             let [a, b] = ends.map(|i| course(&step.ends, i, step.h, n));
             let farthest = (0..2).map(|k| (a.x[k] - b.x[k]).norm()).fold(0.0, f64::max);
-            // Half of the bulge of the course of one end past the other.
+            // Half of the most by which one end can leave its chord relative to the other.
             let bulge = 0.5
                 * (0..2)
                     .map(|k| (a.v[k] - b.v[k]).norm() * step.h)
@@ -259,8 +259,8 @@ impl Events {
 }
 
 impl Searched<'_> {
-    /// Whether a pair ends the step so little inside, on the side where it touches with that
-    /// normal, that it may be put out there.
+    /// Whether a particle ends the step inside its obstacle, but within the tolerance and on the
+    /// side with that normal: then it is moved to the surface at the end, without an event.
     fn ends_shallow(&self, pair: &Pair, normal: &Vector3<f64>) -> bool {
         let obstacle = &self.network.obstacles()[pair.obstacle];
         let (pose, n) = (obstacle.at(self.t + self.h), self.network.particles());
@@ -275,8 +275,8 @@ impl Searched<'_> {
         (-shallow..=0.0).contains(&end.distance) && end.normal.dot(normal) > 0.5
     }
 
-    /// Share of the step at which an event happens on the polynomial, near a guess; `None` if it
-    /// does not. Leaves a state near it.
+    /// Share of the step at which an event happens on the polynomial, by Newton's method from a
+    /// guess; `None` if it does not happen. Leaves the state near it in `state`.
     fn refine(
         &self,
         guess: f64,
@@ -303,7 +303,7 @@ impl Searched<'_> {
         (gap.abs() <= self.depths.none).then_some(share)
     }
 
-    /// Distance (m) from an event at a share of the step, and its rate (m/s).
+    /// Distance (m) from an event at a share of the step, and the rate of that distance (m/s).
     fn gap(&self, share: f64, kind: EventKind, y: &[f64]) -> (f64, f64) {
         let n = self.network.particles();
         let row = |first: usize, i: usize| {
@@ -339,8 +339,8 @@ fn keep_first(first: &mut Option<Event>, share: f64, kind: EventKind) {
     }
 }
 
-/// Height (m) below which particle i of n is at no time of the step, with room for a course that is
-/// not quite the cubic.
+/// Lower bound of the height (m) of particle i of n during the step, with room for a polynomial
+/// that is not quite a cubic.
 fn lowest(step: &Searched, i: usize, n: usize) -> f64 {
     let [[y0, v0], [y1, v1]] = step.ends.map(|y| [y[n + i], y[4 * n + i]]);
     let bulge = 0.5 * ((v0.abs() + v1.abs()) * step.h + (y1 - y0).abs());

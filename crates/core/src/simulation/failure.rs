@@ -2,11 +2,11 @@
 
 use crate::error::{Cause, Error, Refusal};
 
-/// Reason for which a run does not go on.
+/// Reason why a run cannot continue.
 pub(super) enum Failure {
-    /// It is lost, by that time (s).
-    Lost { cause: Cause, time: f64 },
-    /// An error that is not of the run.
+    /// Blow-up by a cause, at a time (s).
+    BlowUp { cause: Cause, time: f64 },
+    /// Error that is no blow-up.
     Error(Error),
 }
 
@@ -16,7 +16,8 @@ impl From<Error> for Failure {
     }
 }
 
-/// The cause of a blow-up of n particles by a step that failed; other errors are handed on.
+/// The cause of a blow-up of n particles, if that is why a step failed; any other error is
+/// returned.
 pub(super) fn cause_of(error: Error, n: usize) -> Result<Cause, Error> {
     match error {
         Error::NotFinite { component, .. } => Ok(Cause::NotFinite {

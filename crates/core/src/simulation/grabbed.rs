@@ -1,4 +1,4 @@
-//! Particle in the hand: led as a pin, or attracted by a spring.
+//! Particle in the hand: pinned to a path, or attracted to it by a spring.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,12 +6,13 @@ use super::pins::pin;
 use crate::network::{Network, attract, mass_behind};
 use crate::path::Path;
 
-/// Time in which a pulled particle gets to where it is pulled (s).
+/// Time in which a pulled particle reaches its target (s).
 pub(super) const PULL_TIME: f64 = 1.0 / 30.0;
 
-/// Natural frequency of the spring that attracts a particle over that of the particle on its own
-/// springs: it pulls a cloth along, and hardly shortens the largest stable step.
-const PULL_STIFFNESS: f64 = 0.3;
+/// Natural frequency of the spring that attracts a particle, over that of the particle on its own
+/// springs. The spring is stiff enough to pull a cloth along, and soft enough to leave the largest
+/// stable step almost unchanged.
+const PULL_FREQUENCY_SHARE: f64 = 0.3;
 
 /// A particle in the hand.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,14 +21,14 @@ pub struct Grabbed {
     pub particle: usize,
     /// Whether the particle was pinned before, and is again when the hand lets go.
     pub was_pinned: bool,
-    /// Path along which the hand leads it.
+    /// Path of the hand.
     pub path: Path,
 }
 
 impl Grabbed {
-    /// Whether a spring attracts the particle: a pin would tear constraints that hold it too, and
-    /// would not stop where surfaces that touch leave it no room; and a point of a rigid body
-    /// cannot be led by itself.
+    /// Whether a spring attracts the particle. A pin would tear constraints on the particle, would
+    /// not stop where surfaces in contact leave it no room, and cannot move one point of a rigid
+    /// body alone.
     pub(super) fn is_attracted(&self, network: &Network) -> bool {
         let touches = network.contact_layer().is_some();
         touches
@@ -35,7 +36,7 @@ impl Grabbed {
             || !self.was_pinned && network.is_held(self.particle)
     }
 
-    /// Attracts the particle to its path, if it is not led as a pin.
+    /// Attracts the particle to the path, if it is not pinned to it.
     pub(super) fn attract(&self, network: &mut Network) {
         if self.is_attracted(network) {
             let own = network.springs_of(self.particle);
@@ -44,7 +45,7 @@ impl Grabbed {
             let free = !network.is_held(self.particle);
             let least = 1.0 / PULL_TIME;
             let frequency = if free {
-                least.max(PULL_STIFFNESS * own)
+                least.max(PULL_FREQUENCY_SHARE * own)
             } else {
                 least
             };
@@ -52,7 +53,7 @@ impl Grabbed {
         }
     }
 
-    /// Leads the particle, whose velocity is in y, along its path from time t (s) on.
+    /// Moves the particle, whose velocity is in y, along the path from time t (s) on.
     pub(super) fn lead(&self, network: &mut Network, y: &mut [f64], t: f64) {
         if self.is_attracted(network) {
             network.unpin(self.particle);

@@ -1,4 +1,4 @@
-//! Hand that plans where it leads particles and obstacles, from what it sees at the time shown.
+//! Hand that pulls particles and obstacles: plans their paths from the state that is shown.
 
 use nalgebra::Vector3;
 
@@ -14,21 +14,22 @@ use crate::scene::{Model, Scene};
 /// Largest speed of a hand, in radii of the scene per second.
 const PULL_SPEED: f64 = 10.0;
 
-/// Greatest distance, in radii of the scene, from which a spring attracts what constraints hold ...
-const PULL_REACH: f64 = 0.05;
+/// Largest distance from which a spring attracts a particle under constraints, in radii of the
+/// scene.
+const HELD_REACH: f64 = 0.05;
 
-/// ... and what they do not, where surfaces touch.
+/// Largest distance from which a spring attracts any other particle, in radii of the scene.
 const FREE_REACH: f64 = 0.5;
 
-/// Share of the particle's way to its target by which each pull moves the hand on: so it gets there
-/// with any load.
+/// Share of the particle's distance from its target by which each pull moves the hand further: so
+/// the particle gets there under any load.
 const FOLLOWED_SHARE: f64 = 0.25;
 
-/// Least and greatest length that a hand gives to a rod whose other end has not followed yet, in
-/// lengths of the rod.
+/// Least and greatest distance to which a hand may bring the ends of a rod, in lengths of the rod,
+/// before the other end has followed.
 const ROD_LENGTHS: (f64, f64) = (0.95, 1.05);
 
-/// Hand, and what it sees.
+/// Hand, and the state that it acts on.
 pub(super) struct Hand<'a> {
     network: &'a Network,
     /// State that is shown.
@@ -37,12 +38,12 @@ pub(super) struct Hand<'a> {
     time: f64,
     /// Radius of the scene (m).
     radius: f64,
-    /// Largest length, in rest lengths, to which it stretches springs.
+    /// Largest length to which it stretches springs, in rest lengths.
     reach: f64,
 }
 
 impl<'a> Hand<'a> {
-    /// Hand on a run, in a scene of that radius (m) with masses.
+    /// Hand on a run with masses; `None` without masses. `radius` is that of the scene (m).
     pub fn of(scene: &Scene, model: &'a Model, state: &'a RunState, radius: f64) -> Option<Self> {
         model.network().map(|network| Self {
             network,
@@ -73,8 +74,8 @@ impl<'a> Hand<'a> {
         let within =
             |share: f64, ahead: Vector3<f64>| from + ahead.cap_magnitude(share * self.radius);
         let path = match grabbed.is_attracted(self.network) {
-            true if self.network.is_held(i) => self.way(from, within(PULL_REACH, target - from)),
-            // The hand goes on where it was, until the particle is at the target.
+            true if self.network.is_held(i) => self.way(from, within(HELD_REACH, target - from)),
+            // The hand moves on from where it was, until the particle is at the target.
             true => {
                 let hand = grabbed.path.at(self.time).position;
                 let ahead = hand - from + (target - from) * FOLLOWED_SHARE;
@@ -85,7 +86,7 @@ impl<'a> Hand<'a> {
         Grabbed { path, ..grabbed }
     }
 
-    /// Checks that obstacle k can be taken hold of.
+    /// Checks that obstacle k can be grabbed.
     ///
     /// # Errors
     /// There is no such obstacle, or it is a floor.
@@ -97,7 +98,7 @@ impl<'a> Hand<'a> {
         Ok(())
     }
 
-    /// Path of obstacle k from where it is to a target (m), or without one, where it is. `None` if
+    /// Path of obstacle k from its place now to a target (m); without a target, it stays. `None` if
     /// there is no such obstacle.
     pub fn push(&self, k: usize, target: Option<Vector3<f64>>) -> Option<Path> {
         let from = self.network.obstacles().get(k)?.path.at(self.time).position;
@@ -108,7 +109,7 @@ impl<'a> Hand<'a> {
         row(self.y, self.network.particles(), i)
     }
 
-    /// The path of a hand that begins to move now.
+    /// The path of a hand that starts to move now.
     fn way(&self, from: Vector3<f64>, to: Vector3<f64>) -> Path {
         let start = self.time;
         let time = PULL_TIME.max((to - from).norm() / (PULL_SPEED * self.radius));
@@ -120,9 +121,9 @@ impl<'a> Hand<'a> {
         }
     }
 
-    /// The point on the way of particle i to `target` up to which no spring of its own and no edge
-    /// of a tetrahedron is stretched too far, and no rod stretched or squeezed. A spring or rod
-    /// that is already may not become worse.
+    /// The farthest point towards `target` at which no spring of particle i and no edge of its
+    /// tetrahedra is too long, and no rod too long or too short. One that already is may not become
+    /// worse.
     fn within_reach(&self, i: usize, from: Vector3<f64>, target: Vector3<f64>) -> Vector3<f64> {
         let way = target - from;
         let springs = self.network.springs_of(i);
@@ -143,8 +144,8 @@ impl<'a> Hand<'a> {
     }
 }
 
-/// The share, at most 1, of a `way` (m) that a particle at d (m) from the other end of a spring or
-/// rod may go before it is nearer than `shortest` or farther than `longest` (m).
+/// The share, at most 1, of `way` (m) after which a particle at d (m) from the other end of a
+/// spring or rod would come nearer than `shortest` or farther than `longest` (m).
 fn share(d: Vector3<f64>, way: Vector3<f64>, shortest: f64, longest: f64) -> f64 {
     let (a, b, distance) = (way.norm_squared(), d.dot(&way), d.norm());
     if a == 0.0 {

@@ -1,4 +1,4 @@
-//! Interaction with a run: what one sees of its scene, and how one disturbs it.
+//! Interaction with a run: what its scene shows, and how it can be disturbed.
 
 use nalgebra::{DMatrixView, Vector3};
 
@@ -17,7 +17,7 @@ use crate::path::Path;
 use crate::scene::Model;
 
 impl Simulation {
-    /// The model as it is now: pins led, wind on or off, springs broken.
+    /// The model as it is now, with its current pins, obstacles, wind and tears.
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
@@ -91,10 +91,10 @@ impl Simulation {
         (bounds.middle, bounds.radius)
     }
 
-    /// Forces of contact on the particles (N), n x 3: those of surfaces as they are now, and the
-    /// impulses that obstacles, friction and the guard gave in the last step, divided by its
-    /// length. Those are not known after the run went to another state, until the next step.
-    /// Nothing if nothing can touch.
+    /// Contact forces on the particles (N), n x 3: those of surfaces as they are now, and the
+    /// impulses of obstacles, friction and the collision safeguard in the last step, divided by its
+    /// length. After the run went to another state, these impulses are unknown until the next step.
+    /// `None` if nothing can touch.
     #[must_use]
     pub fn contact_forces(&self) -> Option<Vec<f64>> {
         let network = self.model.network().filter(|n| n.can_touch())?;
@@ -127,8 +127,8 @@ impl Simulation {
         stepper.refit(self.state.method, self.model.system());
     }
 
-    /// Changes the model as it is now, and the one that a reset goes back to. The state and the
-    /// time stay. Does nothing in a scene without masses.
+    /// Changes both the current model and the one that a reset goes back to. The state and the time
+    /// stay. Does nothing in a scene without masses.
     pub fn adjust(&mut self, change: impl Fn(&mut Network)) {
         self.stop();
         for model in [&mut self.model, &mut self.scene.model] {
@@ -147,13 +147,13 @@ impl Simulation {
             .is_some_and(|network| network.wind().is_some())
     }
 
-    /// Lets the scene's wind blow, or calms it. A scene without wind stays as it is.
+    /// Switches the scene's wind on or off. A scene without wind stays as it is.
     pub fn set_wind(&mut self, on: bool) {
         let wind = self.scene.wind.filter(|_| on);
         self.disturb(|network, _, _| network.set_wind(wind));
     }
 
-    /// Puts another wind in the place of the scene's. A scene without wind stays without.
+    /// Replaces the scene's wind. A scene without wind stays without.
     pub fn change_wind(&mut self, wind: Wind) {
         if self.scene.wind.is_some() {
             self.scene.wind = Some(wind);
@@ -190,11 +190,11 @@ impl Simulation {
     }
 
     /// Lets the scene's surfaces touch one another and themselves, or pass through. A scene without
-    /// surfaces stays as it is. A reset keeps this, unless surfaces cross at the beginning.
+    /// surfaces stays as it is. A reset keeps this setting, unless surfaces cross at the beginning.
     ///
     /// # Errors
-    /// Surfaces cross now, and the error names the first pair; or the method does not serve
-    /// contact. The run goes on as before then.
+    /// Surfaces cross now, and the error names the first pair; or the method does not support
+    /// contact. The run then continues as before.
     pub fn set_touching(&mut self, on: bool) -> Result<(), Error> {
         let network = self.model.network().filter(|_| self.scene.touch.is_some());
         let Some(network) = network.filter(|_| on != self.touching()) else {
@@ -203,7 +203,7 @@ impl Simulation {
         if on {
             check_touch(network, &self.scene, &self.state)?;
         }
-        // Where surfaces touch, a hand attracts a particle that it would lead as a pin elsewhere.
+        // Where surfaces touch, a spring attracts a grabbed particle that is pinned elsewhere.
         let held = self.grabbed();
         self.release();
         self.stop();
@@ -220,8 +220,8 @@ impl Simulation {
         !self.state.unpinned
     }
 
-    /// Frees every pinned particle but the one in the hand, or pins those of the scene again, where
-    /// they are now.
+    /// Frees all pinned particles except the one in the hand, or pins those of the scene again,
+    /// where they are now.
     pub fn set_pinned(&mut self, on: bool) {
         if on == self.pinned() {
             return;
@@ -250,7 +250,7 @@ impl Simulation {
     /// a scene without masses.
     ///
     /// # Errors
-    /// There is no such particle, or a rigid body carries it.
+    /// There is no such particle, or it belongs to a rigid body.
     pub fn toggle_pin(&mut self, i: usize) -> Result<bool, Error> {
         let Some(network) = self.model.network() else {
             return Ok(false);
@@ -284,9 +284,8 @@ impl Simulation {
         self.state.grabbed.map(|grabbed| grabbed.particle)
     }
 
-    /// Takes hold of particle i, and lets go of any other. The particle is a pin then, or a spring
-    /// attracts it: if it is free but for constraints, and wherever surfaces touch. Does nothing in
-    /// a scene without masses, where there is nothing to hold against.
+    /// Grabs particle i, and lets go of any other. The particle becomes a pin; or a spring attracts
+    /// it, if constraints act on it or surfaces can touch. Does nothing in a scene without masses.
     ///
     /// # Errors
     /// There is no such particle.
@@ -300,7 +299,7 @@ impl Simulation {
 
     /// Pulls the grabbed particle towards `target` (m), which it reaches within 1/30 s unless that
     /// is too fast, or springs or rods hold it back: the hand stretches a spring as far as the
-    /// scene allows, a rod hardly at all, and gets farther as the other end follows.
+    /// scene allows, a rod hardly at all, and continues as the other end follows.
     pub fn pull(&mut self, target: Vector3<f64>) {
         if let Some((hand, grabbed)) = self.hand().zip(self.state.grabbed) {
             self.lead(hand.pull(grabbed, target));
@@ -322,7 +321,7 @@ impl Simulation {
         }
     }
 
-    /// Leads the grabbed particle along its path.
+    /// Moves the grabbed particle along its path.
     fn lead(&mut self, grabbed: Grabbed) {
         self.disturb(|network, state, time| {
             state.grabbed = Some(grabbed);
@@ -330,7 +329,7 @@ impl Simulation {
         });
     }
 
-    /// The hand, which sees the run as it is shown, in a scene with masses.
+    /// The hand, if the scene has masses.
     fn hand(&self) -> Option<Hand<'_>> {
         Hand::of(&self.scene, &self.model, &self.state, self.extent().1)
     }
@@ -341,8 +340,8 @@ impl Simulation {
         self.state.grabbed_obstacle
     }
 
-    /// Takes hold of obstacle k where it is, and lets go of any other. Does nothing in a scene
-    /// without masses, where obstacles push nothing.
+    /// Grabs obstacle k where it is, and lets go of any other. Does nothing in a scene without
+    /// masses, where obstacles push nothing.
     ///
     /// # Errors
     /// There is no such obstacle, or it is a floor.
@@ -373,13 +372,13 @@ impl Simulation {
         let hand = self.hand().zip(self.state.grabbed_obstacle);
         let pushed = hand.and_then(|(hand, k)| Some((k, hand.push(k, target)?)));
         if let Some((k, path)) = pushed {
-            // It is there: the hand saw it.
+            // The hand has checked that this obstacle exists.
             let _ = self.disturb(|network, _, _| network.lead_obstacle(k, path));
         }
     }
 
-    /// Gives obstacle k another path, such as the one that it had before it was pushed, and lets go
-    /// of any. A reset goes back to the scene's own.
+    /// Gives obstacle k another path, such as the one before it was pushed, and lets go of any
+    /// obstacle. A reset restores the scene's own path.
     ///
     /// # Errors
     /// There is no such obstacle.

@@ -1,5 +1,5 @@
-//! Events of a step, for those that locate them: where the first is, and which particles rest on
-//! obstacles until then.
+//! Events of a step, for methods that locate them: where the first one is, and which particles rest
+//! on obstacles until then.
 
 use super::depths::Depths;
 use super::events::{Event, Events, Searched};
@@ -11,10 +11,10 @@ use crate::scene::Model;
 
 /// Search for the first event of a step.
 pub(super) struct Locator {
-    /// Whether fixed steps end at events too, in parts.
-    pub cuts_fixed_steps: bool,
+    /// Whether fixed steps are split at events too.
+    pub splits_fixed_steps: bool,
     events: Events,
-    /// Particles that rest on obstacles in the step that is taken.
+    /// Particles that rest on obstacles in the current step.
     rests: Rests,
 }
 
@@ -22,20 +22,20 @@ impl Locator {
     /// Search in a model, with room for all its particles.
     pub fn new(model: &Model) -> Self {
         Self {
-            cuts_fixed_steps: false,
+            splits_fixed_steps: false,
             events: Events::new(model),
             rests: Rests::new(model),
         }
     }
 
-    /// Whether steps end at events.
+    /// Whether events are located in the steps of a stepper.
     pub fn serves(&self, stepper: &Stepper) -> bool {
-        stepper.is_adaptive() || self.cuts_fixed_steps
+        stepper.is_adaptive() || self.splits_fixed_steps
     }
 
-    /// Whether fixed steps are taken in parts, each up to an event.
-    pub fn cuts(&self, stepper: &Stepper) -> bool {
-        self.cuts_fixed_steps && !stepper.is_adaptive()
+    /// Whether fixed steps are split into parts, each up to an event.
+    pub fn splits(&self, stepper: &Stepper) -> bool {
+        self.splits_fixed_steps && !stepper.is_adaptive()
     }
 
     /// View of a model in which particles rest, if any do.
@@ -67,14 +67,14 @@ impl Locator {
             let evaluated = self.rests.list(network, t, &mut state.y, heights);
             state.work += Work::of(evaluated);
         }
-        // The last evaluation of a step in which others rest is of another system.
+        // If other particles rest, the last evaluation of the step before is of another system.
         let before = std::mem::replace(&mut state.resting, self.rests.fingerprint());
         if before != state.resting {
             stepper.forget();
         }
     }
 
-    /// Finds the first event of a step of h (s) from time t (s), from y0 to the state as it is now.
+    /// Finds the first event of a step of h (s) from time t (s), from y0 to the current state.
     pub fn first_event(
         &mut self,
         model: &Model,

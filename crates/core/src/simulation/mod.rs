@@ -1,4 +1,4 @@
-//! Simulations: a scene, a method, and the time that the method has brought the scene to.
+//! Simulations: a scene, a method, and the time that the run has reached.
 
 mod balance;
 mod bounds;

@@ -1,9 +1,11 @@
-//! Phases after an integrator's step: springs that are too long are shortened, particles leave
-//! obstacles, or surfaces do not pass through one another, and pins are in their places.
+//! Phases after an integrator's step: springs that are too long are shortened, particles are moved
+//! out of obstacles, surfaces are kept from passing through one another, and pins are put in their
+//! places.
 
 use super::depths::Depths;
 use crate::contact::{
-    Contact, Impulses, Squeezed, Statistics, Step, StrainLimiter, Strained, bulge, guard, resolve,
+    ContactPhase, Impulses, Pinched, Statistics, Step, StrainLimiter, Strained, bulge, guard,
+    resolve,
 };
 use crate::error::Cause;
 use crate::network::Network;
@@ -13,17 +15,17 @@ use crate::system::{Mechanics, ParticleSystem};
 /// Phases after a step, with their scratch.
 pub(super) struct Phases {
     limiter: StrainLimiter,
-    pub contact: Contact,
-    /// Excess of the longest limited spring at the beginning of the step, if that is wanted.
+    pub contact: ContactPhase,
+    /// Excess length of the longest limited spring at the beginning of the step, if it is needed.
     excess: f64,
 }
 
-/// What the phases after a step did.
+/// Result of the phases after a step.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Settled {
     pub strained: Strained,
     pub met: Statistics,
-    /// Growth in the step of the excess of the longest limited spring.
+    /// Growth in the step of the excess length of the longest limited spring.
     pub grown: f64,
 }
 
@@ -32,13 +34,13 @@ impl Phases {
     pub fn new(dim: usize) -> Self {
         Self {
             limiter: StrainLimiter::new(dim),
-            contact: Contact::new(dim),
+            contact: ContactPhase::new(dim),
             excess: 0.0,
         }
     }
 
-    /// Remembers the state y0 that a step begins with, as far as the phases need it or, with
-    /// `retry`, as far as it is needed to take the step again.
+    /// Remembers the parts of the state y0 at the beginning of a step that the phases need or, with
+    /// `retry`, that are needed to take the step again.
     pub fn begin(&mut self, model: &Model, y0: &[f64], retry: bool) {
         let Some(network) = model.network() else {
             return;
@@ -56,13 +58,13 @@ impl Phases {
         }
     }
 
-    /// State that the step began with, as far as it was remembered.
+    /// State at the beginning of the step, as far as it was remembered.
     pub fn y0(&self) -> &[f64] {
         self.contact.y0()
     }
 
-    /// Largest distance of vertices of surfaces from their chords in a step of h (s) from time
-    /// t (s) to y1, over the least thickness; 0 if nothing touches.
+    /// Largest distance of vertices of surfaces from the chords of their courses in a step of h (s)
+    /// from time t (s) to y1, over the least thickness; 0 if nothing touches.
     pub fn bulge(&self, model: &Model, (t, h): (f64, f64), y1: &[f64]) -> f64 {
         let layer = model.network().and_then(Network::contact_layer);
         let states = [self.y0(), y1];
@@ -72,8 +74,9 @@ impl Phases {
             .map_or(0.0, |layer| bulge(layer, (t, h), states))
     }
 
-    /// Lets the particles that touch an obstacle at the end of a step, which is at time t (s) after
-    /// h (s), strike it. What would rebound by less than a shallow depth does not.
+    /// Applies impacts to the particles that touch an obstacle at the end of a step of h (s) that
+    /// ends at time t (s), with `times` = (t, h). A particle that would rebound to less than a
+    /// shallow depth stays on the obstacle.
     pub fn strike(&mut self, network: &Network, times: (f64, f64), depths: Depths, y: &mut [f64]) {
         let heights = [depths.none, depths.shallow];
         let (obstacles, inverse_masses) = (network.obstacles(), network.inverse_masses());
@@ -81,10 +84,10 @@ impl Phases {
             .strike(obstacles, inverse_masses, times, heights, y);
     }
 
-    /// Settles y1, the end of a step of h (s) from t (s).
+    /// Settles y1, the end of a step of h (s) from time t (s).
     ///
     /// # Errors
-    /// Surfaces whose motion is prescribed leave no room.
+    /// Prescribed motions leave surfaces no room.
     pub fn settle(
         &mut self,
         model: &Model,
@@ -101,9 +104,10 @@ impl Phases {
         Ok(settled)
     }
 
-    /// Settles a state that is shown, h (s) after the beginning of a step from t (s). A polynomial
-    /// knows of no surfaces. That of an adaptive step does not know of obstacles either, and that
-    /// of a fixed step leads to where they have been met.
+    /// Settles a state that is shown, h (s) after the beginning of a step from t (s). The
+    /// polynomial of a step ignores surfaces. That of an adaptive step ignores obstacles too; that
+    /// of a fixed step ends where contact with them has moved the particles, so with
+    /// `knows_obstacles` they are left as they are.
     pub fn settle_shown(
         &self,
         network: &Network,
@@ -117,7 +121,7 @@ impl Phases {
         }
         let inverse_masses = network.inverse_masses();
         if let Some(layer) = network.contact_layer() {
-            // Where prescribed motion leaves no room, the step itself has ended the run.
+            // If prescribed motions leave no room, the step itself has ended the run.
             let none = &mut Impulses::default();
             let _ = guard(layer, inverse_masses, (t, h), y0, y, none);
         } else if !knows_obstacles {
@@ -126,7 +130,7 @@ impl Phases {
         network.hold(t + h, y);
     }
 
-    /// Forces of contact (N), n x 3, on the particles of a network at y at time t (s): those of
+    /// Contact forces (N), n x 3, on the particles of a network at y at time t (s): those of
     /// surfaces, and the impulses of the last step, divided by its length.
     pub fn contact_forces(&self, network: &Network, t: f64, y: &[f64]) -> Vec<f64> {
         let mut f = vec![0.0; 3 * network.particles()];
@@ -146,7 +150,7 @@ impl Phases {
         }
     }
 
-    /// Puts particles out of obstacles, or keeps surfaces from passing through one another.
+    /// Moves particles out of obstacles, or keeps surfaces from passing through one another.
     fn part(
         &mut self,
         network: &Network,
@@ -166,7 +170,7 @@ impl Phases {
             return Ok(Statistics::default());
         }
         let guarded = self.contact.guard(layer, inverse_masses, (t, h), y1);
-        let met = guarded.map_err(|Squeezed { vertices }| Cause::Squeezed { vertices })?;
+        let met = guarded.map_err(|Pinched { vertices }| Cause::Pinched { vertices })?;
         if !network.bodies().is_empty() {
             network.hold(t + h, y1);
         }

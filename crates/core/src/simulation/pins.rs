@@ -1,4 +1,4 @@
-//! Pins of a run: where a hand leaves them they stand, or swing from there.
+//! Pins of a run, which stand still or swing where a hand leaves them.
 
 use nalgebra::Vector3;
 
@@ -8,10 +8,12 @@ use crate::path::Path;
 use crate::scene::Swing;
 use crate::system::ParticleSystem;
 
-/// Distance of a pin from its path, over the radius of the scene, that is a rounding error.
+/// Distance of a pin from its path, over the radius of the scene, below which it is a rounding
+/// error.
 const ROUNDING: f64 = 1e-9;
 
-/// Path of a pin that is left at `position` (m) at time t (s): still there, or swinging from there.
+/// Path of a pin that is left at `position` (m) at time t (s): it stays there, or swings from
+/// there.
 pub(super) fn leave(position: Vector3<f64>, swing: Option<Swing>, phase: f64, t: f64) -> Path {
     match swing {
         None => Path::Still(position),
@@ -27,7 +29,7 @@ pub(super) fn leave(position: Vector3<f64>, swing: Option<Swing>, phase: f64, t:
     }
 }
 
-/// Pins a particle on a path, and gives it in y the velocity that the path has at time t (s).
+/// Pins particle i to a path, and writes the path's velocity at time t (s) to y.
 pub(super) fn pin(network: &mut Network, y: &mut [f64], (i, path): (usize, Path), t: f64) {
     let (n, velocity) = (network.particles(), path.at(t).velocity);
     if network.pin(i, path).is_ok() {
@@ -37,7 +39,7 @@ pub(super) fn pin(network: &mut Network, y: &mut [f64], (i, path): (usize, Path)
     }
 }
 
-/// Leaves all pins but one where they are at time t (s), and puts them there in y.
+/// Leaves all pins except one where they are at time t (s), and writes their positions to y.
 pub(super) fn leave_all_but(
     held: Option<usize>,
     network: &mut Network,
@@ -55,17 +57,16 @@ pub(super) fn leave_all_but(
     network.hold(t, y);
 }
 
-/// Frees all pinned particles but one.
+/// Frees all pinned particles except one.
 pub(super) fn unpin_all_but(held: Option<usize>, network: &mut Network) {
     let pins: Vec<_> = network.pins().map(|(i, _)| i).collect();
-    // The last ones first: whichever is removed, few are moved up.
+    // The last ones first, so that few of the list are moved up by each removal.
     for i in pins.into_iter().rev().filter(|i| Some(*i) != held) {
         network.unpin(i);
     }
 }
 
-/// Pinned particles that are elsewhere in y than their paths lead at time t (s), in a scene of that
-/// radius (m).
+/// Pinned particles that are not on their paths in y at time t (s), in a scene of that radius (m).
 pub(super) fn strayed(network: &Network, y: &[f64], t: f64, radius: f64) -> Vec<usize> {
     let (n, far) = (network.particles(), ROUNDING * radius);
     let pins = network.pins();

@@ -1,11 +1,12 @@
-//! Power and work of what drives a scene: pins that move, wind, constraints and obstacles.
+//! Power and work of everything that drives a scene: moving pins and obstacles, wind and
+//! constraints.
 //!
 //! A pin works against the springs at its particle and against gravity. Its power is integrated
-//! over each step: by Simpson's rule, with the state in the middle from the Hermite polynomial,
-//! where the method has an order above 2, and by the trapezoidal rule elsewhere. The force F of
-//! wind changes slowly: its work is F . dx over short times, whatever particles do meanwhile. Where
-//! more than that works on a scene, the power of all together is the rate at which the energy of
-//! the exact motion grows, dE/dt = (E(t + e, y + e f) - E(t - e, y - e f)) / 2e.
+//! over each step: for a method of order above 2 by Simpson's rule, with the state in the middle
+//! from the Hermite polynomial, for others by the trapezoidal rule. The force F of wind changes
+//! slowly: its work is F . dx over short times. If anything else works on a scene, the power of
+//! everything together is the rate at which the energy of the exact motion grows, dE/dt = (E(t + e,
+//! y + e f) - E(t - e, y - e f)) / 2e.
 
 use nalgebra::Vector3;
 
@@ -17,20 +18,21 @@ use crate::path::Path;
 use crate::spring::Spring;
 use crate::system::{Mechanics, ParticleSystem};
 
-/// Time (s) after which wind, and all that works together, is looked at again, where a look at each
-/// step would take too long ...
+/// Time (s) between two evaluations of the work of wind, or of the total work, in a scene of more
+/// than [`MAX_PARTICLES_PER_STEP`] particles.
 const INTERVAL: f64 = 1.0 / 60.0;
 
-/// ... because there are more particles than this.
-const FEW_PARTICLES: usize = 200;
+/// Largest number of particles for which that work is evaluated at each step: with more, it would
+/// take too long.
+const MAX_PARTICLES_PER_STEP: usize = 200;
 
-/// Half of the time over which the power of all together is found (s).
+/// Half of the interval of the difference quotient for the total power (s).
 const HALF_MOMENT: f64 = 1e-7;
 
-/// Order above which a method's steps are long, and Simpson's rule is needed.
+/// Order of a method up to which the trapezoidal rule is accurate enough.
 const LOW_ORDER: u32 = 2;
 
-/// Share of the energy of pins below which what is left of all is rounding.
+/// Kinetic energy over that of the pins, below which it is a rounding error.
 const ROUNDING: f64 = 1e-12;
 
 /// End of a step.
@@ -44,38 +46,38 @@ pub(super) struct End<'a> {
     pub y: &'a [f64],
 }
 
-/// Power of all that works on a scene.
+/// Power of everything that works on a scene.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Power {
-    /// Whether the parts are those of the network and the state as they are.
+    /// Whether the parts match the current network and state.
     is_fresh: bool,
-    pins: Option<Pins>,
-    wind: Option<Breeze>,
-    all: Option<All>,
+    pins: Option<PinWork>,
+    wind: Option<WindWork>,
+    all: Option<TotalWork>,
 }
 
 impl Power {
-    /// Gets ready for a step from y at time t (s), if it is not.
+    /// Prepares for a step from y at time t (s), unless that is done.
     pub fn begin(&mut self, network: &Network, t: f64, y: &[f64]) {
         if std::mem::replace(&mut self.is_fresh, true) {
             return;
         }
         (self.pins, self.wind, self.all) = (None, None, None);
         if works_together(network) {
-            self.all = Some(All::new(network, t, y));
+            self.all = Some(TotalWork::new(network, t, y));
         } else {
             let moving = network.pins().any(|(_, path)| moves(&path));
-            self.pins = moving.then(|| Pins::new(network, t, y));
-            self.wind = network.wind().map(|_| Breeze::new(network, t, y));
+            self.pins = moving.then(|| PinWork::new(network, t, y));
+            self.wind = network.wind().map(|_| WindWork::new(network, t, y));
         }
     }
 
-    /// Forgets the scene: the network or the state is no longer the same.
+    /// Forgets the scene, because the network or the state has changed.
     pub fn forget(&mut self) {
         self.is_fresh = false;
     }
 
-    /// Work (J) up to the end of a step since the last one that was found.
+    /// Work (J) since the end of the last step, up to this end of a step.
     pub fn work(&mut self, network: &Network, end: End) -> f64 {
         let pins = self.pins.as_mut().map(|pins| pins.work(network, end));
         let wind = self.wind.as_mut().map(|wind| wind.work(network, end));
@@ -89,7 +91,7 @@ fn moves(path: &Path) -> bool {
     !matches!(path, Path::Still(_))
 }
 
-/// Whether more works on a scene than pins at springs and wind.
+/// Whether something other than pins on springs, and wind, works on a scene.
 fn works_together(network: &Network) -> bool {
     let has = |is: fn(&Element) -> bool| network.elements().iter().any(is);
     let pinned = network.pins().any(|(_, path)| moves(&path));
@@ -109,7 +111,7 @@ fn works_together(network: &Network) -> bool {
 
 /// Work of moving pins on springs.
 #[derive(Clone, Debug)]
-struct Pins {
+struct PinWork {
     /// The moving pins and their masses (kg): the first of the particles.
     paths: Vec<(Path, f64)>,
     /// Those particles, and then those at the other ends of their springs.
@@ -124,7 +126,7 @@ struct Pins {
     scratch: [Vec<f64>; 2],
 }
 
-impl Pins {
+impl PinWork {
     fn new(network: &Network, t: f64, y: &[f64]) -> Self {
         let (masses, moving) = (network.masses(), |p: &(usize, Path)| moves(&p.1));
         let moving: Vec<_> = network.pins().filter(moving).collect();
@@ -158,18 +160,18 @@ impl Pins {
             scratch: [vec![], vec![]],
         };
         let mut own = vec![];
-        pins.gather(y, &mut own);
+        pins.copy_state(y, &mut own);
         pins.power = pins.power_at(network, &own);
         pins.scratch = [(); 2].map(|()| Vec::with_capacity(own.len()));
         pins.y = own;
         pins
     }
 
-    /// Writes the state of the particles, of that of all.
-    fn gather(&self, y: &[f64], own: &mut Vec<f64>) {
+    /// Copies the state of the particles from that of the whole network.
+    fn copy_state(&self, y: &[f64], own: &mut Vec<f64>) {
         own.clear();
         let n = y.len() / 6;
-        // The rotations of bodies come last, and have none of the first places.
+        // Rotations of bodies come last in y, so the first six columns are [x | v].
         for column in y.chunks_exact(n.max(1)).take(6) {
             own.extend(self.particles.iter().map(|i| column[*i]));
         }
@@ -177,7 +179,7 @@ impl Pins {
 
     fn work(&mut self, network: &Network, end: End) -> f64 {
         let [mut middle, mut own] = std::mem::take(&mut self.scratch);
-        self.gather(end.y, &mut own);
+        self.copy_state(end.y, &mut own);
         let power = self.power_at(network, &own);
         let h = end.t - self.t;
         let mut mean = 0.5 * (self.power + power);
@@ -199,7 +201,7 @@ impl Pins {
         mean * h
     }
 
-    /// Power (W) of the pins where the particles have that state.
+    /// Power (W) of the pins in a state of the particles.
     fn power_at(&self, network: &Network, y: &[f64]) -> f64 {
         let (n, pins) = (self.particles.len(), self.paths.len());
         let row = |i: usize, first: usize| {
@@ -234,15 +236,15 @@ impl Pins {
 
 /// Work of wind.
 #[derive(Clone, Debug)]
-struct Breeze {
-    /// Time (s), positions (m) and forces (N) at the last look.
+struct WindWork {
+    /// Time (s), positions (m) and forces (N) at the last evaluation.
     t: f64,
     x: Vec<f64>,
     f: Vec<f64>,
     scratch: Vec<f64>,
 }
 
-impl Breeze {
+impl WindWork {
     fn new(network: &Network, t: f64, y: &[f64]) -> Self {
         let (x, v) = network.halves(y);
         let mut f = vec![0.0; x.len()];
@@ -252,7 +254,7 @@ impl Breeze {
     }
 
     fn work(&mut self, network: &Network, End { t, y, .. }: End) -> f64 {
-        let few = network.particles() <= FEW_PARTICLES;
+        let few = network.particles() <= MAX_PARTICLES_PER_STEP;
         if !few && t - self.t < INTERVAL {
             return 0.0;
         }
@@ -273,10 +275,10 @@ impl Breeze {
     }
 }
 
-/// Work of all together.
+/// Work of everything together.
 #[derive(Clone, Debug)]
-struct All {
-    /// Time (s) and power (W) at the last look, and the state, where it is needed.
+struct TotalWork {
+    /// Time (s) and power (W) at the last evaluation, and the state there.
     t: f64,
     power: f64,
     y: Vec<f64>,
@@ -284,7 +286,7 @@ struct All {
     scratch: [Vec<f64>; 3],
 }
 
-impl All {
+impl TotalWork {
     fn new(network: &Network, t: f64, y: &[f64]) -> Self {
         let mut all = Self {
             t,
@@ -298,7 +300,7 @@ impl All {
 
     fn work(&mut self, network: &Network, end: End) -> f64 {
         let h = end.t - self.t;
-        let few = network.particles() <= FEW_PARTICLES;
+        let few = network.particles() <= MAX_PARTICLES_PER_STEP;
         if !few && h < INTERVAL {
             return 0.0;
         }
@@ -306,7 +308,8 @@ impl All {
         let after = self.power_at(network, end.t, end.y);
         let mut mean = 0.5 * (before + after);
         if !few {
-            // What happens between these looks must not be taken for a gain.
+            // The motion between two evaluations is unknown: its work must not count as a gain of
+            // the method.
             mean = 0.5 * (before.max(0.0) + after.max(0.0));
         } else if end.order > LOW_ORDER && network.bodies().is_empty() {
             let mut middle = std::mem::take(&mut self.scratch[2]);
@@ -344,8 +347,8 @@ fn write_middle(y0: &[f64], y1: &[f64], h: f64, out: &mut Vec<f64>) {
     out.extend((0..half).map(|k| 1.5 * (x1[k] - x0[k]) / h - 0.25 * (v0[k] + v1[k])));
 }
 
-/// Energy of y at time t (s), without that of the motion of pins, which is given and may begin at
-/// once.
+/// Energy of y at time t (s), without the kinetic energy of pins: their motion is prescribed, and
+/// may begin at once.
 pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
     let (_, v) = network.halves(y);
     let (n, masses) = (network.particles(), network.masses());
@@ -362,14 +365,14 @@ pub(super) fn energy_of(network: &Network, t: f64, y: &[f64]) -> Energy {
     energy
 }
 
-/// Most of the speed of an obstacle's points within reach of a scene of that radius (m), in m/s.
+/// Upper bound of the speed (m/s) of an obstacle's points within a scene of that radius (m).
 pub(super) fn fastest(obstacle: &Obstacle, t: f64, radius: f64) -> f64 {
     let pose = obstacle.at(t);
     let spin = pose.orientation.map_or(0.0, |turned| turned.spin.norm());
     pose.place.velocity.norm() + spin * 2.0 * radius
 }
 
-/// The fastest of particles with velocities v, n x 3, and its speed (m/s).
+/// The particle with the largest of the velocities v, n x 3, and its speed (m/s).
 pub(super) fn fastest_particle(v: &[f64]) -> (usize, f64) {
     let n = v.len() / 3;
     let speed = |i: usize| {

@@ -1,14 +1,14 @@
-//! Reach of a step: how far it may go, and how far it went.
+//! Reach of a step: how far it may go, and how far it has gone.
 
 use crate::scene::{Model, StepLimits};
 
-/// Part of a run that a step takes it on by: a length and the time at its end (s).
+/// Part of a run that one step covers: its length (s), and the time at its end (s).
 #[derive(Clone, Copy)]
 pub(super) struct Part {
     pub h: f64,
     pub end: f64,
     /// Whether it ends at an event, after which the motion is no longer smooth.
-    pub is_cut: bool,
+    pub ends_at_event: bool,
 }
 
 impl Part {
@@ -17,7 +17,7 @@ impl Part {
         Self {
             h,
             end: t + h,
-            is_cut: true,
+            ends_at_event: true,
         }
     }
 }
@@ -39,9 +39,9 @@ impl Default for Reach {
 }
 
 impl Reach {
-    /// Limits of a step of a model from time t (s) that locates events: what prescribed motions do
-    /// is known. One of an adaptive method is limited by these too, and a fixed one ends at
-    /// `target` (s) at the latest.
+    /// Limits of a step of a model from time t (s) by a method that locates events: prescribed
+    /// motions begin and end at known times. An adaptive step has further limits; a fixed step ends
+    /// at `target` (s) at the latest.
     pub fn of_step(
         model: &Model,
         limits: StepLimits,
@@ -72,10 +72,10 @@ impl Reach {
         reach
     }
 
-    /// Limits of a step from t up to a time `until` (s) at which a motion changes: no evaluation is
-    /// at or after that.
+    /// Limits of a step from t up to a time `until` (s) at which a motion changes: all evaluations
+    /// are before that time.
     fn up_to(t: f64, until: f64) -> Self {
-        // The last digits of a short step are lost in the time.
+        // Adding a short step to the time rounds it.
         let (mut longest, digit) = (until - t, 0.25 * (until - until.next_down()));
         while t + longest >= until && longest > 0.0 {
             longest = longest.next_down().min(longest - digit);
@@ -86,7 +86,7 @@ impl Reach {
         }
     }
 
-    /// Limits the length (s). A step of a shorter one does not end at the time.
+    /// Limits the length (s). A shorter step does not end at the known time.
     fn limit(&mut self, longest: f64) {
         if longest < self.longest {
             *self = Self {
@@ -96,13 +96,13 @@ impl Reach {
         }
     }
 
-    /// The step from t that takes h (s).
+    /// The part that a step of h (s) from t covers.
     pub fn part(&self, t: f64, h: f64) -> Part {
         let until = self.until.filter(|_| h == self.longest);
         Part {
             h,
             end: until.unwrap_or(t + h),
-            is_cut: until.is_some(),
+            ends_at_event: until.is_some(),
         }
     }
 }

@@ -1,12 +1,12 @@
-//! Particles that rest or slide on flat obstacles while a step is taken.
+//! Particles that rest or slide on flat obstacles during a step.
 //!
-//! Where contact acts after each step, a particle falls freely within the step: it sinks into the
-//! obstacle by half the acceleration times the square of the step, whatever the tolerance. So in
-//! steps that locate events the obstacle's reaction and its friction are forces at every stage.
-//! What sticks does not move. What slides has no acceleration along the normal, and friction
-//! against its velocity. That is so for a whole step, which ends where it ceases to be: where the
-//! obstacle would have to pull, where friction cannot hold what sticks, where it ends a slide, and
-//! at the edge of a face.
+//! If contact acts only after each step, a particle falls freely within the step: it sinks into the
+//! obstacle by half the acceleration times the square of the step, however small the tolerance.
+//! Therefore, in steps that locate events, the obstacle's reaction and its friction are forces at
+//! every stage. A particle that sticks does not move. One that slides has no acceleration along the
+//! normal, and friction against its velocity. This holds for a whole step, which ends where it
+//! ceases to hold: where the obstacle would have to pull, where friction cannot hold a particle
+//! that sticks, where friction ends a slide, and at the edge of a face.
 
 use std::ops::Range;
 
@@ -20,15 +20,18 @@ use crate::network::Network;
 use crate::scene::Model;
 use crate::system::{Measure, ParticleSystem};
 
-/// Way (m) in which friction or weight ends a motion that counts as none, over the error that is
-/// tolerated. Larger, it shows; smaller, what friction has nearly stopped creeps on, in tiny steps.
+/// Distance (m) in which friction or weight stops a motion that counts as rest, over the tolerated
+/// error. If it were larger, users would see particles stop; if smaller, particles that friction
+/// has nearly stopped would creep on, in tiny steps.
 const STILL_SHARE: f64 = 1e-2;
-/// Length of the interval in which a contact ceases, as a share of the step, at which its search
-/// ends.
+/// Length of the interval around the end of a contact at which its search ends, as a share of the
+/// step.
 const MIN_INTERVAL: f64 = 1e-13;
-/// Largest speed at the end of a slide, over that at the beginning of the step.
+/// Largest speed at which a slide that turns back counts as stopped, over the speed at the
+/// beginning of the step.
 const MAX_TURNING_SPEED: f64 = 0.01;
-/// Excess of a force over what a contact can hold, as a share of it, that rounding cannot cause.
+/// Amount by which rounding may make a force exceed the force that a contact can hold, as a share
+/// of it.
 const ROUNDING: f64 = 1e-10;
 
 /// Particle that touches an obstacle during a step.
@@ -49,7 +52,7 @@ struct Slide {
     along: Vector3<f64>,
     /// Its speed (m/s).
     speed: f64,
-    /// Speed backwards (m/s) at which it has turned.
+    /// Backward speed (m/s) at which the slide counts as turned.
     slack: f64,
 }
 
@@ -75,7 +78,7 @@ pub(super) struct Rests {
 /// Scratch of the search for where a contact ceases.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    /// State that is tried.
+    /// Trial state.
     state: Vec<f64>,
     /// Its derivative without reactions.
     free: Vec<f64>,
@@ -87,13 +90,13 @@ pub(super) struct Resting<'a> {
     rests: &'a [Rest],
 }
 
-/// Whether an obstacle's reaction can be told at each stage: it is flat and does not move.
+/// Whether an obstacle's reaction is known at each stage: it is flat and does not move.
 fn is_flat(obstacle: &Obstacle) -> bool {
     obstacle.is_still() && matches!(obstacle.shape, Shape::Floor | Shape::Box { .. })
 }
 
-/// Whether any particle of a network may rest so: what holds rods, bodies or surfaces would have to
-/// be solved together with the reactions.
+/// Whether particles of a network may rest in this sense. In a network with constraints, bodies or
+/// surfaces, their forces would have to be solved together with the reactions.
 pub(crate) fn may_rest(network: &Network) -> bool {
     network.obstacles().iter().any(is_flat)
         && network.contact_layer().is_none()
@@ -101,7 +104,7 @@ pub(crate) fn may_rest(network: &Network) -> bool {
         && !network.is_constrained()
 }
 
-/// Height (m) of a place above a flat obstacle that does not move, and the normal there.
+/// Height (m) of a point above a flat obstacle that does not move, and the normal there.
 fn height(obstacle: &Obstacle, x: Vector3<f64>) -> (f64, Vector3<f64>) {
     let pose = obstacle.at(0.0);
     let seen = obstacle
@@ -137,14 +140,14 @@ impl Rests {
         Resting::of(model, &self.now)
     }
 
-    /// Begins a step in which no particle rests, as far as is known.
+    /// Begins a step without resting particles.
     pub fn clear(&mut self) {
         self.now.clear();
     }
 
-    /// Adds the particles that press on a flat obstacle in the state y at time t (s), within a
-    /// height `none` (m), and do not leave it. Velocities are set to 0 that would take them no
-    /// farther than a small share of `still` (m). Returns the number of evaluations.
+    /// Adds the particles that press on a flat obstacle and do not leave it in the state y at time
+    /// t (s), from a height of at most `none` (m). Velocities are set to 0 if the particle would
+    /// stop within a small share of `still` (m). Returns the number of evaluations.
     pub fn list(
         &mut self,
         network: &Network,
@@ -204,8 +207,7 @@ impl Rests {
         1
     }
 
-    /// Number that tells which particles rest on which obstacles, and which of them slide: 0 if
-    /// none rests.
+    /// Hash of which particles rest on which obstacles, and which of them slide: 0 if none rests.
     pub fn fingerprint(&self) -> u64 {
         let parts = self.now.iter().flat_map(|rest| {
             let slides = usize::from(rest.slide.is_some());
@@ -226,8 +228,8 @@ impl<'a> Resting<'a> {
     }
 }
 
-/// Finds where the first contact ceases, before a share of a step from t (s) of h (s), on its
-/// polynomial. Leaves the state there. Heights up to `none` (m) are none.
+/// Finds the first end of a contact before the share `before` of a step of h (s) from t (s), on the
+/// step's polynomial. Writes the state there to `state`. Heights up to `none` (m) count as zero.
 pub(super) fn first_end(
     network: &Network,
     (rests, scratch): (&[Rest], &mut Scratch),
@@ -255,7 +257,7 @@ pub(super) fn first_end(
     }
     let mut low = (0.0, margin(0.0, found));
     while low.1 > 0.0 && high.0 - low.0 > MIN_INTERVAL {
-        // The secant's step, kept away from the ends.
+        // The secant's step, at some distance from the ends.
         let secant = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
         let edge = 0.01 * (high.0 - low.0);
         let share = secant.clamp(low.0 + edge, high.0 - edge);
@@ -280,8 +282,8 @@ impl Rest {
         v - self.normal * v.dot(&self.normal)
     }
 
-    /// Margin by which the contact goes on as it is in the state y, with its derivative without
-    /// reactions, as a share of what sets it: negative where it ceases.
+    /// Margin by which the contact continues unchanged in the state y with the derivative `free`
+    /// without reactions, over the force or speed that it depends on: negative where it ceases.
     fn margin(&self, network: &Network, y: &[f64], free: &[f64], none: f64) -> f64 {
         let (n, i) = (network.particles(), self.particle);
         let obstacle = &network.obstacles()[self.obstacle];
@@ -302,7 +304,7 @@ impl Rest {
         press.min(other) / free.norm() + ROUNDING
     }
 
-    /// Ends a slide that friction has ended, and not only turned.
+    /// Stops a slide that friction has ended, rather than only turned.
     fn stop(&self, network: &Network, y: &mut [f64]) {
         let Some(Slide { along, speed, .. }) = self.slide else {
             return;
@@ -316,16 +318,16 @@ impl Rest {
         }
     }
 
-    /// Acceleration (m/s2) with the obstacle's reaction and friction, at a velocity (m/s), from
-    /// that without them.
+    /// Acceleration (m/s2) with the obstacle's reaction and friction at a velocity (m/s), from the
+    /// acceleration without them.
     fn held(&self, obstacle: &Obstacle, v: Vector3<f64>, free: Vector3<f64>) -> Vector3<f64> {
         let Some(Slide { along, .. }) = self.slide else {
             return Vector3::zeros();
         };
         let press = -free.dot(&self.normal);
         let slide = v - self.normal * v.dot(&self.normal);
-        // Past its turning point the slide goes on as if friction did not turn: the step ends
-        // there, and its polynomial is smooth.
+        // Past its turning point the slide continues as if friction did not turn: the step ends at
+        // that point, and its polynomial stays smooth.
         let direction = match slide.try_normalize(0.0) {
             Some(direction) if direction.dot(&along) < 0.0 => -direction,
             Some(direction) => direction,

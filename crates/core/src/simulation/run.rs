@@ -1,4 +1,4 @@
-//! Run of a scene: how it goes on, and what it has cost and gained.
+//! Run of a scene: how it advances, and what it has cost and gained.
 
 use super::balance::Gain;
 use super::checkpoint::Checkpoint;
@@ -6,7 +6,7 @@ use super::driver::Driver;
 use super::failure::Failure;
 use super::pins::strayed;
 use super::state::RunState;
-use super::step::{Pipeline, SLIVER};
+use super::step::{Pipeline, STEP_END_TOLERANCE};
 use super::stepper::Stepper;
 use crate::contact::{Guarded, Statistics};
 use crate::control::Control;
@@ -21,22 +21,22 @@ pub struct Simulation {
     pub(super) model: Model,
     pub(super) state: RunState,
     pub(super) driver: Driver,
-    /// The last state in shape, to go back to when a step fails.
+    /// The last sound state, to go back to when a step fails.
     good: Checkpoint,
     blow_up: Option<BlowUp>,
 }
 
 impl Simulation {
-    /// Share of a step by which its end may miss a time that is asked for: 1/60 s written as
-    /// 0.01666667 meets sixty frames a second.
-    pub const SLIVER: f64 = SLIVER;
+    /// Share of a step by which its end may miss a requested time: 1/60 s written as 0.01666667 is
+    /// accurate enough for sixty frames a second.
+    pub const STEP_END_TOLERANCE: f64 = STEP_END_TOLERANCE;
 
-    /// A run from the scene's beginning, in fixed steps or, with an adaptive method, to a
+    /// A run from the beginning of a scene, in fixed steps or, with an adaptive method, to a
     /// tolerance.
     ///
     /// # Errors
-    /// The method does not serve the scene or does not take that control; or the scene's state has
-    /// another length than its model's.
+    /// The method does not support the scene or the control; or the scene's state and its model
+    /// differ in length.
     pub fn new(scene: Scene, method: &'static Method, control: Control) -> Result<Self, Error> {
         let model = scene.model.clone();
         let stepper = Stepper::new(method, &scene, model.system(), control)?;
@@ -53,9 +53,8 @@ impl Simulation {
         })
     }
 
-    /// Goes back to the beginning, with what was torn mended. Wind and swing stay on if they are,
-    /// and pins free; surfaces go on touching, unless they cross at the beginning. The hand lets
-    /// go.
+    /// Goes back to the beginning, and mends torn springs. Wind, swing, freed pins and contact of
+    /// surfaces stay as they are, unless surfaces cross at the beginning. The hand lets go.
     pub fn reset(&mut self) {
         let (windy, touching) = (self.windy(), self.touching());
         let RunState {
@@ -78,25 +77,24 @@ impl Simulation {
         }
         self.set_wind(windy);
         self.set_swinging(swinging);
-        // Where surfaces cross, they begin as the scene has it.
+        // If surfaces cross, contact stays as in the scene.
         let _ = self.set_touching(touching);
         let watch = &mut self.driver.pipeline.watch;
         watch.begin(&self.model, &mut self.state);
     }
 
-    /// Lets fixed steps end at events, as adaptive ones do: where a prescribed motion begins or
-    /// ends, a particle touches an obstacle, its slide ends, or a spring breaks. A step goes on
-    /// from there by the rest of its length. So the order of the method is kept, at any price:
-    /// this is for references.
+    /// Makes fixed steps end at events, as adaptive ones do: where a prescribed motion begins or
+    /// ends, a particle touches an obstacle, a slide ends, or a spring breaks. The rest of the step
+    /// follows from there. This keeps the order of the method at any cost, and is meant for
+    /// reference solutions.
     pub fn locate_events(&mut self) {
-        self.driver.pipeline.locator.cuts_fixed_steps = true;
+        self.driver.pipeline.locator.splits_fixed_steps = true;
     }
 
-    /// Goes on with another method, in fixed steps or to a tolerance.
+    /// Continues with another method, in fixed steps or to a tolerance.
     ///
     /// # Errors
-    /// The method does not serve the scene or does not take that control; the run goes on as
-    /// before.
+    /// The method does not support the scene or the control; the run then continues as before.
     pub fn set_method(&mut self, method: &'static Method, control: Control) -> Result<(), Error> {
         let stepper = Stepper::new(method, &self.scene, self.model.system(), control)?;
         self.driver.change_stepper(stepper);
@@ -107,10 +105,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes on in other steps, or to another tolerance.
+    /// Continues with another step or tolerance.
     ///
     /// # Errors
-    /// The method does not take that control; the run goes on as before.
+    /// The method does not support the control; the run then continues as before.
     pub fn set_control(&mut self, control: Control) -> Result<(), Error> {
         let (Control::Step(_), Control::Step(_)) = (self.state.control, control) else {
             return self.set_method(self.state.method, control);
@@ -124,23 +122,23 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes `count` steps; one that the time shown is within is finished, and counts. When one of
-    /// them blows up, the state is again the last at the beginning of such a call that was still in
-    /// shape, and no more steps are taken until [`reset`](Self::reset).
+    /// Takes `count` steps. If the time shown is within a step, that step is finished first, and
+    /// counts. When a step blows up, the run goes back to the last sound state at the beginning of
+    /// such a call, and takes no more steps until [`reset`](Self::reset).
     ///
     /// # Errors
     /// The run blew up, now or earlier.
     pub fn take_steps(&mut self, count: u64) -> Result<(), Error> {
-        self.keep()?;
+        self.save_if_sound()?;
         let taken = self
             .driver
             .take_steps(&mut self.model, &mut self.state, count);
         taken.map_err(|failure| self.fail(failure))
     }
 
-    /// Goes on to `time` (s), if it is not past it. No step is shortened for that: where none ends
-    /// at that time, the state shown is read off the polynomial of the step that it is within, so
-    /// how often one looks changes nothing. A step that blows up is treated as by
+    /// Advances to `time` (s), if it is not past it. No step is shortened for that: if none ends at
+    /// that time, the state shown is interpolated within the step that contains it, so how often a
+    /// run is shown does not change it. A step that blows up is treated as by
     /// [`take_steps`](Self::take_steps).
     ///
     /// # Errors
@@ -151,15 +149,14 @@ impl Simulation {
                 "the end must be a finite number of seconds, not {time}"
             )));
         }
-        self.keep()?;
+        self.save_if_sound()?;
         let gone = self
             .driver
             .advance_to(&mut self.model, &mut self.state, time);
         gone.map_err(|failure| self.fail(failure))
     }
 
-    /// Looks at the energy at the end of a run: a run that is shorter than the time between two
-    /// looks may be lost too, and one that is lost since the last look.
+    /// Checks the energy at the end of a run, which may have blown up since the last check.
     ///
     /// # Errors
     /// The run blew up, now or earlier.
@@ -171,26 +168,26 @@ impl Simulation {
         concluded.map_err(|failure| self.fail(failure))
     }
 
-    /// Remembers the state if it is in shape.
+    /// Saves the state to go back to, if it is sound.
     ///
     /// # Errors
     /// The run blew up earlier.
-    fn keep(&mut self) -> Result<(), Error> {
+    fn save_if_sound(&mut self) -> Result<(), Error> {
         if let Some(blow_up) = self.blow_up {
             return Err(blow_up.into());
         }
         let Pipeline { watch, bounds, .. } = &mut self.driver.pipeline;
         watch.forgive(&self.model, &mut self.state);
-        if self.state.balance.is_sound() && bounds.hold(&self.model, &self.state.y) {
+        if self.state.balance.is_sound() && bounds.hold_closely(&self.model, &self.state.y) {
             self.good.record(&self.state, &self.model, &self.driver);
         }
         Ok(())
     }
 
-    /// Ends a run that is lost, and goes back to the last state in shape.
+    /// Ends a run that has blown up, and goes back to the last sound state.
     fn fail(&mut self, failure: Failure) -> Error {
         let (cause, time) = match failure {
-            Failure::Lost { cause, time } => (cause, time),
+            Failure::BlowUp { cause, time } => (cause, time),
             Failure::Error(error) => return error,
         };
         let mut blow_up = self.state.blow_up(cause, time);
@@ -201,7 +198,7 @@ impl Simulation {
         if let Err(error) = back {
             return error;
         }
-        // Constraints that contradict one another are lost in many ways.
+        // Constraints that contradict one another cause blow-ups of many kinds.
         let bounds = &self.driver.pipeline.bounds;
         if let Some(unmet) = bounds.contradiction(&self.model, &self.state.y, time) {
             blow_up.cause = Cause::Contradiction(unmet);
@@ -220,24 +217,24 @@ impl Simulation {
         whole
     }
 
-    /// The run as it is now, without the last step of an adaptive method: what goes on from there
-    /// begins a new one.
+    /// The run as it is now, without the last step of an adaptive method: a run that continues from
+    /// it begins a new step.
     #[must_use]
     pub fn moment(&self) -> Checkpoint {
         Checkpoint::of(&self.state, &self.model, &self.driver)
     }
 
-    /// Writes a [moment](Self::moment) over another one, whose memory is used again.
+    /// Overwrites a [moment](Self::moment) with a new one, and reuses its memory.
     pub fn record(&self, moment: &mut Checkpoint) {
         moment.record(&self.state, &self.model, &self.driver);
     }
 
-    /// Takes over everything of a checkpoint: the run goes on as the one that it was made of, to
-    /// the same bits. A run that was lost goes on too.
+    /// Restores all of a checkpoint: the run continues bit for bit as the original one, also after
+    /// a blow-up.
     ///
     /// # Errors
-    /// The checkpoint is of another scene, its method does not serve this one, or a number is not
-    /// finite. The run goes on as before then.
+    /// The checkpoint is of another scene, its method does not support this one, or a number is not
+    /// finite. The run then continues as before.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
         let dim = self.state.y.len();
         checkpoint.check(dim)?;
@@ -247,14 +244,14 @@ impl Simulation {
         self.driver.resume(stepper, &checkpoint.progress, dim)?;
         self.model = model;
         self.state.copy_from(run);
-        self.go_on();
+        self.continue_from_here();
         Ok(())
     }
 
-    /// Goes back to the state of a moment, and on from there as the run is now, also after a
-    /// blow-up: hands let go; method, control, work, wind, swing and which particles are pinned
-    /// stay. Surfaces touch if they did at that moment. Pins whose path does not lead there stay
-    /// where they are in that state, or swing from there.
+    /// Goes back to the state of a moment, also after a blow-up, and continues with the current
+    /// settings: method, control, work, wind, swing and the choice of pinned particles stay, and
+    /// hands let go. Surfaces touch if they did at that moment. Pins whose paths do not pass
+    /// through that state stay where they are in it, or swing from there.
     ///
     /// # Errors
     /// The moment is of another scene, or a number is not finite.
@@ -264,7 +261,7 @@ impl Simulation {
         self.release_obstacle();
         let (model, state) = (&mut self.model, &mut self.state);
         moment.put_back(&self.scene, model, state, &mut self.driver)?;
-        self.go_on();
+        self.continue_from_here();
         let (y, radius) = (&self.state.y, self.extent().1);
         let strayed = |network| strayed(network, y, self.time(), radius);
         for i in self.model.network().map_or(vec![], strayed) {
@@ -273,8 +270,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes on from a state in shape, also after a blow-up.
-    fn go_on(&mut self) {
+    /// Continues from a sound state, also after a blow-up.
+    fn continue_from_here(&mut self) {
         self.blow_up = None;
         self.good.record(&self.state, &self.model, &self.driver);
     }
@@ -328,28 +325,28 @@ impl Simulation {
         self.driver.pipeline.phases.contact.last()
     }
 
-    /// What the guard of surfaces did since the beginning.
+    /// Actions of the collision safeguard since the beginning.
     #[must_use]
     pub fn guarded(&self) -> Guarded {
         self.state.guarded
     }
 
-    /// The blow-up by which the run was lost, if it was.
+    /// The blow-up that ended the run, if there was one.
     #[must_use]
     pub fn blow_up(&self) -> Option<BlowUp> {
         self.blow_up
     }
 
-    /// Energy that the method put into the run, if it is more than the scene has of its own: the
-    /// step is too long.
+    /// Energy that the method added to the run, if it is notable against the energy of the scene:
+    /// then the step is too long.
     #[must_use]
     pub fn gained(&self) -> Option<Gain> {
         self.driver.balance(&self.model, &self.state).notable_gain()
     }
 
-    /// Energy that the run has gained or, below 0, lost since the beginning, over the kinetic,
-    /// elastic and gravitational energy that its motion has had. `None` if the forces do not keep
-    /// the energy, if contact, tears or hands may have changed it, or if nothing moves.
+    /// Energy gained or, below 0, lost since the beginning, over the kinetic, elastic and
+    /// gravitational energy of the motion. `None` if forces do not conserve energy, if contact,
+    /// tears or hands may have changed it, or if nothing moves.
     #[must_use]
     pub fn energy_change(&self) -> Option<f64> {
         let conserves = |network: &&Network| is_conservative(network);
@@ -357,8 +354,7 @@ impl Simulation {
         self.driver.balance(&self.model, &self.state).change()
     }
 
-    /// The constraint that was farthest from being met at the end of a step, with its largest
-    /// error.
+    /// The constraint with the largest error at the end of any step, and that error.
     #[must_use]
     pub fn worst_constraint(&self) -> Option<Unmet> {
         let network = self.model.network()?;

@@ -1,5 +1,5 @@
-//! State of a run: all that changes while it goes on, beside the model and what an adaptive method
-//! remembers.
+//! State of a run: all data that changes while it runs, except the model and the memory of an
+//! adaptive method.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,8 +21,8 @@ pub struct RunState {
     pub control: Control,
     /// Time at which the steps that are counted in `taken` began (s).
     pub since: f64,
-    /// Steps of the same size since then. The last step ends at `since` + `taken` x step, which
-    /// gathers no rounding errors; under a tolerance, it ends at `since`.
+    /// Number of steps of the same size since then. The last step ends at `since` + `taken` x step,
+    /// which accumulates no rounding errors; under a tolerance, it ends at `since`.
     pub taken: u64,
     /// Time shown (s), if it is within the last step.
     pub shown: Option<f64>,
@@ -30,13 +30,13 @@ pub struct RunState {
     pub steps: u64,
     /// Cost of these steps.
     pub work: Work,
-    /// What the collision safeguard of surfaces did in these steps.
+    /// Actions of the collision safeguard in these steps.
     pub guarded: Guarded,
     /// Balance of energy.
     pub balance: Balance,
     /// The state y: of a network [x | v], in m and m/s.
     pub y: Vec<f64>,
-    /// Whether the scene's pins hold nothing.
+    /// Whether the scene's pins are freed.
     pub unpinned: bool,
     /// The particle in the hand.
     pub grabbed: Option<Grabbed>,
@@ -44,9 +44,10 @@ pub struct RunState {
     pub grabbed_obstacle: Option<usize>,
     /// Whether the pins swing.
     pub swinging: bool,
-    /// Phase of the swing (rad): while it swings, sin(rate t + phase); while it stands, sin(phase).
+    /// Phase of the swing (rad): that of sin(rate t + phase) while the pins swing, of sin(phase)
+    /// while they stand.
     pub swing_phase: f64,
-    /// Number that tells which particles rested on which obstacles in the last step.
+    /// Hash of which particles rested on which obstacles in the last step.
     pub resting: u64,
 }
 
@@ -102,7 +103,7 @@ impl RunState {
         }
     }
 
-    /// Becomes a copy of another state, whose y goes to the memory of this one's.
+    /// Becomes a copy of another state, and reuses the memory of y.
     pub(super) fn copy_from(&mut self, other: &Self) {
         let mut y = std::mem::take(&mut self.y);
         y.clone_from(&other.y);
@@ -142,16 +143,16 @@ impl RunState {
         self.since + self.taken as f64 * self.control.step().unwrap_or(0.0)
     }
 
-    /// Sets the time (s), from which steps are counted.
+    /// Sets the time (s), from which steps are then counted.
     pub(super) fn set_time(&mut self, time: f64) {
         (self.since, self.taken, self.shown) = (time, 0, None);
     }
 
-    /// Goes back to what the run was at another time, by its own method, in its own hands.
+    /// Goes back to the state of another time, but keeps method, control, cost and hands.
     pub(super) fn go_back(&mut self, then: &Self) {
         self.y.copy_from_slice(&then.y);
         (self.balance, self.steps) = (then.balance, then.steps);
-        // Another step is no multiple of the time that was counted then.
+        // If the control has changed, the time is no multiple of the step.
         if then.control == self.control {
             (self.since, self.taken) = (then.since, then.taken);
             self.shown = then.shown;

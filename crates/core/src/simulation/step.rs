@@ -3,8 +3,8 @@
 //! It has five phases: *integrate* (the method takes the state from t to t + h), *shorten* (springs
 //! that are too long), *contact* (particles leave obstacles, surfaces do not pass through one
 //! another), *watch* (blow-ups, and the balance of energy) and *tear* (springs that are stretched
-//! too far). Fixed and adaptive steps share them. They differ in two questions: whether a step ends
-//! at the first event within it, and whether it is taken again, shorter (see
+//! too far). Fixed and adaptive steps share them. They differ in two respects: whether a step ends
+//! at the first event within it, and whether it is taken again with a shorter length (see
 //! [`retry`](super::retry)).
 
 use super::bounds::Bounds;
@@ -24,14 +24,14 @@ use crate::error::{Cause, Error};
 use crate::scene::{Model, Scene, StepLimits};
 use crate::system::ParticleSystem;
 
-/// Share of a step by which its end may miss a time that is asked for: 1/60 s written as 0.01666667
-/// meets sixty frames a second.
-pub(super) const SLIVER: f64 = 1e-6;
+/// Share of a step by which its end may miss a requested time: 1/60 s written as 0.01666667 is
+/// accurate enough for sixty frames a second.
+pub(super) const STEP_END_TOLERANCE: f64 = 1e-6;
 
-/// Price of a sweep over the springs that a limit of strain applies to, in evaluations.
+/// Cost of a sweep over the springs with a limit of strain, in evaluations.
 const SWEEP_PRICE: f64 = 2.0;
 
-/// Price of a plane between two surfaces, in evaluations of one particle on springs.
+/// Cost of a separating plane between two surfaces, in evaluations of one particle on springs.
 const PLANE_PRICE: f64 = 7.0;
 
 /// Plan of a step.
@@ -45,13 +45,13 @@ struct Plan {
     locates: bool,
 }
 
-/// Reason for which an attempt at a step has failed.
+/// Reason why an attempt at a step failed.
 enum Setback {
     /// It was too long: that share of its length h (s) is tried next.
     Again { h: f64, share: f64 },
-    /// The run is lost.
-    Lost(Cause),
-    /// An error that is not of the run.
+    /// The run has blown up.
+    BlowUp(Cause),
+    /// Error that is no blow-up.
     Error(Error),
 }
 
@@ -79,11 +79,10 @@ impl Pipeline {
         }
     }
 
-    /// Takes a step from the end of the last one: in parts, where a fixed step that locates events
-    /// meets some.
+    /// Takes a step from the end of the last one: in parts, if events split it.
     ///
     /// # Errors
-    /// The run is lost at the end of the step, or the step failed.
+    /// The run blew up in the step, or the step failed.
     pub fn step(&mut self, model: &mut Model, state: &mut RunState) -> Result<(), Failure> {
         let mut begin = state.end();
         let whole = state.control.step();
@@ -98,11 +97,11 @@ impl Pipeline {
                 Ok((part, settled)) => (self.end_part(model, state, part.end, &settled), part),
             };
             let is_last =
-                cause.is_some() || !self.locator.cuts(&self.stepper) || target == Some(part.end);
+                cause.is_some() || !self.locator.splits(&self.stepper) || target == Some(part.end);
             state.steps += u64::from(is_last);
             if let Some(cause) = cause {
                 let time = part.end;
-                return Err(Failure::Lost { cause, time });
+                return Err(Failure::BlowUp { cause, time });
             }
             if whole.is_none() {
                 state.set_time(part.end);
@@ -117,9 +116,9 @@ impl Pipeline {
         }
     }
 
-    /// Takes a step from time t (s), and settles its end; again and shorter, if an adaptive method
-    /// has to. One that locates events ends at the first of them; a fixed one ends at `target` at
-    /// the latest. Returns the step, or the cause of a blow-up.
+    /// Takes a step from time t (s), and settles its end; an adaptive method may have to take it
+    /// again with a shorter length. If events are located, the step ends at the first one, and a
+    /// fixed step ends at `target` (s) at the latest. Returns the step, or the cause of a blow-up.
     fn integrate_and_settle(
         &mut self,
         model: &Model,
@@ -146,7 +145,7 @@ impl Pipeline {
             match self.attempt(model, state, plan) {
                 Ok(taken) => return Ok(Ok(taken)),
                 Err(Setback::Again { h, share }) => self.take_again(state, h, share),
-                Err(Setback::Lost(cause)) => return Ok(Err(cause)),
+                Err(Setback::BlowUp(cause)) => return Ok(Err(cause)),
                 Err(Setback::Error(error)) => return Err(error),
             }
         }
@@ -180,11 +179,14 @@ impl Pipeline {
             t: part.end,
             y,
         };
-        if let Some(cause) = self.watch.look_before_guard(model, &state.balance, end) {
-            return Err(Setback::Lost(cause));
+        if let Some(cause) = self
+            .watch
+            .check_before_safeguard(model, &state.balance, end)
+        {
+            return Err(Setback::BlowUp(cause));
         }
         let settled = self.phases.settle(model, (t, h), &mut state.y);
-        let settled = settled.map_err(Setback::Lost)?;
+        let settled = settled.map_err(Setback::BlowUp)?;
         let planes = PLANE_PRICE * settled.met.guarded.planes as f64 / model.work();
         state.work.algebra += SWEEP_PRICE * settled.strained.sweeps as f64 + planes;
         if let Stepper::Adaptive(adaptive) = &mut self.stepper {
@@ -192,11 +194,11 @@ impl Pipeline {
                 return Err(Setback::Again { h, share });
             }
             limit_next(adaptive, &settled, bulge, h, depths);
-            if part.is_cut {
+            if part.ends_at_event {
                 adaptive.restart();
             }
         }
-        if part.is_cut
+        if part.ends_at_event
             && let Some(network) = model.network()
         {
             network.hold(part.end, &mut state.y);
@@ -205,7 +207,7 @@ impl Pipeline {
         Ok((part, settled))
     }
 
-    /// Takes the state to the end of a step by the method.
+    /// Advances the state by one step of the method.
     fn integrate(
         &mut self,
         model: &Model,
@@ -215,8 +217,10 @@ impl Pipeline {
         let resting = self.locator.view(model);
         let system = resting.as_ref().map_or(model.system(), |view| view);
         let control = match state.control {
-            // What rounding leaves of a step is no part of its own.
-            Control::Step(h) if reach.longest <= h * (1.0 + SLIVER) => Control::Step(reach.longest),
+            // If rounding would leave a tiny part of the step, that part is added to this one.
+            Control::Step(h) if reach.longest <= h * (1.0 + STEP_END_TOLERANCE) => {
+                Control::Step(reach.longest)
+            }
             control => control,
         };
         let y = &mut state.y;
@@ -227,13 +231,13 @@ impl Pipeline {
             }
             Err(error) => {
                 let cause = cause_of(error, model.particles());
-                Err(cause.map_or_else(Setback::Error, Setback::Lost))
+                Err(cause.map_or_else(Setback::Error, Setback::BlowUp))
             }
         }
     }
 
-    /// Ends a step at its first event, if there is one: particles that touch an obstacle there
-    /// strike it.
+    /// Ends a step at its first event, if there is one, and applies the impacts of particles that
+    /// touch an obstacle there.
     fn end_at_event(
         &mut self,
         model: &Model,
@@ -266,7 +270,7 @@ impl Pipeline {
         Ok(part)
     }
 
-    /// Goes back to the beginning of a step of h (s), of which that share is taken next.
+    /// Goes back to the beginning of a step of h (s), of which that share is tried next.
     fn take_again(&mut self, state: &mut RunState, h: f64, share: f64) {
         state.y.copy_from_slice(self.phases.y0());
         if let Stepper::Adaptive(adaptive) = &mut self.stepper {
@@ -276,7 +280,8 @@ impl Pipeline {
         state.work.rejections += 1;
     }
 
-    /// Notes the end of a part of a step at time t (s). Returns why the run is lost, if it is.
+    /// Finishes a part of a step that ends at time t (s). Returns the cause of a blow-up, if there
+    /// is one.
     fn end_part(
         &mut self,
         model: &Model,
@@ -284,16 +289,16 @@ impl Pipeline {
         t: f64,
         settled: &Settled,
     ) -> Option<Cause> {
-        let lost = self.bounds.lost(model, &state.y);
+        let lost = self.bounds.violation(model, &state.y);
         let RunState { y, balance, .. } = state;
         let order = state.method.order;
         let end = End { order, t, y };
         self.watch.end_step(model, balance, end, &settled.met, lost)
     }
 
-    /// Breaks what is stretched too far at the end of a step, or was located to be there: that
-    /// changes the energy. The run is there: a state that is shown within the step still has what
-    /// breaks at its end.
+    /// Breaks springs that are stretched too far at the end of a step, or were located to be there,
+    /// and accounts for the change of energy. Before the run has arrived at that end, a state shown
+    /// within the step still has these springs.
     pub fn tear(&mut self, model: &mut Model, state: &mut RunState) {
         let share = if self.locator.serves(&self.stepper) {
             NEGLIGIBLE_SHARE

@@ -18,7 +18,7 @@ impl Stepper {
     /// Stepper of a method for a scene, whose system is as it is now.
     ///
     /// # Errors
-    /// The method does not serve the system, or does not take that control.
+    /// The method does not support the system or the control.
     pub fn new(
         method: &Method,
         scene: &Scene,
@@ -30,7 +30,7 @@ impl Stepper {
             Control::Step(_) => None,
             Control::Tolerance(relative) => method.adaptive(system, scene.tolerance(relative)?),
         };
-        // The integrator is made in any case: it checks that the method serves the system.
+        // The integrator is made in any case: it checks that the method supports the system.
         let integrator = method.integrator(system)?;
         Ok(match adaptive {
             None => Self::Fixed(integrator),
@@ -51,8 +51,8 @@ impl Stepper {
         }
     }
 
-    /// Takes y from t (s) to the end of a step: of the fixed length, or of the method's choice and
-    /// at most `longest` (s).
+    /// Advances y from t (s) by one step: of the fixed length, or of the length that the method
+    /// chooses, at most `longest` (s).
     ///
     /// # Errors
     /// The step failed.
@@ -75,8 +75,8 @@ impl Stepper {
     }
 
     /// Writes the state at `since` (s) after the beginning of the last step, at y0 at time t (s),
-    /// to `out`: off an adaptive method's polynomial, or by a shorter fixed step, and `out` is not
-    /// a number where that fails. Returns the work.
+    /// to `out`: by an adaptive method's polynomial, or by a shorter fixed step. Where that fails,
+    /// `out` is NaN. Returns the work.
     pub fn state_at(
         &mut self,
         system: &dyn ParticleSystem,
@@ -97,7 +97,7 @@ impl Stepper {
         }
     }
 
-    /// Forgets the last step: the state or the system is no longer the one that it ended with.
+    /// Forgets the last step, because the state or the system has changed since.
     pub fn forget(&mut self) {
         if let Self::Adaptive(adaptive) = self {
             adaptive.restart();
@@ -107,7 +107,7 @@ impl Stepper {
     /// Recreates the integrator for a system that has changed: it sizes its scratch and its cost
     /// model by the system.
     pub fn refit(&mut self, method: &Method, system: &dyn ParticleSystem) {
-        // The method served this system before.
+        // The method supported this system before.
         if let Self::Fixed(integrator) = self
             && let Ok(other) = method.integrator(system)
         {
@@ -123,7 +123,7 @@ impl Stepper {
         }
     }
 
-    /// Goes on with that memory.
+    /// Continues with a saved memory.
     ///
     /// # Errors
     /// It is of another method.

@@ -11,8 +11,8 @@ pub(super) fn touches_itself(model: &Model) -> bool {
     touch.is_some_and(|touch| touch.bodies)
 }
 
-/// Lets the surfaces of a scene touch one another, themselves and obstacles, or, without `on`, only
-/// what they touch in any case.
+/// Lets the surfaces of a scene touch one another, themselves and obstacles; without `on`, only
+/// those contacts stay that the scene has in any case.
 pub(super) fn let_touch(network: &mut Network, scene: &Scene, on: bool) -> Result<(), Error> {
     let own = scene.model.network().is_some_and(|n| n.touch().is_some());
     let touch = scene.touch.as_deref().filter(|_| on || own);
@@ -25,7 +25,7 @@ pub(super) fn let_touch(network: &mut Network, scene: &Scene, on: bool) -> Resul
 /// Checks that the surfaces of a scene can begin to touch in a state of its network.
 ///
 /// # Errors
-/// Surfaces cross, and the error names the first pair; or the method does not serve contact.
+/// Surfaces cross, and the error names the first pair; or the method does not support contact.
 pub(super) fn check_touch(network: &Network, scene: &Scene, state: &RunState) -> Result<(), Error> {
     let mut touching = network.clone();
     let_touch(&mut touching, scene, true)?;

@@ -1,4 +1,4 @@
-//! Watch over a run: why it is lost, at the ends of its steps and where something changes it.
+//! Watch over a run: finds blow-ups at the ends of steps and where something changes the run.
 
 use super::balance::Balance;
 use super::power::{End, Power, energy_of, fastest};
@@ -8,7 +8,7 @@ use crate::error::Cause;
 use crate::network::energy_of_errors;
 use crate::scene::{Model, StepLimits};
 
-/// Error of a constraint over its length from which on a run is lost.
+/// Error of a constraint over its length at which a run counts as blown up.
 const MAX_CONSTRAINT_ERROR: f64 = 0.1;
 
 /// Watch over the energy and the constraints of a run.
@@ -39,11 +39,11 @@ impl Watch {
         }
     }
 
-    /// Begins with a run at the beginning of its steps.
+    /// Starts to watch a run at the beginning of its steps.
     pub fn begin(&mut self, model: &Model, state: &mut RunState) {
         if let Some(network) = model.network() {
             let (t, y) = (state.since, &state.y[..]);
-            // A step allocates nothing.
+            // Allocated here, so that steps allocate nothing.
             *self = Self {
                 scratch: Vec::with_capacity(y.len() / 2),
                 ..Self::new(self.radius, self.limits)
@@ -54,7 +54,7 @@ impl Watch {
         self.tolerate(model, state);
     }
 
-    /// Forgets what a run gained, which goes on by other steps from the end of one.
+    /// Forgets the gains of a run that continues with another step or method.
     pub fn start_over(&mut self, model: &Model, state: &mut RunState) {
         state.balance.start_over();
         self.disturbed = true;
@@ -62,8 +62,8 @@ impl Watch {
         self.tolerate(model, state);
     }
 
-    /// Takes what the errors that a tolerance allows can gain as the scene's own energy: where
-    /// nothing moves, an adaptive method makes steps so long that it just meets its tolerance.
+    /// Counts the energy of errors within the tolerance as the scene's own: at rest, an adaptive
+    /// method takes steps so long that it only just meets its tolerance.
     fn tolerate(&self, model: &Model, state: &mut RunState) {
         if let (Some(relative), Some(network)) = (state.control.tolerance(), model.network()) {
             let error = self.limits.absolute.unwrap_or(relative * self.radius);
@@ -72,14 +72,14 @@ impl Watch {
         }
     }
 
-    /// Goes on from another state.
+    /// Starts to watch the run from another state.
     pub fn resume(&mut self) {
         self.disturbed = false;
         self.power.forget();
     }
 
-    /// Looks at a run at time t (s), where something is about to change it, on the way or at the
-    /// end of a step that ends at `end` (s).
+    /// Checks a run at time t (s), before something changes it, within or at the end of a step that
+    /// ends at `end` (s).
     pub fn disturb(&mut self, model: &Model, state: &mut RunState, t: f64, end: f64) {
         self.power.forget();
         let Some(network) = model.network().filter(|_| !self.disturbed) else {
@@ -93,11 +93,11 @@ impl Watch {
         }
         state
             .balance
-            .look(network, (t, &state.y), &mut self.scratch);
+            .check(network, (t, &state.y), &mut self.scratch);
         state.balance.leave_open();
     }
 
-    /// Takes what was changed as no gain.
+    /// Accounts for what changed the run since the last check: it counts as no gain.
     pub fn forgive(&mut self, model: &Model, state: &mut RunState) {
         if let Some(network) = model.network()
             && std::mem::take(&mut self.disturbed)
@@ -107,7 +107,7 @@ impl Watch {
         }
     }
 
-    /// Gets ready for a step from y at time t (s).
+    /// Prepares for a step from y at time t (s).
     pub fn begin_step(&mut self, model: &Model, t: f64, y: &[f64]) {
         if let Some(network) = model.network() {
             self.power.begin(network, t, y);
@@ -115,15 +115,20 @@ impl Watch {
         self.last = (t, 0.0);
     }
 
-    /// Forgets what works on the scene: springs have torn.
+    /// Forgets the forces that work on the scene, because springs have torn.
     pub fn forget_power(&mut self) {
         self.power.forget();
     }
 
-    /// Why a run is lost whose particles alone move with more energy than it may gain, where
-    /// surfaces have not been guarded yet: what flies through a whole scene in a step meets all of
-    /// it, and costs thousands of steps.
-    pub fn look_before_guard(&self, model: &Model, balance: &Balance, end: End) -> Option<Cause> {
+    /// The cause of a blow-up, if the particles move with more kinetic energy than a run may gain,
+    /// before the collision safeguard acts: a particle that flies through the whole scene in one
+    /// step meets all of it, which would cost as much as thousands of steps.
+    pub fn check_before_safeguard(
+        &self,
+        model: &Model,
+        balance: &Balance,
+        end: End,
+    ) -> Option<Cause> {
         let network = model.network()?;
         let mut balance = *balance;
         if network.contact_layer().is_none()
@@ -133,12 +138,12 @@ impl Watch {
             return None;
         }
         balance.add(self.power.clone().work(network, end));
-        balance.look(network, (end.t, end.y), &mut vec![])
+        balance.check(network, (end.t, end.y), &mut vec![])
     }
 
-    /// Notes the end of a step in which obstacles were met, and after which a particle seems lost.
-    /// Returns why the run is lost: what is far away because it fell or was thrown there has gained
-    /// nothing, and is not.
+    /// Records the end of a step, with its contacts, and what `Bounds` has found. Returns the cause
+    /// of a blow-up, if there is one: a particle that is far away because it fell or was thrown has
+    /// gained no energy, and is none.
     pub fn end_step(
         &mut self,
         model: &Model,
@@ -158,7 +163,7 @@ impl Watch {
         let mut work = self.power.work(network, end);
         let impulse = met.impulse.max(met.guarded.impulse);
         if impulse > 0.0 {
-            // Most of the work that obstacles did.
+            // Upper bound of the work of obstacles.
             let speed = |obstacle: &Obstacle| fastest(obstacle, t, self.radius);
             let speeds = network.obstacles().iter().map(speed);
             work += impulse * speeds.fold(0.0, f64::max);
@@ -171,7 +176,7 @@ impl Watch {
             balance.note(unmet);
         }
         let gained = if balance.is_due(t) || away {
-            balance.look(network, (t, y), &mut self.scratch)
+            balance.check(network, (t, y), &mut self.scratch)
         } else {
             None
         };
@@ -182,17 +187,17 @@ impl Watch {
         broken.or(lost).or(gained)
     }
 
-    /// Balance of a run at the end of its last step, which is at time t (s) at y, and why the run
-    /// is lost, if it is.
+    /// Balance of a run at the end of its last step, at y at time t (s), and the cause of a
+    /// blow-up, if there is one.
     pub fn balance_at(
         &self,
         model: &Model,
         mut balance: Balance,
         (t, y): (f64, &[f64]),
     ) -> (Balance, Option<Cause>) {
-        // What was changed since the last look is no gain.
+        // Changes by hands since the last check are no gain.
         let network = model.network().filter(|_| !self.disturbed);
-        let lost = network.and_then(|network| balance.look(network, (t, y), &mut vec![]));
+        let lost = network.and_then(|network| balance.check(network, (t, y), &mut vec![]));
         (balance, lost)
     }
 }

@@ -1,11 +1,11 @@
-//! The step that a time shown is within: states at its ends, and a polynomial between them.
+//! The step that contains the time shown: states at its ends, and a polynomial between them.
 //!
-//! Of a fixed step, positions are the polynomial of degree 5 through the positions, velocities and
+//! In a fixed step, positions are the polynomial of degree 5 through the positions, velocities and
 //! accelerations at both ends, and velocities are its derivative (Hermite interpolation: Hairer,
-//! Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.6); its error falls as
-//! h^6. Where something was hit, or the step is long against the fastest motion, the polynomial
-//! swings far out: its acceleration in the middle of the step is not that of the system there, and
-//! a straight line takes its place.
+//! Norsett, Wanner, *Solving Ordinary Differential Equations I*, 1993, II.6); its error is of order
+//! h^6. After an impact, or in a step that is long compared with the fastest motion, the polynomial
+//! oscillates: its acceleration in the middle of the step differs from that of the system, and a
+//! straight line replaces it.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -13,34 +13,35 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::system::ParticleSystem;
 
-/// Difference between the acceleration of the polynomial and that of the system in the middle of
-/// the step, over the largest acceleration at its ends, above which a straight line is taken.
+/// Largest difference between the accelerations of the polynomial and of the system in the middle
+/// of the step, over the largest acceleration at its ends; above it, a straight line replaces the
+/// polynomial.
 const MAX_UNEXPLAINED: f64 = 0.375;
 
-/// Number of times that the middle of a step is looked at, at most: what leaves its polynomial
-/// changes the forces on others.
+/// Largest number of times that the middle of a step is checked: each straight line changes the
+/// forces on other particles.
 const MAX_ROUNDS: usize = 4;
 
-/// Step that a time shown is within.
+/// Step that contains the time shown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Span {
     /// Times of its beginning and its end (s).
     pub times: [f64; 2],
-    /// States at its beginning, which an adaptive method remembers by itself, and at its end.
+    /// States at its beginning, which only a fixed step needs, and at its end.
     pub ends: [Vec<f64>; 2],
 }
 
-/// Step that the time shown is within, if it is within one.
+/// Step that contains the time shown, if one does.
 #[derive(Default)]
 pub(super) struct Within {
     /// Times of its beginning and its end (s).
     times: Option<[f64; 2]>,
     /// States at its beginning and its end.
     ends: [Vec<f64>; 2],
-    /// Rates of change there, once a state between was shown.
+    /// Rates of change there; empty until a state between them is shown.
     rates: [Vec<f64>; 2],
-    /// Whether each particle, and then each other number, moves on its polynomial; empty until a
-    /// state between is shown.
+    /// Whether each particle, and then each other number, follows its polynomial; empty until a
+    /// state between the ends is shown.
     is_smooth: Vec<bool>,
     /// State and rates of change in the middle.
     middle: [Vec<f64>; 2],
@@ -67,7 +68,7 @@ impl Within {
         &self.ends[0]
     }
 
-    /// Remembers the state at the beginning of a step that a time shown will be within.
+    /// Remembers the state at the beginning of a step that will contain the time shown.
     pub fn begin(&mut self, y0: &[f64]) {
         self.ends[0].clear();
         self.ends[0].extend_from_slice(y0);
@@ -81,13 +82,13 @@ impl Within {
         self.is_smooth.clear();
     }
 
-    /// State at the end of the step, which is left.
+    /// Leaves the step, and returns the state at its end.
     pub fn leave(&mut self) -> Option<&mut Vec<f64>> {
         self.times.take().map(|_| &mut self.ends[1])
     }
 
-    /// Writes the state at a time (s) within a fixed step to `out`: that of n particles first,
-    /// which have positions and velocities, then other numbers.
+    /// Writes the state at a time (s) within a fixed step to `out`: first positions and velocities
+    /// of n particles, then other numbers.
     pub fn interpolate(
         &mut self,
         (system, n): (&dyn ParticleSystem, usize),
@@ -102,7 +103,7 @@ impl Within {
         system.hold(time, out);
     }
 
-    /// Finds the rates of change at both ends, and what moves on its polynomial.
+    /// Finds the rates of change at both ends, and which numbers follow their polynomials.
     fn judge(&mut self, system: &dyn ParticleSystem, n: usize, [t0, t1]: [f64; 2]) {
         let ends = self.ends.iter().zip([t0, t1]);
         for ((y, t), rates) in ends.zip(&mut self.rates) {
@@ -137,13 +138,13 @@ impl Within {
         self.middle = [y, f];
     }
 
-    /// Whether the polynomials of some numbers have the rates of change f in the middle of a step
-    /// of h (s).
+    /// Whether the polynomials of these numbers have about the rates of change f in the middle of a
+    /// step of h (s).
     fn is_explained(&self, numbers: impl Iterator<Item = usize>, f: &[f64], h: f64) -> bool {
         let ([y0, y1], [f0, f1]) = (&self.ends, &self.rates);
         let [mut missed, mut first, mut last] = [0.0; 3];
         for k in numbers {
-            // Of both polynomials.
+            // The same for the polynomials of degree 5 and 3.
             let middle = 1.5 * (y1[k] - y0[k]) / h - 0.25 * (f0[k] + f1[k]);
             missed += (f[k] - middle).powi(2);
             first += f0[k].powi(2);
@@ -198,10 +199,10 @@ impl Within {
         })
     }
 
-    /// That step again, of a system of that dimension.
+    /// The step of saved progress, in a system of that dimension.
     ///
     /// # Errors
-    /// It is of another system, or its times are none of a step.
+    /// It is of another system, or its times are not those of a step.
     pub fn of(span: Option<&Span>, dim: usize) -> Result<Self, Error> {
         let mut within = Self::default();
         let Some(Span { times, ends }) = span else {
@@ -227,7 +228,7 @@ impl Within {
     }
 }
 
-/// Value at the fraction theta of a step by the polynomial of degree 3, if it is smooth, or on a
+/// Value at the fraction theta of a step: by the polynomial of degree 3 if it is smooth, else on a
 /// straight line.
 fn between([y0, y1]: [f64; 2], [s0, s1]: [f64; 2], theta: f64, is_smooth: bool) -> f64 {
     let d = y1 - y0;

@@ -4,26 +4,25 @@ use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 use crate::random::SplitMix;
 
-/// Most iterations of the QR algorithm for an eigenvalue; two or three are usual.
-pub(super) const ITERATIONS: usize = 20;
-/// Precisions to which that decides what is zero: rounding alone, and, where that is never reached,
-/// what central differences leave of it.
+/// Largest number of iterations of the QR algorithm per eigenvalue; two or three are usual.
+pub(super) const MAX_ITERATIONS: usize = 20;
+/// Relative precisions at which the algorithm takes an entry for zero: that of rounding, and, if
+/// that fails, the error of central differences.
 pub(super) const PRECISIONS: [f64; 2] = [f64::EPSILON, 1e-8];
 
-/// Eigenvalues of a matrix; none where the QR algorithm does not find them in a limited number of
+/// Eigenvalues of a matrix; none if the QR algorithm does not find them in a limited number of
 /// iterations.
 ///
-/// A rotation of the axes into one another is a fixed point of the algorithm: what a random
-/// reflection makes of the matrix is none, and has the same eigenvalues. Where many eigenvalues are
-/// zero, rounding keeps entries from becoming small beside their neighbours: larger ones count as
-/// zero then.
+/// A permutation of the axes is a fixed point of the algorithm. Conjugation by a random reflection
+/// makes it none, and keeps the eigenvalues. If many eigenvalues are zero, rounding keeps entries
+/// from becoming small compared with their neighbours: then larger ones count as zero.
 pub(super) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let n = matrix.nrows();
     let mut random = SplitMix(1);
     let u = DVector::from_fn(n, |_, _| random.between(-1.0, 1.0)).normalize();
     let reflection = DMatrix::identity(n, n) - 2.0 * &u * u.transpose();
     let reflected = || &reflection * matrix * &reflection;
-    let schur = |matrix, precision| Schur::try_new(matrix, precision, ITERATIONS * n);
+    let schur = |matrix, precision| Schur::try_new(matrix, precision, MAX_ITERATIONS * n);
     schur(matrix.clone(), PRECISIONS[0])
         .or_else(|| schur(reflected(), PRECISIONS[1]))
         .map(|schur| schur.complex_eigenvalues().iter().copied().collect())
@@ -41,7 +40,7 @@ mod tests {
         all
     }
 
-    /// Which takes each axis to the next one: steps of the QR algorithm leave it as it is.
+    /// The matrix takes each axis to the next one: steps of the QR algorithm leave it unchanged.
     #[test]
     fn a_rotation_of_axes_has_the_roots_of_one() {
         let n = 5;

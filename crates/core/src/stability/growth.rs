@@ -15,15 +15,15 @@ impl Growth {
     /// Growth of `mode` by `method`.
     ///
     /// # Errors
-    /// The method does not serve damped springs, which damp the mode.
+    /// The method does not support damped springs, which damp the mode.
     pub fn new(method: &Method, mode: Mode) -> Result<Self, Error> {
         let system = Tied(mode);
         let integrator = method.integrator(&system)?;
         Ok(Self { system, integrator })
     }
 
-    /// Matrix of a step of h (s) on x times the frequency and on v: a, b, c, d row by row. `None`
-    /// where the step fails.
+    /// Matrix of a step of h (s) on x times the frequency and on v: a, b, c, d, row by row. `None`
+    /// if the step fails.
     fn matrix(&mut self, h: f64) -> Option<[f64; 4]> {
         let mut y = [0.0; 18];
         // Particle 0 starts with x = 1, particle 1 with v = `unit`: v is scaled by the frequency,
@@ -35,8 +35,8 @@ impl Growth {
         (stepped.is_ok() && matrix.iter().all(|m| m.is_finite())).then_some(matrix)
     }
 
-    /// Spectral radius of the matrix of a step of h (s), for a Runge-Kutta method the larger |R(h
-    /// l)| of both eigenvalues l. Infinite where the step fails.
+    /// Spectral radius of the matrix of a step of h (s); for a Runge-Kutta method, the larger |R(h
+    /// l)| of both eigenvalues l. Infinite if the step fails.
     pub fn of_step(&mut self, h: f64) -> f64 {
         let Some([a, b, c, d]) = self.matrix(h) else {
             return f64::INFINITY;
@@ -55,14 +55,14 @@ impl Growth {
         }
     }
 
-    /// Largest energy over the least that a mode has in steps of h (s), apart from growth and decay
-    /// and from what the exact motion has.
+    /// Ratio of the largest to the smallest energy of a mode in steps of h (s), without growth and
+    /// decay, and relative to that of the exact motion.
     ///
-    /// Steps move x w and v round an ellipse, c x^2 + (d - a) x v - b v^2 = const., and this is the
-    /// square of the ratio of its axes over that of the exact motion, (1 + z) / (1 - z) with the
-    /// damping ratio z. It is 1 for a Runge-Kutta method; for Verlet's method without damping it is
-    /// 1 / (1 - (h w)^2 / 4), and has no bound at the limit. 1 where the step fails or its matrix
-    /// has real eigenvalues.
+    /// Steps move (x w, v) round an ellipse, c x^2 + (d - a) x v - b v^2 = const. The result is the
+    /// squared ratio of its axes over that of the exact motion, (1 + z) / (1 - z) with the damping
+    /// ratio z. It is 1 for a Runge-Kutta method; for Verlet's method without damping it is
+    /// 1 / (1 - (h w)^2 / 4), which is unbounded at the limit. The result is also 1 if the step
+    /// fails or its matrix has real eigenvalues.
     pub fn swing(&mut self, h: f64) -> f64 {
         let Some([a, b, c, d]) = self.matrix(h) else {
             return 1.0;

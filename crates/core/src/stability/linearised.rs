@@ -1,6 +1,6 @@
-//! Largest step of a method on a whole linearised system, by its own steps. Splitting methods carry
-//! drag in drifts and the damping of springs in kicks: where damping mixes shapes, their steps do
-//! not keep modes apart, and no eigenvalue of the motion tells how they grow.
+//! Largest step of a method on a whole linearised system, found by taking steps. Splitting methods
+//! handle drag in drifts and the damping of springs in kicks: if damping mixes shapes, their steps
+//! do not keep modes separate, and eigenvalues of the motion do not tell how modes grow.
 
 use nalgebra::Vector3;
 
@@ -14,32 +14,33 @@ use crate::path::Place;
 use crate::random::SplitMix;
 use crate::system::{Linearized, Mechanics, Splitting, kick_reads_velocity, place_pins};
 
-/// Numbers of steps after which growth is seen, and has to be seen again.
-const SEEN: [usize; 2] = [1000, 4000];
-/// Number of steps in each of two intervals whose largest states are compared, at the middle and at
-/// the end.
-const INTERVAL: usize = 100;
-/// Length of x from which a system is large.
-const LARGE: usize = 300;
-/// Number of steps from one look to the next outside these intervals.
-const LOOK: usize = 20;
-/// Growth between both that is told from the swing of a state that does not grow.
-const LEAST: f64 = 1.5;
-/// Growth since the beginning that ends the steps: no state swings so much.
-const ENOUGH: f64 = 1e8;
-/// Ratio of the steps that are tried, from a fraction of the expected limit to a multiple of it:
-/// methods of several kicks may fail in a narrow interval of steps and hold again.
-const RATIO: f64 = 1.04;
-const RANGE: [f64; 2] = [0.25, 32.0];
-/// Ratio of two steps that both fail beyond a limit: a narrower interval is a resonance, which no
-/// run meets.
-const WIDTH: f64 = 1.005;
-/// First fraction in a large system, whose steps take long.
-const NEAR: f64 = 0.98;
+/// Numbers of steps after which growth is measured; a step fails if it shows after both.
+const STEP_COUNTS: [usize; 2] = [1000, 4000];
+/// Number of steps in each of two intervals, at the middle and at the end, whose largest states are
+/// compared.
+const COMPARED_STEPS: usize = 100;
+/// Length of x from which a system counts as large.
+const MIN_LARGE_LENGTH: usize = 300;
+/// Number of steps between two checks outside these intervals.
+const CHECK_STRIDE: usize = 20;
+/// Growth between both intervals above which the state grows; less may be oscillation.
+const MIN_GROWTH: f64 = 1.5;
+/// Growth since the beginning at which the steps end: no oscillation is so large.
+const MAX_GROWTH: f64 = 1e8;
+/// Ratio of consecutive trial steps: methods of several kicks may fail in a narrow interval of
+/// steps and hold again.
+const STEP_RATIO: f64 = 1.04;
+/// First and last trial step over the expected limit.
+const GUESS_RANGE: [f64; 2] = [0.25, 32.0];
+/// Ratio of two steps that both have to fail at a limit: a narrower interval is a resonance, which
+/// no run meets exactly.
+const MIN_INTERVAL_RATIO: f64 = 1.005;
+/// First trial step in a large system, whose steps are expensive, over the expected limit.
+const LARGE_START: f64 = 0.98;
 /// Relative precision of the limit.
 const PRECISION: f64 = 2e-3;
 
-/// Mechanical system to first order in the distance from positions at which it rests.
+/// Mechanical system linearised about positions at which it rests.
 pub(super) struct AtRest<'a> {
     mechanics: &'a dyn Linearized,
     x: &'a [f64],
@@ -55,9 +56,9 @@ impl<'a> AtRest<'a> {
         }
     }
 
-    /// Largest step of a method, from an expected one (s), where the fastest motion has this
-    /// angular frequency (rad/s). It is infinite where no step in reach fails. `None` where the
-    /// shortest fail, too: then the motion grows by itself.
+    /// Largest step of a method, searched from an expected one (s). The fastest motion has the
+    /// angular frequency `fastest` (rad/s). Infinite if no trial step fails. `None` if the shortest
+    /// one fails too: then the motion grows by itself.
     ///
     /// # Errors
     /// The method does not support the system.
@@ -68,26 +69,30 @@ impl<'a> AtRest<'a> {
         fastest: f64,
     ) -> Result<Option<f64>, Error> {
         let mut integrator = method.integrator(self)?;
-        // What swings slowly has not grown after more steps.
+        // A slow oscillation may look like growth after fewer steps, but not after more.
         let mut grows = |h: f64| {
-            SEEN.into_iter().all(|steps| {
+            STEP_COUNTS.into_iter().all(|steps| {
                 let growth = self.growth(&mut *integrator, (h, steps), fastest);
                 growth.ln() * tenfold_time(h) > h * GROWTH.ln()
             })
         };
-        let mut fails = |h: f64| grows(h) && grows(WIDTH * h);
-        let longest = RANGE[1] * guess;
-        let near = self.x.len() > LARGE;
-        let mut low = if near { NEAR } else { RANGE[0] } * guess;
+        let mut fails = |h: f64| grows(h) && grows(MIN_INTERVAL_RATIO * h);
+        let longest = GUESS_RANGE[1] * guess;
+        let near = self.x.len() > MIN_LARGE_LENGTH;
+        let mut low = if near { LARGE_START } else { GUESS_RANGE[0] } * guess;
         while fails(low) {
-            low *= if near { 1.0 / RATIO } else { RANGE[0] };
+            low *= if near {
+                1.0 / STEP_RATIO
+            } else {
+                GUESS_RANGE[0]
+            };
             if low < 1e-4 * guess {
                 return Ok(None);
             }
         }
-        let mut high = low * RATIO;
+        let mut high = low * STEP_RATIO;
         while !fails(high) {
-            (low, high) = (high, high * RATIO);
+            (low, high) = (high, high * STEP_RATIO);
             if low > longest {
                 return Ok(Some(f64::INFINITY));
             }
@@ -102,8 +107,8 @@ impl<'a> AtRest<'a> {
         Ok(Some(low))
     }
 
-    /// Growth of the energy's root in a step of h (s), from a state that contains all motion, after
-    /// so many steps: at least 1, infinite where a step fails.
+    /// Growth per step of h (s) of the root of the energy, after `steps` steps from a random state
+    /// that contains all motion: at least 1, infinite if a step fails.
     fn growth(
         &self,
         integrator: &mut dyn Integrator,
@@ -121,14 +126,14 @@ impl<'a> AtRest<'a> {
             .collect();
         let mut scratch = vec![0.0; n];
         let begun = self.size(&y, &mut scratch).ln();
-        // Logarithms of what the state was divided by, and of its largest sizes.
+        // Logarithms of the factors by which the state was divided, and of its largest sizes.
         let (mut scaled, mut largest) = (0.0, [f64::NEG_INFINITY; 2]);
         for k in 1..=steps {
             if integrator.step(self, 0.0, h, &mut y).is_err() {
                 return f64::INFINITY;
             }
-            let ends = [steps / 2, steps].map(|end| k + INTERVAL > end && k <= end);
-            if k % LOOK != 0 && !ends.contains(&true) {
+            let ends = [steps / 2, steps].map(|end| k + COMPARED_STEPS > end && k <= end);
+            if k % CHECK_STRIDE != 0 && !ends.contains(&true) {
                 continue;
             }
             let now = self.size(&y, &mut scratch);
@@ -139,7 +144,7 @@ impl<'a> AtRest<'a> {
                 return 1.0;
             }
             let grown = scaled + now.ln() - begun;
-            if grown > ENOUGH.ln() {
+            if grown > MAX_GROWTH.ln() {
                 return (grown / k as f64).exp();
             }
             for (largest, seen) in largest.iter_mut().zip(ends) {
@@ -155,14 +160,14 @@ impl<'a> AtRest<'a> {
             }
         }
         let grown = largest[1] - largest[0];
-        if grown < LEAST.ln() {
+        if grown < MIN_GROWTH.ln() {
             return 1.0;
         }
         (grown / (steps / 2) as f64).exp()
     }
 
-    /// Root of twice the energy of a state (J^1/2). Slow motion does not grow by it, how far it
-    /// goes.
+    /// Root of twice the energy of a state (J^1/2). Slow motion does not increase it, however far
+    /// it goes.
     fn size(&self, y: &[f64], scratch: &mut [f64]) -> f64 {
         let w = self.mechanics.inverse_masses();
         let (dx, dv) = y.split_at(self.x.len());

@@ -1,7 +1,6 @@
 //! Mode of motion.
 
-/// Rate of growth, over the frequency, that differences of forces may show of a mode that does not
-/// grow.
+/// Rate of growth of a mode, over its frequency, that may be an error of differences of forces.
 const ROUNDING: f64 = 1e-6;
 
 /// Mode of motion x'' = -stiffness x - (drag + damping) x'.
@@ -13,8 +12,8 @@ pub struct Mode {
     pub drag: f64,
     /// Damping of the springs over mass (1/s).
     pub damping: f64,
-    /// Whether forces other than drag depend on velocities in the system, if not in this mode:
-    /// splitting methods then have other kicks.
+    /// Whether forces other than drag depend on velocities in the system, even if not in this mode:
+    /// splitting methods then use other kicks.
     pub reads_velocity: bool,
 }
 
@@ -35,7 +34,7 @@ impl Mode {
         self.stiffness.max(0.0).sqrt()
     }
 
-    /// Whether it has a restoring force and does not grow by itself, but for rounding.
+    /// Whether the mode has a restoring force and does not grow by itself, except by rounding.
     #[must_use]
     pub fn returns(&self) -> bool {
         self.stiffness > 0.0 && self.drag + self.damping >= -ROUNDING * self.frequency()

@@ -1,16 +1,16 @@
-//! Scenes in motion: what an accurate run shows, the largest step with which a method's runs stay
+//! Scenes in motion: modes along an accurate run, the largest step with which a method's runs stay
 //! bounded, and the largest with which they are accurate.
 //!
 //! A run is *bounded* while its energy exceeds the true one by no more than a few times that of the
-//! motion. Near the limit of a symplectic method the energy of a mode swings to many times its own,
-//! however long the run, and never grows: this multiple is known (`Growth::swing`) and allowed.
-//! A run is *accurate* while its error is below a hundredth of the motion.
+//! motion. Near the limit of a symplectic method, the energy of a mode oscillates up to many times
+//! its mean, but never grows: this multiple is known (`Growth::swing`) and allowed. A run is
+//! *accurate* while its error is below a hundredth of the motion.
 
 use super::growth::Growth;
 use super::limit::{GROWTH, HORIZON, largest_step};
 use super::mode::Mode;
 use super::observation::Observation;
-use super::search::{Budget, MOST, bisect, sharpen, step_and_look, steps};
+use super::search::{Budget, MAX_RUN_WORK, bisect, sharpen, steps, take_checked};
 use super::spectrum::spectrum;
 use std::cell::RefCell;
 
@@ -24,51 +24,53 @@ use crate::simulation::Simulation;
 
 /// Times at which the modes of a scene in motion are computed, as fractions of [`HORIZON`].
 const MOMENTS: [f64; 8] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
-/// Number of equal intervals of [`HORIZON`] at whose ends the true motion is kept, at most, and
-/// the largest number of coordinates that are kept.
-const KEPT: (usize, usize) = (10_000, 4_000_000);
+/// Largest number of equal intervals of [`HORIZON`] at whose ends the true motion is stored.
+const MAX_INTERVALS: usize = 10_000;
+/// Largest number of coordinates that are stored.
+const MAX_COORDINATES: usize = 4_000_000;
 /// Tolerance of the accurate run.
 const TOLERANCE: f64 = 1e-7;
 /// Distance of a second accurate run at the start, over the scene's radius.
 const SEPARATION: f64 = 1e-7;
-/// Growth of that distance until which errors are compared: beyond it they are the motion's own.
-const AMPLIFICATION: f64 = 100.0;
-/// Excess of a bounded run's energy over the true one, as a multiple of the motion's own.
-const EXCESS: f64 = 4.0;
-/// Largest multiple of that for a mode whose energy swings.
-const SWING: f64 = 100.0;
-/// Relative precision of the largest steps that are seen.
+/// Growth of that distance up to which errors are compared: beyond it, the motion itself amplifies
+/// them.
+const MAX_AMPLIFICATION: f64 = 100.0;
+/// Largest excess of a bounded run's energy over the true one, as a multiple of the motion's own.
+const MAX_EXCESS: f64 = 4.0;
+/// Largest factor by which that excess is extended for modes whose energy oscillates.
+const MAX_SWING: f64 = 100.0;
+/// Relative precision of the largest steps found by runs.
 const PRECISION: f64 = 0.02;
 /// Largest error of an accurate run, over the size of the motion.
-const ACCURATE: f64 = 0.01;
+const MAX_ERROR_SHARE: f64 = 0.01;
 /// Ratio of two steps, of which one is accurate and one is not, at which the search ends.
-const CLOSE: f64 = 1.1;
-/// Number of times at which the error of a run is taken, about.
+const MAX_STEP_RATIO: f64 = 1.1;
+/// Approximate number of times at which the error of a run is measured.
 const CHECKS: u64 = 100;
-/// Most [work](Model::work) of the accurate run; it ends before.
-const TRUE: f64 = 5e7;
-/// Most [work](Model::work) of the long runs, which are shorter if need be.
-const LONG: f64 = 5e6;
-/// Length of the runs that tell whether a limit is sharp, as a multiple of that of the others.
-const LONGER: u64 = 10;
+/// Largest [work](Model::work) of the accurate run, which ends there.
+const MAX_TRUE_WORK: f64 = 5e7;
+/// Largest [work](Model::work) of the long runs, which are shortened if necessary.
+const MAX_LONG_WORK: f64 = 5e6;
+/// Length of the runs that check whether a limit is sharp, as a multiple of that of the others.
+const LONG_RUN_FACTOR: u64 = 10;
 
 /// True motion of a scene from its start, by an accurate run of [`HORIZON`].
 #[derive(Clone)]
 pub struct Motion {
     scene: Scene,
-    /// Modes at several times of the motion, in one list, fastest first. Stretched and folded
+    /// Modes at several times of the motion, in one list, fastest first: stretched and folded
     /// springs have other modes than those at the start.
     pub modes: Vec<Mode>,
-    /// Time until which errors mean something (s): [`HORIZON`], or when a small difference at the
-    /// start has grown a hundred times.
+    /// Time (s) until which errors are meaningful: [`HORIZON`], or the time at which a small
+    /// difference at the start has grown a hundredfold.
     pub predictable: f64,
-    /// Root mean square distance of the particles from their start when it is largest (m), within
-    /// the predictable time.
+    /// Largest root mean square distance of the particles from their start (m) within the
+    /// predictable time.
     size: f64,
-    /// Largest total energy, and the excess over it that ends a run (J); for a first-order scene,
-    /// the largest norm of its state, and the excess over that.
+    /// Largest total energy, and the excess over it at which a run is not bounded (J); for a
+    /// first-order scene, the largest norm of its state, and the excess over that.
     most: [f64; 2],
-    /// Interval (s) of the states that are kept.
+    /// Interval (s) between the stored states.
     interval: f64,
     /// Positions (m) and velocities (m/s) at the ends of these intervals, within the predictable
     /// time.
@@ -87,7 +89,7 @@ impl Motion {
         let mut run = start(scene.clone())?;
         let n = 3 * run.particles();
         let mut beside = start(disturbed(scene, SEPARATION * run.extent().1))?;
-        let count = KEPT.0.min(KEPT.1 / (2 * n)).max(50);
+        let count = MAX_INTERVALS.min(MAX_COORDINATES / (2 * n)).max(50);
         let interval = HORIZON / count as f64;
         let mut moments = MOMENTS
             .map(|part| (part * count as f64).round() as usize)
@@ -109,8 +111,8 @@ impl Motion {
                 return Ok(None);
             }
             let time = k as f64 * interval;
-            let dear = run.work().total() * scene.model.work() > TRUE;
-            if dear || run.advance_to(time).is_err() {
+            let costs_too_much = run.work().total() * scene.model.work() > MAX_TRUE_WORK;
+            if costs_too_much || run.advance_to(time).is_err() {
                 motion.predictable = motion.predictable.min(time - interval);
                 break;
             }
@@ -124,7 +126,7 @@ impl Motion {
             motion.most[0] = motion.most[0].max(level);
             kinetic = kinetic.max(run.energy().map_or(level, |energy| energy.kinetic));
             if motion.predictable < HORIZON {
-                // Only the energy and the modes are still of interest.
+                // Only the energy and the modes are still needed.
                 continue;
             }
             motion
@@ -136,16 +138,16 @@ impl Motion {
             let apart = beside.advance_to(time).map_or(f64::INFINITY, |()| {
                 distance(&run.state()[..n], &beside.state()[..n])
             });
-            if apart > AMPLIFICATION * first {
+            if apart > MAX_AMPLIFICATION * first {
                 motion.predictable = time;
             }
         }
-        // A scene that only rests has no motion of its own to compare growth with.
+        // A scene at rest has no motion of its own to compare growth with.
         kinetic = kinetic
             .max(1e-6 * motion.most[0].abs())
             .max(f64::MIN_POSITIVE);
         motion.most[1] = match scene.model {
-            Model::Network(_) => EXCESS * kinetic,
+            Model::Network(_) => MAX_EXCESS * kinetic,
             Model::FirstOrder(_) => (GROWTH - 1.0) * kinetic,
         };
         // The fastest come first, as they set most limits.
@@ -157,11 +159,11 @@ impl Motion {
 
     /// Largest step with which a method's runs from the start stay bounded.
     ///
-    /// Runs take [`HORIZON`] and [`STEPS`](super::STEPS) steps at least. The search begins at the
-    /// limit by the modes. Runs ten times as long, with steps a tenth shorter and a tenth longer,
-    /// tell whether the limit is sharp. If they do not, or if that by the modes is not sharp, runs
-    /// from half the limit to twice it show in which interval some hold and some fail. `None` if
-    /// the runs would take too long, and soon after `go_on` returns false.
+    /// Runs last for [`HORIZON`] and [`STEPS`](super::STEPS) steps at least. The search begins at
+    /// the limit of the modes. Runs ten times as long, with steps a tenth shorter and a tenth
+    /// longer, check whether the limit is sharp. If it is not, or if that of the modes is not, runs
+    /// from half the limit to twice it find the interval in which some hold and some fail. `None`
+    /// if the runs would take too long, and soon after `go_on` returns false.
     ///
     /// # Errors
     /// The method does not support the scene.
@@ -190,12 +192,12 @@ impl Motion {
                 .iter_mut()
                 .map(swing)
                 .fold(1.0, f64::max);
-            let most = self.most[0] + self.most[1] * swings.min(SWING);
+            let most = self.most[0] + self.most[1] * swings.min(MAX_SWING);
             let count = budget.room(method, &self.scene.model, steps(h, expected));
             let cost = count as f64 * work * f64::from(method.evaluations);
-            let affordable = (LONG / cost).max(1.0) as u64;
+            let affordable = (MAX_LONG_WORK / cost).max(1.0) as u64;
             let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
-            Ok(step_and_look(
+            Ok(take_checked(
                 count * times.min(affordable.max(1)),
                 |count| {
                     let holds = budget.take(&mut run, count).filter(|_| go_on())?;
@@ -209,16 +211,16 @@ impl Motion {
             .as_mut()
             .filter(|seen| !seen.is_open() && !budget.limits())
         {
-            *seen = sharpen(*seen, sharp, PRECISION, |h| holds(h, LONGER))?;
+            *seen = sharpen(*seen, sharp, PRECISION, |h| holds(h, LONG_RUN_FACTOR))?;
         }
         Ok(seen.filter(|_| go_on()))
     }
 
     /// Largest step (s) up to `longest` with which the error of a run is below a hundredth of the
-    /// motion: the root mean square distance of the particles from where they should be, over the
-    /// largest from where they started, within the predictable time. Where the budget is spent, an
-    /// accurate step that may not be the largest. `None` if nothing moves, if the runs would take
-    /// too long, and soon after `go_on` returns false.
+    /// motion: the root mean square distance of the particles from their true positions, over the
+    /// largest from their start, within the predictable time. If the budget is spent, an accurate
+    /// step that may not be the largest. `None` if nothing moves, if the runs would take too long,
+    /// and soon after `go_on` returns false.
     ///
     /// # Errors
     /// The method does not support the scene.
@@ -229,15 +231,15 @@ impl Motion {
         budget: &Budget,
         go_on: impl Fn() -> bool,
     ) -> Result<Option<f64>, Error> {
-        // A step of a small scene, and one that solves equations, cost more than their particles.
-        let dear = if method.is_implicit() { 30.0 } else { 1.0 };
+        // A step of a small scene, or one that solves equations, costs more than its particles.
+        let implicit_factor = if method.is_implicit() { 30.0 } else { 1.0 };
         let work = self.scene.model.work().max(20.0);
-        let shortest = self.predictable * work * dear / MOST;
+        let shortest = self.predictable * work * implicit_factor / MAX_RUN_WORK;
         if self.size == 0.0 {
             return Ok(None);
         }
         let order = f64::from(method.order);
-        // Runs with errors beyond this are all followed by a fifth of their step.
+        // After any error beyond this, the next step is the same: a fifth.
         let most = 0.9 * 5f64.powf(order);
         let mut high = (longest.min(0.25 * self.predictable), f64::INFINITY);
         let mut low = high;
@@ -253,19 +255,23 @@ impl Motion {
                 break;
             }
             high = low;
-            // The error falls as a power of the step.
+            // The error is about a power of the step.
             low.0 *= (0.9 / low.1).powf(1.0 / order).clamp(0.2, 0.95);
         }
-        while high.0 > CLOSE * low.0 {
-            // By that power between two errors, but so that one more run may be the last.
+        while high.0 > MAX_STEP_RATIO * low.0 {
+            // By the same power between two errors, but such that one more run may be the last.
             let gap = (high.0 / low.0).ln();
             let part = low.1.ln() / (low.1 / high.1).ln();
             let known = low.1 > 0.0 && high.1.is_finite();
             let part = if known { part } else { 0.5 };
-            let edge = 0.99 * CLOSE.ln();
+            let edge = 0.99 * MAX_STEP_RATIO.ln();
             let middle = low.0 * (gap * part).clamp(edge, (gap - edge).max(edge)).exp();
-            // The search ends if this run fails, whatever its error is.
-            let most = if middle <= CLOSE * low.0 { 1.0 } else { most };
+            // The search ends if this run fails, however large its error is.
+            let most = if middle <= MAX_STEP_RATIO * low.0 {
+                1.0
+            } else {
+                most
+            };
             let error = self.error(method, middle, most, budget)?;
             let Some(error) = error.filter(|_| go_on()) else {
                 break;
@@ -275,9 +281,9 @@ impl Motion {
         Ok(Some(low.0).filter(|_| go_on()))
     }
 
-    /// Largest error of a run in whole steps of about h (s) within the predictable time, over that
-    /// of an accurate run; infinite if the run fails. The run ends once its error exceeds `most`.
-    /// `None` if the budget is spent.
+    /// Largest error of a run in whole steps of about h (s) within the predictable time, over the
+    /// allowed one; infinite if the run fails. The run ends once its error exceeds `most`. `None`
+    /// if the budget is spent.
     fn error(
         &self,
         method: &'static Method,
@@ -300,12 +306,12 @@ impl Motion {
             left -= steps;
             let truth = self.at(run.time());
             let apart = distance(&run.state()[..truth.len()], &truth);
-            error = error.max(apart / (ACCURATE * self.size));
+            error = error.max(apart / (MAX_ERROR_SHARE * self.size));
         }
         Ok(Some(error))
     }
 
-    /// True positions (m) at a time (s), by a cubic polynomial between the states that are kept.
+    /// True positions (m) at a time (s), by a cubic polynomial between the stored states.
     fn at(&self, time: f64) -> Vec<f64> {
         let place = (time / self.interval).max(0.0);
         let k = (place as usize).min(self.states.len() - 2);

@@ -4,21 +4,22 @@ use super::mode::Mode;
 use crate::random::SplitMix;
 use crate::system::{Linearized, kick_reads_velocity};
 
-/// Length of the part of a shape's damping in other shapes, over that in its own, from which
-/// damping is said to mix shapes; and over the frequency, from which it changes the frequency by
-/// about a percent.
-pub(super) const MIXED: f64 = 0.02;
-const STRONG: f64 = 0.1;
+/// Part of a shape's damping that acts on other shapes, over the part that acts on its own, from
+/// which on damping counts as mixing shapes.
+pub(super) const MIN_MIXING: f64 = 0.02;
+/// The same part, over the frequency, from which on damping counts as mixing shapes strongly: it
+/// changes the frequency by about a percent.
+const MIN_STRONG_MIXING: f64 = 0.1;
 
-/// How much damping turns a shape of the undamped motion into others.
+/// Degree to which damping couples a shape of the undamped motion to others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub(super) enum Mixing {
-    /// Each has its own damping.
+    /// Each shape has its own damping.
     #[default]
     None,
-    /// Its damping is not that of the shape alone.
+    /// The damping of a shape depends on others.
     Weak,
-    /// Its frequency is not, either.
+    /// The frequency depends on others, too.
     Strong,
 }
 
@@ -72,7 +73,7 @@ impl<'a> Normalised<'a> {
         }
     }
 
-    /// Drag over mass of the mode with the shape z (1/s).
+    /// Drag over mass of the mode of shape z (1/s).
     fn drag(&self, z: &[f64]) -> f64 {
         let w = self.mechanics.inverse_masses();
         let share = z
@@ -82,8 +83,8 @@ impl<'a> Normalised<'a> {
         self.mechanics.drag_coefficient() * share
     }
 
-    /// Mode with the shape z and this stiffness over mass (1/s2), and how much damping turns z into
-    /// other shapes.
+    /// Mode of shape z and of this stiffness over mass (1/s2), and the degree to which damping
+    /// couples z to other shapes.
     pub fn mode(&mut self, stiffness: f64, z: &[f64], scratch: &mut [f64]) -> (Mode, Mixing) {
         self.product(z, true, scratch);
         let drag = self.drag(z);
@@ -97,9 +98,11 @@ impl<'a> Normalised<'a> {
             damping: if damping > 1e-9 * drag { damping } else { 0.0 },
             reads_velocity: kick_reads_velocity(self.mechanics),
         };
-        let mixing = if turned > STRONG * stiffness.abs().sqrt() && turned > MIXED * all.abs() {
+        let mixing = if turned > MIN_STRONG_MIXING * stiffness.abs().sqrt()
+            && turned > MIN_MIXING * all.abs()
+        {
             Mixing::Strong
-        } else if turned > MIXED * all.abs() {
+        } else if turned > MIN_MIXING * all.abs() {
             Mixing::Weak
         } else {
             Mixing::None
@@ -107,7 +110,7 @@ impl<'a> Normalised<'a> {
         (mode, mixing)
     }
 
-    /// Random shape of length 1, which contains a share of every mode.
+    /// Random shape of length 1, which has a component along every mode.
     pub fn any_shape(&self) -> Vec<f64> {
         let mut random = SplitMix(1);
         let free = self.mechanics.inverse_masses();

@@ -1,7 +1,7 @@
 //! Modes where damping mixes the shapes of the undamped motion. With mass-normalised stiffness K
-//! and damping D, x'' = -K x - D x' has the eigenvalues of the quadratic pencil l^2 + l D + K,
-//! which are those of the matrix [[0, w], [-K / w, -D]] of a first-order system, for any w > 0
-//! (Tisseur, Meerbergen, *The quadratic eigenvalue problem*, SIAM Review 43, 2001).
+//! and damping D, x'' = -K x - D x' has the eigenvalues of the quadratic pencil l^2 + l D + K. They
+//! are those of the matrix [[0, w], [-K / w, -D]] of a first-order system, for any w > 0 (Tisseur,
+//! Meerbergen, *The quadratic eigenvalue problem*, SIAM Review 43, 2001).
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -11,24 +11,25 @@ use super::normalised::Normalised;
 use crate::random::SplitMix;
 use crate::system::Linearized;
 
-/// Size of a part of an eigenvalue, over the largest eigenvalue, that is rounding.
+/// Real or imaginary part of an eigenvalue, over the largest eigenvalue, below which it is a
+/// rounding error.
 const ROUNDING: f64 = 1e-12;
-/// Size of an eigenvalue, over the largest, that is zero: rounding divides two that are equal by
-/// its square root.
-const ZERO: f64 = 1e-7;
+/// Eigenvalue, over the largest, below which it counts as zero: rounding may split a double
+/// eigenvalue by its square root.
+const ZERO_SHARE: f64 = 1e-7;
 
 /// Stiffness and damping of a mechanical system around some positions, mass-normalised.
 #[derive(Clone)]
 pub(super) struct Pencil {
     stiffness: DMatrix<f64>,
     damping: DMatrix<f64>,
-    /// Places in x of the numbers of free particles, and the length of x.
+    /// Indices in x of the coordinates of free particles, and the length of x.
     unknowns: Vec<usize>,
     length: usize,
 }
 
 impl Pencil {
-    /// Pencil at the positions x (m); `None` if x has more than `most` free numbers.
+    /// Pencil at the positions x (m); `None` if x has more than `most` free coordinates.
     pub fn of(mechanics: &dyn Linearized, t: f64, x: &[f64], most: usize) -> Option<Self> {
         let w = mechanics.inverse_masses();
         let unknowns: Vec<_> = (0..x.len()).filter(|k| w[k % w.len()] != 0.0).collect();
@@ -60,11 +61,11 @@ impl Pencil {
     }
 
     /// Modes, one for each real eigenvalue and each conjugate pair, fastest first. Damping is
-    /// divided between drag and springs as in the undamped mode of the nearest frequency. `None`
-    /// where the eigenvalues are not found.
+    /// divided between drag and springs as in the undamped mode of the nearest frequency. `None` if
+    /// the eigenvalues are not found.
     pub fn modes(&self, undamped: &[Mode]) -> Option<Vec<Mode>> {
         let n = self.unknowns.len();
-        // The norms of both parts of the state are then similar.
+        // Makes the norms of both parts of the state similar.
         let w = self.stiffness.amax().sqrt().max(self.damping.amax());
         let mut matrix = DMatrix::zeros(2 * n, 2 * n);
         matrix.view_mut((0, n), (n, n)).fill_diagonal(w);
@@ -84,7 +85,7 @@ impl Pencil {
         let scale = found.iter().fold(0.0, |m: f64, l| m.max(l.norm()));
         let mut modes: Vec<_> = found
             .iter()
-            .filter(|l| l.norm() > ZERO * scale)
+            .filter(|l| l.norm() > ZERO_SHARE * scale)
             .map(|l| [l.re, l.im].map(|a| if a.abs() < ROUNDING * scale { 0.0 } else { a }))
             .filter(|[_, im]| *im >= 0.0)
             .map(|[re, im]| {
@@ -102,8 +103,8 @@ impl Pencil {
         (!found.is_empty()).then_some(modes)
     }
 
-    /// Shape of a mode at one moment: the displacements times the roots of the masses, of length 1,
-    /// by inverse iteration.
+    /// Shape of a mode at one moment, by inverse iteration: the displacements times the roots of
+    /// the masses, of length 1.
     pub fn shape(&self, mode: &Mode) -> Option<Vec<f64>> {
         let [re, im] = mode.eigenvalues()[0];
         let l = Complex::new(re, im) * (1.0 + 1e-9);
@@ -119,7 +120,7 @@ impl Pencil {
         for _ in 0..3 {
             shape = factors.solve(&shape)?.normalize();
         }
-        // At the moment at which it has the largest displacements.
+        // Phase of the moment with the largest displacements.
         let square: Complex<f64> = shape.iter().map(|z| z * z).sum();
         let turn = Complex::from_polar(1.0, -0.5 * square.arg());
         let mut whole = vec![0.0; self.length];

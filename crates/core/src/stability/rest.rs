@@ -1,5 +1,5 @@
-//! Scenes at rest: the state of rest, and the largest step with which a small
-//! disturbance around it does not grow.
+//! Scenes at rest: the state of rest, and the largest step with which a small disturbance of it
+//! does not grow.
 
 use super::limit::{GROWTH, Limit, largest_step};
 use super::linearised::AtRest;
@@ -7,7 +7,7 @@ use super::mode::Mode;
 use super::normalised::Mixing;
 use super::observation::Observation;
 use super::pencil::Pencil;
-use super::search::{Budget, bisect, cost, step_and_look, steps};
+use super::search::{Budget, bisect, cost, steps, take_checked};
 use super::spectrum::{Undamped, of_drag, shapes};
 use crate::control::Control;
 use crate::error::Error;
@@ -18,13 +18,13 @@ use crate::scene::{Model, Scene};
 use crate::simulation::Simulation;
 use crate::system::Linearized;
 
-/// Relative precision of the largest step that is seen.
+/// Relative precision of the largest step found by runs.
 const PRECISION: f64 = 0.01;
 /// Size of the disturbance of a scene at rest: the root of the sum of m v^2 over the particles
 /// (kg^1/2 m/s).
-const NUDGE: f64 = 1e-6;
-/// Random part of that disturbance, relative to the limiting mode.
-const OTHERS: f64 = 0.1;
+const DISTURBANCE: f64 = 1e-6;
+/// Random part of that disturbance, relative to its part in the limiting mode.
+const RANDOM_SHARE: f64 = 0.1;
 
 /// Rounds that bring a scene to rest: the step (s), the largest number of steps, and whether all
 /// free particles are first displaced a little.
@@ -36,24 +36,25 @@ const SETTLING: [(f64, u32, bool); 5] = [
     (5.0, 400, false),
 ];
 
-/// Time (s) in which gravity moves a scene by its radius, from which on these rounds have their
-/// steps: smaller and faster scenes take shorter ones, in proportion.
-const SLOW: f64 = 0.1;
+/// Time (s) in which gravity moves a scene by its radius, from which on the rounds have these
+/// steps: smaller and faster scenes take proportionally shorter ones.
+const SLOW_SCENE_TIME: f64 = 0.1;
 
-/// Most work of these rounds, in that of a [`Budget`].
-const MOST: f64 = 1e9;
+/// Largest work of these rounds, in the unit of a [`Budget`].
+const MAX_WORK: f64 = 1e9;
 
-/// Most free numbers in x of a scene whose modes are found together where damping mixes them: a
-/// matrix of twice that dimension has its eigenvalues in a second or two.
-const DENSE: usize = 200;
+/// Largest number of free coordinates of a scene whose modes are found together if damping mixes
+/// them: the eigenvalues of a matrix of twice that dimension take a second or two.
+const MAX_DENSE_UNKNOWNS: usize = 200;
 
-/// Most numbers in the state of a scene whose limits are confirmed by steps on all motion where it
-/// has too many modes to be found together: more would take minutes.
-const STEPPED: usize = 1200;
+/// Largest length of the state of a scene with more coordinates than that whose limits are
+/// confirmed by steps on all motion: longer ones would take minutes.
+const MAX_STEPPED_LENGTH: usize = 1200;
 
-/// Next step over one in which the guard of surfaces acted, and over one in which it did not.
-const SHORTER: f64 = 0.25;
-const LONGER: f64 = 1.5;
+/// Ratio of the next step to one in which the collision safeguard acted.
+const GUARDED_STEP_RATIO: f64 = 0.25;
+/// Ratio of the next step to one in which it did not act.
+const FREE_STEP_RATIO: f64 = 1.5;
 
 /// Scene at rest, with the modes around this state.
 #[derive(Clone)]
@@ -66,20 +67,20 @@ pub struct RestState {
     shapes: RestShapes,
 }
 
-/// What the shapes of modes are found from: the displacements times the roots of the masses, of
-/// length 1.
+/// Shapes of the modes, or the matrices that they are computed from. A shape is the displacements
+/// times the roots of the masses, of length 1.
 #[derive(Clone)]
 enum RestShapes {
     /// Shape of each mode.
     Known(Vec<Vec<f64>>),
-    /// The shapes without damping, which damping mixes in a scene with too many of them.
+    /// Shapes without damping, in a scene that is too large for the shapes with damping.
     Approximate(Vec<Vec<f64>>),
-    /// All motion of a scene where damping mixes shapes.
+    /// Matrices of a scene in which damping mixes shapes.
     Mixed(Pencil),
 }
 
 impl RestState {
-    /// Scene that rests in its state, at the beginning of which its velocities are zero.
+    /// Scene that starts in its state of rest, with zero velocities.
     fn new(scene: Scene, network: &Network) -> Self {
         let x = &scene.state[..scene.state.len() / 2];
         let Undamped {
@@ -88,7 +89,9 @@ impl RestState {
             mixing,
         } = shapes(network, 0.0, x);
         let mixes = mixing > Mixing::None;
-        let pencil = mixes.then(|| Pencil::of(network, 0.0, x, DENSE)).flatten();
+        let pencil = mixes
+            .then(|| Pencil::of(network, 0.0, x, MAX_DENSE_UNKNOWNS))
+            .flatten();
         let mixed = pencil.and_then(|pencil| Some((pencil.modes(&modes)?, pencil)));
         if let Some((modes, pencil)) = mixed {
             return Self {
@@ -115,9 +118,9 @@ impl RestState {
         }
     }
 
-    /// Largest steps of a method on the scene at rest, as by [`largest_step`] on its modes. Where
-    /// damping mixes shapes, those of a splitting method come from its steps on all motion at once,
-    /// and so do those of all explicit methods in a large scene.
+    /// Largest steps of a method on the scene at rest, as by [`largest_step`] on its modes. If
+    /// damping mixes shapes, those of a splitting method are found by its steps on all motion at
+    /// once, and so are those of all explicit methods in a large scene.
     ///
     /// # Errors
     /// The method does not support the scene.
@@ -127,7 +130,7 @@ impl RestState {
             RestShapes::Known(_) => false,
             RestShapes::Mixed(_) => method.needs_mechanics(),
             RestShapes::Approximate(_) => {
-                let small = self.scene.state.len() <= STEPPED;
+                let small = self.scene.state.len() <= MAX_STEPPED_LENGTH;
                 small && by_modes.is_some_and(|limit| limit.is_sharp())
             }
         };
@@ -165,12 +168,12 @@ impl RestState {
     }
 }
 
-/// State in which the scene comes to rest without wind and swing and without tearing, computed by
-/// implicit Euler with growing steps.
+/// State in which the scene comes to rest without wind, swing and tearing, computed by implicit
+/// Euler with growing steps.
 ///
-/// `None` for a first-order scene, for one that implicit Euler does not support, for one with rigid
-/// bodies, for one whose pins or obstacles move, and for one that does not settle, or takes too
-/// much work to; soon after `go_on` returns false, too.
+/// `None` if implicit Euler does not support the scene, if the scene has rigid bodies or moving
+/// pins or obstacles, and if it does not settle or takes too much work; also soon after `go_on`
+/// returns false.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -189,8 +192,8 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     let mut run = Simulation::new(scene.clone(), implicit, Control::Step(SETTLING[0].0))?;
     let mut random = SplitMix(4);
     let gravity = network.gravity().map_or(0.0, |g| g.norm());
-    let pace = ((scene.extent().1 / gravity).sqrt() / SLOW).min(1.0);
-    // A run that begins again counts from nothing.
+    let pace = ((scene.extent().1 / gravity).sqrt() / SLOW_SCENE_TIME).min(1.0);
+    // The work of a new run starts from zero.
     let mut before_push = 0.0;
     for (step, steps, leaves) in SETTLING {
         let step = pace * step;
@@ -211,18 +214,18 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
         run.set_control(Control::Step(step))?;
         for _ in 0..steps {
             let before = run.state().to_vec();
-            let held = acts(&run);
-            let dear = before_push + cost(&run) > MOST;
-            if dear || !go_on() || run.take_steps(1).is_err() {
+            let held = safeguard_actions(&run);
+            let costs_too_much = before_push + cost(&run) > MAX_WORK;
+            if costs_too_much || !go_on() || run.take_steps(1).is_err() {
                 return Ok(None);
             }
-            // If the guard of surfaces carries the weight, and not the force of contact, there is
+            // If the collision safeguard carries the weight, and not the force of contact, there is
             // no equilibrium: steps become shorter.
             let now = run.control().value();
-            let next = if acts(&run) > held {
-                SHORTER * now
+            let next = if safeguard_actions(&run) > held {
+                GUARDED_STEP_RATIO * now
             } else {
-                step.min(LONGER * now)
+                step.min(FREE_STEP_RATIO * now)
             };
             if next != now {
                 run.set_control(Control::Step(next))?;
@@ -240,8 +243,8 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     }
     let mut y = run.state().to_vec();
     let half = y.len() / 2;
-    let held = acts(&run);
-    let rests = run.take_steps(1).is_ok() && acts(&run) == held;
+    let held = safeguard_actions(&run);
+    let rests = run.take_steps(1).is_ok() && safeguard_actions(&run) == held;
     let speed = y[half..].iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     y[half..].fill(0.0);
     if speed > 1e-4 || !rests {
@@ -251,8 +254,8 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     Ok(Some(RestState::new(scene, network)))
 }
 
-/// Number of times that the guard of surfaces has acted in a run.
-fn acts(run: &Simulation) -> usize {
+/// Number of times that the collision safeguard has acted in a run.
+fn safeguard_actions(run: &Simulation) -> usize {
     let guarded = run.guarded();
     guarded.impulses + guarded.cuts
 }
@@ -261,7 +264,7 @@ fn acts(run: &Simulation) -> usize {
 /// times in [`HORIZON`](super::HORIZON).
 ///
 /// The disturbance is a velocity in the mode that limits the method, with a small random part.
-/// Bisection begins at the predicted limit. Where that is not sharp, growth is slower down to its
+/// Bisection begins at the predicted limit. If that is not sharp, growth is slower down to its
 /// `bounded` step, which counts as the shortest that fails.
 /// `None` if no limit is given, if the runs would take too long, and soon after `go_on` returns
 /// false.
@@ -289,8 +292,8 @@ pub fn observe_at_rest(
     for (k, (z, other)) in shape.iter().zip(&others).enumerate() {
         let particle = k % network.particles();
         if !network.is_pinned(particle) {
-            let z = z + OTHERS * other / length;
-            nudged.state[half + k] = NUDGE * z / network.masses()[particle].sqrt();
+            let z = z + RANDOM_SHARE * other / length;
+            nudged.state[half + k] = DISTURBANCE * z / network.masses()[particle].sqrt();
         }
     }
     let size = EnergyNorm {
@@ -299,12 +302,12 @@ pub fn observe_at_rest(
     };
     let zero = vec![0.0; half];
     let nudge = size.of(&zero, &nudged.state[half..]);
-    // The disturbance is the difference from a second run without it: a method's state of rest may
-    // differ a little from the scene's, and particles on an obstacle are pushed out at every step.
+    // The disturbance is measured against a second run without it: a method's state of rest may
+    // differ a little from the scene's, and particles on an obstacle are moved out at every step.
     let holds = |h: f64| {
         let mut run = Simulation::new(nudged.clone(), method, Control::Step(h))?;
         let mut beside = Simulation::new(still.clone(), method, Control::Step(h))?;
-        Ok(step_and_look(steps(h, guess), |count| {
+        Ok(take_checked(steps(h, guess), |count| {
             let held = budget.take(&mut run, count).filter(|_| go_on())?;
             let held = held && budget.take(&mut beside, count)?;
             let both = run.state().iter().zip(beside.state());
@@ -314,7 +317,7 @@ pub fn observe_at_rest(
         }))
     };
     let mut seen = bisect(guess, still.model.work(), PRECISION, true, holds)?;
-    // Shorter steps grow too, more slowly, where the limit by the modes is not sharp.
+    // If the limit of the modes is not sharp, shorter steps grow too, but more slowly.
     if let Some(seen) = seen
         .as_mut()
         .filter(|seen| !seen.is_open() && !limit.is_sharp())
@@ -324,7 +327,7 @@ pub fn observe_at_rest(
     Ok(seen.filter(|_| go_on()))
 }
 
-/// Measure of disturbances around a state of rest by the root of twice their energy (J^1/2).
+/// Norm of disturbances around a state of rest: the root of twice their energy (J^1/2).
 struct EnergyNorm<'a> {
     network: &'a Network,
     rest: &'a [f64],

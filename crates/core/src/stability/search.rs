@@ -10,50 +10,49 @@ use crate::integrators::Method;
 use crate::scene::Model;
 use crate::simulation::Simulation;
 
-/// Longest step that is tried where no limit is expected (s).
-const LONGEST: f64 = 1.0;
-/// Longest step that is tried where a limit is expected, as a multiple of that limit.
-const BEYOND: f64 = 32.0;
-/// Most work of a run, in steps times that of an evaluation: some seconds.
-pub(super) const MOST: f64 = 2e8;
+/// Longest trial step if no limit is expected (s).
+const MAX_STEP: f64 = 1.0;
+/// Longest trial step over the expected limit.
+const MAX_LIMIT_RATIO: f64 = 32.0;
+/// Largest work of a run, in steps times the work of an evaluation: some seconds.
+pub(super) const MAX_RUN_WORK: f64 = 2e8;
 /// Number of checks during a run that holds.
-const LOOKS: u64 = 200;
-/// Longest run of a search, as a share of the search's budget.
-const RUN: f64 = 0.25;
-/// Work between two looks at what is spent, as a share of the search's budget.
-const PORTION: f64 = 0.01;
-/// Least number of particles that count: a small system costs more than its particles.
-const PARTICLES: usize = 20;
-/// Number of steps to which no run is shortened.
-const FEWEST: f64 = 100.0;
+const CHECKS: u64 = 200;
+/// Largest work of a run, as a share of the search's budget.
+const MAX_RUN_SHARE: f64 = 0.25;
+/// Work between two checks of the budget, as a share of it.
+const CHECK_SHARE: f64 = 0.01;
+/// Least number of particles that count as work: a small system costs more than its particles.
+const MIN_PARTICLES: usize = 20;
+/// Least number of steps to which a run is shortened.
+const MIN_STEPS: f64 = 100.0;
 
-/// Price of an evaluation for a particle, over that for one of a sheet of springs: with other
-/// forces, ...
-const OTHER: f64 = 3.5;
-/// ... in a fluid, ...
-const FLUID: f64 = 10.0;
-/// ... and where surfaces touch, whose pairs are listed anew where they move fast.
-const TOUCHING: f64 = 50.0;
-/// Distance from a limit, as a factor, at which longer runs tell whether it is sharp.
-const NEAR: f64 = 1.1;
-/// Shortest step that is tried below a limit, as a share of it.
-const LEAST: f64 = 1.0 / 16.0;
-/// Price of an impulse of the guard of surfaces, with the search for what it meets next.
-const IMPULSE: f64 = 50.0;
+/// Cost of an evaluation per particle, relative to a sheet of springs: with other forces.
+const OTHER_PRICE: f64 = 3.5;
+/// The same in a fluid.
+const FLUID_PRICE: f64 = 10.0;
+/// The same where surfaces touch, whose pairs are listed again where they move fast.
+const CONTACT_PRICE: f64 = 50.0;
+/// Ratio of steps to a limit at which longer runs check whether it is sharp.
+const SHARP_TEST_RATIO: f64 = 1.1;
+/// Shortest trial step below a limit, as a share of it.
+const MIN_LIMIT_SHARE: f64 = 1.0 / 16.0;
+/// Cost of an impulse of the collision safeguard, with the search for the next one.
+const IMPULSE_PRICE: f64 = 50.0;
 
 /// Work that a search may do, in evaluations of one particle on a sheet of springs, which take 20
-/// to 40 ns: counted, so that a search ends at the same run on every machine.
+/// to 40 ns. It is counted, not timed, so that a search ends at the same run on every machine.
 #[derive(Debug)]
 pub struct Budget {
     most: f64,
-    /// What may be spent now.
+    /// Work that may be done now.
     allowed: Cell<f64>,
     spent: Cell<f64>,
     limits: Cell<bool>,
 }
 
 impl Budget {
-    /// Budget of that much work.
+    /// Budget of that amount of work.
     #[must_use]
     pub fn new(most: f64) -> Self {
         Self {
@@ -64,34 +63,34 @@ impl Budget {
         }
     }
 
-    /// Budget that limits nothing.
+    /// Unlimited budget.
     #[must_use]
     pub fn unlimited() -> Self {
         Self::new(f64::INFINITY)
     }
 
-    /// Allows what comes next a share of what is left.
+    /// Allows the next search a share of the remaining work.
     pub fn allow(&self, share: f64) {
         let spent = self.spent.get();
         self.allowed.set(spent + share * (self.most - spent));
     }
 
-    /// Work that was done.
+    /// Work done so far.
     #[must_use]
     pub fn spent(&self) -> f64 {
         self.spent.get()
     }
 
-    /// Whether it ended a search, or made its runs shorter.
+    /// Whether the budget ended a search, or shortened its runs.
     #[must_use]
     pub fn limits(&self) -> bool {
         self.limits.get()
     }
 
-    /// Number of steps of a run, at most `wanted`, that this budget has room for.
+    /// Number of steps of a run, at most `wanted`, that the budget allows.
     pub(super) fn room(&self, method: &Method, model: &Model, wanted: u64) -> u64 {
         let each = f64::from(method.evaluations) * price(model);
-        let room = (RUN * self.most / each).max(FEWEST);
+        let room = (MAX_RUN_SHARE * self.most / each).max(MIN_STEPS);
         if room < wanted as f64 {
             self.limits.set(true);
             return room as u64;
@@ -99,7 +98,7 @@ impl Budget {
         wanted
     }
 
-    /// Takes steps of a run. Returns whether it holds; `None` once the budget is spent.
+    /// Takes steps of a run. Returns whether the run holds; `None` once the budget is spent.
     pub(super) fn take(&self, run: &mut Simulation, steps: u64) -> Option<bool> {
         let (mut left, mut portion) = (steps, 1);
         while left > 0 {
@@ -115,21 +114,21 @@ impl Budget {
                 return None;
             }
             left -= portion;
-            let room = PORTION * self.most * portion as f64 / work;
+            let room = CHECK_SHARE * self.most * portion as f64 / work;
             portion = (room as u64).clamp(1, left.max(1));
         }
         Some(true)
     }
 }
 
-/// Price of an evaluation of a model.
+/// Cost of an evaluation of a model.
 fn price(model: &Model) -> f64 {
     let each = model.network().map_or(1.0, |network| {
         let any = |is: fn(&Element) -> bool| network.elements().iter().any(is);
         if network.contact_layer().is_some() {
-            TOUCHING
+            CONTACT_PRICE
         } else if any(|element| matches!(element, Element::Fluid(_))) {
-            FLUID
+            FLUID_PRICE
         } else if any(|element| {
             let light = matches!(
                 element,
@@ -137,57 +136,57 @@ fn price(model: &Model) -> f64 {
             );
             !light
         }) {
-            OTHER
+            OTHER_PRICE
         } else {
             1.0
         }
     });
-    each * model.particles().max(PARTICLES) as f64
+    each * model.particles().max(MIN_PARTICLES) as f64
 }
 
 /// Work of a run so far.
 pub(super) fn cost(run: &Simulation) -> f64 {
-    run.work().total() * price(run.model()) + IMPULSE * run.guarded().impulses as f64
+    run.work().total() * price(run.model()) + IMPULSE_PRICE * run.guarded().impulses as f64
 }
 
-/// Number of steps of h (s) in a run: those that fill [`HORIZON`], and [`STEPS`] at least, or a
-/// twentieth of these where no limit is expected.
+/// Number of steps of h (s) in a run that lasts for [`HORIZON`] and [`STEPS`] steps at least, or a
+/// twentieth of these if no limit is expected.
 pub(super) fn steps(h: f64, expected: f64) -> u64 {
     let least = if expected.is_finite() { 1.0 } else { 0.05 };
     (HORIZON / h).ceil().max(least * STEPS) as u64
 }
 
-/// Calls `look` with numbers of steps to take and to check, `steps` in all, and then 8 more, one by
-/// one. Returns what `look` does as soon as that is not `Some(true)`.
-pub(super) fn step_and_look(steps: u64, mut look: impl FnMut(u64) -> Option<bool>) -> Option<bool> {
+/// Takes `steps` steps and then 8 more, one by one: calls `check` with numbers of steps to take and
+/// to check. Returns its result as soon as that is not `Some(true)`.
+pub(super) fn take_checked(steps: u64, mut check: impl FnMut(u64) -> Option<bool>) -> Option<bool> {
     let mut left = steps;
     while left > 0 {
-        let count = (steps / LOOKS).clamp(1, left);
-        if !look(count)? {
+        let count = (steps / CHECKS).clamp(1, left);
+        if !check(count)? {
             return Some(false);
         }
         left -= count;
     }
     for _ in 0..8 {
-        if !look(1)? {
+        if !check(1)? {
             return Some(false);
         }
     }
     Some(true)
 }
 
-/// Why a search ends before it has found what it looks for.
+/// Reason why a search ends before it has found the limit.
 enum Stop {
-    /// A run says neither that its step holds nor that it does not.
+    /// A run showed neither that its step holds nor that it fails.
     Open,
     Failed(Error),
 }
 
-/// Trials of steps (s), and what they have shown.
+/// Trial steps (s) and their results.
 struct Trials<F> {
     holds: F,
     runs: u32,
-    /// Steps, and whether they held.
+    /// Trial steps, and whether they held.
     tried: Vec<(f64, bool)>,
 }
 
@@ -207,8 +206,8 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
         Ok(holds)
     }
 
-    /// Brackets the limit, from an expected one (s), and bisects it, unless the longest step holds
-    /// or no step of at least `shortest` (s) does.
+    /// Brackets the limit, starting from an expected one (s), and bisects it, unless the longest
+    /// step holds or no step of at least `shortest` (s) does.
     fn search(
         &mut self,
         guess: f64,
@@ -253,15 +252,15 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
         Ok(())
     }
 
-    /// Tries steps around a limit (s) that is not known to be sharp: from half of it to twice it,
-    /// and shorter ones as long as these fail. Then bisects both ends of the interval in which some
+    /// Tries steps around a limit (s) that may not be sharp: from half of it to twice it, and
+    /// shorter ones as long as these fail. Then bisects both ends of the interval in which some
     /// hold and some fail.
     fn spread(&mut self, limit: f64, precision: f64) -> Result<(), Stop> {
         for quarters in (-4..=4).filter(|quarters| *quarters != 0) {
             self.hold(limit * 2f64.powf(0.25 * f64::from(quarters)))?;
         }
         let mut lowest = 0.5 * limit;
-        while lowest > LEAST * limit && self.longest_that_held(lowest).is_none() {
+        while lowest > MIN_LIMIT_SHARE * limit && self.longest_that_held(lowest).is_none() {
             lowest *= 0.5;
             self.hold(lowest)?;
         }
@@ -274,13 +273,13 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
         Ok(())
     }
 
-    /// Longest step up to a limit (s) that held.
+    /// Longest step that held, up to a limit (s).
     fn longest_that_held(&self, limit: f64) -> Option<f64> {
         let held = self.tried.iter().filter(|(h, holds)| *holds && *h <= limit);
         held.map(|(h, _)| *h).max_by(f64::total_cmp)
     }
 
-    /// Shortest step of at least a limit (s) that failed.
+    /// Shortest step that failed, from a limit (s) on.
     fn shortest_that_failed(&self, limit: f64) -> Option<f64> {
         let failed = self
             .tried
@@ -289,19 +288,19 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
         failed.map(|(h, _)| *h).min_by(f64::total_cmp)
     }
 
-    /// The shortest step that failed, after the longest shorter one that held (s).
+    /// The longest step that held below the shortest one that failed, and the latter (s).
     fn lower_end(&self) -> Option<(f64, f64)> {
         let failed = self.shortest_that_failed(0.0)?;
         Some((self.longest_that_held(failed)?, failed))
     }
 
-    /// The longest step that held, before the shortest longer one that failed (s).
+    /// The longest step that held, and the shortest longer one that failed (s).
     fn upper_end(&self) -> Option<(f64, f64)> {
         let held = self.longest_that_held(f64::INFINITY)?;
         Some((held, self.shortest_that_failed(held)?))
     }
 
-    /// What the trials have shown, if any step held.
+    /// Result of the trials, if any step held.
     fn observation(&self) -> Option<Observation> {
         self.longest_that_held(f64::INFINITY)
             .map(|held| Observation {
@@ -312,14 +311,14 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
     }
 }
 
-/// Largest step (s) for which `holds` returns true, by bisection of its logarithm from the expected
-/// limit (s), infinity if there is none, to a relative precision. `None` if runs would take too
-/// long; `work` is that of an evaluation.
+/// Largest step (s) for which `holds` returns true, to a relative precision: by bisection of its
+/// logarithm, starting from the expected limit (s), or infinity if none is expected. `None` if runs
+/// would take too long; `work` is that of an evaluation.
 ///
-/// With `near`, the step next to the limit is tried before the others: two runs are enough where
-/// the limit is as expected, if steps shorter than one that holds hold too.
+/// With `near`, the step closest to the limit is tried before others: two runs are enough if the
+/// limit is as expected, provided that steps shorter than one that holds hold too.
 ///
-/// Where `holds` returns `None`, the search ends with what it knows.
+/// If `holds` returns `None`, the search ends with the result so far.
 pub(super) fn bisect(
     expected: f64,
     work: f64,
@@ -327,9 +326,13 @@ pub(super) fn bisect(
     near: bool,
     holds: impl Fn(f64) -> Result<Option<bool>, Error>,
 ) -> Result<Option<Observation>, Error> {
-    let shortest = (HORIZON * work / MOST).max(1e-6);
+    let shortest = (HORIZON * work / MAX_RUN_WORK).max(1e-6);
     let limited = expected.is_finite();
-    let longest = if limited { BEYOND * expected } else { LONGEST };
+    let longest = if limited {
+        MAX_LIMIT_RATIO * expected
+    } else {
+        MAX_STEP
+    };
     let guess = expected.min(longest);
     if guess < shortest {
         return Ok(None);
@@ -341,9 +344,9 @@ pub(super) fn bisect(
     }
 }
 
-/// What longer runs show of a limit that shorter ones have shown: a sharp limit or, if they fail at
-/// shorter steps or hold at longer ones, the interval of both. `sharp` tells whether one is
-/// expected: then two runs close to it are enough where they agree.
+/// Checks a limit by longer runs. Returns a sharp limit or, if they fail at shorter steps or hold
+/// at longer ones, the interval of both. `sharp` tells whether a sharp limit is expected: then two
+/// runs close to it are enough if they agree.
 pub(super) fn sharpen(
     seen: Observation,
     sharp: bool,
@@ -353,15 +356,15 @@ pub(super) fn sharpen(
     let limit = seen.held;
     let mut trials = Trials::new(holds);
     trials.runs = seen.runs;
-    let mut look = || {
-        let is_above = trials.hold(limit * NEAR)?;
-        let is_below = trials.hold(limit / NEAR)?;
+    let mut check = || {
+        let is_above = trials.hold(limit * SHARP_TEST_RATIO)?;
+        let is_below = trials.hold(limit / SHARP_TEST_RATIO)?;
         if sharp && is_below && !is_above {
             return Ok(true);
         }
         trials.spread(limit, precision).map(|()| false)
     };
-    match look() {
+    match check() {
         Err(Stop::Failed(error)) => return Err(error),
         Ok(true) => {
             return Ok(Observation {
@@ -373,8 +376,8 @@ pub(super) fn sharpen(
     }
     let failed = trials.shortest_that_failed(0.0).unwrap_or(seen.failed);
     let long = trials.longest_that_held(f64::INFINITY).unwrap_or(0.0);
-    // Where longer runs fail at steps with which shorter ones held, both set the interval.
-    let held = if failed * NEAR > limit {
+    // If longer runs fail at steps at which shorter ones held, both set the interval.
+    let held = if failed * SHARP_TEST_RATIO > limit {
         long
     } else {
         long.max(limit)
@@ -386,7 +389,7 @@ pub(super) fn sharpen(
     })
 }
 
-/// Step next to one end of an interval that is bisected to a relative precision.
+/// First step next to `end`, when the interval to `other` is bisected to a relative precision.
 fn next(end: f64, other: f64, precision: f64) -> f64 {
     let mut step = other;
     while (step / end).max(end / step) > 1.0 + precision {

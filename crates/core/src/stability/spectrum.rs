@@ -3,42 +3,42 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use super::eigenvalues::{ITERATIONS, PRECISIONS, eigenvalues};
+use super::eigenvalues::{MAX_ITERATIONS, PRECISIONS, eigenvalues};
 use super::mode::Mode;
-use super::normalised::{MIXED, Mixing, Normalised, dot, normalise};
+use super::normalised::{MIN_MIXING, Mixing, Normalised, dot, normalise};
 use super::pencil::Pencil;
 use crate::system::{Linearized, Mechanics, ParticleSystem, kick_reads_velocity};
 
 /// Largest number of products with the stiffness for a spectrum: enough for three exact digits of
 /// its ends on any cloth, and for a sample of its middle.
-const PRODUCTS: usize = 64;
-/// Largest number of multiplications for computing every mode, which take a few seconds.
-const MULTIPLICATIONS: f64 = 2e9;
-/// Largest dimension of a first-order system whose Jacobian is computed.
-const DENSE: usize = 300;
+const MAX_PRODUCTS: usize = 64;
+/// Largest number of multiplications to compute all modes, which take a few seconds.
+const MAX_MULTIPLICATIONS: f64 = 2e9;
+/// Largest length of the state of a first-order system whose Jacobian is computed.
+const MAX_DENSE_LENGTH: usize = 300;
 /// Modes around the state y at time t (s), fastest first.
 ///
 /// For a linearised mechanical system they come from Lanczos's method on the mass-normalised
-/// stiffness, each with the damping of its own shape. Where damping mixes these shapes, the modes
-/// of a small system come from all of its eigenvalues; a large one has one more, that of the
-/// particle with most drag over mass. For a small first-order system, and one with constraints, the
-/// modes come from the eigenvalues of its Jacobian, by what f reads: not by what rigid bodies
-/// carry. In a large system constraints only add the mode in which their errors decay. For any
-/// other system there are none, and where the eigenvalues are not found in a limited number of
+/// stiffness, each with the damping of its own shape. If damping mixes these shapes, the modes of a
+/// small system come from all of its eigenvalues; those of a large one include that of the particle
+/// with the largest drag over mass. For a small first-order system, and a small one with
+/// constraints, the modes come from the eigenvalues of its Jacobian, without the particles on rigid
+/// bodies. In a large system, constraints only add the mode in which their errors decay. Any other
+/// system has no modes, nor has one whose eigenvalues are not found in a limited number of
 /// iterations. A mode of negative stiffness buckles.
 #[must_use]
 pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let linearized = system.mechanics().and_then(Mechanics::linearized);
     let is_constrained = |m: &&dyn Linearized| m.baumgarte_frequency().is_some();
-    let small = y.len() <= DENSE;
+    let small = y.len() <= MAX_DENSE_LENGTH;
     let mut modes = match linearized.filter(|m| !(small && is_constrained(m))) {
         Some(mechanics) => {
             let (x, _) = y.split_at(y.len() / 2);
             let Undamped {
                 mut modes, mixing, ..
-            } = of_mechanics(mechanics, t, x, PRODUCTS);
+            } = of_mechanics(mechanics, t, x, MAX_PRODUCTS);
             if mixing > Mixing::None {
-                let pencil = Pencil::of(mechanics, t, x, DENSE / 2);
+                let pencil = Pencil::of(mechanics, t, x, MAX_DENSE_LENGTH / 2);
                 match pencil.and_then(|pencil| pencil.modes(&modes)) {
                     Some(mixed) => modes = mixed,
                     None => modes.extend(of_drag(mechanics)),
@@ -58,14 +58,14 @@ pub(super) struct Undamped {
     pub modes: Vec<Mode>,
     /// Shape of each mode: the displacements times the roots of the masses, of length 1.
     pub shapes: Vec<Vec<f64>>,
-    /// How much damping mixes these shapes.
+    /// Degree to which damping mixes these shapes.
     pub mixing: Mixing,
 }
 
-/// Modes around the positions x (m), all of them or as many as a few seconds allow.
+/// Modes around the positions x (m): all of them, or as many as a few seconds allow.
 pub(super) fn shapes(mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Undamped {
-    let products = (MULTIPLICATIONS / x.len() as f64).sqrt() as usize;
-    of_mechanics(mechanics, t, x, products.max(PRODUCTS))
+    let products = (MAX_MULTIPLICATIONS / x.len() as f64).sqrt() as usize;
+    of_mechanics(mechanics, t, x, products.max(MAX_PRODUCTS))
 }
 
 /// Modes around x by Lanczos's method with at most `products` products.
@@ -89,8 +89,7 @@ fn of_mechanics(mechanics: &dyn Linearized, t: f64, x: &[f64], products: usize) 
         if basis.len() == products {
             break;
         }
-        // Gram-Schmidt against the whole basis, twice, which is enough for orthogonality to
-        // rounding.
+        // Gram-Schmidt against the whole basis, twice, which makes it orthogonal to rounding.
         for _ in 0..2 {
             for z in &basis {
                 let share = dot(z, &next);
@@ -113,7 +112,7 @@ fn of_mechanics(mechanics: &dyn Linearized, t: f64, x: &[f64], products: usize) 
         1 => beta[i.min(j)],
         _ => 0.0,
     });
-    let most = ITERATIONS * m;
+    let most = MAX_ITERATIONS * m;
     let find = |precision| SymmetricEigen::try_new(tridiagonal.clone(), precision, most);
     let Some(eigen) = PRECISIONS.into_iter().find_map(find) else {
         return found;
@@ -137,16 +136,16 @@ fn of_mechanics(mechanics: &dyn Linearized, t: f64, x: &[f64], products: usize) 
     found
 }
 
-/// Mode of the particle with most drag over mass, as if no spring held it; `None` where all have
-/// the same.
+/// Mode of the particle with the largest drag over mass, as if no spring held it; `None` if all
+/// have the same.
 pub(super) fn of_drag(mechanics: &dyn Linearized) -> Option<Mode> {
     let free = || mechanics.inverse_masses().iter().filter(|w| **w > 0.0);
     let lightest = free().fold(0.0, |m: f64, w| m.max(*w));
     let heaviest = free().fold(f64::INFINITY, |m: f64, w| m.min(*w));
     let drag = mechanics.drag_coefficient() * lightest;
-    let differs = drag > 0.0 && lightest > (1.0 + MIXED) * heaviest;
+    let differs = drag > 0.0 && lightest > (1.0 + MIN_MIXING) * heaviest;
     differs.then(|| Mode {
-        // So that it returns.
+        // Small but positive, so that the mode counts as one that returns.
         stiffness: (1e-3 * drag).powi(2),
         drag,
         damping: 0.0,
@@ -166,12 +165,12 @@ fn of_constraints(mechanics: &dyn Linearized) -> Option<Mode> {
 }
 
 /// Modes of a first-order system: one for each real eigenvalue and each conjugate pair of the
-/// Jacobian, which is computed by central differences. It does not tell drag from other damping:
-/// all of it counts as damping where kicks depend on v.
+/// Jacobian, which is computed by central differences. It does not distinguish drag from other
+/// damping: all damping counts as that of springs if kicks depend on v, else as drag.
 fn of_jacobian(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let carried = |k: &usize| system.rigid().is_some_and(|rigid| rigid.is_carried(*k));
     let unknowns: Vec<usize> = (0..y.len()).filter(|k| !carried(k)).collect();
-    if unknowns.len() > DENSE {
+    if unknowns.len() > MAX_DENSE_LENGTH {
         return vec![];
     }
     let mut jacobian = DMatrix::zeros(unknowns.len(), unknowns.len());
@@ -225,8 +224,8 @@ impl LargestMode {
         &self.shape
     }
 
-    /// Whether damping mixed this shape with others at the last estimate, or differs so much from
-    /// place to place that another mode may limit the step.
+    /// Whether damping mixed this shape with others at the last estimate, or drag differs so much
+    /// between particles that another mode may limit the step.
     #[must_use]
     pub fn mixes(&self) -> bool {
         self.mixes
@@ -264,7 +263,8 @@ impl LargestMode {
             std::mem::swap(&mut self.shape, &mut next);
         }
         let (mode, mixing) = stiffness.mode(largest, &self.shape, &mut next);
-        let dragged = of_drag(mechanics).is_some_and(|most| most.drag > (1.0 + MIXED) * mode.drag);
+        let dragged =
+            of_drag(mechanics).is_some_and(|most| most.drag > (1.0 + MIN_MIXING) * mode.drag);
         self.mixes = mixing > Mixing::None || dragged;
         let faster = of_constraints(mechanics).filter(|other| other.stiffness > mode.stiffness);
         faster.or(Some(mode))

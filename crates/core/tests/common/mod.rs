@@ -1,4 +1,4 @@
-//! Helpers of several tests.
+//! Shared functions of several tests.
 #![allow(dead_code, missing_docs, reason = "each test file uses its part")]
 
 use std::sync::Mutex;
@@ -32,8 +32,8 @@ pub fn on_all_cores<T: Send>(items: impl IntoIterator<Item = T>, work: impl Fn(T
     });
 }
 
-/// Whether a second of the scene takes the method minutes: implicit methods take the slopes of f by
-/// differences where many rigid bodies are.
+/// Whether a second of the scene takes the method minutes: implicit methods find the slopes of f by
+/// differences if there are many rigid bodies.
 pub fn takes_minutes(method: &Method, scene: &Scene) -> bool {
     let bodies = scene.model.network().map_or(0, |n| n.bodies().len());
     method.is_implicit() && bodies > 1

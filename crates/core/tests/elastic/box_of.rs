@@ -1,4 +1,4 @@
-//! A box of six tetrahedra a cell for the tests, with its particles as one array.
+//! A box of six tetrahedra per cell, with its particles as one array.
 
 use a3_core::elements::{Hyperelastic, Material, Solid};
 use a3_core::{Mechanics, Network, Vector3};
@@ -26,7 +26,7 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// A box of so many cells along each edge.
+    /// A box with these numbers of cells along its edges.
     pub fn new(cells: [usize; 3], size: [f64; 3], material: Material) -> Self {
         let points = cells.map(|n| n + 1);
         let at = |[i, j, k]: [usize; 3]| (k * points[1] + j) * points[0] + i;
@@ -64,7 +64,7 @@ impl Bar {
         }
     }
 
-    /// Positions, each moved by `by`, n x 3.
+    /// Positions n x 3, each mapped by `by`.
     pub fn moved(&self, by: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Vec<f64> {
         let places: Vec<_> = self.rest.iter().map(|p| by(*p)).collect();
         (0..3)
@@ -107,7 +107,7 @@ fn paths() -> impl Iterator<Item = [[usize; 3]; 4]> {
     })
 }
 
-/// Numbers between -1 and 1 that repeat.
+/// Repeatable numbers between -1 and 1.
 pub fn noise(count: usize, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {
@@ -119,7 +119,7 @@ pub fn noise(count: usize, seed: u64) -> Vec<f64> {
     (0..count).map(|_| next()).collect()
 }
 
-/// The state x, each number moved by up to `by`.
+/// The state x, with each number changed by up to `by`.
 pub fn shaken(x: &[f64], by: f64, seed: u64) -> Vec<f64> {
     x.iter()
         .zip(noise(x.len(), seed))

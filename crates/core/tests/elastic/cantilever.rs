@@ -1,5 +1,5 @@
 //! A bar that is held at one end and bends a little under its weight. Linear tetrahedra are too
-//! stiff against bending (they lock), less so the finer they are.
+//! stiff in bending (locking), but less so if they are smaller.
 
 use a3_core::elements::Hyperelastic;
 use a3_core::{Path, Vector3};
@@ -21,8 +21,9 @@ fn deflection(young: f64, poisson: f64, gravity: f64) -> f64 {
         + load * length.powi(2) / (2.0 * share * shear * area)
 }
 
-/// Deflection of a bar of so many cells across, twice as long as high, over that of the beam: one
-/// step of implicit Euler, so long that inertia counts for nothing, solves the linear equations.
+/// Deflection of a bar with `across` cells in its width and twice as many in its height, over that
+/// of the beam: one step of implicit Euler, so long that inertia is negligible, solves the linear
+/// equations.
 fn of_cells(across: usize) -> f64 {
     let material = rubber(Hyperelastic::NeoHookean);
     let gravity = 1e-4;

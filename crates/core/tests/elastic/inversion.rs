@@ -1,4 +1,4 @@
-//! Boxes that are turned inside out.
+//! Boxes turned inside out.
 
 use a3_core::elements::{Hyperelastic, Material};
 use a3_core::{Control, Model, Path, Scene, Simulation, Vector3};
@@ -6,8 +6,8 @@ use a3_core::{Control, Model, Path, Scene, Simulation, Vector3};
 use crate::box_of::{Bar, MODELS, rubber};
 use crate::common::method;
 
-/// Deformation gradient determinants of a cube pinned at one face, whose other particles begin in
-/// the mirror.
+/// Determinants of the deformation gradients of a cube that is pinned at one face, with all other
+/// particles mirrored at first.
 fn volumes_after(model: Hyperelastic, name: &str, step: f64) -> Vec<f64> {
     let mut bar = Bar::new(
         [2, 2, 2],
@@ -35,8 +35,8 @@ fn volumes_after(model: Hyperelastic, name: &str, step: f64) -> Vec<f64> {
     bar.tetrahedra.iter().map(volume).collect()
 }
 
-/// A neo-Hookean cube comes out of the mirror; for Saint Venant and Kirchhoff's energy it is at
-/// rest there.
+/// A neo-Hookean cube turns back; with Saint Venant and Kirchhoff's energy, it is at rest inside
+/// out.
 #[test]
 fn only_a_neo_hookean_cube_turns_back() {
     for (name, step) in [("rk4", 5e-4), ("implicit", 0.02), ("tr-bdf2", 0.005)] {

@@ -1,4 +1,4 @@
-//! Motion of solids: frequencies, orders, and what is conserved.
+//! Motion of solids: frequencies, orders, and conserved quantities.
 
 use a3_core::elements::{Hyperelastic, Material};
 use a3_core::integrators::METHODS;
@@ -35,8 +35,7 @@ fn a_bar_swings_as_slowly_as_it_is_long() {
         let state = [x, vec![0.0; 3 * n]].concat();
         let scene = Scene::new("bar", Model::Network(Box::new(bar.network)), state);
         let mut run = Simulation::new(scene, method("verlet"), Control::Step(1e-3)).unwrap();
-        // A quarter of a period passes until the tip is at rest length, and half of one between two
-        // crossings.
+        // The tip reaches the rest length after a quarter of a period, and again after each half.
         let mut crossings = vec![];
         let mut before = 1.0;
         while crossings.len() < 5 {
@@ -78,7 +77,7 @@ fn swinging(damping: f64) -> (Bar, Vec<f64>) {
     (bar, state)
 }
 
-/// Every method that serves a solid has its order on it, with and without viscosity.
+/// Every method that supports a solid keeps its order, with and without viscosity.
 #[test]
 fn methods_keep_their_orders() {
     for damping in [0.0, 0.005] {
@@ -115,11 +114,11 @@ fn methods_that_solve_spring_by_spring_refuse() {
     let (bar, _) = swinging(0.0);
     for name in ["xpbd", "vbd"] {
         let why = method(name).check(&bar.network).unwrap_err().to_string();
-        assert!(why.contains("no linear springs"), "{why}");
+        assert!(why.contains("not those of linear springs"), "{why}");
     }
 }
 
-/// A free solid in flight keeps its momenta to rounding, and Verlet's method its energy.
+/// A free solid in flight conserves its momenta to rounding, and Verlet's method its energy.
 #[test]
 fn momenta_are_kept() {
     for (name, step) in [("verlet", 1e-3), ("implicit-midpoint", 0.004)] {

@@ -1,4 +1,4 @@
-//! Forces of deformations that are known in closed form.
+//! Forces of deformations with a closed form.
 
 use a3_core::Vector3;
 use a3_core::elements::{Hyperelastic, Material, Solid};
@@ -45,7 +45,7 @@ fn whole_energy(bar: &Bar, x: &[f64]) -> f64 {
     bar.tetrahedra.iter().map(of_one).sum()
 }
 
-/// Forces are minus the slope of the energy, as plain loops find both.
+/// Forces are minus the gradient of the energy, both computed by plain loops.
 #[test]
 fn forces_are_those_of_the_energy() {
     for model in MODELS {
@@ -85,7 +85,7 @@ fn forces_are_those_of_the_energy() {
     }
 }
 
-/// Patch test: an even deformation has no forces on particles inside, whatever the tetrahedra are.
+/// Patch test: a homogeneous deformation has no forces on particles inside, for any tetrahedra.
 #[test]
 fn an_even_deformation_is_in_equilibrium_inside() {
     for model in MODELS {

@@ -1,4 +1,4 @@
-//! Differentials of the forces, and the blocks that implicit methods use.
+//! Differentials of the forces, and their stiffness blocks for implicit methods.
 
 use a3_core::elements::{Hyperelastic, Material};
 use a3_core::{Coupling, GeneralCoupling, Linearized, Mechanics};
@@ -10,7 +10,7 @@ fn bar(material: Material) -> Bar {
     Bar::new([2, 1, 1], [1.0, 0.6, 0.8], material)
 }
 
-/// Stiffness and damping as whole matrices, of the couplings.
+/// Stiffness and damping as full matrices, from the couplings.
 fn matrices(bar: &Bar, x: &[f64], clamped: bool) -> [DMatrix<f64>; 2] {
     let n = bar.rest.len();
     let mut whole = [DMatrix::zeros(3 * n, 3 * n), DMatrix::zeros(3 * n, 3 * n)];
@@ -81,8 +81,8 @@ fn the_differential_is_that_of_the_forces() {
     }
 }
 
-/// At rest of velocity the couplings are the whole differential, in all states; flat tetrahedra
-/// have no third principal axis, and are as exact.
+/// At zero velocity the couplings are the full differential, in all states; flat tetrahedra have no
+/// third principal axis, and are as accurate.
 #[test]
 fn couplings_are_the_differential() {
     for model in MODELS {
@@ -148,8 +148,8 @@ fn clamped_couplings_are_positive_semidefinite() {
     }
 }
 
-/// Viscous forces are a tau-th of the rate of the elastic ones at rest, vanish for rigid motion,
-/// take energy, and neither push nor turn.
+/// Viscous forces are tau times the rate of the elastic ones at rest, vanish for rigid motion,
+/// dissipate energy, and have no total force and torque.
 #[test]
 fn viscosity_damps_strain_alone() {
     for model in MODELS {
@@ -203,8 +203,8 @@ fn viscosity_damps_strain_alone() {
     }
 }
 
-/// Elastic forces, too, neither push nor turn, also with more tetrahedra than go into whole
-/// vectors.
+/// Elastic forces, too, have no total force and torque, also with a number of tetrahedra that does
+/// not fill whole vectors.
 #[test]
 fn elastic_forces_conserve_momentum() {
     for model in MODELS {

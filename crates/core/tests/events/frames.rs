@@ -1,11 +1,11 @@
-//! Looking at a run changes nothing.
+//! Showing a run does not change it.
 
 use crate::common::{described, method, on_all_cores, takes_minutes};
 use a3_core::integrators::METHODS;
 use a3_core::{Control, Simulation};
 
-/// Every scene by every method, without frames and with frames between the ends of steps: the same
-/// bits.
+/// Every scene by every method has the same bits without frames and with frames between the ends of
+/// steps.
 #[test]
 fn frames_change_no_bit() {
     on_all_cores(a3_scenes::SCENES, |entry| {
@@ -42,7 +42,7 @@ fn frames_change_no_bit() {
     });
 }
 
-/// Verlet at 0.9 of its limit holds whatever the frames.
+/// Verlet at 0.9 of its limit is stable with any frames.
 #[test]
 fn frames_excite_no_oscillation() {
     let toml = "
@@ -100,9 +100,9 @@ fn states_within_fixed_steps_are_accurate() {
     assert!((v / half_v).log2() > 4.7 && v < 1e-3, "{v} {half_v}");
 }
 
-/// Between the ends of steps that are long against stiff springs, states have no more energy than
-/// at the ends: the implicit midpoint method turns such oscillations about in each step, and a
-/// polynomial through its states swings far out.
+/// Between the ends of steps that are long compared with stiff springs, states have no more energy
+/// than at the ends: the implicit midpoint method reverses such oscillations in each step, and a
+/// polynomial through its states overshoots.
 #[test]
 fn states_within_stiff_steps_stay_between_their_ends() {
     let toml = "

@@ -11,9 +11,8 @@ fn height(toml: &str, name: &str, value: f64, until: f64) -> f64 {
     run.position(1).y
 }
 
-/// After 20 s at rest, a pin moves by 0.1 m within 50 ms: the mass that hangs from it swings by
-/// (a / w T) (sin w (t - 20.05) - sin w (t - 20)) about the new place, by the response to two
-/// ramps.
+/// After 20 s at rest, a pin moves by 0.1 m within 50 ms: the mass that hangs from it swings by (a
+/// / w T) (sin w (t - 20.05) - sin w (t - 20)) about the new place, from the response to two ramps.
 #[test]
 fn a_rest_lets_no_pulse_pass() {
     let toml = "
@@ -52,7 +51,7 @@ fn a_rest_lets_no_pulse_pass() {
     }
 }
 
-/// A pin starts and stops to move at once: the tightest tolerance is met, by few steps.
+/// A pin starts and stops moving abruptly: the tightest tolerance is met in few steps.
 #[test]
 fn tight_tolerances_are_met_where_a_pin_starts() {
     let toml = "
@@ -78,7 +77,7 @@ fn tight_tolerances_are_met_where_a_pin_starts() {
     assert!((loose - height(toml, "rk4", 1e-4, 1.0)).abs() < 1e-5);
 }
 
-/// A longest step is kept.
+/// The longest step is respected.
 #[test]
 fn no_step_is_longer_than_the_longest() {
     let mut scene = described("[particles]\npositions = [[0, 0, 0]]\nmass = 1");
@@ -89,7 +88,7 @@ fn no_step_is_longer_than_the_longest() {
     assert!(run.steps() >= 32 && run.step_size().unwrap() <= 0.125);
 }
 
-/// A step that is as long as the longest one allowed ends there, and not where a motion begins.
+/// A step of the longest allowed length ends there, and not where a motion begins.
 #[test]
 fn longest_steps_stay_what_they_are() {
     let toml = "
@@ -119,8 +118,8 @@ fn longest_steps_stay_what_they_are() {
     }
 }
 
-/// A motion that takes less time than a step can be long is over at once: the digits of so short a
-/// step are far finer than those of the time.
+/// A motion may be much shorter than a step: its short steps are measured more finely than the
+/// time.
 #[test]
 fn motions_may_be_as_short_as_digits_tell() {
     for end in ["1.000000000001", "1.0000000000000002", "1.00000001"] {

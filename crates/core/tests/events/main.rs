@@ -1,4 +1,4 @@
-//! Tests of what begins, ends, is hit or breaks within a step.
+//! Tests of events within a step: motions that begin or end, contacts and tears.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! Rebounds from spheres, capsules, turned boxes and what moves, against their closed forms.
+//! Rebounds from spheres, capsules, turned boxes and moving obstacles, against closed forms.
 
 use crate::common::{described, method};
 use a3_core::integrators::METHODS;

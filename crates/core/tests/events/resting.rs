@@ -1,4 +1,4 @@
-//! Particles that rest and slide on flat obstacles, by steps that locate events.
+//! Particles that rest and slide on flat obstacles, in steps that locate events.
 
 use crate::common::{described, method};
 use a3_core::{Control, Simulation};
@@ -16,8 +16,9 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     distances.fold(0.0, f64::max)
 }
 
-/// A mass on a rough floor that a spring pulls to and fro: each half period it turns by twice the
-/// stretch that friction can hold less far, and where that holds the spring it sticks.
+/// A mass on a rough floor that a spring pulls back and forth: in each half period the amplitude
+/// decreases by twice the stretch that friction can hold, until friction holds the spring and the
+/// mass sticks.
 #[test]
 fn friction_stops_an_oscillator_where_its_closed_form_says() {
     let (stiffness, mass, friction, first): (f64, f64, f64, f64) = (40.0, 0.2, 0.3, 0.1);
@@ -56,7 +57,7 @@ fn friction_stops_an_oscillator_where_its_closed_form_says() {
 }
 
 /// Three masses on springs fall on a rough floor or a box, slide, lift off and come to rest.
-/// Adaptive methods of any order agree. Fixed steps, at whose ends contact acts, converge to the
+/// Adaptive methods of any order agree. Fixed steps, with contact at their ends, converge to the
 /// same motion.
 #[test]
 fn what_slides_and_sticks_converges_to_one_motion() {

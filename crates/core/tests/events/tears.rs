@@ -3,7 +3,7 @@
 use crate::common::{described, method};
 use a3_core::Simulation;
 
-/// A mass is thrown down on a spring, which breaks on the way: then it falls freely.
+/// A mass is thrown down on a spring, which breaks on the way; then it falls freely.
 #[test]
 fn a_spring_breaks_at_one_time_whatever_the_frames() {
     let toml = "
@@ -50,8 +50,8 @@ fn a_spring_breaks_at_one_time_whatever_the_frames() {
     }
 }
 
-/// A spring that is too long only within a step breaks too: a mass swings once past the limit and
-/// back between two ends of long steps.
+/// A spring that is too long only within a step breaks too: a mass swings past the limit once and
+/// back between the ends of a long step.
 #[test]
 fn a_spring_that_is_too_long_for_a_moment_breaks() {
     // x = 0.3 sin(w t) with w = 2 pi: the length is at most 1.3.

@@ -1,10 +1,10 @@
-//! Obstacles that are thinner than the way of a step.
+//! Obstacles that are thinner than the displacement in a step.
 
 use crate::common::{described, method};
 use a3_core::Simulation;
 use a3_core::integrators::METHODS;
 
-/// Text of a scene: a cloth falls 1 m on a table top of that thickness (m), at y = 0.5.
+/// Text of a scene: a cloth falls 1 m onto a table top of that thickness (m) at y = 0.5.
 fn table(thick: f64) -> String {
     format!(
         "gravity = [0, -9.81, 0]
@@ -33,7 +33,7 @@ fn a_cloth_rests_on_a_thin_table_by_every_solver() {
             if method.check(scene.model.system()).is_err() {
                 continue;
             }
-            // Steps that are stable, and too long for the table.
+            // Steps that are stable, but too long for the table.
             let value = if method.is_adaptive() {
                 1e-3
             } else {
@@ -46,8 +46,8 @@ fn a_cloth_rests_on_a_thin_table_by_every_solver() {
     }
 }
 
-/// A particle that comes at 50 m/s does not pass through a sphere, a capsule or a box that a step
-/// leads it right through, also where these move.
+/// A particle at 50 m/s does not pass through a sphere, a capsule or a box, still or moving, even
+/// if a step leads right through it.
 #[test]
 fn no_particle_passes_through_a_small_obstacle_in_a_step() {
     for shape in [

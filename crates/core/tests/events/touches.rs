@@ -28,8 +28,8 @@ const SLOPE: &str = "
     rotation = [0, 0, -0.5235987755982988]
 ";
 
-/// A particle falls 1 m on a smooth slope of 30 degrees, loses what it has across it, and slides
-/// on.
+/// A particle falls 1 m onto a smooth slope of 30 degrees, loses its velocity along the normal, and
+/// slides on.
 #[test]
 fn a_particle_falls_on_a_slope_and_slides() {
     let end = Vector3::new(4.345_823_729, -2.509_062_5, 0.0);
@@ -50,7 +50,7 @@ fn a_particle_falls_on_a_slope_and_slides() {
     }
 }
 
-/// A particle that falls on the top of a sphere of 2 m stays there.
+/// A particle that falls onto the top of a sphere of 2 m stays there.
 #[test]
 fn a_particle_stays_on_a_sphere() {
     let toml = "
@@ -71,8 +71,8 @@ fn a_particle_stays_on_a_sphere() {
     }
 }
 
-/// A sphere flies through where a particle hangs at rest, after ten seconds in which nothing moves:
-/// all methods agree on where it throws the particle.
+/// A sphere flies through the place of a particle that hangs at rest, after ten seconds without any
+/// motion: all methods agree on where it throws the particle.
 #[test]
 fn a_sphere_that_passes_after_a_rest_throws_what_hangs_there() {
     let toml = "
@@ -104,8 +104,8 @@ fn a_sphere_that_passes_after_a_rest_throws_what_hangs_there() {
     assert!((fixed - accurate).norm() < 5e-3, "{fixed} {accurate}");
 }
 
-/// Fast, thin, small and moving obstacles, at random: by no tolerance is a particle ever inside one
-/// at the end of a step, or past it.
+/// Fast, thin, small and moving obstacles, at random: at no tolerance is a particle inside one at
+/// the end of a step, or past it.
 #[test]
 fn no_particle_passes_through_what_moves_small_and_fast() {
     let mut seed = 20_u64;
@@ -117,7 +117,7 @@ fn no_particle_passes_through_what_moves_small_and_fast() {
     };
     let mut touched = 0;
     for k in 0..300 {
-        // A plate that is at y = 0 when the particle comes there, at t = 1.
+        // A plate that is at y = 0 when the particle arrives there, at t = 1.
         let thick = 10f64.powf(random(-4.0, -1.0));
         let (speed, lift) = (random(-3.0, 3.0), random(-2.0, 2.0));
         let toml = format!(
@@ -152,7 +152,7 @@ fn no_particle_passes_through_what_moves_small_and_fast() {
                 unreachable!()
             };
             let d = run.position(0) - obstacle.path.at(run.time()).position;
-            // Until it leaves the plate at a side.
+            // Until it slides off the side of the plate.
             if d.x.abs() > half_extents.x - 1e-3 {
                 above = false;
             }

@@ -1,4 +1,4 @@
-//! Edges through triangles, against whole numbers and known cases.
+//! Edges that cross triangles, against integer arithmetic and known cases.
 
 use super::random::Random;
 use a3_core::Vector3;
@@ -25,7 +25,7 @@ fn cloth(n: u32) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// Column-major numbers of points.
+/// Column-major coordinates of points.
 fn columns(points: &[Point]) -> Vec<f64> {
     (0..3)
         .flat_map(|axis| points.iter().map(move |x| x[axis] as f64))
@@ -40,8 +40,9 @@ fn cross(a: Point, b: Point) -> Point {
     std::array::from_fn(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
 }
 
-/// Whether no axis separates an edge from a triangle, in whole numbers: the axes are differences of
-/// their points, their cross products, and those with the differences again.
+/// Whether no axis separates an edge from a triangle, in integer arithmetic. The axes are
+/// differences of their points, their cross products, and cross products of those with the
+/// differences.
 fn meet(edge: &[Point], triangle: &[Point]) -> bool {
     let all: Vec<Point> = edge.iter().chain(triangle).copied().collect();
     let differences: Vec<Point> = (0..5)
@@ -69,7 +70,7 @@ fn meet(edge: &[Point], triangle: &[Point]) -> bool {
         })
 }
 
-/// Small whole numbers have every degeneracy, large ones none.
+/// Small integers cover every degeneracy, large ones none.
 #[test]
 fn what_is_found_among_random_triangles_is_what_whole_numbers_say() {
     let mut random = Random(2);
@@ -92,7 +93,7 @@ fn what_is_found_among_random_triangles_is_what_whole_numbers_say() {
                 }
             }
         }
-        // The last points may also be given apart from the state.
+        // The last points may also be passed separately.
         let split = random.below(count);
         let others: Vec<_> = points[split..]
             .iter()

@@ -7,7 +7,7 @@ use a3_core::Vector3;
 use a3_core::contact::PairKind::{EdgeEdge, VertexFloor, VertexTriangle};
 use a3_core::contact::{PairKind, closest, time_of_impact};
 
-/// Gaps that are tried (m).
+/// Gaps in the tests (m).
 const GAPS: [f64; 2] = [0.0, 1e-3];
 
 impl Pair {
@@ -40,8 +40,8 @@ struct Tally {
     false_hits: usize,
 }
 
-/// Counts of a family, of which each hundredth hit is compared, too. A hit is false if tight
-/// inclusion is certain that the pair stays 1e-8 m farther apart than it may.
+/// Results of a family of pairs, with each hundredth hit compared too. A hit is false if tight
+/// inclusion is certain that the pair stays 1e-8 m farther apart than it has to.
 fn tally(family: &str, count: usize) -> Tally {
     let mut random = Random(7);
     let mut tally = Tally::default();
@@ -57,8 +57,8 @@ fn tally(family: &str, count: usize) -> Tally {
             }
         } else {
             tally.free += 1;
-            // Nearer than that in the maximum norm is nearer than the gap. What begins nearer may
-            // lose a tenth.
+            // A distance below this in the maximum norm is below the gap. Pairs that begin nearer
+            // may lose a tenth.
             let least = gap.min(0.9 * pair.distance(0.0));
             match pair.meets(least / 3f64.sqrt()) {
                 Verdict::Apart => {}
@@ -70,7 +70,7 @@ fn tally(family: &str, count: usize) -> Tally {
     tally
 }
 
-/// Parallel edges that move in parallel are the ones that tight inclusion does not decide.
+/// Only parallel edges in parallel motion are undecided by tight inclusion.
 #[test]
 fn none_of_a_million_pairs_that_meet_is_free_and_few_that_do_not_are_hit() {
     let tallies: Vec<_> = std::thread::scope(|scope| {
@@ -114,13 +114,13 @@ fn distances_on_the_way_are_larger_than_the_gap_until_the_time_of_impact() {
     );
 }
 
-/// The far end of a long primitive that turns about its near end moves by half its length: what it
-/// meets near that end, it meets when it is there, and not when few planes have been tried.
+/// The far end of a long primitive that turns about its near end moves by half its length: a
+/// primitive near that end is hit when the far end arrives, and not after a few planes.
 #[test]
 fn a_long_primitive_meets_what_is_near_its_slow_end_in_time() {
     let gap: f64 = 0.1;
-    // At the share t the primitive has the direction (t / 2, 0, -1) from the y axis, and is
-    // |2 - 5 t| / sqrt(1 + t^2 / 4) from what is at x = 2, z = -10.
+    // At the share t the primitive has the direction (t / 2, 0, -1) from the y axis, and is |2 - 5
+    // t| / sqrt(1 + t^2 / 4) away from x = 2, z = -10.
     let [a, b, c] = [25.0 - gap * gap / 4.0, -20.0, 4.0 - gap * gap];
     let exact = (-b - (b * b - 4.0 * a * c).sqrt()) / (2.0 * a);
     for length in [1e2, 1e5, 1e9] {
@@ -150,7 +150,7 @@ fn a_long_primitive_meets_what_is_near_its_slow_end_in_time() {
                 time.unwrap() <= exact + tolerance,
                 "{kind:?} {length:e}: {time:?}"
             );
-            // Where planes run out, the time is early.
+            // When planes run out, the time is too early.
             let decided = kind == EdgeEdge || length < 1e9;
             assert!(
                 !decided || left < 0.11 * gap + tolerance,
@@ -170,7 +170,7 @@ fn above(height: f64) -> [Vector3<f64>; 4] {
     ]
 }
 
-/// Moves of points by heights (m).
+/// Displacements of points by heights (m).
 fn lifted(heights: [f64; 4]) -> [Vector3<f64>; 4] {
     heights.map(|y| Vector3::new(0.3, y, -0.2))
 }
@@ -188,7 +188,7 @@ fn what_begins_nearer_than_the_gap_is_held_only_if_it_approaches() {
         let t = of(kind, 0.5, [-1.0, 0.0, 0.0, 0.0]).unwrap();
         assert!((t - 0.49899).abs() < 1e-8, "{t}");
     }
-    // Round primitives that touch may part, and slide.
+    // Round primitives that touch may separate, and slide.
     let round = |height: f64, rise: f64| {
         let moves = lifted([rise, 0.0, 0.0, 0.0]);
         time_of_impact(VertexTriangle, &above(height), &moves, 0.5, 0.501)
@@ -197,15 +197,15 @@ fn what_begins_nearer_than_the_gap_is_held_only_if_it_approaches() {
         assert_eq!([0.0, 0.1].map(|rise| round(height, rise)), [None; 2]);
         assert_eq!(round(height, -1e-11), Some(0.0));
     }
-    // They may lose a tenth of their room, and no tenth of the radius.
+    // They may lose a tenth of their room, but not a tenth of the radius.
     assert_eq!(round(0.5001, -1e-12), None);
     assert_eq!(round(0.5001, -1e-4), Some(0.0));
-    // Touching: only of a floor it is known which side is up.
+    // Touching: only for a floor it is known which side is up.
     assert_eq!(of(VertexTriangle, 0.0, [0.1, 0.0, 0.0, 0.0]), Some(0.0));
     assert_eq!(of(VertexFloor, 0.0, [0.1, 0.0, 0.0, 0.0]), None);
     assert_eq!(of(VertexFloor, -0.1, [-0.1, 0.0, 0.0, 0.0]), Some(0.0));
     assert_eq!(of(VertexFloor, -0.1, [0.0; 4]), None);
-    // The closest points part while a corner rises past the vertex.
+    // The closest points separate while a corner rises past the vertex.
     assert_eq!(of(VertexTriangle, 5e-4, [0.0, 0.5, -0.5, 0.0]), None);
 }
 
@@ -224,8 +224,8 @@ fn numbers_that_are_not_finite_are_a_hit() {
     }
 }
 
-/// Unit tests of the benchmark of Wang et al. (2021), with the answers that it gives: points at the
-/// begin, and at the end of the step; e = 2^-23.
+/// Unit tests of the benchmark of Wang et al. (2021), with its answers: points at the beginning and
+/// at the end of the step; e = 2^-23.
 #[test]
 fn handcrafted_cases_are_decided_as_in_the_benchmark() {
     let e = 2f64.powi(-23);

@@ -2,17 +2,17 @@
 //! conservative bounds (Wang, Ferguson, Schneider, Jiang, Attene, Panozzo, *A large-scale benchmark
 //! and an inclusion-based algorithm for continuous collision detection*, 2021).
 //!
-//! The vector F(t, u, v) between two points of the primitives is linear in each parameter, so that
-//! its values in a box lie in the box around those at the corners. A box of parameters in which
-//! that does not reach 0 holds no root.
+//! The vector F(t, u, v) between two points of the primitives is linear in each parameter, so its
+//! values in a box of parameters lie within the box around those at the corners. If that box does
+//! not contain 0, there is no root in it.
 
 use a3_core::Vector3;
 use a3_core::contact::{PairKind, closest};
 use nalgebra::Rotation3;
 
-/// Error of F in units of the largest coordinate. Of roundings of 2^-53 there are at most 10 in F
-/// (parameters are dyadic, so 1 - t and 1 - u - v are exact), 2 at the end of the step, and 11
-/// where the points are turned.
+/// Error of F in units of the largest coordinate. There are at most 10 roundings of 2^-53 in F
+/// (parameters are dyadic, so 1 - t and 1 - u - v are exact), 2 at the end of the step, and 11 in
+/// the rotation of points.
 const FILTER: f64 = 32.0 * f64::EPSILON / 2.0;
 
 /// Variation of F (m) below which a box is not split.
@@ -22,14 +22,14 @@ const WIDTH: f64 = 1e-12;
 pub enum Verdict {
     /// No root: certain.
     Apart,
-    /// Root, or a value that is nearer to one than the filter and the least width of boxes.
+    /// Root, or a value that is nearer to one than the filter and the least width of boxes allow.
     Meets,
     /// More boxes than the budget has.
     Undecided,
 }
 
-/// Whether two primitives come nearer than `separation` (m) in a maximum norm, along the axes, or
-/// where that is not decided quickly, along axes of which one is the normal where they are nearest.
+/// Whether two primitives come nearer than `separation` (m) in a maximum norm along the axes or, if
+/// that is not decided quickly, along axes that include the normal where they are nearest.
 pub fn meet(
     kind: PairKind,
     from: &[Vector3<f64>; 4],
@@ -61,7 +61,7 @@ fn search(
     reach: f64,
     budget: usize,
 ) -> Verdict {
-    // How far F moves, at most, while a parameter goes from 0 to 1.
+    // Largest change of F while a parameter goes from 0 to 1.
     let extent = |a: usize, b: usize| (from[a] - from[b]).amax().max((to[a] - to[b]).amax());
     let moves: [f64; 4] = std::array::from_fn(|i| (to[i] - from[i]).amax());
     let time = moves.into_iter().fold(0.0, f64::max);

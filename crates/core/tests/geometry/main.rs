@@ -1,4 +1,4 @@
-//! Tests of what contact decides with certainty: times of impact, and edges through triangles.
+//! Tests of exact decisions of contact: times of impact, and edges that cross triangles.
 
 mod crossings;
 mod impact;

@@ -4,7 +4,7 @@ use super::random::Random;
 use a3_core::Vector3;
 use a3_core::contact::PairKind;
 
-/// Points and their moves in a step (m).
+/// Points and their displacements in a step (m).
 pub struct Pair {
     pub kind: PairKind,
     pub from: [Vector3<f64>; 4],
@@ -17,7 +17,7 @@ pub const FAMILIES: [&str; 8] = [
 ];
 
 impl Pair {
-    /// Pair of a family, whose coordinates are around 1 or, one time in eight, around 1000.
+    /// Pair of a family, with coordinates around 1 or, one time in eight, around 1000.
     pub fn random(family: &str, random: &mut Random) -> Self {
         let kind = [PairKind::VertexTriangle, PairKind::EdgeEdge][random.below(2)];
         let length = random.magnitude(-4.0, 0.5);
@@ -33,7 +33,7 @@ impl Pair {
             "coplanar" => pair.flatten(random),
             "sliver" => pair.squeeze(random),
             "lattice" => {
-                // Every degeneracy occurs among small whole numbers.
+                // Every degeneracy occurs among small integers.
                 let whole =
                     |random: &mut Random| Vector3::from_fn(|_, _| random.below(3) as f64 - 1.0);
                 pair.from = std::array::from_fn(|_| whole(random));
@@ -73,7 +73,7 @@ impl Pair {
     }
 
     /// Makes two points of the primitives meet at a time of the step, or miss by a little. If they
-    /// graze, the first also moves along the second there.
+    /// graze, the first also moves along the second at that time.
     fn aim(&mut self, graze: bool, random: &mut Random) {
         let weights = self.weights(random);
         let t = [0.0, 1.0, random.share(), random.share()][random.below(4)];

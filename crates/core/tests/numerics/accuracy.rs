@@ -67,8 +67,8 @@ fn on_the_circle_the_error_is_the_known_one() {
     }
 }
 
-/// Frames at which no step ends are interpolated, so finely that the error of a method of order 4
-/// is the same as where a step ends at each frame.
+/// Frames within steps are interpolated so accurately that the error of a method of order 4 is the
+/// same as if a step ended at each frame.
 #[test]
 fn frames_between_steps_show_no_error_of_their_own() {
     for name in ["chain", "mit", "simple"] {
@@ -93,8 +93,7 @@ fn frames_between_steps_show_no_error_of_their_own() {
     }
 }
 
-/// A circle is left behind by a phase, one particle has its own error, and the end is not the worst
-/// moment.
+/// The phase on a circle lags, one particle has its own error, and the end is not the worst moment.
 #[test]
 fn errors_are_of_what_was_asked_for() {
     let circle = scene("simple");
@@ -113,7 +112,7 @@ fn errors_are_of_what_was_asked_for() {
     );
     assert!((reference.still.position - 2.0).abs() < 1e-3);
 
-    // Gravity is exact in any step: nothing but the pinned end takes momentum from a chain.
+    // Gravity is exact in any step: only the pinned end changes the momentum of a chain.
     let chain = scene("chain");
     let scope = |particle, at_end| within(&chain, 2.0, Scope { particle, at_end });
     let error = |scope: &Reference| run(scope, &chain, "rk4", 1.0 / 30.0);
@@ -134,7 +133,7 @@ fn errors_are_of_what_was_asked_for() {
     assert!(refused.is_err());
 }
 
-/// A scene on which methods of order 4 have their order only at a hundredth of the largest stable
+/// In this scene methods of order 4 have their order only at a hundredth of the largest stable
 /// step; and a chart's precision costs less than the finest.
 #[test]
 fn references_are_refined_as_long_as_that_helps() {
@@ -144,7 +143,7 @@ fn references_are_refined_as_long_as_that_helps() {
     let precision = Precision {
         metric: Metric::Position,
         uncertainty: 1e-3,
-        most: f64::INFINITY,
+        max_work: f64::INFINITY,
     };
     let frames = Frames::new(3.0);
     let coarse = Reference::new(&random, frames, Scope::default(), precision, GO_ON);
@@ -254,7 +253,8 @@ fn looks_are_not_a_part_of_the_time_of_a_run() {
         ("dopri5", Control::Tolerance(1e-4)),
     ];
     for (name, control) in runs {
-        // This clock goes on by a second whenever it is read, before and after each look as well.
+        // This clock advances by a second whenever it is read, and also before and after each
+        // frame.
         let reads = Cell::new(0);
         let clock = || {
             reads.set(reads.get() + 1);
@@ -324,7 +324,7 @@ fn search(scene: &Scene, reference: &Reference, error: f64, most: f64) -> f64 {
             let mut count = 4u64;
             while (count * u64::from(m.evaluations)) as f64 <= best {
                 let control = Control::Step(reference.frames.until / count as f64);
-                // Linear algebra comes on top of the evaluations.
+                // Linear algebra adds to the evaluations.
                 if run(m, control, &mut best) > 2.0 * best {
                     break;
                 }

@@ -1,4 +1,4 @@
-//! Adaptive methods: errors and costs, dense output, the first step, and the failure where no step
+//! Adaptive methods: errors and costs, dense output, the first step, and the failure if no step
 //! meets the tolerance.
 
 use std::f64::consts::TAU;
@@ -212,7 +212,7 @@ fn a_tighter_tolerance_is_more_accurate_on_cloth() {
     }
 }
 
-/// System y' = y^2, whose solution from y = 1 is infinite at t = 1 s.
+/// System y' = y^2, whose solution from y = 1 has a pole at t = 1 s.
 struct Pole;
 
 impl ParticleSystem for Pole {
@@ -240,7 +240,7 @@ fn where_no_step_will_do_it_says_so() {
                 Err(error) => break error,
             }
         };
-        // The pole is as far off as the method's error on the way to it.
+        // The pole is found with the method's error on the way to it.
         let off = if m.is_implicit() { 1e-4 } else { 1e-5 };
         assert!(
             matches!(error, Error::StepTooSmall { time, .. } if (time - 1.0).abs() < off),
@@ -250,7 +250,7 @@ fn where_no_step_will_do_it_says_so() {
         assert!(size(&y).is_finite());
         assert!(error.to_string().contains("no step meets the tolerance"));
     }
-    // A run that ends so reports a blow-up: it neither hangs nor panics.
+    // A run that fails like this reports a blow-up: it neither hangs nor panics.
     let mut bare = scene("simple");
     bare.model = a3_core::Model::FirstOrder(std::sync::Arc::new(Pole));
     bare.state = vec![1.0, 0.5, 0.25];
@@ -264,7 +264,7 @@ fn where_no_step_will_do_it_says_so() {
     ));
 }
 
-/// System whose derivative is no number from a time on (s).
+/// System whose derivative is NaN from a time on (s).
 struct Undefined(f64);
 
 impl ParticleSystem for Undefined {

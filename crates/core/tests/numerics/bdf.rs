@@ -26,7 +26,7 @@ fn overdamped_chain() -> Scene {
     Scene::new("overdamped chain", Model::Network(Box::new(network)), state)
 }
 
-/// Largest root mean square error over frames, 60 a second, of a run beside a reference.
+/// Largest root mean square error, over 60 frames a second, of a run against a reference.
 fn error(run: &mut Simulation, reference: &mut Simulation, until: f64) -> f64 {
     let (mut worst, n) = (0.0f64, run.particles());
     for frame in 1..=(60.0 * until) as u32 {
@@ -69,7 +69,7 @@ fn circle(relative: f64) -> (f64, u32) {
         t += bdf.advance(system, t, f64::INFINITY, &mut y).unwrap().h;
         steps += 1;
         worst = worst.max((y[0] - t.cos()).hypot(y[1] - t.sin()));
-        // Within the step the polynomial is as good.
+        // Within the step the polynomial is as accurate.
         let mut within = vec![0.0; y.len()];
         let time = t - 0.5 * bdf.last().h;
         let _ = bdf.interpolate(system, time, &mut within);
@@ -86,8 +86,8 @@ fn errors_follow_the_tolerance_and_orders_rise() {
         let fall = pair[0].0 / pair[1].0;
         assert!((10.0..1000.0).contains(&fall), "{fall}");
     }
-    // A method of order 5 takes 10^(4/6) = 4.6 times the steps for a ten-thousandth of the error,
-    // one of order 4 6.3 times.
+    // A method of order 5 takes 10^(4/6) = 4.6 times the steps for a ten-thousandth of the error, a
+    // method of order 4 takes 6.3 times as many.
     let more = f64::from(runs[3].1) / f64::from(runs[1].1);
     assert!(more < 5.5, "{more}");
 }
@@ -119,7 +119,7 @@ fn steps_grow_where_each_has_no_past() {
     while t < 1.0 && steps < 1000 {
         t += bdf.advance(system, t, f64::INFINITY, &mut y).unwrap().h;
         steps += 1;
-        // As contact does.
+        // A change as by contact.
         y[0] += 1e-9;
     }
     println!("{steps} steps to {t} s");

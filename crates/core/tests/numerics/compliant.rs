@@ -1,5 +1,5 @@
-//! Methods that solve spring by spring: exact steps, what they conserve, which systems they take,
-//! and what an iteration costs.
+//! Methods that solve spring by spring: exact steps, conserved quantities, supported systems, and
+//! the cost of an iteration.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -71,7 +71,7 @@ fn led() -> (Network, Vec<f64>) {
     (network, y)
 }
 
-/// A single spring is solved as implicit Euler has it, also by a single iteration, in steps of any
+/// A single spring is solved as in implicit Euler, even by a single iteration, in steps of any
 /// length; the pin is exactly at its place.
 #[test]
 fn one_spring_takes_the_step_of_implicit_euler() {
@@ -118,8 +118,8 @@ fn what_is_at_rest_stays_at_rest() {
     }
 }
 
-/// Impulses along springs are equal and opposite; particles that are moved one by one see a spring
-/// at different times.
+/// Impulses along springs are equal and opposite; in vertex block descent, the ends of a spring are
+/// moved one after the other.
 #[test]
 fn xpbd_conserves_momentum_and_vertex_block_descent_does_not() {
     for seed in 0..5 {
@@ -159,7 +159,7 @@ fn random_networks_are_integrated_with_order_one() {
     }
 }
 
-/// The springs of a sheet and the same springs listed make the same bits.
+/// A sheet and a list of its springs have the same bits.
 #[test]
 fn a_sheet_is_its_springs_listed() {
     let cloth = scene_with_grid("cloth", 5, 6);
@@ -177,7 +177,7 @@ fn a_sheet_is_its_springs_listed() {
     }
 }
 
-/// Springs of length zero, between pins, without stiffness, and much stiffer than they are heavy.
+/// Springs of length zero, between pins, without stiffness, and much too stiff for their masses.
 #[test]
 fn no_number_is_lost_where_springs_have_no_direction() {
     let mut network = Network::new(vec![1e-3, 1.0, 1e3, 1.0, 1.0]).unwrap();
@@ -292,7 +292,7 @@ fn springs_that_buckle_are_refused() {
     assert!(method("implicit").check(&network).is_ok());
 }
 
-/// Prices of iterations, in evaluations of forces spring by spring.
+/// Costs of iterations, in evaluations of forces spring by spring.
 /// `cargo test -p a3-core --test numerics prices_measured -- --ignored --nocapture`
 #[test]
 #[ignore = "measures"]

@@ -1,12 +1,12 @@
-//! What errors are taken from: the ends of steps that are longer than the fastest motion, and a
-//! reference that is known until something is hit.
+//! States that errors are taken from: the ends of steps that are longer than the fastest motion,
+//! and a reference that is known until an impact.
 
 use crate::common::{described, method};
 use a3_core::accuracy::{Frames, Reference, measure};
 use a3_core::{Control, Simulation};
 
-/// The fastest motion takes a hundredth of a step, whose ends alone are the method's: between them,
-/// no polynomial knows what happens.
+/// The fastest motion takes a hundredth of a step. The method determines only the ends of steps: no
+/// polynomial knows the motion between them.
 #[test]
 fn errors_are_those_at_the_ends_of_steps() {
     let stiff = described(
@@ -37,8 +37,8 @@ fn errors_are_those_at_the_ends_of_steps() {
     }
 }
 
-/// All of the motion is over at the end of the first step, where its error is small: but what
-/// happens meanwhile is not known.
+/// All motion is over at the end of the first step, where its error is small; but the motion
+/// meanwhile is unknown.
 #[test]
 fn steps_that_skip_the_motion_are_not_accurate() {
     let damped = described(
@@ -62,7 +62,7 @@ fn steps_that_skip_the_motion_are_not_accurate() {
     assert!(error(0.05) < 0.01 * reference.still.position);
 }
 
-/// A jelly falls 0.1 m on a round obstacle, on which it then rests by impulses after each step.
+/// A jelly falls 0.1 m onto a round obstacle, on which it then rests by impulses after each step.
 #[test]
 fn a_reference_says_until_when_it_is_clear() {
     let fall = described(

@@ -24,8 +24,8 @@ fn buckling_out_of_a_plane_is_no_chaos() {
     assert!(!found.buckles && found.lyapunov.is_finite(), "{found:?}");
 }
 
-/// A box that falls by 3 mm and then rests on a rough slope is predictable: contact, which the
-/// start does not have, needs shorter steps.
+/// A box that falls by 3 mm and then rests on a rough slope is predictable: the contact, which is
+/// absent at the start, needs shorter steps.
 #[test]
 fn contact_to_come_is_no_chaos() {
     let box_on_slope = described(

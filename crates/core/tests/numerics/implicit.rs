@@ -36,7 +36,7 @@ fn the_circle_shrinks_as_it_must() {
     }
 }
 
-/// The growth of an oscillator, solved with forces, masses and couplings, is |R(i h omega)| too.
+/// The growth of an oscillator, solved with forces, masses and couplings, is also |R(i h omega)|.
 #[test]
 fn the_oscillator_shrinks_as_it_must() {
     for (omega, h) in [(1.0, 0.1), (1.0, 1.0), (30.0, 0.5), (1e4, 0.01)] {
@@ -115,8 +115,8 @@ fn the_course_cloth_settles_at_half_a_second_a_step() {
     assert!(run.work().residual < 1e-3);
 }
 
-/// Energy of an undamped pendulum on a spring for 200 s: the midpoint rule and PEFRL keep it, and
-/// implicit Euler loses it.
+/// Energy of an undamped pendulum on a spring for 200 s: the midpoint rule and PEFRL conserve it,
+/// and implicit Euler loses it.
 #[test]
 fn energy_over_a_long_time() {
     let mut pendulum = scene("pendulum");

@@ -123,7 +123,7 @@ fn limits_in_the_plane() {
             assert_relative_eq!(w * found.bounded, expected, max_relative = 2e-6);
         }
     }
-    // The substitution by which these methods serve drag damps every mode.
+    // The substitution by which these methods support drag damps every mode.
     for (name, limits) in [
         ("dprkn86", [4.815_554, 6.363_052, 10.676_329]),
         ("dprkn1210", [8.776_332, 10.100_642, 19.774_027]),
@@ -164,7 +164,7 @@ fn limits_of_damped_springs() {
         assert_relative_eq!(w * found.step, expected, max_relative = 2e-3);
         assert_relative_eq!(w * found.bounded, expected, max_relative = 2e-6);
     }
-    // What a scene says of its modes.
+    // Modes that a scene reports.
     let modes = |damping: f64| {
         let scene = described(&format!(
             "[[chain]]\nparticles = 3\nfrom = [0, 0, 0]\nto = [2, 0, 0]\nmass = 1\n\
@@ -177,8 +177,8 @@ fn limits_of_damped_springs() {
     assert!(modes(0.0).iter().all(|mode| !mode.reads_velocity));
 }
 
-/// Steps at which modes grow at all, and at which they grow tenfold, of methods that grow slowly in
-/// between: Euler's method with little damping, and that of Dormand and Prince without any.
+/// Steps at which modes grow at all, and at which they grow tenfold, for methods with slow growth
+/// in between: Euler's method with little damping, and that of Dormand and Prince without any.
 #[test]
 fn slow_growth_is_no_limit_and_no_stability() {
     let damped = Mode {
@@ -199,8 +199,8 @@ fn slow_growth_is_no_limit_and_no_stability() {
     }
 }
 
-/// Energy of a mode swings by 1 / (1 - z^2 / 4) in steps of Verlet's method, z = h w, by (2 + z) /
-/// (2 - z) in those of symplectic Euler, and not at all in Runge-Kutta steps.
+/// The energy of a mode oscillates by a factor of 1 / (1 - z^2 / 4) in steps of Verlet's method, z
+/// = h w, by (2 + z) / (2 - z) in those of symplectic Euler, and not at all in Runge-Kutta steps.
 #[test]
 fn the_energy_of_a_mode_swings() {
     for z in [0.1, 1.0, 1.9] {
@@ -214,7 +214,7 @@ fn the_energy_of_a_mode_swings() {
             assert_relative_eq!(growth.swing(z / 30.0), expected, max_relative = 1e-6);
         }
     }
-    // Damping makes the exact energy swing, and a Runge-Kutta method no more than that.
+    // Damping makes the exact energy oscillate, and a Runge-Kutta method adds nothing to that.
     for ratio in [0.3, 0.9] {
         let damped = Mode {
             damping: 2.0 * ratio * 30.0,
@@ -335,7 +335,7 @@ fn a_scene_of_any_shape_has_a_spectrum() {
     for entry in a3_scenes::SCENES {
         let scene = entry.build(None).unwrap().scene;
         let modes = spectrum(scene.model.system(), 0.0, &scene.state);
-        // That of a cloth with rigid bodies is too large to be found.
+        // A cloth with rigid bodies is too large.
         let found = entry.name != "ball-on-cloth";
         assert_eq!(!modes.is_empty(), found, "{}", entry.name);
         for m in integrators::METHODS {
@@ -351,8 +351,8 @@ fn a_scene_of_any_shape_has_a_spectrum() {
     assert!(spectrum(tall.model.system(), 0.0, &tall.state)[0].frequency() > 0.0);
 }
 
-/// Beside a free body, whose eigenvalues are zero many times over, a fluid and a solid have the
-/// modes that they have alone, where these come from Lanczos's method.
+/// Beside a free body, whose eigenvalues are zero with high multiplicity, a fluid and a solid have
+/// the same modes as alone, where these come from Lanczos's method.
 #[test]
 fn eigenvalues_are_found_beside_many_that_are_zero() {
     let solid = "
@@ -388,7 +388,7 @@ fn eigenvalues_are_found_beside_many_that_are_zero() {
 fn what_grows_by_itself_limits_no_step() {
     let falling = Mode::of_eigenvalue(0.3, 2.0);
     let swinging = Mode::of_eigenvalue(-0.1, 50.0);
-    // What differences of forces make of a motion without damping.
+    // Rounding errors of a motion without damping, from differences of forces.
     let rounded = Mode::of_eigenvalue(1e-9, 50.0);
     assert!(!falling.returns() && swinging.returns() && rounded.returns());
     for method in integrators::METHODS.iter().filter(|m| !m.positions_only()) {

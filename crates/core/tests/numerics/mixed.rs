@@ -1,6 +1,6 @@
-//! Limits at rest where drag over mass and the damping of springs differ from place to place, so
-//! that the modes of the undamped motion are not the modes. They are judged by the motion itself:
-//! runs of the scene, disturbed in all directions, just below the limit and just above it.
+//! Limits at rest where drag over mass and the damping of springs differ between places, so that
+//! undamped modes are not the modes of the motion. The limits are compared with runs of the scene,
+//! disturbed in all directions, just below and just above them.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use crate::common::{described, method, on_all_cores};
 use a3_core::stability::{rest, tenfold_time};
 use a3_core::{Control, Scene, Simulation};
 
-/// Two particles on a string, of which the lower has twenty times less mass and so much drag.
+/// Two particles on a string, of which the lower one has a twentieth of the mass and strong drag.
 const HEAVY_DRAG: &str = "
     gravity = [0, -9.81, 0]
     drag = 5
@@ -88,8 +88,8 @@ fn net(seed: u64) -> Scene {
     ))
 }
 
-/// How much a disturbance in all directions grows from the middle to the end of a run in steps of h
-/// (s), by the largest speed of the particles times the roots of their masses.
+/// Growth of a disturbance in all directions from the middle to the end of a run in steps of h (s),
+/// by the largest speed of the particles times the roots of their masses.
 fn growth(still: &Scene, name: &str, h: f64) -> f64 {
     let network = still.model.network().unwrap();
     let (n, half) = (network.particles(), still.state.len() / 2);
@@ -117,7 +117,7 @@ fn growth(still: &Scene, name: &str, h: f64) -> f64 {
         let speed = speeds.fold(0.0, |most: f64, (k, (a, b))| {
             most.max((a - b).abs() * network.masses()[k % n].sqrt())
         });
-        // Before it ends in a bounded motion, as that of damped springs may.
+        // Before it ends in a bounded motion, as damped springs may.
         if speed > 1e2 * size {
             return f64::INFINITY;
         }
@@ -145,7 +145,7 @@ fn limits_at_rest_hold_where_damping_mixes_modes() {
             "dprkn86",
         ] {
             let Ok(limit) = rest.largest_step(method(name)) else {
-                // Where springs are damped.
+                // Springs are damped.
                 continue;
             };
             let limit = limit.unwrap();
@@ -154,7 +154,7 @@ fn limits_at_rest_hold_where_damping_mixes_modes() {
             }
             let grown = |part: f64| growth(&rest.scene, name, part * limit.step);
             let below = grown(0.97);
-            // A method of several kicks may hold again at little longer steps.
+            // A method of several kicks may be stable again at slightly longer steps.
             let above = [1.03, 1.01, 1.005]
                 .map(grown)
                 .into_iter()

@@ -1,11 +1,11 @@
-//! Methods for forces without velocities: strong drag, states within a step, and what is refused.
+//! Methods for forces without velocities: strong drag, states within a step, and refusals.
 
 use crate::common::{described, distance, method, oscillator, scene, simulation, size};
 use a3_core::integrators::Tolerance;
 use a3_core::{Cause, Error, Scene, Simulation};
 
-/// A polynomial through the stages loses nothing: states within steps have errors of the size
-/// of those at their ends.
+/// A polynomial through the stages is accurate: errors of states within steps are of the size of
+/// those at their ends.
 #[test]
 fn frames_are_as_accurate_as_steps() {
     for name in ["verner65", "dprkn86", "dprkn1210"] {
@@ -34,8 +34,8 @@ fn frames_are_as_accurate_as_steps() {
     }
 }
 
-/// Drag that ends all motion within a ten thousandth of a second shortens the steps, whatever step
-/// is tried first.
+/// Drag that ends all motion within a ten-thousandth of a second shortens the steps, whatever the
+/// first trial step is.
 #[test]
 fn strong_drag_is_followed() {
     let (omega, zeta) = (100.0, 50.0);
@@ -68,7 +68,7 @@ fn strong_drag_is_followed() {
     }
 }
 
-/// A cloth of springs without damping, in a wind that does not blow yet.
+/// A cloth of undamped springs, with a wind that does not blow yet.
 fn calm() -> Scene {
     described(
         "gravity = [0, -9.81, 0]
@@ -83,8 +83,8 @@ fn calm() -> Scene {
     )
 }
 
-/// Wind that begins to blow on a run whose method does not serve it ends the run in one sentence,
-/// and a reset without wind begins it again.
+/// Wind that begins to blow in a run whose method does not support it ends the run with one
+/// message, and a reset without wind starts it again.
 #[test]
 fn wind_in_the_midst_of_a_run_is_refused() {
     for name in ["dprkn86", "dprkn1210", "srkn11"] {

@@ -1,5 +1,4 @@
-//! Stability limits that runs of the scenes themselves show, at rest and in motion, against those
-//! by modes.
+//! Stability limits found by runs of the scenes, at rest and in motion, against those by modes.
 
 use crate::common::{described, method, scene_with_grid};
 use a3_core::integrators;
@@ -16,7 +15,7 @@ const LINEAR: &str = "
     pin = [{ particles = [0] }]
 ";
 
-/// In linear motion the limits by the modes are exact, whatever the errors are: symplectic methods
+/// In linear motion the limits by the modes are exact, however large the errors: symplectic methods
 /// are bounded far beyond the steps at which they are accurate.
 #[test]
 fn motion_is_bounded_where_it_is_not_accurate() {
@@ -53,8 +52,8 @@ fn motion_is_bounded_where_it_is_not_accurate() {
     assert_eq!((implicit.held, implicit.is_open()), (1.0, true));
 }
 
-/// Undamped chain of soft springs that falls: by Verlet's method it gains energy slowly already at
-/// two thirds of the limit of its modes. What is seen is less, and marked.
+/// Undamped chain of soft springs that falls: with Verlet's method it gains energy slowly already
+/// at two thirds of the limit of its modes. The observed limit is smaller, and not sharp.
 #[test]
 fn slow_heating_in_motion_is_seen_and_marked() {
     let list = |count: u32, item: fn(f64) -> String| -> String {
@@ -95,7 +94,7 @@ fn limits_are_seen_on_the_cloth() {
     for m in integrators::METHODS.iter().filter(|m| !m.positions_only()) {
         let predicted = largest_step(m, &rest.modes).unwrap().unwrap();
         if m.needs_springs() {
-            // With every step the cloth hangs elsewhere, and going there is no growth.
+            // With every step the cloth hangs elsewhere, and moving there is no growth.
             assert!(predicted.step.is_infinite(), "{}", m.name);
             continue;
         }
@@ -113,8 +112,8 @@ fn limits_are_seen_on_the_cloth() {
             .bounded(m, &Budget::unlimited(), || true)
             .unwrap()
             .unwrap();
-        // A fast mode may pass before it has grown. What is not sharp grows so slowly that the
-        // cloth changes its shape before it is seen.
+        // A fast mode may be over before it has grown. If a limit is not sharp, growth is so slow
+        // that the cloth changes its shape first.
         let most = if seen.is_sharp() && in_motion.is_sharp() {
             1.2
         } else {
@@ -129,7 +128,7 @@ fn limits_are_seen_on_the_cloth() {
     }
 }
 
-/// A scene whose pins move has no state of rest, and a scene is brought to rest without tearing.
+/// A scene with moving pins has no state of rest, and a scene is brought to rest without tearing.
 #[test]
 fn rest_is_without_tears_and_not_of_what_moves() {
     let cloth = "
@@ -156,7 +155,7 @@ fn rest_is_without_tears_and_not_of_what_moves() {
     assert!(rest(&build("100", moves), || true).unwrap().is_none());
 }
 
-/// A small cloth whose motion is slower by a factor has that factor in its limit.
+/// A small cloth whose motion is slower by a factor has a limit larger by that factor.
 #[test]
 fn limits_at_rest_do_not_depend_on_the_unit_of_time() {
     let limit = |slower: f64| {

@@ -6,7 +6,7 @@ use a3_core::{
     Grid, Method, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Turn, Vector3, integrators,
 };
 
-/// Oscillation, and a turn about an axis that moves.
+/// An oscillation, and a rotation about a moving axis.
 fn paths() -> [Path; 2] {
     let sine = Path::Sine {
         center: Vector3::zeros(),
@@ -74,8 +74,8 @@ fn every_method_has_its_order() {
         let exact = integrate(&network, method("dop853"), &y0, 1.0 / 512.0, 512);
         let serving = |m: &&Method| m.check(&network).is_ok();
         for m in integrators::METHODS.iter().filter(serving) {
-            // Steps are short enough for the leading term and long enough to avoid rounding; for
-            // order 6 and above hardly both is possible.
+            // Steps are short enough for the leading term and long enough to avoid rounding errors;
+            // for order 6 and above, both are hardly possible.
             let (steps, slack) = match m.order {
                 9.. => (4, 1.5),
                 8 => (20, 0.6),
@@ -101,7 +101,7 @@ fn every_method_has_its_order() {
     }
 }
 
-/// The forces of springs that hold a rigid body at its ends turn it, and read its spin.
+/// The springs that hold a rigid body at its ends rotate it, and their forces depend on its spin.
 #[test]
 fn bodies_on_damped_springs_keep_the_order() {
     let scene = described(
@@ -131,7 +131,8 @@ fn bodies_on_damped_springs_keep_the_order() {
     }
 }
 
-/// Sweeps over rows keep the order with moving pins, which they put in their places stage by stage.
+/// Sweeps over rows keep the order with moving pins, which they move to their places stage by
+/// stage.
 #[test]
 fn sheets_led_by_their_pins_keep_the_order() {
     let grid = Grid::new(4, 5).unwrap();

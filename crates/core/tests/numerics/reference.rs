@@ -107,9 +107,8 @@ fn rk4_meets_every_reference() {
     }
 }
 
-/// Every method agrees with the references: an adaptive one at a tight tolerance, any other
-/// extrapolated to a step of zero by Neville's scheme, as its error has the powers p, p + 1, ... of
-/// h.
+/// Every method agrees with the references: an adaptive one at a tight tolerance, any other after
+/// extrapolation to step zero by Neville's scheme, as its error has the powers p, p + 1, ... of h.
 #[test]
 fn every_method_meets_the_references_in_the_limit() {
     let bases = [
@@ -127,8 +126,8 @@ fn every_method_meets_the_references_in_the_limit() {
         let serving = |m: &&Method| !(damped && m.positions_only());
         for method in a3_core::integrators::METHODS.iter().filter(serving) {
             if method.is_adaptive() {
-                // Formulas of order 5 at most take too long to be as close as pairs of order 5 or
-                // 8.
+                // Formulas of order 5 at most would take too long to be as accurate as pairs of
+                // order 5 or 8.
                 let (tolerance, most) = if method.is_implicit() {
                     (1e-8, 1e-5)
                 } else {
@@ -148,7 +147,7 @@ fn every_method_meets_the_references_in_the_limit() {
                 simulation.state().to_vec()
             };
             let order = method.order as i32;
-            // Methods of high order reach rounding after few levels.
+            // Methods of high order reach rounding after a few levels.
             let levels = if order >= 4 { 3 } else { 8 };
             let mut row: Vec<Vec<f64>> = (0..levels).map(run).collect();
             let mut best = f64::INFINITY;

@@ -1,5 +1,5 @@
-//! Steps to a tolerance depend on no unit, mass or origin: the same motion in other units is the
-//! same to the last bit where a unit is a power of two of another.
+//! Adaptive steps do not depend on units, masses or the origin: in another unit that is a power of
+//! two of the first, the motion has the same bits.
 
 use crate::common::{described, method, size};
 use a3_core::integrators::METHODS;
@@ -18,8 +18,8 @@ impl Numbers {
     }
 }
 
-/// A net of nine particles in random places, on a rough floor, with a unit of length that is that
-/// part of a metre, around a point (m).
+/// A net of nine particles at random places, on a rough floor, in a unit of length that is the
+/// fraction `unit` of a metre, around a point (m).
 fn net(seed: u64, unit: f64, around: f64) -> Scene {
     let mut random = Numbers(seed);
     let mut next = |scale: f64| scale * random.next();
@@ -61,7 +61,7 @@ fn run(scene: &Scene, method: &'static Method, tolerance: f64, until: f64) -> Si
     run
 }
 
-/// The adaptive methods that serve a scene.
+/// The adaptive methods that support a scene.
 fn adaptive(scene: &Scene) -> impl Iterator<Item = &'static Method> {
     let system = scene.model.system();
     METHODS
@@ -96,7 +96,7 @@ fn the_distance_from_the_origin_does_not_matter() {
     for seed in 1..=2 {
         let (here, away) = (net(seed, 1.0, 0.0), net(seed, 1.0, 1024.0));
         for method in adaptive(&here) {
-            // Before anything meets the floor, which finds rounding errors of positions.
+            // Before any contact with the floor, which depends on rounding errors of positions.
             let [a, b] = [&here, &away].map(|scene| run(scene, method, 1e-6, 0.2));
             let n = a.particles();
             let apart = (0..3 * n).map(|k| {
@@ -134,8 +134,8 @@ fn a_free_rotation_does_not_depend_on_the_mass() {
 
 #[test]
 fn points_that_a_body_carries_do_not_count() {
-    // A particle swings on a spring beside a brick at rest with eight points, or with 64 in the
-    // same places: what does not move makes no error of the particle smaller.
+    // A particle swings on a spring beside a brick at rest with eight points, or with 64 at the
+    // same places: bodies at rest do not reduce the relative error of the particle.
     let beside = |parts: usize| {
         described(&format!(
             "gravity = [0, 0, 0]\n[particles]\npositions = [[0, 0, 0], [1.2, 0.1, 0]]\n\
@@ -181,7 +181,7 @@ fn the_energy_of_a_spinning_brick_stays() {
 
 #[test]
 fn a_light_particle_on_a_stiff_spring_is_not_refused() {
-    // Along x, 1 m + 0.1 m cos(1e5 t); gravity acts across.
+    // Along x, 1 m + 0.1 m cos(1e5 t); gravity acts perpendicular to it.
     let scene = described(
         "gravity = [0, -9.81, 0]\n[particles]\npositions = [[0, 0, 0], [1.1, 0, 0]]\n\
          masses = [1, 1e-9]\nsprings = [[0, 1, 10, 1, 0]]\npin = [{ particles = [0] }]\n",

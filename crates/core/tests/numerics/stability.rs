@@ -156,7 +156,7 @@ fn damped_limits() {
     }
 }
 
-/// The spring damps the oscillator, and no drag.
+/// The spring damps the oscillator, and there is no drag.
 #[test]
 fn limits_of_a_damped_spring() {
     for (zeta, limit) in [

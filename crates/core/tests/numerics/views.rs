@@ -1,5 +1,5 @@
-//! Optional views, implemented by a system outside the core: a line of particles that implements
-//! kicks and drifts, products with its tangent, and steps row by row.
+//! Optional views, implemented by a system outside the core: a line of particles with kicks and
+//! drifts, products with its tangent, and steps row by row.
 
 use std::ops::Range;
 
@@ -90,7 +90,7 @@ impl Line {
         }
     }
 
-    /// Where a spring that is not damped would pull as this one does at x, moving at v.
+    /// Position at which an undamped spring would pull as this one does at x with velocity v.
     fn moved(&self, x: [f64; 3], v: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| x[axis] + self.damping_time * v[axis])
     }
@@ -272,7 +272,7 @@ fn rows_step_to_the_bits_of_whole_arrays() {
             Some(&self.0)
         }
     }
-    // The longest line is stepped in bands, on as many threads as there are.
+    // The longest line is stepped in bands, one for each thread.
     for particles in [1, 2, 9, 5000] {
         let y = Line::new(particles, true).state();
         for name in [
@@ -312,7 +312,7 @@ fn a_system_without_views_is_served_too() {
         };
         for has_views in [true, false] {
             let line = Line::new(7, has_views);
-            // A system without views does not say that its forces do not depend on the velocity.
+            // A system without views may depend on the velocity.
             assert_eq!(m.check(&line).is_ok(), has_views || !m.positions_only());
             if m.check(&line).is_err() {
                 continue;

@@ -228,7 +228,7 @@ fn strip() -> Scene {
     Scene::new("strip", Model::Network(Box::new(network)), state)
 }
 
-/// Angles (rad) by which the strip turns in the plane at each particle but the ends.
+/// Angles (rad) by which the strip bends in the plane at each particle except the ends.
 fn turns(run: &Simulation) -> Vec<f64> {
     let way = |i: usize| run.position(i + 1) - run.position(i);
     (0..PARTICLES - 2)

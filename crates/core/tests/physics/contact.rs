@@ -131,8 +131,8 @@ fn a_particle_in_a_capsule_is_put_on_the_nearest_point_and_one_outside_stays() {
     assert!(inside > 50 && beyond > 2, "{inside} {beyond}");
 }
 
-/// Contact with an obstacle that moves at (2, -1, 0.5) m/s takes only the inward normal part of the
-/// relative velocity.
+/// Contact with an obstacle that moves at (2, -1, 0.5) m/s removes only the inward normal part of
+/// the relative velocity.
 #[test]
 fn contact_takes_the_inward_part_of_the_relative_velocity_and_nothing_else() {
     let velocity = Vector3::new(2.0, -1.0, 0.5);
@@ -150,8 +150,8 @@ fn contact_takes_the_inward_part_of_the_relative_velocity_and_nothing_else() {
                 let v = sign * Vector3::new(k.sin(), (1.7 * k).cos(), (2.3 * k).sin());
                 let [x, after] = resolved(&network, 1.0, p, velocity + v);
                 let normal = x - p;
-                // For a particle on the surface, the direction of the displacement is lost in
-                // rounding.
+                // For a particle on the surface, the direction of the displacement is a rounding
+                // error.
                 if normal.norm() < 1e-6 {
                     assert!(normal.norm() > 0.0 || after == velocity + v);
                     continue;
@@ -252,8 +252,8 @@ fn a_network_names_the_obstacles_it_pays_for() {
     assert!(network.remove_obstacle(1).is_err());
 }
 
-/// The triangles of a box enclose its volume, seen from outside, whichever way its axes turn; its
-/// edges are as long as it is.
+/// The triangles of a box enclose its volume, in the outward orientation for either handedness of
+/// its axes; its edges have its dimensions.
 #[test]
 fn a_box_has_the_triangles_and_edges_of_its_surface() {
     let Shape::Box { axes, .. } = Shape::turned_box(HALVES, TURN).unwrap() else {

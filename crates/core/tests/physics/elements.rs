@@ -1,4 +1,4 @@
-//! Several elements together act like the same springs as single ones.
+//! Several elements together act like the same springs, listed one by one.
 
 use a3_core::{Coupling, Grid, Linearized, Matrix, Mechanics, Network, Sheet, Splitting};
 

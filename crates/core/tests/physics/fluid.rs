@@ -1,4 +1,4 @@
-//! Fluids against laws of physics: what is conserved, exact solutions, and an experiment.
+//! Fluids against laws of physics: conserved quantities, exact solutions, and an experiment.
 
 use a3_core::{Control, Linearized, Mechanics, Model, Network, Scene, Simulation};
 
@@ -110,7 +110,7 @@ fn the_differential_matches_central_differences() {
     }
 }
 
-/// Pressure and viscosity keep momentum and angular momentum, and viscosity takes energy away.
+/// Pressure and viscosity conserve momentum and angular momentum, and viscosity dissipates energy.
 #[test]
 fn forces_between_particles_conserve_momentum() {
     for dimensions in [2, 3] {
@@ -242,7 +242,7 @@ fn the_front_of_a_dam_break_is_where_it_was_measured() {
 fn methods_have_their_orders_on_a_smooth_flow() {
     let mut scene = scene("drop");
     let half = scene.state.len() / 2;
-    // Compressed to four fifths of its width, it expands, and has not yet lost contact anywhere.
+    // Compressed to four fifths of its width, it expands, but has not separated anywhere yet.
     for x in &mut scene.state[..half] {
         *x *= 0.75;
     }
@@ -266,7 +266,7 @@ fn methods_have_their_orders_on_a_smooth_flow() {
     }
 }
 
-/// The forces on enough particles for many threads are the same to the bit on any number of them.
+/// The forces on enough particles for many threads are bitwise equal for any number of threads.
 #[test]
 fn any_number_of_threads_finds_the_same_forces() {
     let scene = described(

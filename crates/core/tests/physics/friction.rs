@@ -55,7 +55,7 @@ fn block(mu: f64) -> Scene {
 /// Fixed steps (s) that are stable on all of the scenes above, or tolerances of an adaptive method.
 fn settings(method: &Method) -> [f64; 2] {
     if method.is_adaptive() && method.is_implicit() {
-        // Each contact begins anew at order 1, in steps that a fine tolerance makes tiny.
+        // Each contact restarts at order 1, in steps that a fine tolerance makes tiny.
         [1e-2, 1e-3]
     } else if method.is_adaptive() {
         [1e-4, 1e-7]
@@ -92,8 +92,8 @@ fn with_enough_friction_nothing_moves() {
                 let mut run =
                     Simulation::new(scene.clone(), method, method.control(setting)).unwrap();
                 while run.time() < 10.0 {
-                    // The run goes to the end of a step: within one, an adaptive method's state
-                    // falls freely.
+                    // The run continues to the end of a step: within a step, the state of an
+                    // adaptive method falls freely.
                     run.take_steps(1).unwrap();
                 }
                 let moved = moved(&run, &scene.state);
@@ -151,7 +151,8 @@ fn a_block_stands_on_a_slope_or_slides_down() {
             run.take_steps(1).unwrap();
         }
         let moved = moved(&run, &from);
-        // At the limit of its steps, an adaptive method keeps what does not touch from full rest.
+        // At the limit of its steps, an adaptive method keeps particles without contact from full
+        // rest.
         let rest = if method.is_adaptive() { 1e-6 } else { 1e-12 };
         assert!(moved < rest, "{name}: {moved:e}");
         let mut run = Simulation::new(block(0.3), method, method.control(setting)).unwrap();
@@ -222,8 +223,8 @@ fn a_conveyor_carries_a_particle_along() {
     }
 }
 
-/// A particle that hits a floor within a step, and that friction stops at once, stops where it hit
-/// the floor.
+/// A particle that hits a floor within a step, and that friction stops at once, stops at the point
+/// of the impact.
 #[test]
 fn after_an_impact_a_particle_stops_where_it_should() {
     let floor = Obstacle {

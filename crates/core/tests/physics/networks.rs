@@ -68,7 +68,7 @@ pub fn network(seed: u64, kinds: Kinds) -> (Network, Vec<f64>) {
         }
     });
     let mut network = Network::new(masses.collect()).unwrap();
-    // The sheets are added in reverse order, as the order must not matter.
+    // The sheets are added in reverse order, because the order must not matter.
     for sheet in sheets.into_iter().rev() {
         network.add(sheet).unwrap();
     }

@@ -1,4 +1,4 @@
-//! Particles that rebound from plain obstacles, against closed forms.
+//! Particles that rebound from simple obstacles, against closed forms.
 
 use a3_core::{Control, Method, Simulation, integrators};
 
@@ -21,7 +21,7 @@ fn run(text: &str, method: &'static Method, control: Control) -> Simulation {
     Simulation::new(described(text), method, control).unwrap()
 }
 
-/// Height and speed of what was dropped from a height, after t seconds: the exact bounces.
+/// Height and speed of a particle, dropped from a height, after t seconds: the exact bounces.
 fn exact(mut height: f64, t: f64) -> [f64; 2] {
     let fall = (2.0 * height / G).sqrt();
     if t < fall {
@@ -51,7 +51,7 @@ fn a_particle_rebounds_to_the_square_of_its_restitution() {
         }
         for control in controls {
             for scale in [1e-3, 1.0, 100.0] {
-                // The step in proportion to the time of the fall.
+                // Step proportional to the time of the fall.
                 let control = match control {
                     Control::Step(h) => Control::Step(h * f64::sqrt(scale)),
                     tolerance @ Control::Tolerance(_) => tolerance,
@@ -73,7 +73,7 @@ fn a_particle_rebounds_to_the_square_of_its_restitution() {
     }
 }
 
-/// Methods that are exact under constant forces stay so over five bounces, at any step.
+/// Methods that are exact under constant forces are exact over five bounces, at any step.
 #[test]
 fn bounces_are_located() {
     for name in ["verlet", "rk4", "pefrl", "heun", "midpoint-implicit"] {
@@ -94,7 +94,8 @@ fn bounces_are_located() {
     }
 }
 
-/// What has come to rest lies still, and rests no later than the sum of all bounces says.
+/// A particle that has come to rest lies still, and comes to rest no later than after the sum of
+/// all bounces.
 #[test]
 fn bounces_come_to_rest() {
     let fall = (2.0 / G).sqrt();
@@ -112,7 +113,7 @@ fn bounces_come_to_rest() {
     }
 }
 
-/// On springs, bounces leave order 2.
+/// On springs, bounces keep order 2.
 #[test]
 fn order_two_is_kept_over_bounces() {
     let text = "floor = { height = 0, restitution = 0.9 }
@@ -129,7 +130,8 @@ fn order_two_is_kept_over_bounces() {
     let best = end("rk4", 1e-5);
     for name in ["verlet", "rk4", "heun"] {
         let error = |step: f64| {
-            // The mean over several steps: where a bounce is within a step makes errors vary.
+            // The mean over several steps, because errors vary with the place of a bounce in its
+            // step.
             let errors = (0..8).map(|k| {
                 let y = end(name, step / (1.0 + 0.05 * f64::from(k)));
                 y.iter()
@@ -144,7 +146,8 @@ fn order_two_is_kept_over_bounces() {
     }
 }
 
-/// A box that comes at a particle throws it: v' = V + e (V - v), and friction takes mu times that.
+/// A box that hits a particle throws it: v' = V + e (V - v), and friction changes the velocity by
+/// mu times that.
 #[test]
 fn a_moving_box_throws_a_particle() {
     let text = "[[box]]
@@ -172,7 +175,7 @@ fn a_moving_box_throws_a_particle() {
     let change = x + 0.5;
     assert!(of_box > 0.5, "{of_box}");
     assert!((y - (2.0 - 0.1 * change)).abs() < 1e-12, "{y} {change}");
-    // It touched the box on the way, and is apart from it now.
+    // The box touched the particle on the way, and is apart from it now.
     run.take_steps(1).unwrap();
     assert_eq!(found(&run), [x, y]);
 }

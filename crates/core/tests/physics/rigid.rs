@@ -5,10 +5,10 @@ use a3_core::integrators::{self, METHODS};
 use a3_core::rigid::{Body, MassProperties, Part, Rotation};
 use a3_core::{Control, Model, Network, ParticleSystem, Scene, Simulation, Vector3};
 
-/// Principal moments of a T-handle, of which the middle one is that of its spin.
+/// Principal moments of a T-handle, with its spin about the middle one.
 const INERTIA: Vector3<f64> = Vector3::new(0.02, 0.05, 0.06);
 
-/// A body of 2 kg with these moments and eight points, and the state in which it turns.
+/// A body of 2 kg with these moments and eight points, and its initial state of motion.
 fn body(inertia: Vector3<f64>, spin: Vector3<f64>, velocity: Vector3<f64>) -> Scene {
     let half_extents = Vector3::new(0.3, 0.2, 0.1);
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
@@ -122,7 +122,7 @@ fn orders_hold_for_rotations() {
         };
         let errors = [error(80.0), error(160.0)];
         if errors[1] < 1e-11 {
-            // A free rotation is the drift's alone, whose order is 6.
+            // Free rotation is a drift alone, of order 6.
             assert!(["verlet", "pefrl", "symplectic"].contains(&name), "{name}");
             continue;
         }
@@ -167,7 +167,7 @@ fn methods_for_positions_alone_refuse_bodies() {
 
 #[test]
 fn masses_are_exact() {
-    // A box as a mesh, seen from afar, against the formula; and a capsule against its limits.
+    // A box as a mesh, far from the origin, against the formula; and a capsule against its limits.
     let half = Vector3::new(0.3, 0.2, 0.1);
     let cuboid = Shape::turned_box(half, Vector3::new(0.3, 0.5, -0.2)).unwrap();
     let by_formula = MassProperties::of(&cuboid, 700.0).unwrap();
@@ -189,7 +189,7 @@ fn masses_are_exact() {
     let ends = [Vector3::new(0.0, -0.5, 0.0), Vector3::new(0.0, 0.5, 0.0)];
     let radius = 0.2;
     let capsule = MassProperties::of(&Shape::Capsule { ends, radius }, 1.0).unwrap();
-    // By slices across the axis.
+    // By slices perpendicular to the axis.
     let (mut mass, mut across, mut along) = (0.0, 0.0, 0.0);
     let slices = 200_000;
     for k in 0..slices {

@@ -1,4 +1,4 @@
-//! Solids within closed meshes: what is inside, the nearest point, and which meshes are closed.
+//! Solids within closed meshes: points inside, nearest points, and which meshes are closed.
 
 use a3_core::contact::{ClosedMesh, Obstacle, Shape, Step, resolve};
 use a3_core::{Path, Vector3};
@@ -20,8 +20,8 @@ fn l() -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
     (points, triangles.chain(sides).collect())
 }
 
-/// Distance from a point inside the L to the nearest of its faces, as its six sides and the inner
-/// edge have it.
+/// Distance from a point inside the L to the nearest of its faces, from its six sides and the inner
+/// edge.
 fn depth(p: Vector3<f64>) -> f64 {
     let inner = if p.x > 1.0 {
         1.0 - p.y
@@ -34,7 +34,7 @@ fn depth(p: Vector3<f64>) -> f64 {
     least.min(p.z).min(1.0 - p.z).min(inner)
 }
 
-/// Also in a mesh whose triangles all wind the wrong way, and also one that was turned.
+/// Also in a mesh whose triangles all have the wrong orientation, and also a rotated one.
 #[test]
 fn what_is_inside_is_put_on_the_nearest_point_of_the_surface() {
     let (points, triangles) = l();

@@ -1,4 +1,4 @@
-//! Sweeps over the rows of sheets, also of several and of torn ones, give the same bits as whole
+//! Sweeps over the rows of sheets, also of several and of torn ones, have the same bits as whole
 //! arrays.
 
 use a3_core::elements::{Air, Wind};
@@ -158,7 +158,7 @@ fn rows_are_offered_where_nothing_joins_them() {
     assert!(error.contains("no particle 5"), "{error}");
 }
 
-/// Cloth that tears during a run goes on in sweeps, and moves like a network of the same single
+/// Cloth that tears during a run continues in sweeps, and moves like a network of the same single
 /// springs.
 #[test]
 fn torn_cloth_goes_on_in_sweeps() {
@@ -184,7 +184,7 @@ fn torn_cloth_goes_on_in_sweeps() {
     assert!(Mechanics::rows(&of(&torn)).is_some());
     let error = distance(torn.state(), expected.state()) / size(expected.state());
     assert!(error < 1e-9, "{error:e}");
-    // Every method can go on with the torn cloth.
+    // Every method can continue with the torn cloth.
     let torn_network = of(&torn);
     let serving = |m: &&Method| m.check(&torn_network).is_ok();
     for m in integrators::METHODS.iter().filter(serving) {

@@ -37,7 +37,7 @@ fn network_of(run: &Simulation) -> &Network {
     run.model().network().unwrap()
 }
 
-/// Largest length over rest length of the springs that are left.
+/// Largest length over rest length of the remaining springs.
 fn stretch(run: &Simulation) -> f64 {
     network_of(run)
         .springs()
@@ -233,7 +233,7 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
         assert!(!network.is_torn(at(0), at(2)) && !network.is_torn(at(3), at(5)));
     }
     assert_eq!(network.tear(&x, 0.0), 0);
-    // The springs that are left pull as before.
+    // The remaining springs pull as before.
     let v = vec![0.0; 90];
     let mut f = vec![0.0; 90];
     network.spring_forces(&x, &v, &mut f);
@@ -247,7 +247,7 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
 }
 
 /// A bend spring without structural springs along it, or with another path of them, holds until it
-/// is too long itself.
+/// is itself too long.
 #[test]
 fn bend_springs_with_nothing_along_them_or_another_way_round_hold() {
     let line = |shift: f64| {
@@ -347,7 +347,7 @@ fn every_method_tears_alike() {
     }
 }
 
-/// A run that goes back to a moment has only the tears of that moment, and tears again as before.
+/// A run that goes back to a moment has only its tears, and tears again as before.
 #[test]
 fn what_tore_after_a_moment_is_mended_there() {
     let scene = described(

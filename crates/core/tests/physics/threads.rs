@@ -1,10 +1,10 @@
-//! Runs that many threads share are those of one, to the last bit.
+//! Runs on many threads have the bits of those on one thread.
 
 use a3_core::{
     Constraint, Control, Grid, Model, Network, Path, Scene, Simulation, Vector3, integrators,
 };
 
-/// The state at 0.02 s, with so many threads.
+/// The state at 0.02 s, on a number of threads.
 fn after(scene: &Scene, (method, control): (&str, Control), threads: usize) -> Vec<f64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     pool.build().unwrap().install(|| {
@@ -29,7 +29,7 @@ fn built_in(name: &str) -> Scene {
     scene
 }
 
-/// A chain of rods that hangs by its first particle, and is drawn out of line.
+/// A chain of rods that hangs by its first particle, initially out of line.
 fn chain() -> Scene {
     let n = 6000;
     let mut network = Network::new(vec![0.1; n]).unwrap();

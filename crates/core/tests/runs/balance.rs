@@ -1,4 +1,5 @@
-//! Balance of energy: what a method adds to a run is noticed, and nothing else is taken for it.
+//! Balance of energy: energy that a method adds to a run is noticed, and no other energy is
+//! mistaken for it.
 
 use a3_core::{Cause, Control, Error, Network, Simulation, Vector3};
 
@@ -71,7 +72,7 @@ fn what_obstacles_and_hands_do_is_no_gain() {
     let energy = lifted.energy().unwrap();
     assert!(energy.gravitational > 50.0, "{energy:?}");
     assert_eq!(lifted.gained(), None);
-    // A hand pulls to and fro, stronger than the scene itself, and pins and lets go.
+    // A hand pulls back and forth, with more energy than the scene has, and pins and lets go.
     for name in ["cloth", "chain", "double-pendulum"] {
         let mut run = Simulation::new(scene(name), method("r"), Control::Step(0.001)).unwrap();
         let last = run.particles() - 1;
@@ -87,7 +88,7 @@ fn what_obstacles_and_hands_do_is_no_gain() {
         run.release();
         run.advance_to(run.time() + 0.5).unwrap();
         assert_eq!(run.gained(), None, "{name}");
-        // What is low falls upwards from now on.
+        // Particles that are low fall upwards from now on.
         run.reset();
         run.advance_to(0.2).unwrap();
         run.adjust(|network| network.set_gravity(Vector3::new(0.0, 60.0, 0.0)));
@@ -98,7 +99,7 @@ fn what_obstacles_and_hands_do_is_no_gain() {
 
 #[test]
 fn what_falls_or_is_thrown_far_away_is_not_lost() {
-    // Hundreds of metres, of a particle in a scene of 1 m.
+    // A particle in a scene of 1 m falls hundreds of metres.
     let particle = "[particles]\npositions = [[0, 0, 0]]\nmass = 1\n";
     let weight = "gravity = [0, -9.81, 0]\n";
     let thrown = "velocities = [[100, 50, 0]]\n";
@@ -120,7 +121,7 @@ fn what_falls_or_is_thrown_far_away_is_not_lost() {
             assert!(is_there, "{name}: {x}");
         }
     }
-    // A step that is too long takes them as far, which is still a blow-up.
+    // A step that is too long takes the particles as far, which is still a blow-up.
     let pair = "name = \"pair\"\nsprings = [[0, 1, 1e6, 1, 0]]\n\
                 [particles]\npositions = [[0, 0, 0], [1.1, 0, 0]]\nmass = 1\n";
     let mut run = Simulation::new(described(pair), method("rk4"), Control::Step(0.003)).unwrap();
@@ -130,8 +131,8 @@ fn what_falls_or_is_thrown_far_away_is_not_lost() {
     assert!(matches!(lost.cause, Cause::Away { distance, .. } if distance > 50.0));
 }
 
-/// Where nothing moves, an adaptive method's steps are so long that it just meets its tolerance:
-/// what it errs by is no blow-up.
+/// Where nothing moves, an adaptive method takes steps so long that it only just meets its
+/// tolerance: its errors are no blow-up.
 #[test]
 fn errors_within_a_tolerance_are_no_gain() {
     let chain = "
@@ -170,7 +171,7 @@ fn errors_within_a_tolerance_are_no_gain() {
     }
 }
 
-/// What damping takes out of a run that explodes does not hide that it does.
+/// The energy that damping dissipates does not hide that a run explodes.
 #[test]
 fn damped_explosions_are_noticed() {
     let toml = "

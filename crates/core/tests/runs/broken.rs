@@ -1,4 +1,4 @@
-//! Constraints that a run does not meet are named, and energy that it loses is told.
+//! Constraints that a run does not meet are named, and the energy that it loses is reported.
 
 use a3_core::{Cause, Error, Simulation, integrators};
 
@@ -6,7 +6,8 @@ use super::common::{described, method};
 
 const WEIGHT: &str = "gravity = [0, -9.81, 0]\n";
 
-/// A rigid chain, straight between two pins: it can be nowhere else, but nothing holds it there.
+/// A rigid chain, straight between two pins: there are no other positions, but no bounded force
+/// holds it there.
 const STRAIGHT: &str = "[particles]\npositions = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\nmass = 1\n\
     pin = [{ particles = [0, 2] }]\n[[constraint]]\nrod = [0, 1]\n[[constraint]]\nrod = [1, 2]\n";
 
@@ -91,7 +92,7 @@ fn rods_that_lose_their_length_are_told_with_the_energy() {
     let unmet = fine.worst_constraint().unwrap();
     assert!(unmet.share < 1e-4 && !unmet.is_visible(), "{unmet:?}");
     assert!(fine.energy_change().unwrap().abs() < 1e-3);
-    // Far too long a step breaks them: no step is that good, but shorter ones are.
+    // A step that is far too long breaks them; shorter steps do not.
     let mut lost = run(BEAD, "euler", 0.02);
     let Err(Error::BlowUp(lost)) = lost.advance_to(5.0) else {
         panic!("it went on");
@@ -117,12 +118,12 @@ fn only_energy_that_is_kept_has_a_change() {
     assert_eq!(change(&damped), None);
     assert_eq!(change(&format!("drag = 0.1\n{kept}")), None);
     assert_eq!(change(PINNED.split("[[constraint]]").next().unwrap()), None);
-    // Where something is met, energy is lost; until then it is kept.
+    // Contact loses energy; until then it is conserved.
     let ball = "[particles]\npositions = [[0, 1, 0]]\nmass = 1\n";
     assert!(change(ball).unwrap().abs() < 1e-9);
     assert!(change(&format!("floor = -10\n{ball}")).unwrap().abs() < 1e-9);
     assert_eq!(change(&format!("floor = 0\n{ball}")), None);
-    // A hand may do anything.
+    // Hands may change the energy.
     let mut held = run(&kept, "verlet", 0.001);
     held.advance_to(0.5).unwrap();
     assert!(held.energy_change().is_some());
@@ -130,7 +131,7 @@ fn only_energy_that_is_kept_has_a_change() {
     held.release();
     held.advance_to(0.6).unwrap();
     assert_eq!(held.energy_change(), None);
-    // Euler's method gains.
+    // Euler's method gains energy.
     let mut euler = run(&kept, "euler", 0.002);
     euler.advance_to(1.0).unwrap();
     assert!(euler.energy_change().unwrap() > 0.01);

@@ -1,4 +1,4 @@
-//! Checkpoints: a restored run goes on to the same bits.
+//! Checkpoints: a restored run continues with the same bits.
 
 use a3_core::integrators::METHODS;
 use a3_core::{Checkpoint, Control, Method, Network, Path, Scene, Simulation, Vector3};
@@ -43,7 +43,7 @@ fn taken_up(scene: &Scene, run: &Simulation) -> Simulation {
 }
 
 /// Performs the actions on a run one after another. After each, a run restored from its checkpoint
-/// goes on beside it, and all stay equal.
+/// continues beside it, and all stay equal.
 fn check(scene: &Scene, method: &'static Method, control: Control, acts: &[Act]) {
     let mut run = Simulation::new(scene.clone(), method, control).unwrap();
     let mut others: Vec<Simulation> = vec![];
@@ -60,8 +60,7 @@ fn check(scene: &Scene, method: &'static Method, control: Control, acts: &[Act])
     for (k, act) in acts.iter().enumerate() {
         for run in std::iter::once(&mut run).chain(&mut others) {
             act(run);
-            // First to a time between the ends of an adaptive method's steps, then to the end of
-            // one.
+            // First to a time within a step of an adaptive method, then to the end of a step.
             let _ = run.advance_to(run.time() + 0.013);
             let _ = run.take_steps(2);
         }
@@ -110,7 +109,7 @@ fn every_scene_goes_on_by_every_method() {
                 && !takes_minutes(method, &setup.scene)
             {
                 let control = match setup.defaults.control_of(method) {
-                    // Shorter steps, as Euler's method takes with bodies, show nothing more.
+                    // Shorter steps, as for Euler's method with bodies, would test nothing more.
                     Control::Step(step) => Control::Step(step.max(5e-4)),
                     tolerance @ Control::Tolerance(_) => tolerance,
                 };
@@ -165,8 +164,8 @@ fn a_run_that_is_lost_later_is_lost_alike() {
     while run.take_steps(1).is_ok() {}
     while again.take_steps(1).is_ok() {}
     assert!(run.blow_up().is_some() && seen(&run) == seen(&again));
-    // The checkpoint of a lost run holds the last good state, from which a run by shorter steps can
-    // go on.
+    // The checkpoint of a run that blew up has the last sound state, from which a run with shorter
+    // steps can continue.
     let mut on = taken_up(run.scene(), &run);
     assert_eq!((on.state(), on.blow_up()), (run.state(), None));
     on.set_control(Control::Step(0.01)).unwrap();
@@ -182,7 +181,7 @@ fn a_moment_is_small_and_goes_on() {
     let mut moment = simulation("chain", "rk4", 0.01).moment();
     run.record(&mut moment);
     assert_eq!(moment, run.moment());
-    // The state, the pins, and little else.
+    // It contains the state, the pins, and little else.
     let pins = moment.pins.len() * size_of::<(usize, Path)>();
     assert!(moment.size() < 8 * run.state().len() + pins + 1250);
     assert!(serde_json::to_string(&run.checkpoint()).unwrap().len() > 10 * 8 * run.state().len());

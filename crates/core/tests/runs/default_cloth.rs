@@ -1,5 +1,5 @@
-//! The default cloth by the explicit trapezoid with a step of 0.01 s: it stays stable whatever a
-//! hand does to it.
+//! The default cloth with the explicit trapezoid at a step of 0.01 s: it stays stable for any
+//! action of a hand.
 
 use crate::common::simulation;
 use a3_core::{Simulation, Vector3};

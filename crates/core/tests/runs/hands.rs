@@ -96,7 +96,7 @@ fn sphere(run: &Simulation) -> (Vector3<f64>, f64) {
 fn a_sphere_goes_where_it_is_pulled_pushes_cloth_and_comes_back_with_a_reset() {
     for name in ["rk4", "dopri5"] {
         let mut run = simulation("mit-sphere", name, method(name).default_control.value());
-        // Within a step, particles have not been put out of the sphere yet.
+        // Within a step, particles have not been moved out of the sphere yet.
         let sunk = 1e-3 * run.extent().1;
         run.advance_to(0.5).unwrap();
         let (home, radius) = sphere(&run);

@@ -54,7 +54,7 @@ fn springs_are_counted_by_kind() {
     }
 }
 
-/// All springs are at their rest length at first, and no two join the same particles.
+/// All springs initially have their rest length, and no two connect the same particles.
 #[test]
 fn springs_are_at_rest_at_first() {
     let scene = lattice([3, 4, 5]);
@@ -68,7 +68,7 @@ fn springs_are_at_rest_at_first() {
     assert!(run.energy().unwrap().elastic < 1e-24);
 }
 
-/// The skin is closed, and all its triangles face outwards: they run through each edge once in each
+/// The skin is closed, and all its triangles face outwards: they pass each edge once in each
 /// direction.
 #[test]
 fn the_skin_is_closed_and_faces_outwards() {

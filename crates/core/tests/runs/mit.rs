@@ -1,5 +1,5 @@
-//! Known facts of the course's cloth: which runs survive, when the others are lost, and the state
-//! of rest.
+//! Known facts of the course's cloth: which runs survive, when the others blow up, and the state of
+//! rest.
 
 use crate::common::simulation;
 use a3_core::{Error, Mechanics};

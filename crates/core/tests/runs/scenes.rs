@@ -27,7 +27,7 @@ fn cloth_springs_are_counted_by_kind() {
     );
 }
 
-/// What keeps a cloth from being stepped in sweeps over its rows costs half of its speed.
+/// A cloth that cannot be stepped in sweeps over its rows is half as fast.
 #[test]
 fn scenes_of_cloth_alone_have_rows() {
     let two = "[[cloth]]
@@ -47,7 +47,7 @@ fn scenes_of_cloth_alone_have_rows() {
     }
 }
 
-/// Springs join the right particles: structural ones neighbours, shear ones diagonals, and bend
+/// Springs connect the right particles: structural ones neighbours, shear ones diagonals, and bend
 /// ones the particles next but one.
 #[test]
 fn cloth_springs_join_the_right_particles() {
@@ -148,8 +148,8 @@ fn default_controls_hold_on_other_grids() {
     });
 }
 
-/// A pin has the place and the velocity of its path from the first moment on, whatever the body it
-/// is part of does; else the first step would depend on its length.
+/// A pin has the place and the velocity of its path from the first moment on, for any body that it
+/// is part of; otherwise the first step would depend on its length.
 #[test]
 fn pins_begin_in_their_places() {
     let moving = "[[chain]]
@@ -176,7 +176,7 @@ fn pins_begin_in_their_places() {
     }
 }
 
-/// The flag moves as one at first, all but the particles at the pole.
+/// The flag initially moves as one, except for the particles at the pole.
 #[test]
 fn a_flag_takes_the_same_way_in_steps_of_any_length() {
     let after = |method: &str, control| {

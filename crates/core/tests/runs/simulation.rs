@@ -1,4 +1,4 @@
-//! Steps of a simulation, its work, its reset, its blow-ups, and obstacles on the way.
+//! Steps of a simulation, its work, its reset, its blow-ups, and contact with obstacles.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Limit of strain: springs that are too long after a step are shortened, whatever the method.
+//! Limit of strain: springs that are too long after a step are shortened, with any method.
 
 use crate::common::{described, method, scene};
 use a3_core::contact::{StrainLimit, StrainLimiter};
@@ -7,7 +7,8 @@ use a3_core::{
     integrators,
 };
 
-/// Run of the default cloth whose strain is limited; undamped for methods that serve no other.
+/// Run of the default cloth with a limit of strain; undamped for methods that do not support
+/// damping.
 fn limited(method_name: &str, value: f64, limit: Option<f64>) -> Simulation {
     let method = method(method_name);
     let mut scene = scene("cloth");
@@ -43,7 +44,8 @@ fn a_curtain_at_rest_is_within_the_limit() {
     assert!(free.largest_stretch().unwrap() > 1.15);
 }
 
-/// Adaptive methods do not stall, and show nothing that is much too long between their steps.
+/// Adaptive methods do not stall, and no state within their steps has a spring that is much too
+/// long.
 #[test]
 fn every_method_runs_within_the_limit() {
     for method in integrators::METHODS {
@@ -113,7 +115,7 @@ fn momentum_is_conserved() {
     assert!(stretch < 1.12, "it was 1.3, and is {stretch}");
 }
 
-/// Kinetic energy does not grow, also where all springs begin too long.
+/// Kinetic energy does not grow, even if all springs begin too long.
 #[test]
 fn the_limit_adds_no_kinetic_energy() {
     let (network, y0) = thrown();
@@ -155,8 +157,8 @@ fn nothing_changes_where_nothing_is_too_long() {
     }
 }
 
-/// A hand that pulls at any particle as far as the scene lets it, back and forth, leaves a run that
-/// comes to rest within the limit, and pins stay in their places.
+/// A hand that pulls any particle back and forth as far as the scene allows leaves a run that comes
+/// to rest within the limit, and pins stay in their places.
 #[test]
 fn a_hand_does_not_blow_it_up() {
     for (name, step) in [("trapezoid", 0.01), ("implicit", 1.0 / 60.0)] {
@@ -256,8 +258,8 @@ fn limits_that_make_no_sense_are_refused() {
     assert!(!network.forces_in_use().contains(&"strain limit"));
 }
 
-/// Particles that begin in the floor are put out of it, beyond what their springs allow: neither
-/// gives way, however short a step is, and an adaptive run goes on all the same.
+/// Particles that begin in the floor are moved out of it, farther than their springs allow: neither
+/// gives way, however short a step is, and an adaptive run continues nevertheless.
 #[test]
 fn what_cannot_be_shortened_does_not_stop_a_run() {
     let toml = "

@@ -149,8 +149,8 @@ fn pins_are_freed_and_hold_again_where_they_are() {
     assert!(!run.pinned());
 }
 
-/// Every scene, with everything changed that can be changed, goes on after a second from its
-/// description, written and read.
+/// Every scene, after all possible changes and a second of motion, continues from its description
+/// after this was written and read.
 #[test]
 fn a_run_goes_on_from_its_description() {
     for entry in a3_scenes::SCENES {
@@ -205,7 +205,7 @@ fn a_run_goes_on_from_its_description() {
                 );
             }
         };
-        // Where surfaces touch, their skins are made anew for springs that were tuned.
+        // Where surfaces touch, skins are recomputed for springs that were tuned.
         if run
             .model()
             .network()
@@ -234,7 +234,7 @@ fn what_was_freed_is_described_as_free() {
     assert_eq!(scene.model.network().unwrap().pins().count(), 0);
 }
 
-/// Paths go on in a description: that of a pin in a straight line before, during and after its
+/// Paths continue in a description: that of a pin in a straight line before, during and after its
 /// motion, and that of a sphere.
 #[test]
 fn paths_go_on_from_where_they_are() {
@@ -270,7 +270,7 @@ fn paths_go_on_from_where_they_are() {
     }
 }
 
-/// Moving boxes and capsules go on along their paths in a description, and buckling strips keep
+/// Moving boxes and capsules continue along their paths in a description, and buckling strips keep
 /// their stiffness.
 #[test]
 fn obstacles_and_strips_go_on_too() {

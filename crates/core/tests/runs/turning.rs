@@ -13,7 +13,7 @@ fn network(run: &Simulation) -> &Network {
     run.model().network().unwrap()
 }
 
-/// Turning pins and obstacles go on in a description, before, during and after their turns.
+/// Turning pins and obstacles continue in a description, before, during and after their rotations.
 #[test]
 fn turns_go_on_from_where_they_are() {
     let text = "\
@@ -67,7 +67,7 @@ obstacle = [{ file = 'solid', scale = 2, at = [0, 9, 0], rotation = [0.5, 0, 0],
     }
 }
 
-/// A ball in the hand goes on turning, and a checkpoint with pins that turn can be written and
+/// A ball in the hand continues to turn, and a checkpoint with turning pins can be written and
 /// read.
 #[test]
 fn what_turns_does_so_in_the_hand_and_after_a_checkpoint() {

@@ -1,5 +1,5 @@
-//! Work on a run is integrated over each step, whatever drives it and however often it is looked
-//! at.
+//! Work on a run is integrated over each step, for all that drives it and however often it is
+//! shown.
 
 use a3_core::accuracy::{self, Frames};
 use a3_core::{Cause, Control, Error, Simulation};
@@ -60,8 +60,8 @@ impl Shaken {
         )
     }
 
-    /// Work of the pin until then (s): a few lines of the classical Runge-Kutta method on the
-    /// distance of the mass from its place at rest, its velocity and the work.
+    /// Work of the pin until then (s), by the classical Runge-Kutta method on the distance of the
+    /// mass from its place at rest, its velocity and the work.
     fn work(&self, until: f64) -> f64 {
         let f = |t: f64, [u, v, _]: [f64; 3]| {
             let (sine, cosine) = (self.rate * t + self.phase).sin_cos();
@@ -147,7 +147,7 @@ fn how_often_one_looks_changes_no_work() {
     }
 }
 
-/// A shaker at 60 Hz, which sixty looks a second always find in the same phase.
+/// A shaker at 60 Hz, which has the same phase at each of sixty checks a second.
 #[test]
 fn a_shaker_is_not_accused() {
     let shaker = "[particles]\npositions = [[0, 0, 0], [1, 0, 0]]\nmass = 1\n\
@@ -164,7 +164,7 @@ fn a_shaker_is_not_accused() {
         run.conclude().unwrap();
         assert_eq!(run.gained(), None, "{name}");
     }
-    // A step past the limit is still found.
+    // A step beyond the limit is still detected.
     let mut run = Simulation::new(described(shaker), method("rk4"), Control::Step(0.0078)).unwrap();
     let end = run.advance_to(2.0).and_then(|()| run.conclude());
     assert!(end.is_err() || run.gained().is_some());
@@ -202,7 +202,8 @@ fn a_sheet_that_is_blown_away_is_not_accused() {
     }
 }
 
-/// Energy that a step which is too long makes between two tears is no part of the tears' own.
+/// Energy that a step which is too long creates between two tears does not count as that of the
+/// tears.
 #[test]
 fn tears_forgive_their_own_change_only() {
     let tear = include_str!("../../../../docs/scenes/tear.toml");
@@ -237,7 +238,8 @@ fn a_run_shorter_than_a_look_is_looked_at() {
 }
 
 /// A capsule of a million kilometres turns past a jelly: hundreds of planes are needed to find that
-/// they stay apart, and count. One of a metre takes no more than what evaluations include.
+/// they stay apart, and count as work. A capsule of a metre needs no more than an evaluation
+/// includes.
 #[test]
 fn searches_for_impacts_that_take_long_are_work() {
     let work = |length: &str| {

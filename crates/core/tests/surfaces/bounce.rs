@@ -1,5 +1,5 @@
-//! Orders of convergence of bounces that the force of contact turns: each method's own, up to about
-//! 4, since the third derivative of the force jumps where it begins.
+//! Orders of convergence of bounces by the force of contact: each method's own, up to about 4,
+//! since the third derivative of the force jumps where it begins.
 
 use a3_core::accuracy::{Frames, Metric, Precision, Reference, Scope, choose};
 use a3_core::contact::{Obstacle, Shape, Skin};
@@ -59,8 +59,8 @@ fn system(on_floor: bool) -> (Network, Vec<f64>) {
     (network, y)
 }
 
-/// Bounce with the times at which it begins to touch and at which it ends to (s), between 0 and
-/// [`UNTIL`], and its state there.
+/// Bounce, with the times (s) between 0 and [`UNTIL`] at which the touch begins and ends, and its
+/// state then.
 struct Bounce {
     network: Network,
     y0: Vec<f64>,
@@ -103,7 +103,7 @@ impl Bounce {
         }
     }
 
-    /// Error of a run in so many steps, whatever the touches.
+    /// Error of a run in `count` steps, regardless of touches.
     fn error(&self, method: &Method, count: u32) -> f64 {
         distance(
             &steps(&self.network, method, &self.y0, count, UNTIL),
@@ -111,7 +111,7 @@ impl Bounce {
         )
     }
 
-    /// Error of a run in so many steps in each part between touches.
+    /// Error of a run in `count` steps in each part between touches.
     fn error_in_parts(&self, method: &Method, count: u32) -> f64 {
         let mut y = self.y0.clone();
         for part in self.moments.windows(2) {
@@ -120,9 +120,10 @@ impl Bounce {
         distance(&y, &self.exact)
     }
 
-    /// Order by the root mean squares of the errors at `samples` counts of steps from `fewest` on,
-    /// and at `ratio` times these counts: where in a step a touch begins makes single errors larger
-    /// or smaller. Each is multiplied by its count to the fourth power, so that all weigh alike.
+    /// Order from the root mean squares of the errors at `samples` counts of steps from `fewest`
+    /// on, and at `ratio` times these counts: single errors vary with the place in a step where a
+    /// touch begins. Each is multiplied by its count to the fourth power, so that all have equal
+    /// weight.
     fn order(&self, method: &Method, [samples, fewest, ratio]: [u32; 3]) -> f64 {
         let counts = || fewest..fewest + samples;
         let mean = |more: u32| {
@@ -134,7 +135,7 @@ impl Bounce {
     }
 }
 
-/// State after so many steps over a time (s).
+/// State after `count` steps over a time (s).
 fn steps(network: &Network, method: &Method, y0: &[f64], count: u32, time: f64) -> Vec<f64> {
     let mut integrator = method.integrator(network).unwrap();
     let (mut y, h) = (y0.to_vec(), time / f64::from(count));
@@ -155,13 +156,13 @@ fn methods_keep_their_order_up_to_four() {
                 continue;
             }
             // The classical Runge-Kutta method needs short steps, above all on a floor: in longer
-            // ones, its errors of smooth motion and of touches cancel. The others of order 4 and
-            // more are soon as exact as double precision allows.
+            // ones, its errors of smooth motion and of touches cancel. The other methods of order 4
+            // and more soon reach double precision.
             let shortest = if on_floor { 3200 } else { 800 };
             let (measured, own) = match m.order {
                 order @ 1..=2 => ([1, 4000, 2], f64::from(order)..=f64::from(order)),
                 4 if m.name == "rk4" => ([24, shortest, 4], 4.0..=4.0),
-                // The error of smooth motion, of order 5, is the larger one in long steps.
+                // In long steps, the error of smooth motion, of order 5, is the larger one.
                 5 => ([96, 100, 4], 4.0..=5.0),
                 _ => ([96, 100, 4], 3.9..=4.1),
             };
@@ -175,7 +176,7 @@ fn methods_keep_their_order_up_to_four() {
     }
 }
 
-/// What limits the order is the step across the beginning or the end of a touch alone.
+/// Only the step across the beginning or the end of a touch limits the order.
 #[test]
 fn steps_that_end_where_touches_do_keep_every_order() {
     for on_floor in [true, false] {
@@ -197,15 +198,15 @@ fn steps_that_end_where_touches_do_keep_every_order() {
     }
 }
 
-/// The scene of the chart in docs/methods.md: its reference is sure, no run of these steps is held
-/// by the guard, and what is chosen for an error meets it.
+/// The scene of the chart in docs/methods.md: its reference is certain, the safeguard acts in no
+/// run with these steps, and the chosen method meets its error.
 #[test]
 fn the_chart_of_a_bounce_has_a_sure_reference() {
     let scene = described(include_str!("../../../../docs/scenes/bounce.toml"));
     let precision = Precision {
         metric: Metric::Position,
         uncertainty: 1e-10,
-        most: 80_000.0,
+        max_work: 80_000.0,
     };
     let (frames, scope, go_on) = (Frames::new(UNTIL), Scope::default(), || true);
     let reference = Reference::new(&scene, frames, scope, precision, &go_on)

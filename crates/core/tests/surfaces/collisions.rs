@@ -1,4 +1,5 @@
-//! The guard in free space: random collisions of two bodies, too fast for the force to turn them.
+//! The collision safeguard in free space: random collisions of two bodies that are too fast for the
+//! force.
 
 use a3_core::{Control, Simulation, Vector3};
 
@@ -12,7 +13,7 @@ const STEPS: usize = 20;
 /// Step (s).
 const STEP: f64 = 0.005;
 
-/// Bodies about a metre wide; where they are and how they fly is added.
+/// Bodies about a metre wide; their places and velocities are added.
 const BODIES: [&str; 3] = [
     "[[cloth]]\ngrid = [4, 5]\nwidth = 1\ndensity = 0.5\nstiffness = [40, 20, 2]\ndown = [0, 0, 1]\n",
     "[[jelly]]\ngrid = [3, 3, 3]\nsize = [0.8, 0.5, 0.7]\nmass = 0.1\nstiffness = [40, 20, 2]\n",
@@ -23,7 +24,7 @@ fn vector(random: &mut Random, size: f64) -> Vector3<f64> {
     random.vector() * size
 }
 
-/// Text of a body that is so far above the origin (m) and flies at that speed (m/s).
+/// Text of a body at a height (m) above the origin, with a speed (m/s).
 fn body(kind: usize, height: f64, speed: f64, friction: f64, random: &mut Random) -> String {
     let [x, y, z]: [f64; 3] = (Vector3::y() * height + vector(random, 0.1)).into();
     let [u, v, w]: [f64; 3] = (Vector3::y() * speed + vector(random, 0.3 * speed.abs())).into();
@@ -77,7 +78,7 @@ fn the_guard_adds_no_energy_and_keeps_momentum() {
             let masses = run.model().network().unwrap().masses().to_vec();
             let before = sums(&masses, run.state()).1[0];
             for step in 0..STEPS {
-                // The same step without what follows it.
+                // The same step without the phases after it.
                 let mut loose = run.state().to_vec();
                 let system = run.model().system();
                 let mut integrator = verlet.integrator(system).unwrap();

@@ -1,10 +1,10 @@
-//! What a collision of free bodies conserves.
+//! Quantities that a collision of free bodies conserves.
 
 use a3_core::{Control, Simulation, Vector3};
 
 use crate::common::{described, method};
 
-/// Two cloths in free space, one of which flies at the other and turns over it.
+/// Two cloths in free space, one of which flies at the other and rotates over it.
 const CLOTHS: &str = "self_collision = true
     [[cloth]]
     grid = [5, 5]

@@ -1,4 +1,4 @@
-//! Forces of contact, as a run tells them.
+//! Forces of contact that a run reports.
 
 use a3_core::contact::{Obstacle, Shape};
 use a3_core::{Control, Model, Network, Path, Scene, Simulation, Vector3};
@@ -12,8 +12,8 @@ fn run(scene: Scene, name: &str, step: f64) -> Simulation {
     Simulation::new(scene, method(name), Control::Step(step)).unwrap()
 }
 
-/// What lies on an obstacle is pressed by its weight, whether the obstacle is met by particles or
-/// repels a surface; and before it has arrived, by nothing.
+/// A body on an obstacle is pressed by its weight, whether its particles touch the obstacle or the
+/// obstacle repels its surface; before it has arrived, there is no force.
 #[test]
 fn what_lies_on_the_floor_feels_its_weight() {
     let mut met = Network::new(vec![0.5]).unwrap();
@@ -35,14 +35,14 @@ fn what_lies_on_the_floor_feels_its_weight() {
     }
 }
 
-/// Each box of a stack that stands still is held against its own weight, by forces on its corners.
+/// Each box of a stack at rest is supported against its own weight, by forces on its corners.
 #[test]
 fn each_box_of_a_stack_is_held_against_its_weight() {
     let scene = a3_scenes::find("boxes").unwrap().build(None).unwrap().scene;
     let mut run = run(scene, "rk4", 1e-3);
     run.take_steps(1500).unwrap();
     let (mut forces, n) = (vec![0.0; 3 * run.particles()], run.particles());
-    // What friction and the guard gave differs from step to step.
+    // Friction and the safeguard's impulses differ from step to step.
     for _ in 0..100 {
         run.take_steps(1).unwrap();
         let felt = run.contact_forces().unwrap();
@@ -59,8 +59,9 @@ fn each_box_of_a_stack_is_held_against_its_weight() {
     }
 }
 
-/// Where hardly a force keeps surfaces apart, the guard does. Its impulses are opposite: what falls
-/// on a cloth pushes it as much as it is pushed, but for what cuts took.
+/// Where the force hardly keeps surfaces apart, the safeguard does. Its impulses are opposite: a
+/// body that falls on a cloth pushes it as much as it is pushed, except for the momentum lost by
+/// cuts.
 #[test]
 fn impulses_of_the_guard_are_felt_and_balance() {
     let setup = a3_scenes::find("ball-on-cloth").unwrap().build(None);

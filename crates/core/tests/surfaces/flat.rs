@@ -1,4 +1,4 @@
-//! Flat faces are flat: what lies or glides on them does not feel how they are cut into triangles.
+//! Flat faces: bodies that lie or glide on them do not notice the triangulation.
 
 use a3_core::contact::Skin;
 use a3_core::{Control, Mechanics, Model, Network, Scene, Simulation, Vector3, rotation};
@@ -9,24 +9,24 @@ use crate::pairs::Random;
 
 /// Thickness of all skins (m).
 const THICKNESS: f64 = 0.02;
-/// Stiffness of all skins (N/m): 1 kg rests where the gap lacks half of the thickness.
+/// Stiffness of all skins (N/m): 1 kg rests at a gap of half the thickness.
 const STIFFNESS: f64 = 9.81 / (THICKNESS * 0.125);
-/// Height at which things begin to glide (m), a tenth of the thickness below that.
+/// Height at which bodies begin to glide (m), below the thickness.
 const LOW: f64 = 0.4 * THICKNESS;
 /// Number of cells along a side of the mesh.
 const CELLS: u32 = 6;
 
-/// What is below, with its top at y = 0 from -2 m to 2 m along x and z.
+/// Ground, with its top at y = 0 from -2 m to 2 m along x and z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Ground {
-    /// Plane without triangles: the yardstick.
+    /// Plane without triangles, for comparison.
     Floor,
     Box,
     /// Slab of 192 triangles, those of the top of random shapes.
     Mesh,
 }
 
-/// Scene that is turned, and whose unit of length is another one.
+/// Orientation and unit of length of a scene.
 #[derive(Clone, Copy)]
 struct Frame {
     turn: Vector3<f64>,
@@ -45,17 +45,17 @@ impl Frame {
         Self { turn, unit }
     }
 
-    /// Direction of the scene for one that is given upright.
+    /// Direction in the scene of one that is given upright.
     fn direction(self, v: [f64; 3]) -> [f64; 3] {
         (rotation(self.turn) * Vector3::from(v)).into()
     }
 
-    /// Vector of the scene (in its unit of length) for one that is given in metres and upright.
+    /// Vector in the scene (in its unit of length) of one that is given in metres and upright.
     fn vector(self, v: [f64; 3]) -> [f64; 3] {
         (Vector3::from(self.direction(v)) * self.unit).into()
     }
 
-    /// The reverse.
+    /// The inverse.
     fn back(self, v: Vector3<f64>) -> Vector3<f64> {
         rotation(-self.turn) * v / self.unit
     }
@@ -132,7 +132,7 @@ fn build(text: &str) -> Scene {
         .scene
 }
 
-/// What lies above.
+/// Body above the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Thing {
     Particle,
@@ -142,7 +142,7 @@ enum Thing {
 impl Thing {
     const ALL: [Self; 2] = [Self::Particle, Self::Ball];
 
-    /// The thing, whose lowest points are at that height (m).
+    /// Text of the body, whose lowest points are at that height (m).
     fn text(self, frame: Frame, [x, y, z]: [f64; 3], velocity: [f64; 3]) -> String {
         let d = THICKNESS * frame.unit;
         let length = |metres: f64| metres * frame.unit;
@@ -166,7 +166,7 @@ impl Thing {
     }
 }
 
-/// Scene of a thing on a ground, without gravity.
+/// Scene of a body on a ground, without gravity.
 fn scene(thing: Thing, ground: Ground, frame: Frame, at: [f64; 3], v: [f64; 3]) -> Scene {
     let texts = [ground.text(frame), thing.text(frame, at, v)].concat();
     let mut scene = build(&("self_collision = true\n".to_owned() + &texts));
@@ -182,8 +182,8 @@ fn scene(thing: Thing, ground: Ground, frame: Frame, at: [f64; 3], v: [f64; 3]) 
     scene
 }
 
-/// Forces on the last `count` particles, those of the thing, as seen upright, by the stiffness and
-/// the thickness of contact.
+/// Forces on the last `count` particles, those of the body, in the upright frame, over the
+/// stiffness times the thickness of contact.
 fn forces(scene: &Scene, count: usize, frame: Frame) -> Vec<Vector3<f64>> {
     let network: &Network = scene.model.network().unwrap();
     let n = network.particles();
@@ -195,14 +195,14 @@ fn forces(scene: &Scene, count: usize, frame: Frame) -> Vec<Vector3<f64>> {
     all.map(|f| f / (STIFFNESS * THICKNESS)).collect()
 }
 
-/// Place (m) over the inside of the ground at which things of 1 m stay inside.
+/// Place (m) above the inside of the ground, at which bodies of 1 m stay inside.
 fn place(random: &mut Random) -> [f64; 3] {
     let [x, _, z]: [f64; 3] = (random.vector() * 1.1).into();
     [x, THICKNESS * (0.05 + 0.9 * random.unit()), z]
 }
 
-/// Particles and balls are repelled as by a floor: those on a box and on a
-/// mesh by as much, wherever they are, upright and turned, in metres, millimetres and kilometres.
+/// Boxes and meshes repel particles and balls as much as a floor does, wherever they are, upright
+/// and rotated, in metres, millimetres and kilometres.
 #[test]
 fn a_flat_face_repels_as_a_floor() {
     let mut random = Random(11);
@@ -267,8 +267,8 @@ fn particles_and_balls_glide_straight_on() {
     }
 }
 
-/// A particle that bounces in the layer, and glides over the diagonal of a box: the force is smooth
-/// all the time.
+/// A particle bounces in the contact layer and glides over the diagonal of a box: the force is
+/// smooth all the time.
 #[test]
 fn the_order_of_rk4_is_kept_over_a_diagonal() {
     let at = [-0.2, LOW, 0.1];

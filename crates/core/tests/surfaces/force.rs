@@ -1,13 +1,13 @@
-//! The force of contact: the gradient of its energy, without momentum of its own; its differential
-//! and the couplings of implicit methods.
+//! The force of contact: it is the gradient of its energy and conserves momentum; its differential
+//! and the couplings for implicit methods.
 
 use a3_core::{Coupling, Linearized, Mechanics, Network, Vector3};
 
 use crate::pairs::{Kind, Random, STIFFNESS, THICKNESS};
 
-/// Pairs of each kind that are tried.
+/// Number of pairs of each kind.
 const TRIES: usize = 100;
-/// Size of a force that counts as large (N).
+/// Force that counts as large (N).
 const LARGE: f64 = STIFFNESS * THICKNESS;
 
 fn forces(network: &Network, x: &[f64], v: &[f64]) -> Vec<f64> {
@@ -27,7 +27,7 @@ fn row(a: &[f64], i: usize) -> Vector3<f64> {
     Vector3::new(a[i], a[n + i], a[2 * n + i])
 }
 
-/// Calls `check` with each kind of pair in random places where there is a force.
+/// Calls `check` with each kind of pair at random places where there is a force.
 fn each_pair(damping: f64, mut check: impl FnMut(Kind, &Network, &[f64], &mut Random)) {
     for kind in Kind::ALL {
         let (network, mut random) = (kind.network(damping), Random(7));
@@ -107,7 +107,7 @@ fn its_differential_is_that_of_the_forces() {
     });
 }
 
-/// Adds what a coupling changes of the forces where particles move by dx (m) and change their
+/// Adds the change of the forces by a coupling where particles move by dx (m) and change their
 /// velocities by dv (m/s).
 fn add(coupling: &Coupling, dx: &[f64], dv: &[f64], df: &mut [f64]) {
     let n = df.len() / 3;
@@ -147,8 +147,8 @@ fn add(coupling: &Coupling, dx: &[f64], dv: &[f64], df: &mut [f64]) {
     }
 }
 
-/// Where the first of two primitives moves along the normal, neither the normal nor the closest
-/// points change: what couplings leave out is zero.
+/// If the first of two primitives moves along the normal, neither the normal nor the closest points
+/// change, and the terms that couplings omit are zero.
 #[test]
 fn couplings_are_exact_along_the_normal() {
     each_pair(3.0, |kind, network, x, _| {
@@ -157,8 +157,8 @@ fn couplings_are_exact_along_the_normal() {
         let f = forces(network, x, &still);
         let first = match kind {
             Kind::VertexTriangle | Kind::VertexFloor => 1,
-            // The angle of the edges does not change, but its factor turns the force from the
-            // normal.
+            // The angle between the edges does not change, but its factor turns the force away from
+            // the normal.
             Kind::NearlyParallel => return,
             Kind::EdgeEdge => 2,
             Kind::TriangleSphere | Kind::EdgeCapsule => n,

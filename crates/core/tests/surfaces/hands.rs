@@ -1,4 +1,4 @@
-//! Hands, wind, pins, tears and going back where surfaces touch: nothing ever crosses.
+//! Hands, wind, pins, tears and rewinds where surfaces touch: nothing ever crosses.
 
 use a3_core::{Model, Network, Scene, Simulation, Vector3};
 
@@ -31,7 +31,8 @@ fn crossings(run: &Simulation) -> usize {
     network.crossed(run.time(), x).len()
 }
 
-/// Goes on by a frame of 60 Hz; what is held is pulled in circles, to and fro through the curtain.
+/// Advances by a frame of 60 Hz; the grabbed particle is pulled in circles, back and forth through
+/// the curtain.
 fn frame(run: &mut Simulation) {
     if run.grabbed().is_some() {
         let phase = 9.0 * run.time();
@@ -68,7 +69,7 @@ fn hands_draw_nothing_through_anything() {
         let mut run = touching("", name);
         let energy = handle(&mut run);
         assert!(energy > 1e-5, "{name}: {energy} J");
-        // The same hands, where surfaces pass through one another, leave some crossed.
+        // The same actions, if surfaces may pass through one another, leave some crossed.
         let mut loose = self::run(CURTAIN, name);
         for _ in 0..5 {
             frame(&mut loose);
@@ -115,7 +116,7 @@ fn a_hand_lifts_a_cloth_and_a_pin_stays_where_it_is_let_go() {
     assert_eq!(run.position(PIN), there);
 }
 
-/// Back to an earlier moment and on again: the same bits.
+/// Back to an earlier moment and forward again: the same bits.
 #[test]
 fn going_back_and_on_again_is_the_same_run() {
     let mut run = touching("tear = 1.5\n", "implicit");
@@ -176,7 +177,7 @@ fn surfaces_begin_to_touch_while_they_are_apart() {
     run.set_touching(true).unwrap();
     assert!(run.touching() && run.moment().touching);
     handle(&mut run);
-    // A reset keeps it; a moment at which it was off brings that back, and a later one this.
+    // A reset keeps the setting; going back to a moment restores that of the moment.
     let after = run.moment();
     run.reset();
     assert!(run.touching());
@@ -213,7 +214,7 @@ fn what_crosses_does_not_begin_to_touch() {
         "{why}"
     );
     assert!(!run.touching() && run.state() == state && run.grabbed() == held);
-    // A scene without surfaces has nothing to let touch.
+    // A scene without surfaces has nothing that could touch.
     let mut scene = described(CURTAIN);
     scene.touch = None;
     network(&mut scene).set_triangles([]).unwrap();
@@ -243,7 +244,7 @@ fn what_crosses_is_named_by_its_parts() {
     assert!(why.contains(parts) && why.contains(" near (-0."), "{why}");
 }
 
-/// Surfaces that are apart, but within a thickness that is far too large.
+/// Surfaces that are apart, but by less than a thickness that is far too large.
 #[test]
 fn a_smaller_thickness_is_offered_where_it_would_do() {
     let mut scene = described(

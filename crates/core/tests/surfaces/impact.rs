@@ -1,5 +1,5 @@
-//! Errors of contact: of the penetration and of the times of the first impact, where both are
-//! known.
+//! Errors of contact: of the penetration and of the times of the first impact, against known
+//! values.
 
 use a3_core::accuracy::{Frames, Metric, Precision, Reference, Scope, measure};
 use a3_core::{Control, Model, Scene};
@@ -44,7 +44,7 @@ fn assert_close(found: f64, exact: f64, tolerance: f64) {
     assert!((found - exact).abs() < tolerance, "{found}, not {exact}");
 }
 
-/// What is found of a run in which nothing moves is the truth itself: the time since the impact.
+/// For a run in which nothing moves, the error is the true value: the time since the impact.
 #[test]
 fn the_reference_knows_the_impact_of_a_bead() {
     let falling = bead(0.5, -SPEED, 0.0);
@@ -54,7 +54,7 @@ fn the_reference_knows_the_impact_of_a_bead() {
     assert_close(at_turn.still.penetration, deepest() / THICKNESS, 1e-9);
     assert_close(at_turn.still.impact, turns - begins, 1e-9);
     assert!(at_turn.floor.penetration < 1e-9 && at_turn.floor.impact < 1e-9);
-    // A bead that starts where it turns: only the end of its impact is to come.
+    // A bead that starts at its turning point: only the end of its impact follows.
     let leaving = at(&bead(THICKNESS - deepest(), 0.0, 0.0), 1.0);
     assert_close(
         leaving.still.impact,
@@ -107,7 +107,7 @@ fn errors_of_a_bounce_fall_with_the_order() {
                 let run = measure(&scene, method(name), control, &reference, &|| true);
                 metric.of(&run.unwrap().unwrap().errors)
             };
-            // Where in a step the touch begins changes single errors.
+            // Single errors vary with the place in a step where the touch begins.
             let sum = |first: u32| {
                 (0..8)
                     .map(|k| of(first + k * first / 16).powi(2))

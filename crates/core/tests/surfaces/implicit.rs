@@ -1,4 +1,4 @@
-//! Implicit methods on a pile of cloth, at the steps of a game.
+//! Implicit methods on a pile of cloth, with steps as in a game.
 
 use a3_core::Simulation;
 

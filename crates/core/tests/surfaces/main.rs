@@ -12,7 +12,7 @@ mod force;
 mod hands;
 mod impact;
 mod implicit;
-mod led;
+mod kinematic;
 mod pairs;
 mod rebound;
 mod resting;

@@ -1,4 +1,4 @@
-//! Pairs of primitives by themselves, as networks, in random places within their thickness.
+//! Single pairs of primitives, as networks, at random places within their thickness.
 
 use a3_core::contact::{Obstacle, Shape, Skin};
 use a3_core::{Network, Path, Touch, Vector3};
@@ -8,7 +8,7 @@ pub const THICKNESS: f64 = 0.1;
 /// Stiffness of all skins (N/m).
 pub const STIFFNESS: f64 = 50.0;
 
-/// What is near what.
+/// Kind of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     VertexTriangle,
@@ -29,7 +29,7 @@ impl Kind {
         Self::EdgeCapsule,
     ];
 
-    /// Whether no obstacle is part of it.
+    /// Whether no obstacle is part of the pair.
     pub fn is_free(self) -> bool {
         matches!(
             self,
@@ -81,7 +81,7 @@ impl Kind {
         network
     }
 
-    /// Random positions, n x 3, at which the primitives are as near as a random share of the
+    /// Random positions, n x 3, at which the gap of the primitives is a random share of the
     /// thickness.
     pub fn positions(self, random: &mut Random) -> Vec<f64> {
         let gap = Vector3::y() * (THICKNESS * (0.05 + 0.9 * random.unit()));
@@ -160,7 +160,7 @@ impl Random {
         Vector3::from_fn(|_, _| 2.0 * self.unit() - 1.0)
     }
 
-    /// As many numbers from -1 to 1.
+    /// `count` numbers from -1 to 1.
     pub fn numbers(&mut self, count: usize) -> Vec<f64> {
         (0..count).map(|_| 2.0 * self.unit() - 1.0).collect()
     }

@@ -55,8 +55,8 @@ fn rebound(text: &str, name: &str, control: Control, scale: f64, size: f64) -> f
     highest / scale
 }
 
-/// What is dropped from a height rebounds to the square of its restitution, whether the floor or
-/// the body has it, and whatever its size.
+/// A body that is dropped from a height rebounds to the square of the restitution, of the floor or
+/// of the body, at any size.
 #[test]
 fn a_body_rebounds_to_the_square_of_its_restitution() {
     for scale in [1.0_f64, 1e-3, 100.0] {
@@ -106,7 +106,7 @@ fn a_body_rebounds_to_the_square_of_its_restitution() {
     }
 }
 
-/// What rebounds comes to rest, and lies still.
+/// Bodies that rebound come to rest, and lie still.
 #[test]
 fn bodies_that_rebound_come_to_rest() {
     for part in ["ball = 0.1", "box = [0.2, 0.2, 0.2]"] {
@@ -127,7 +127,7 @@ fn bodies_that_rebound_come_to_rest() {
                 fastest = fastest.max(moving(&run, 0).v.norm());
                 furthest = furthest.max((run.position(0) - at).norm());
             }
-            // Steps of Verlet that move nothing begin and end with a velocity of order 2.
+            // Steps of Verlet without motion begin and end with a velocity of order 2.
             let most = if name == "verlet" {
                 150.0 * step * step
             } else {
@@ -141,12 +141,12 @@ fn bodies_that_rebound_come_to_rest() {
     }
 }
 
-/// Two free bodies, of which a part and the rest of the second one are given.
+/// Two free bodies, from a part of each and the other keys of the second.
 fn pair(first: &str, second: &str, restitution: f64) -> String {
     format!("[[body]]\n{first}\n[[body]]\n{second}\nrestitution = {restitution}")
 }
 
-/// Two balls that meet off their centres: the closed form of an impact without friction.
+/// Two balls that collide off centre: the closed form of an impact without friction.
 #[test]
 fn balls_meet_as_the_closed_form_says() {
     let mut random = Random(7);
@@ -172,7 +172,7 @@ fn balls_meet_as_the_closed_form_says() {
         run.advance_to(2.5 * (a + b) / speed).unwrap();
         let (p1, l1, e1) = conserved(&run);
         assert!((p1 - p0).norm() < 1e-12 * p0.norm());
-        // Runge-Kutta itself loses some where the layer pushes.
+        // Runge-Kutta itself loses some momentum in the contact layer.
         assert!((l1 - l0).norm() < 1e-9 * l0.norm(), "{l0} {l1}");
         // Along the line of centres at the touch.
         let sin = off / (a + b);
@@ -210,7 +210,7 @@ fn a_rod_hit_at_its_end_turns() {
         run.advance_to(0.3).unwrap();
         let (p1, l1, _) = conserved(&run);
         assert!((p1 - p0).norm() < 1e-12 * p0.norm());
-        // Runge-Kutta itself loses some where the layer pushes.
+        // Runge-Kutta itself loses some momentum in the contact layer.
         assert!((l1 - l0).norm() < 1e-9 * l0.norm(), "{l0} {l1}");
         let inertia = mass * (1.0 + 0.02 * 0.02) / 12.0;
         let impulse = (1.0 + restitution) * speed / (1.0 / ball + 1.0 / mass + arm * arm / inertia);
@@ -252,7 +252,7 @@ fn meeting(seed: usize, scale: f64, restitution: f64, random: &mut Random) -> St
     )
 }
 
-/// Boxes, capsules and balls that spin and meet anywhere, without friction.
+/// Boxes, capsules and balls that spin and collide anywhere, without friction.
 #[test]
 fn impacts_conserve_momenta() {
     let mut random = Random(11);
@@ -261,7 +261,7 @@ fn impacts_conserve_momenta() {
         let scale = [1.0_f64, 1e-3, 100.0][seed % 3];
         let restitution = [0.0, 0.5, 1.0, 0.8][seed % 4];
         let text = meeting(seed, scale, restitution, &mut random);
-        // Runge-Kutta itself loses some where the layer pushes.
+        // Runge-Kutta itself loses some momentum in the contact layer.
         for (name, most) in [("rk4", 1e-7), ("verlet", 1e-12)] {
             let mut run = run(&text, name, Control::Step(1e-3 * scale.sqrt()));
             let (p0, l0, e0) = conserved(&run);
@@ -275,7 +275,7 @@ fn impacts_conserve_momenta() {
                 "{seed} {name}: {:e}",
                 (l1 - l0).norm() / size
             );
-            // The layer of the smallest bodies is hardly resolved.
+            // The contact layer of the smallest bodies is hardly resolved.
             assert!(e1 < e0 * 1.05, "{seed} {name}: {e0} {e1}");
         }
     }

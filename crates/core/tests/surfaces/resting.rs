@@ -1,4 +1,4 @@
-//! Stability of what rests on the force of contact.
+//! Stability of bodies that rest on the force of contact.
 
 use a3_core::stability::{Budget, RestState, largest_step, observe_at_rest, rest, spectrum};
 use a3_core::{Control, Model, Scene, Simulation};
@@ -12,7 +12,7 @@ const THICKNESS: f64 = 0.1;
 const STIFFNESS: f64 = 900.0;
 const GRAVITY: f64 = 9.81;
 
-/// A particle that rests on a floor, or is `lifted` so far (m), and its angular frequency (1/s).
+/// A particle that rests on a floor, or is lifted by `lifted` (m), and its angular frequency (1/s).
 fn resting(lifted: f64) -> (Scene, f64) {
     let network = bead_above_floor(MASS, GRAVITY, [THICKNESS, STIFFNESS]);
     // m g = k d s3, and w2 = 3 k s2 / m.
@@ -40,7 +40,7 @@ fn the_limit_of_a_step_is_that_of_contact_at_rest() {
 #[test]
 fn runs_beyond_that_limit_grow_and_others_do_not() {
     let (scene, frequency) = resting(1e-7);
-    // Of both methods, the state of rest is a state of rest in long steps too.
+    // For both methods, the state of rest is one in long steps too.
     for (name, product) in [("symplectic", 2.0), ("rk4", 8.0_f64.sqrt())] {
         for (share, grows) in [(0.96, false), (1.04, true)] {
             let step = Control::Step(share * product / frequency);

@@ -20,7 +20,7 @@ fn center(run: &Simulation, k: usize) -> [Vector3<f64>; 2] {
     [place.position, place.velocity]
 }
 
-/// A body on a slope of 30 degrees, whose skin is in touch with it.
+/// A body on a slope of 30 degrees, with its skin in contact.
 fn slope(part: &str, height: f64, friction: f64) -> String {
     let angle = std::f64::consts::FRAC_PI_6;
     let out = Vector3::new(-angle.sin(), angle.cos(), 0.0);
@@ -66,7 +66,7 @@ fn a_ball_rolls_down_a_slope() {
             "{method}: {found} {exact}"
         );
     }
-    // With less friction than rolling takes, it slides.
+    // With less friction than rolling requires, it slides.
     let mu = 0.1;
     let exact = 9.81 * (0.5 - mu * 0.75_f64.sqrt());
     let found = acceleration(&slope("ball = 0.3", 0.307, mu), "rk4", 1e-3);
@@ -88,7 +88,7 @@ fn a_box_sticks_or_slides() {
 }
 
 /// Where two equal faces lie on one another, dozens of pairs meet at each corner. Together they
-/// hold a box up to the slope that Coulomb says.
+/// hold a box up to the slope of Coulomb's law.
 #[test]
 fn a_box_sticks_to_another_or_slides() {
     let text = |degrees: f64| {
@@ -131,7 +131,7 @@ fn a_stack_of_five_boxes_stands() {
     let method = integrators::find("rk4").unwrap();
     let mut run = Simulation::new(setup.scene, method, Control::Step(2e-3)).unwrap();
     let before: Vec<_> = (0..5).map(|k| center(&run, k)[0]).collect();
-    // What is at rest after four seconds, to 1e-6 m/s, moves by less than 1e-3 m in sixty.
+    // Bodies at rest after four seconds, to 1e-6 m/s, move by less than 1e-3 m in sixty.
     run.advance_to(4.0).unwrap();
     for (k, before) in before.iter().enumerate() {
         let moved = (center(&run, k)[0] - before).norm();
@@ -197,7 +197,8 @@ fn conserved(run: &Simulation) -> (Vector3<f64>, Vector3<f64>, f64) {
 
 #[test]
 fn bodies_that_collide_keep_their_momenta() {
-    // Slow bodies in short steps, which the force holds apart, and fast ones, where impulses do.
+    // Slow bodies in short steps, which the force keeps apart, and fast ones, which impulses keep
+    // apart.
     for (method, step, speeds, friction, impulses) in [
         ("rk4", 1e-3, [0.2, 0.1], 0.0, false),
         ("verlet", 5e-4, [0.2, 0.1], 0.0, false),
@@ -288,7 +289,7 @@ fn heap(seed: u64, bodies: usize) -> String {
 }
 
 /// Steps of any length, which end wherever a frame is shown, do not press bodies into one another,
-/// however little they approach in each.
+/// however little they approach in each step.
 #[test]
 fn no_bodies_of_a_heap_cross() {
     for seed in 0..3 {

@@ -103,7 +103,7 @@ fn build(text: &str) -> Scene {
     setup.unwrap().scene
 }
 
-/// The text with all that damps springs taken out, which methods for positions alone refuse.
+/// The text without damping of springs, which methods for positions alone refuse.
 fn undamped(text: &str) -> String {
     let lines = text.lines();
     let damps = |line: &&str| line.starts_with("damping_ratio");
@@ -140,8 +140,8 @@ fn length(name: &str, method: &Method, until: f64) -> Option<f64> {
     }
 }
 
-/// Run of a scene; looks sixty times a second whether surfaces cross. Returns whether surfaces
-/// touched, and whether the run was lost on the way.
+/// Run of a scene, with sixty checks a second whether surfaces cross. Returns whether surfaces
+/// touched, and whether the run blew up.
 fn run(name: &str, scene: &Scene, method: &'static Method, value: f64, until: f64) -> [bool; 2] {
     let mut run = Simulation::new(scene.clone(), method, method.control(value)).unwrap();
     let mut touched = false;
@@ -195,7 +195,7 @@ fn nothing_crosses_in_any_documented_scene_by_any_method() {
             runs.get(next.fetch_add(1, Ordering::Relaxed))
         {
             let [touched, lost] = run(name, scene, method, *value, *until);
-            // Explicit Euler makes any motion grow, until it is lost.
+            // Explicit Euler makes any motion grow, until it blows up.
             found.push((*name, [touched, lost && method.name != "euler"]));
         }
         found

@@ -3,7 +3,7 @@
 use a3_core::{Control, Simulation, integrators};
 use a3_scenes::Description;
 
-/// Run of a scene as it is written in TOML.
+/// Run of a scene from its TOML text.
 fn run(toml: &str, method: &str, control: Control) -> Simulation {
     let setup = Description::parse(toml)
         .and_then(|description| description.build(None, &mut |_| Err("no files".into())));
@@ -16,7 +16,7 @@ fn run(toml: &str, method: &str, control: Control) -> Simulation {
 fn sheet_on_ramp(friction: f64, tangent: f64, length: f64) -> String {
     let angle = tangent.atan();
     let (c, s) = (angle.cos(), angle.sin());
-    // About the gap at which the contact force carries the sheet.
+    // About the gap at which the contact force supports the sheet.
     let up = 0.05 + 0.008_46;
     format!(
         "gravity = [0, -9.81, 0]
@@ -43,7 +43,7 @@ at = [{}, {}, 0]
     )
 }
 
-/// How far the sheet goes down the slope between two times (s), and how fast it is then (m/s).
+/// Distance that the sheet slides down the slope between two times (s), and its final speed (m/s).
 fn slides(friction: f64, tangent: f64, method: &str, step: f64, times: [f64; 2]) -> [f64; 2] {
     let length = if friction < tangent { 300.0 } else { 40.0 };
     let toml = sheet_on_ramp(friction, tangent, length);

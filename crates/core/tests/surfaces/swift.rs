@@ -1,15 +1,15 @@
-//! Obstacles that are small, thin and fast, and cloths that meet them within a step, at random.
+//! Small, thin and fast obstacles, and cloths that hit them within a step, at random.
 //!
-//! A cloth is thrown. Until it meets something, nothing strains it, and it flies along a parabola,
-//! so that adaptive steps become long. Whether it meets an obstacle is known from a run at steps so
-//! short that no course bends in them by more than a hundredth of the layer.
+//! A cloth is thrown. Until it hits something, nothing strains it, and it flies along a parabola,
+//! so adaptive steps become long. Whether it hits an obstacle is known from a run with steps so
+//! short that no course deviates from a line by more than a hundredth of the layer in them.
 
 use a3_core::{Control, Method, Simulation, Vector3};
 
 use crate::common::{described, method};
 use crate::pairs::Random;
 
-/// Number of scenes; a longer search is asked for by this variable of the environment.
+/// Number of scenes; this environment variable sets another one.
 const TRIES: usize = 40;
 const MORE: &str = "A3_TRIES";
 
@@ -25,7 +25,7 @@ impl Chance {
         low + (high - low) * self.0.unit()
     }
 
-    /// A number whose logarithm is spread evenly.
+    /// A random number with a uniform logarithm.
     fn scale(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
@@ -39,7 +39,7 @@ fn text(v: Vector3<f64>) -> String {
     format!("[{}, {}, {}]", v.x, v.y, v.z)
 }
 
-/// Cloth, and the place of its centre in free flight, by its parabola.
+/// Cloth, and the place of its centre in free flight, on a parabola.
 struct Flight {
     toml: String,
     velocity: Vector3<f64>,
@@ -78,7 +78,7 @@ impl Flight {
     }
 }
 
-/// Obstacle that is where the cloth is at some time.
+/// Obstacle that is at the place of the cloth at some time.
 fn obstacle(flight: &Flight, random: &mut Chance) -> String {
     let time = random.between(0.15, 0.6);
     let offset = Vector3::new(random.between(-0.1, 0.1), 0.0, random.between(-0.1, 0.1));
@@ -108,12 +108,12 @@ fn obstacle(flight: &Flight, random: &mut Chance) -> String {
                 format!("shift = {{ by = {}, end = {end} }}", text(speed * end)),
             )
         }
-        // It stands, or turns.
+        // It is still, or rotates.
         _ => (meets, String::new()),
     };
     let long = random.vector(0.2);
     let (center, turn) = if motion == 3 {
-        // A blade whose end comes by.
+        // A blade whose end passes by.
         let rate = random.between(-15.0, 15.0);
         let axis = random.vector(1.0).normalize();
         let arm = random.vector(0.4);
@@ -141,7 +141,7 @@ fn obstacle(flight: &Flight, random: &mut Chance) -> String {
     format!("{shape}\n{path}\n{turn}\nthickness = 0.003\n")
 }
 
-/// Distance (m) of the middle of the cloth, at the end, from where it flies freely.
+/// Distance (m) of the middle of the cloth, at the end, from its place in free flight.
 fn thrown(toml: &str, flight: &Flight, method: &'static Method, control: Control) -> Option<f64> {
     let mut run = Simulation::new(described(toml), method, control).ok()?;
     let start: Vector3<f64> = (0..16).map(|i| run.position(i)).sum::<Vector3<f64>>() / 16.0;

@@ -16,16 +16,16 @@ use region::{Extent, Fate, beyond, region_paint, sign};
 pub struct StabilityRegions {
     /// The title.
     pub title: String,
-    /// A line below the title; left out where there is no room for it.
+    /// A line below the title; left out if there is no space for it.
     pub subtitle: String,
-    /// A note on the titles of the panels, which ends the explanation below them; may be empty.
+    /// A note on the titles of the panels, at the end of the explanation below them; may be empty.
     pub note: String,
     /// The regions, with a panel for each.
     pub regions: Vec<Region>,
 }
 
-/// Largest part of a number that panels show, whatever the regions are.
-const LARGEST: f64 = 8.0;
+/// Largest real or imaginary part that panels show for any regions.
+const MAX_PART: f64 = 8.0;
 
 /// The explanation below the panels.
 const FOOT: &str = "h in s, λ in 1/s, so h λ has no unit. Real parts are growth or decay, \
@@ -47,12 +47,12 @@ impl StabilityRegions {
         })
     }
 
-    /// The extent of all panels: that of the largest region, as far as small ones can still be seen
-    /// beside it.
+    /// The extent of all panels: that of the largest region, limited so that small ones are still
+    /// visible beside it.
     fn extent(&self) -> Extent {
         let own = self.regions.iter().map(Region::extent);
         let all = own.reduce(Extent::with_all).unwrap_or_default();
-        all.within(LARGEST)
+        all.within(MAX_PART)
     }
 
     /// The chart at this level, or `None` if its panels would be too small.
@@ -83,8 +83,8 @@ impl StabilityRegions {
         };
         let (rooms, _) = layout::grid(self.regions.len(), inner, 1.2 * size, merit);
         let width = rooms[0].width();
-        // There are as many lines above each panel as the longest text needs, so that the panels of
-        // a row are alike.
+        // Each panel has as many lines above it as the longest text needs, so that the panels of a
+        // row are aligned.
         let words = |region: &Region| {
             [(&region.title, size), (&region.subtitle, small)]
                 .map(|(text, size)| layout::wrap(text, size, width))
@@ -147,7 +147,7 @@ impl StabilityRegions {
             ("stable region".to_owned(), sample),
             ("eigenvalue times step".to_owned(), mark(Fate::Bounded)),
             ("the same, growing slowly".to_owned(), mark(Fate::Slow)),
-            ("the same, growing fast".to_owned(), mark(Fate::Lost)),
+            ("the same, growing fast".to_owned(), mark(Fate::Fast)),
         ];
         let mut all = self.regions.iter().flat_map(|region| &region.eigenvalues);
         if all.any(|z| extent.with(*z) != extent) {

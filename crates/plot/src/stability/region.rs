@@ -17,7 +17,7 @@ const SLOW: &str = "#c77700";
 /// The colour of other eigenvalues outside the region.
 const OUTSIDE: &str = "#d0021b";
 
-/// How a mode behaves from step to step.
+/// Behaviour of a mode from step to step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fate {
     /// It does not grow.
@@ -25,31 +25,31 @@ pub enum Fate {
     /// It grows slowly.
     Slow,
     /// It grows fast.
-    Lost,
+    Fast,
 }
 
 impl Fate {
-    /// The colour of its sign.
+    /// The colour of its symbol.
     fn colour(self) -> &'static str {
         match self {
             Self::Bounded => INSIDE,
             Self::Slow => SLOW,
-            Self::Lost => OUTSIDE,
+            Self::Fast => OUTSIDE,
         }
     }
 }
 
 /// The stability region of a method, with the eigenvalues of a problem times a step: one panel.
 pub struct Region {
-    /// The style of the method, of which the colour is used.
+    /// The style of the method; only the colour is used.
     pub style: CurveStyle,
-    /// The method and its step. Lines do not break at no-break spaces, here and below.
+    /// The method and its step. Lines do not break at no-break spaces, here and in the subtitle.
     pub title: String,
     /// A note, such as the largest stable step.
     pub subtitle: String,
-    /// The growth of one step at z = h λ, from the real and the imaginary part of z: the spectral
-    /// radius. It must be symmetric in the imaginary part. Where it is at most 1, the method is
-    /// stable.
+    /// The growth of one step at z = h λ, as a function of the real and the imaginary part of z:
+    /// the spectral radius. It must be symmetric in the imaginary part. Where it is at most 1, the
+    /// method is stable.
     pub radius: Box<dyn Fn(f64, f64) -> f64>,
     /// The largest growth of one step that counts as slow.
     pub slow: f64,
@@ -57,7 +57,7 @@ pub struct Region {
     pub eigenvalues: Vec<[f64; 2]>,
 }
 
-/// The part of the plane that a panel shows at least. It is symmetric about the real axis.
+/// The part of the plane that a panel has to show. It is symmetric about the real axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extent {
     /// The ends on the real axis.
@@ -67,7 +67,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// The extent that has a point and its mirror image too.
+    /// The extent that also contains a point and its mirror image.
     pub fn with(self, [re, im]: Point) -> Self {
         let [low, high] = self.real;
         Self {
@@ -76,19 +76,19 @@ impl Extent {
         }
     }
 
-    /// The extent that has all of another too.
+    /// The extent that also contains all of another.
     pub fn with_all(self, other: Self) -> Self {
         self.with([other.real[0], other.imaginary])
             .with([other.real[1], 0.0])
     }
 
-    /// The length of 1 on a panel of this width and height that shows the extent with a margin.
+    /// The length of 1 in a panel of this width and height that shows the extent with a margin.
     pub fn unit(self, width: f64, height: f64) -> f64 {
         let [low, high] = self.real;
         (width / (high - low)).min(height / (2.0 * self.imaginary)) / 1.12
     }
 
-    /// What of it is within the square around 0 with that half side.
+    /// The part of the extent within the square around 0 with that half side.
     pub fn within(self, largest: f64) -> Self {
         Self {
             real: self.real.map(|end| end.clamp(-largest, largest)),
@@ -108,27 +108,31 @@ impl Region {
         self.fate(z) == Fate::Bounded
     }
 
-    /// What becomes of a mode at h λ.
+    /// The behaviour of a mode at h λ.
     fn fate(&self, [re, im]: Point) -> Fate {
         match (self.radius)(re, im) {
             bounded if bounded <= 1.0 + 1e-9 => Fate::Bounded,
             slow if slow <= self.slow => Fate::Slow,
-            _ => Fate::Lost,
+            _ => Fate::Fast,
         }
     }
 
-    /// The extent around the boundary of the region, as far as that is bounded, and around the
-    /// eigenvalues, unless they are far off.
+    /// The extent around the boundary of the region, as far as it is bounded, and around the
+    /// eigenvalues, unless they are far away.
     pub(super) fn extent(&self) -> Extent {
-        const FAR: f64 = 16.0;
+        const WINDOW_HALF: f64 = 16.0;
         let start = Extent {
             real: [-0.5, 0.5],
             imaginary: 0.5,
         };
-        let window = Rect::new(-FAR, -FAR, FAR, FAR);
+        let window = Rect::new(-WINDOW_HALF, -WINDOW_HALF, WINDOW_HALF, WINDOW_HALF);
         let outlines = contour::outlines(|z| self.is_stable(z), window, 320);
-        let ends =
-            |outline: &&Vec<Point>| outline.iter().flatten().all(|part| part.abs() < FAR - 0.15);
+        let ends = |outline: &&Vec<Point>| {
+            outline
+                .iter()
+                .flatten()
+                .all(|part| part.abs() < WINDOW_HALF - 0.15)
+        };
         let edge = outlines
             .iter()
             .filter(ends)
@@ -150,7 +154,7 @@ impl Region {
             .fold(edge, Extent::with)
     }
 
-    /// Draws grid, region and eigenvalues, with numbers of this size.
+    /// Draws grid, region and eigenvalues, with labels of this size.
     pub(super) fn draw(&self, figure: &mut Figure, area: Rect, extent: Extent, size: f64) {
         let middle = f64::midpoint(extent.real[0], extent.real[1]);
         let unit = extent.unit(area.width(), area.height());
@@ -164,8 +168,8 @@ impl Region {
                 area.centre()[1] - im * unit,
             ]
         };
-        // The plane is sampled a little beyond the edges, so that the outline along the end of the
-        // sample is cut off.
+        // The plane is sampled slightly beyond the edges, so that the outline along the end of the
+        // sample is clipped.
         let window = Rect::new(
             middle - 1.04 * dx,
             -1.04 * dy,
@@ -185,7 +189,8 @@ impl Region {
             let pen = Pen::new("#555555", 0.07 * size);
             figure.line(&[[area.x0, zero[1]], [area.x1, zero[1]]], pen.clone());
             figure.line(&[[zero[0], area.y0], [zero[0], area.y1]], pen);
-            // Dots are smaller the more there are, and those that would coincide are drawn once.
+            // The more dots there are, the smaller they are; those that would coincide are drawn
+            // once.
             let small = size * (40.0 / self.eigenvalues.len().max(40) as f64).powf(0.25);
             let mut seen = HashSet::new();
             for z in self
@@ -213,13 +218,13 @@ impl Region {
     }
 }
 
-/// The paint of a region in this colour.
+/// The paint of a region of this colour.
 pub fn region_paint(colour: &'static str, width: f64) -> Paint {
     let inside = Paint::fill(colour).opacity(0.2);
     inside.outlined(Pen::new(colour, width))
 }
 
-/// Draws an eigenvalue: a dot in the region, outside it a ring if it grows slowly, else a cross.
+/// Draws an eigenvalue: a dot in the region; outside it a ring if it grows slowly, else a cross.
 pub fn sign(figure: &mut Figure, [x, y]: Point, size: f64, fate: Fate) {
     let circle = |r: f64| -> Vec<Point> {
         let corner = |k: u8| (f64::from(k) * TAU / 12.0).sin_cos();
@@ -230,7 +235,7 @@ pub fn sign(figure: &mut Figure, [x, y]: Point, size: f64, fate: Fate) {
     match fate {
         Fate::Bounded => figure.area(vec![circle(0.2)], Paint::fill(INSIDE)),
         Fate::Slow => figure.line(&circle(0.24), pen),
-        Fate::Lost => {
+        Fate::Fast => {
             let r = 0.26 * size;
             figure.line(&[[x - r, y - r], [x + r, y + r]], pen.clone());
             figure.line(&[[x - r, y + r], [x + r, y - r]], pen);
@@ -238,7 +243,7 @@ pub fn sign(figure: &mut Figure, [x, y]: Point, size: f64, fate: Fate) {
     }
 }
 
-/// Draws a wedge at a point, which leads to another that is outside the panel.
+/// Draws a wedge at a point that points towards another one outside the panel.
 pub fn beyond(figure: &mut Figure, [x, y]: Point, to: Point, r: f64, colour: &'static str) {
     let (dx, dy) = (to[0] - x, to[1] - y);
     let length = dx.hypot(dy);

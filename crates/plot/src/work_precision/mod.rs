@@ -21,7 +21,7 @@ use panel::{Drawing, front_pen, shade_paint};
 pub struct WorkPrecision {
     /// The title.
     pub title: String,
-    /// A line below the title; left out where there is no room for it, as the foot is.
+    /// A line below the title; left out, like the foot, if there is no space for it.
     pub subtitle: String,
     /// The error that the horizontal axis shows, with its unit.
     pub x_label: String,
@@ -31,7 +31,7 @@ pub struct WorkPrecision {
     pub problems: Vec<Problem>,
     /// An explanation below the panels.
     pub foot: String,
-    /// What held the runs with half-filled markers, for the legend.
+    /// What intervened in the runs with half-filled markers, for the legend.
     pub held: String,
 }
 
@@ -51,7 +51,7 @@ impl WorkPrecision {
         })
     }
 
-    /// All runs that have a place on the chart.
+    /// All runs that can be drawn.
     fn runs(&self) -> impl Iterator<Item = &Measurement> {
         let curves = self.problems.iter().flat_map(|problem| &problem.curves);
         curves
@@ -73,8 +73,8 @@ impl WorkPrecision {
             .filter(|run| !run.is_lost() && run.error > 0.0)
             .map(|run| run.error);
         let (least, most) = range(errors)?;
-        // Runs far below what the reference can tell need no room, whereas a limit just left of all
-        // runs is worth showing.
+        // Runs far below the resolution of the reference need no space, whereas a limit just left
+        // of all runs is worth showing.
         let limits = || {
             self.problems
                 .iter()
@@ -168,7 +168,7 @@ impl WorkPrecision {
         Some(figure)
     }
 
-    /// The entries of the legend: each method once, the front, and the shade if there is any.
+    /// The entries of the legend: each method once, the front, and the shade if there is one.
     fn entries(&self, size: f64, x: &Axis) -> Vec<(String, Sign<'_>)> {
         let mut seen = vec![];
         let mut entries: Vec<(String, Sign)> = vec![];

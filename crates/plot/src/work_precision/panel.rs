@@ -1,4 +1,4 @@
-//! Panels: the shade, the curves and the front of a problem, and their names where there is room.
+//! Panels: the shade, the curves and the front of a problem, with names where there is space.
 
 use std::cmp::Reverse;
 
@@ -11,9 +11,9 @@ use crate::paint::{Paint, Pen};
 use crate::style::Filling;
 
 /// Opacity of a band of errors.
-const BAND: f64 = 0.25;
+const BAND_OPACITY: f64 = 0.25;
 
-/// The paint of errors that the reference cannot tell from 0.
+/// The paint of errors below the resolution of the reference.
 pub fn shade_paint() -> Paint {
     Paint::fill("#e6eaf0")
 }
@@ -23,7 +23,7 @@ pub fn front_pen(width: f64) -> Pen {
     Pen::new("#f8dd86", width).round()
 }
 
-/// A panel while it is drawn.
+/// A panel in progress.
 pub struct Drawing<'a> {
     problem: &'a Problem,
     axes: [Axis; 2],
@@ -31,11 +31,11 @@ pub struct Drawing<'a> {
     main: Rect,
     /// The size of text.
     size: f64,
-    /// The size of lines and markers, as the size of text that they go with.
+    /// The size of lines and markers, given as the size of matching text.
     fine: f64,
-    /// The rooms that markers take.
+    /// The rectangles that markers occupy.
     taken: Vec<Rect>,
-    /// The line segments that are drawn.
+    /// The line segments drawn so far.
     lines: Vec<[Point; 2]>,
 }
 
@@ -60,8 +60,8 @@ impl<'a> Drawing<'a> {
         ]
     }
 
-    /// Draws the panel, with a strip of this width for runs that were lost; `numbers` says whether
-    /// the axes of x and y have numbers.
+    /// Draws the panel, with a strip of this width for runs that blew up; `numbers` tells whether
+    /// the x and y axes are labelled.
     pub fn draw(&mut self, figure: &mut Figure, strip: f64, numbers: [bool; 2]) {
         let (main, size) = (self.main, self.size);
         let limit = self.problem.trusted();
@@ -97,7 +97,7 @@ impl<'a> Drawing<'a> {
         self.lines
             .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
         self.curves(figure);
-        self.lost(figure, strip);
+        self.blown_up(figure, strip);
         if limit > 0.0 {
             self.explain_shade(figure, shade);
         }
@@ -106,7 +106,8 @@ impl<'a> Drawing<'a> {
         self.name_steps(figure, &front);
     }
 
-    /// Draws the spread of errors along a curve as a band, to and fro from the dearest run on.
+    /// Draws the spread of errors along a curve as a band: along the least errors, and back along
+    /// the largest.
     fn band(&self, figure: &mut Figure, curve: &Curve) {
         let mut outline = vec![];
         let mut back = vec![];
@@ -125,7 +126,7 @@ impl<'a> Drawing<'a> {
         }
         outline.extend(back.into_iter().rev());
         if outline.len() > 2 {
-            let paint = Paint::fill(curve.style.colour).opacity(BAND);
+            let paint = Paint::fill(curve.style.colour).opacity(BAND_OPACITY);
             figure.area(vec![outline], paint);
         }
     }
@@ -154,9 +155,9 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Draws runs that were lost, as open markers beside the chart, next to each other where one
-    /// would hide another.
-    fn lost(&mut self, figure: &mut Figure, strip: Rect) {
+    /// Draws runs that blew up as open markers beside the chart, next to each other if one would
+    /// hide another.
+    fn blown_up(&mut self, figure: &mut Figure, strip: Rect) {
         let radius = 0.36 * self.fine.min(0.9 * self.size);
         let mut taken: Vec<Rect> = vec![];
         for curve in &self.problem.curves {
@@ -177,7 +178,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Draws the error of a run in which nothing moves, as a line with its name.
+    /// Draws the error of a run in which nothing moves, as a line with a label.
     fn still(&self, figure: &mut Figure) {
         let Some(still) = self
             .problem
@@ -202,7 +203,7 @@ impl<'a> Drawing<'a> {
         self.place(figure, label, places);
     }
 
-    /// Whether a label there would cover nothing.
+    /// Whether a label at this place would cover nothing.
     fn is_clear(&self, figure: &Figure, room: Rect) -> bool {
         self.main.holds(room)
             && figure.is_free(room)
@@ -210,7 +211,8 @@ impl<'a> Drawing<'a> {
             && !self.lines.iter().any(|[a, b]| room.meets(*a, *b))
     }
 
-    /// Writes the label at the first of the points where it covers nothing. Whether there is one.
+    /// Writes the label at the first of the points where it covers nothing. Returns whether there
+    /// is one.
     fn place(
         &self,
         figure: &mut Figure,
@@ -224,7 +226,8 @@ impl<'a> Drawing<'a> {
         found.is_some()
     }
 
-    /// Writes what the shade is, read from below, if it is wide enough. The legend says it too.
+    /// Explains the shade, in text read from below, if it is wide enough. The legend explains it
+    /// too.
     fn explain_shade(&self, figure: &mut Figure, shade: Rect) {
         let size = 0.85 * self.size;
         for text in ["finer than the reference can tell", "reference unsure"] {
@@ -243,8 +246,8 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Names each method once, where it has the most runs in a row on the front, on the side of the
-    /// front where no curve can be.
+    /// Names each method once, at its longest run on the front, on the side of the front that is
+    /// free of curves.
     fn name_front(&self, figure: &mut Figure, front: &[(usize, &Measurement)]) {
         let size = self.size;
         let mut parts: Vec<_> = front.chunk_by(|a, b| a.0 == b.0).collect();
@@ -289,7 +292,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// Writes the labels of the runs on the front, where they cover nothing.
+    /// Writes the labels of the runs on the front where they cover nothing.
     fn name_steps(&self, figure: &mut Figure, front: &[(usize, &Measurement)]) {
         let size = 0.8 * self.size;
         for (_, run) in front {

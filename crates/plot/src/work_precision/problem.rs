@@ -9,11 +9,12 @@ pub struct Measurement {
     pub error: f64,
     /// The work, on the vertical axis. A run without positive work is not drawn.
     pub work: f64,
-    /// Whether the run blew up or failed. It is drawn beside the chart then, at its work.
+    /// Whether the run blew up or failed. It is then drawn beside the chart, at its work.
     pub lost: bool,
-    /// Whether something else than the method held the run. Its marker is half filled then.
+    /// Whether something other than the method intervened in the run. Its marker is then half
+    /// filled.
     pub held: bool,
-    /// The step or the tolerance of the run, in words.
+    /// The step or the tolerance of the run, as text.
     pub label: Option<String>,
     /// The least and the largest error of runs like this one, drawn as a band.
     pub spread: Option<[f64; 2]>,
@@ -35,12 +36,13 @@ pub struct Curve {
 pub struct Problem {
     /// The title of the panel; none if it is empty.
     pub title: String,
-    /// The curves, one for each method.
+    /// The title of the panel; may be empty.
     pub curves: Vec<Curve>,
-    /// The least error that the reference can tell from 0. Smaller ones are shaded.
+    /// The resolution of the reference: the least error that it can distinguish from 0. Smaller
+    /// errors are shaded.
     pub resolved: Option<f64>,
-    /// The error of a run in which nothing moves, beyond which errors say nothing: the front ends
-    /// there.
+    /// The error of a run in which nothing moves, beyond which errors are meaningless: the front
+    /// ends there.
     pub still: Option<f64>,
 }
 
@@ -57,9 +59,9 @@ impl Measurement {
 }
 
 impl Curve {
-    /// The runs that a line joins, from the dearest on: those that no other run of the method beats
-    /// in both error and work. The steps of an adaptive method at its limit of stability cost about
-    /// the same whatever their error, and a line through them would only go to and fro.
+    /// The runs that a line joins, from the most accurate on: those that no other run of the method
+    /// beats in both error and work. The steps of an adaptive method at its limit of stability cost
+    /// about the same at any error, and a line through them would only go back and forth.
     pub(super) fn joined(&self) -> Vec<&Measurement> {
         let drawn = self.runs.iter();
         let mut runs: Vec<_> = drawn
@@ -132,7 +134,7 @@ mod tests {
         };
         let problem = Problem {
             title: String::new(),
-            // The fourth run of the first is below what is resolved, and its last was lost.
+            // The fourth run of the first is below the resolution, and its last blew up.
             curves: vec![
                 curve(vec![
                     run(1e-2, 10.0, false),

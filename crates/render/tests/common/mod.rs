@@ -1,16 +1,17 @@
-//! A small scene with everything in it.
+//! A small scene with all kinds of objects.
 #![allow(dead_code, missing_docs, reason = "each test file uses its part")]
 
 use std::io::Write;
 
 use a3_render::{Ball, Camera, Corner, Gpu, Line, Picture, Solid, Spring, Style, Topology};
 
-/// The adapter, or a loud word that there is none. `A3_REQUIRE_GPU` forbids to go on without.
+/// The adapter, or a visible message that there is none. `A3_REQUIRE_GPU` forbids to continue
+/// without.
 pub fn gpu() -> Option<Gpu> {
     match pollster::block_on(Gpu::headless()) {
         Ok(gpu) => Some(gpu),
         Err(why) if std::env::var_os("A3_REQUIRE_GPU").is_none() => {
-            // Past the test runner, which keeps what a passing test prints.
+            // Written directly, because the test runner hides the output of a passing test.
             let _ = writeln!(std::io::stderr(), "SKIPPED, NOT TESTED: {why}");
             None
         }

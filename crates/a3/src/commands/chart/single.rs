@@ -107,7 +107,7 @@ pub fn precision(scene: &Scene, motion: f64) -> Precision {
     Precision {
         metric: Metric::Position,
         uncertainty: FINE * motion,
-        most: evaluations.max(numbers / scene.state.len() as f64),
+        max_work: evaluations.max(numbers / scene.state.len() as f64),
     }
 }
 

@@ -72,7 +72,7 @@ impl<'a> Asked<'a> {
             Goal::Error(error) => Precision {
                 metric: self.metric,
                 uncertainty: error / MARGIN.1,
-                most: f64::INFINITY,
+                max_work: f64::INFINITY,
             },
             Goal::Budget(_) => precision(scene, horizon.motion),
         };

@@ -37,18 +37,18 @@ pub fn blow_up(ui: &mut Ui, pane: &Pane, lost: &BlowUp) {
 }
 
 /// Whether surfaces that are led left no room, whatever the step.
-fn is_squeezed(lost: &BlowUp) -> bool {
-    matches!(lost.cause, Cause::Squeezed { .. })
+fn is_pinched(lost: &BlowUp) -> bool {
+    matches!(lost.cause, Cause::Pinched { .. })
 }
 
 /// Whether no step would have held.
 fn is_hopeless(lost: &BlowUp) -> bool {
-    is_squeezed(lost) || matches!(lost.cause, Cause::Contradiction(_))
+    is_pinched(lost) || matches!(lost.cause, Cause::Contradiction(_))
 }
 
 /// The keys that lead out of a blow-up.
 pub fn way_out(lost: &BlowUp) -> String {
-    if is_squeezed(lost) {
+    if is_pinched(lost) {
         return "Press , to go back, or x to let surfaces pass through one another, then r.".into();
     }
     "Press < to go back, - for a shorter step, or a digit for another solver; or r to begin anew."
@@ -80,11 +80,11 @@ mod tests {
 
     #[test]
     fn what_leaves_no_room_is_named() {
-        let squeezed = "self_collision = true\n\
+        let pinched = "self_collision = true\n\
             [[cloth]]\ngrid = [3, 3]\nwidth = 1\nmass = 0.1\nstiffness = [40, 20, 1]\n\
             down = [0, 0, 1]\npin = [{ at = ['top', 'bottom'] }]\n\
             [[sphere]]\ncenter = [0, 1, 0]\nradius = 0.2\nshift = { by = [0, -2, 0], end = 1 }\n";
-        let setup = a3_scenes::Description::parse(squeezed).unwrap();
+        let setup = a3_scenes::Description::parse(pinched).unwrap();
         let setup = setup.build(None, &mut |_| unreachable!()).unwrap();
         let method = integrators::find("v").unwrap();
         let simulation = Simulation::new(setup.scene, method, Control::Step(0.001)).unwrap();
@@ -93,7 +93,7 @@ mod tests {
         let (words, _) = read(&[pane], &Readings::default(), [1280.0, 720.0]);
         let words = words.replace('\n', " ");
         for said in [
-            "surfaces are squeezed: pins or moving obstacles leave no room between obstacle 0 and particle 0",
+            "surfaces are pinched: pins or moving obstacles leave no room between obstacle 0 and particle 0",
             "A shorter step does not help. Press , to go back",
         ] {
             assert!(words.contains(said), "{said} in {words}");

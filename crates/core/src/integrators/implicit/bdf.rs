@@ -2,9 +2,9 @@
 //! states at the ends of equal steps (Shampine, Reichelt, *The MATLAB ODE suite*, SIAM J. Sci.
 //! Comput. 18, 1997; Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, V.1). At
 //! the end y1 of a step of order k, `sum(D_j / j, j = 1..k) - kappa_k g_k D_(k+1) = h f(t + h, y1)`
-//! with `g_k = 1 + 1/2 + ... + 1/k`. Where h changes, the polynomial through the states is read at
-//! new places. Stiff motion is damped out. A step of a given length, which has none before it, is
-//! one of TR-BDF2.
+//! with `g_k = 1 + 1/2 + ... + 1/k`. When h changes, the polynomial through the states is evaluated
+//! at new times. Stiff motion is damped out. A single step of a given length, which has no history,
+//! is one of TR-BDF2.
 
 use super::super::arithmetic::{add_scaled, scaled_sum};
 use super::super::error_norm::ErrorNorm;
@@ -33,18 +33,18 @@ pub(crate) const METHOD: Method = Method {
 };
 
 /// Highest order.
-const ORDERS: usize = differences::MOST;
+const MAX_ORDER: usize = differences::MAX_ORDER;
 /// Number of backward differences: two beyond the highest order, for the errors of the next.
-const DIFFERENCES: usize = ORDERS + 2;
-/// Share of the tolerated error that the next step aims at, at most so many times as long.
+const DIFFERENCES: usize = MAX_ORDER + 2;
+/// Safety factor of the next step, over the one that would just meet the tolerance.
 const SAFETY: f64 = 0.8;
-/// Least ratio of steps for which the differences are computed anew.
-const LONGER: f64 = 1.2;
+/// Least ratio of steps for which the differences are recomputed.
+const MIN_STEP_RATIO: f64 = 1.2;
 
-/// Time in which the derivative is seen to change, over the last step.
-const MOMENT: f64 = 1e-3;
+/// Time over which the change of the derivative is measured, as a share of the last step.
+const MOMENT_SHARE: f64 = 1e-3;
 
-/// The method's own numbers beside the vectors of a step.
+/// Orders of the method and number of equal steps.
 #[derive(Clone, Copy)]
 struct Orders {
     /// Order of the last step.
@@ -58,12 +58,12 @@ struct Orders {
 /// The method with its scratch.
 struct Bdf {
     solver: KeptSolver,
-    /// Whether the solver does not have the tangent yet.
+    /// Whether the tangent was restored from a checkpoint and has to be formed again.
     resumed: bool,
     orders: Orders,
     /// Whether no step has been taken since the beginning.
     first: bool,
-    /// Whether D is a parabola, of which it is not known yet whether it is of use.
+    /// Whether D is a parabola that has not been checked yet.
     is_parabola: bool,
     /// Ratio of the next step to the last.
     change: f64,
@@ -71,8 +71,8 @@ struct Bdf {
     base: Vec<f64>,
     /// Error of a step.
     sum: Vec<f64>,
-    /// The last step, whose vectors are `D_1`, `D_2`, ..., and in a checkpoint the state at which
-    /// the tangent was formed; its length is the distance of the states that D is made of.
+    /// The last step. Its vectors are `D_1`, `D_2`, ..., and in a checkpoint the state at which the
+    /// tangent was formed; its length is the time between the states of D.
     step: LastStep,
 }
 
@@ -98,14 +98,14 @@ impl Bdf {
         }
     }
 
-    /// Makes D the differences of states at a distance of h (s), on the same polynomial.
+    /// Makes D the differences of states h (s) apart, on the same polynomial.
     fn rescale(&mut self, h: f64) {
         differences::rescale(&mut self.step.k[..self.orders.next], h / self.step.h);
         self.step.h = h;
         self.orders.equal = 0;
     }
 
-    /// Writes the prediction, and the base of the equations y1 = base + a f(t, y1).
+    /// Writes the predicted state, and the base of the equations y1 = base + a f(t, y1).
     fn predict(&mut self) {
         let order = self.orders.next;
         let divisor = (1.0 - KAPPA[order]) * harmonic(order);
@@ -117,12 +117,12 @@ impl Bdf {
         }
     }
 
-    /// Ratio of steps by which the error of an order would be the tolerated one.
+    /// Ratio of steps at which the error of an order would just be allowed.
     fn ratio(error: f64, order: usize) -> f64 {
         libm::pow(error.max(1e-12), -1.0 / (order + 1) as f64)
     }
 
-    /// Norm of the error, without what it is at pins, whose places are known.
+    /// Norm of the error, without that at pins, whose positions are known.
     fn norm_of_error(&mut self, system: &dyn ParticleSystem, norm: &ErrorNorm) -> f64 {
         if let Some(mechanics) = system.mechanics() {
             let inverse_masses = mechanics.inverse_masses();
@@ -137,8 +137,8 @@ impl Bdf {
         norm.of(&self.step.y0, &self.step.y1, &self.sum)
     }
 
-    /// Goes back to order 1 where the curvature of a parabola, which takes the place of steps
-    /// before this one, is more than the slope: stiff motion, which the step damps out, bends it.
+    /// Returns to order 1 if the parabola that replaces previous steps has more curvature than
+    /// slope: then stiff motion, which the step damps out, has bent it.
     fn judge_parabola(&mut self, norm: &ErrorNorm) {
         let [first, second, ..] = &mut self.step.k[..] else {
             return;
@@ -155,7 +155,7 @@ impl Bdf {
         }
     }
 
-    /// Norm of the error of an order, from the difference above it.
+    /// Norm of the error of an order, from the next higher difference.
     fn error_of(&mut self, order: usize, system: &dyn ParticleSystem, norm: &ErrorNorm) -> f64 {
         let factor = error_factor(order);
         for (sum, d) in self.sum.iter_mut().zip(&self.step.k[order]) {
@@ -164,7 +164,8 @@ impl Bdf {
         self.norm_of_error(system, norm)
     }
 
-    /// Makes D the differences at the end of the step, and chooses order and length of the next.
+    /// Makes D the differences at the end of the step, and chooses the order and length of the next
+    /// step.
     fn accept(&mut self, error: f64, system: &dyn ParticleSystem, norm: &ErrorNorm) {
         let order = self.orders.next;
         let LastStep { y1, k, .. } = &mut self.step;
@@ -180,8 +181,8 @@ impl Bdf {
         self.orders.equal += 1;
         self.change = 1.0;
         let mut best = (Self::ratio(error, order), order);
-        // The length of a first step is a guess, and where contact changes each of its ends every
-        // step is a first one: it may be longer at once.
+        // The length of a first step is a guess, and if contact changes the end of each step, all
+        // steps are first ones: the next one may be longer at once.
         let first = std::mem::take(&mut self.first);
         let settled = self.orders.equal > order;
         if !first && !settled {
@@ -196,7 +197,7 @@ impl Bdf {
                 best = lower;
             }
         }
-        if order < ORDERS && settled {
+        if order < MAX_ORDER && settled {
             let higher = (
                 Self::ratio(self.error_of(order + 1, system, norm), order + 1),
                 order + 1,
@@ -210,7 +211,7 @@ impl Bdf {
             self.orders.equal = 0;
         }
         self.orders.next = best.1;
-        if !(1.0..LONGER).contains(&change) {
+        if !(1.0..MIN_STEP_RATIO).contains(&change) {
             self.change = change;
         }
     }
@@ -240,7 +241,7 @@ impl Trial for Bdf {
         self.step.y0.copy_from_slice(y);
         system.hold(t, &mut self.step.y0);
         system.eval_f(t, &self.step.y0, &mut self.step.k[0]);
-        // The difference is f times the distance of the states.
+        // The first difference is f times the time between the states.
         self.step.h = 1.0;
         self.first = true;
         self.is_parabola = false;
@@ -253,10 +254,10 @@ impl Trial for Bdf {
         Work::of(1)
     }
 
-    /// Begins with order 2: where contact changes the end of each step, no step has others before
-    /// it, and the parabola with the derivatives of y takes their place.
+    /// Begins with order 2: if contact changes the end of each step, there are no previous steps,
+    /// and a parabola from the derivatives of y replaces them.
     fn begin_again(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
-        let moment = MOMENT * self.step.h;
+        let moment = MOMENT_SHARE * self.step.h;
         let mut work = self.begin(system, t, y);
         let LastStep { y0, k, .. } = &mut self.step;
         let [first, second, ..] = &mut k[..] else {
@@ -274,7 +275,7 @@ impl Trial for Bdf {
         work
     }
 
-    fn go_on(&mut self) {
+    fn start_from_end(&mut self) {
         self.step.y0.copy_from_slice(&self.step.y1);
     }
 
@@ -302,7 +303,7 @@ impl Trial for Bdf {
         let order = self.orders.next;
         let a = h / ((1.0 - KAPPA[order]) * harmonic(order));
         if std::mem::take(&mut self.resumed) && self.solver.tangent.a != 0.0 {
-            // The same tangent as before, which was paid for when it was formed.
+            // This tangent was formed, and counted as work, before the checkpoint.
             let _ = self.solver.form(system);
         }
         let equations = [&*self.base, &*self.predicted];
@@ -363,7 +364,7 @@ impl Trial for Bdf {
         };
         if [last, next]
             .iter()
-            .any(|order| !(1..=ORDERS).contains(order))
+            .any(|order| !(1..=MAX_ORDER).contains(order))
         {
             return Err(Error::Invalid(format!("there is no BDF of order {next}")));
         }

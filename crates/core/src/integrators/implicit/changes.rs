@@ -1,34 +1,33 @@
-//! The changes that the iterations of Newton's method make, and what they foretell.
+//! Changes of the state in the iterations of Newton's method, and prediction of further ones.
 
 use crate::error::Error;
 
-/// Change relative to the state at which the iteration ends: the next change would be lost in
+/// Relative change of the state at which the iteration ends: the next change would vanish in
 /// rounding.
-pub(super) const CLOSE: f64 = 1e-11;
-/// Rate of convergence, a change over the one before it, up to which the tangent is kept for the
-/// next iteration.
-const KEPT: f64 = 0.03;
-/// Relative residual to which the linear system of an iteration is solved that is not the last: a
-/// more exact solution would change little, because the equations are not linear (Dembo, Eisenstat,
-/// Steihaug, *Inexact Newton methods*, 1982).
+pub(super) const TOLERANCE: f64 = 1e-11;
+/// Ratio of consecutive changes up to which the tangent is kept for the next iteration.
+const MAX_KEPT_RATE: f64 = 0.03;
+/// Relative residual of the linear system in all iterations except the last: the equations are
+/// nonlinear, so a more exact solution would not help (Dembo, Eisenstat, Steihaug, *Inexact Newton
+/// methods*, 1982).
 const FORCING: f64 = 1e-3;
-/// Least and largest relative residual of the iteration that is foretold to be the last.
-const LAST: [f64; 2] = [1e-6, 0.1];
-/// Part of a change that counts as none that the linear system of the last iteration may leave:
-/// invariants, such as the momentum, drift by what it leaves in each step.
-const LEFT: f64 = 1e-3;
+/// Least and largest relative residual in the iteration that is predicted to be the last.
+const LAST_RESIDUALS: [f64; 2] = [1e-6, 0.1];
+/// Part of a negligible change that the linear system of the last iteration may leave: in each
+/// step, invariants such as the momentum drift by that part.
+const RESIDUAL_SHARE: f64 = 1e-3;
 
-/// The changes in one solution of the equations.
+/// Changes in one solution of the equations.
 pub(super) struct Changes {
-    /// Whether they foretell the next one, as with the tangent of smooth forces.
+    /// Whether they predict the next one, as they do with the tangent of smooth forces.
     foretell: bool,
     first: f64,
     last: f64,
-    /// The last one over the one before it, infinite if there was none.
+    /// Ratio of the last change to the one before it; infinite without such.
     rate: f64,
-    /// Size of the state after the last one.
+    /// Size of the state after the last change.
     size: f64,
-    /// Relative residual to which the linear system of the last one was solved.
+    /// Relative residual of the linear system of the last change.
     residual: f64,
 }
 
@@ -44,8 +43,8 @@ impl Changes {
         }
     }
 
-    /// Adds one, which left a state of this size, and whose linear system was solved to this
-    /// relative residual.
+    /// Adds a change that led to a state of this size, and the relative residual of its linear
+    /// system.
     pub fn add(&mut self, change: f64, size: f64, residual: f64) {
         if self.first.is_nan() {
             self.first = change;
@@ -55,25 +54,25 @@ impl Changes {
         (self.last, self.size, self.residual) = (change, size, residual);
     }
 
-    /// Relative residual to which the linear system of the next one is solved.
+    /// Relative residual for the linear system of the next change.
     pub fn forcing(&self) -> f64 {
-        // A tenth, because the next one may be larger than foretold.
-        let enough = 0.1 * LEFT * CLOSE * self.size / (self.last * self.rate);
-        if self.foretell && enough >= LAST[0] {
-            enough.min(LAST[1])
+        // Divided by ten, because the next change may be larger than predicted.
+        let enough = 0.1 * RESIDUAL_SHARE * TOLERANCE * self.size / (self.last * self.rate);
+        if self.foretell && enough >= LAST_RESIDUALS[0] {
+            enough.min(LAST_RESIDUALS[1])
         } else {
             FORCING
         }
     }
 
-    /// Whether they shrink so fast that the tangent can be kept; `None` if that is not known yet.
+    /// Whether changes shrink so fast that the tangent can be kept; `None` if unknown yet.
     pub fn shrink_fast(&self) -> Option<bool> {
-        self.rate.is_finite().then_some(self.rate <= KEPT)
+        self.rate.is_finite().then_some(self.rate <= MAX_KEPT_RATE)
     }
 
-    /// Whether the last one, or the next one where it is known to be about as much smaller again,
-    /// is none relative to the size of the state, and solved so; or whether they no longer shrink,
-    /// if the last one is below this `noise`.
+    /// Whether the last change, or the predicted next one, is negligible relative to the state and
+    /// its linear system solved accurately enough; or whether changes no longer shrink, if the last
+    /// one is below `noise`.
     pub fn are_over(&self, noise: f64) -> bool {
         let shrinks = if self.foretell {
             self.rate.min(1.0)
@@ -81,17 +80,17 @@ impl Changes {
             1.0
         };
         let stay = self.rate.is_finite() && self.rate >= 0.5;
-        let none = CLOSE * self.size;
-        self.last * shrinks <= none && self.last * self.residual <= LEFT * none
+        let none = TOLERANCE * self.size;
+        self.last * shrinks <= none && self.last * self.residual <= RESIDUAL_SHARE * none
             || stay && self.last <= noise * self.size
     }
 
-    /// Whether the last one is a number, so that there can be a next one.
+    /// Whether the last change is finite, so that another iteration is possible.
     pub fn are_finite(&self) -> bool {
         self.last.is_finite()
     }
 
-    /// What is said if they are not over after all iterations.
+    /// Error if the changes are not negligible after all iterations.
     pub fn failure(&self) -> Error {
         Error::NoConvergence {
             residual: self.last / self.first,

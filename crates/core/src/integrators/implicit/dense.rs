@@ -2,7 +2,7 @@
 //! the Jacobian J from central differences.
 
 use super::changes::Changes;
-use super::newton::{MOST, Newton, dot};
+use super::newton::{MAX_ITERATIONS, Newton, dot};
 use crate::error::Error;
 use crate::integrators::arithmetic::add_scaled;
 use crate::integrators::integrator::check_dim;
@@ -10,29 +10,30 @@ use crate::integrators::method::MAX_DENSE;
 use crate::system::{Measure, ParticleSystem};
 use crate::work::Work;
 
-/// Half the length of a difference, over the unit of what is changed.
-const DIFFERENCE: f64 = 1e-6;
-/// The same for speeds, which move hardly anything, over that for positions.
-const SLOW: f64 = 1e-3;
+/// Half the step of a difference quotient, over the unit of the number.
+const DIFFERENCE_SHARE: f64 = 1e-6;
+/// The same for speeds, relative to that for positions: the resulting motion is tiny.
+const SPEED_DIFFERENCE_SHARE: f64 = 1e-3;
 
-/// The numbers of the state that the equations are solved for: all, but for those of what rigid
-/// bodies carry, which no f reads.
+/// The numbers of the state that the equations are solved for: all, except those of particles on
+/// rigid bodies, which f does not read.
 pub(super) fn unknowns(system: &dyn ParticleSystem) -> Vec<usize> {
     let mut all = vec![];
     system.measures(&mut |numbers, _| all.extend(numbers));
     all
 }
 
-/// Solver of the implicit stages of a small system, with its scratch. What rigid bodies carry
-/// stays as it is.
+/// Solver of the implicit stages of a small system, with its scratch. Particles on rigid bodies
+/// stay as they are.
 pub(super) struct Dense {
     dim: usize,
     unknowns: Vec<usize>,
-    /// Unit of each unknown, in which changes are compared, and half the length of its difference.
+    /// Unit of each unknown, in which changes are compared, and half the step of its difference
+    /// quotient.
     units: Vec<[f64; 2]>,
     /// Matrix 1 - a J, row by row, or its factors L and U in place.
     matrix: Vec<f64>,
-    /// Row that was exchanged with each row in turn.
+    /// Row that each row was exchanged with, in turn.
     pivots: Vec<usize>,
     /// Change of the unknowns, and of the whole state.
     solution: Vec<f64>,
@@ -45,7 +46,7 @@ pub(super) struct Dense {
 impl Dense {
     pub fn new(system: &dyn ParticleSystem) -> Self {
         let (dim, unknowns) = (system.dim(), unknowns(system));
-        // A system that is too large is refused.
+        // Systems that are too large are refused, and need no room.
         let room = Some(unknowns.len()).filter(|count| *count <= MAX_DENSE);
         let room = room.unwrap_or(0);
         Self {
@@ -62,7 +63,7 @@ impl Dense {
         }
     }
 
-    /// Takes y from a guess to the solution of y = base + a f(t, y).
+    /// Solves y = base + a f(t, y), starting from the guess y.
     pub fn solve(
         &mut self,
         system: &dyn ParticleSystem,
@@ -75,7 +76,7 @@ impl Dense {
         check_dim(self.dim, y)?;
         let mut work = Work::default();
         let mut changes = Changes::new(true);
-        for iteration in 0..MOST {
+        for iteration in 0..MAX_ITERATIONS {
             if iteration == 0 || changes.shrink_fast() == Some(false) {
                 let (formed, of_use) = self.keep(system, t, a, y);
                 work += formed;
@@ -84,7 +85,7 @@ impl Dense {
                 }
             }
             work += self.correct(system, t, a, base, y);
-            // Where bodies are does not matter.
+            // The size of the state is independent of the positions of bodies.
             let size = match system.rigid() {
                 Some(_) => (self.unknowns.len() as f64).sqrt(),
                 None => self.norm(y),
@@ -107,9 +108,9 @@ impl Dense {
         squares.sum::<f64>().sqrt()
     }
 
-    /// Finds the units at y: with rigid bodies, the largest radius, the speed that moves by it in a
-    /// time a, the length of a quaternion, and the angular momentum at which the surface of its
-    /// body has that speed; without, plain numbers.
+    /// Finds the units at y. With rigid bodies they are the largest radius, the speed that covers
+    /// it in a time a, the length of a quaternion, and the angular momentum at which the body's
+    /// surface has that speed; without bodies, plain numbers.
     fn measure(&mut self, system: &dyn ParticleSystem, a: f64, y: &[f64]) {
         let mut length: f64 = 0.0;
         system.measures(&mut |_, measure| {
@@ -128,14 +129,14 @@ impl Dense {
                 Measure::Plain => 0.0,
             };
             let difference = match measure {
-                Measure::Position | Measure::Rotation { .. } => DIFFERENCE * unit,
-                _ => SLOW * DIFFERENCE * unit,
+                Measure::Position | Measure::Rotation { .. } => DIFFERENCE_SHARE * unit,
+                _ => SPEED_DIFFERENCE_SHARE * DIFFERENCE_SHARE * unit,
             };
             self.units.extend(numbers.map(|k| {
                 if unit > 0.0 {
                     [unit, difference]
                 } else {
-                    [1.0, DIFFERENCE * y[k].abs().max(1.0)]
+                    [1.0, DIFFERENCE_SHARE * y[k].abs().max(1.0)]
                 }
             }));
         });
@@ -192,7 +193,7 @@ impl Dense {
                 let row = &mut row[k..];
                 let factor = row[0] / pivots[0];
                 row[0] = factor;
-                // Most particles do not act on one another.
+                // Zero if particles do not act on one another, as most do not.
                 if factor != 0.0 {
                     for (x, pivot) in row[1..].iter_mut().zip(&pivots[1..]) {
                         *x -= factor * pivot;
@@ -244,7 +245,7 @@ impl Dense {
         &self.change
     }
 
-    /// Forms and factorises 1 - a J at y, to be kept. Returns the cost, and whether J is of use.
+    /// Forms and factorises 1 - a J at y. Returns the cost, and whether that succeeded.
     pub fn keep(&mut self, system: &dyn ParticleSystem, t: f64, a: f64, y: &[f64]) -> (Work, bool) {
         let work = Work {
             factorizations: 1,

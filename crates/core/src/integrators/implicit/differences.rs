@@ -1,21 +1,21 @@
-//! Backward differences `D_1`, `D_2`, ... of the states at the ends of equal steps: those of the
-//! polynomial through these states, at any distance.
+//! Backward differences `D_1`, `D_2`, ... of the states at the ends of equal steps, and their
+//! change with the step on the same polynomial.
 
-/// Most differences.
-pub(super) const MOST: usize = 5;
+/// Largest number of differences.
+pub(super) const MAX_ORDER: usize = 5;
 
-/// Makes `k` the differences of states at a distance `ratio` times as long, on the same polynomial.
+/// Changes `k` to the differences of states `ratio` times as far apart, on the same polynomial.
 pub(super) fn rescale(k: &mut [Vec<f64>], ratio: f64) {
     let order = k.len();
     // The polynomial through the ends is y0 + sum s (s + 1) ... (s + j - 1) / j! D_j: the new
-    // differences are sums of the old ones, by a product of two triangular matrices.
+    // differences are sums of the old ones, with a product of two triangular matrices as weights.
     let of_ratio = |i: usize, j: usize, ratio: f64| -> f64 {
         (1..=i)
             .map(|m| (m as f64 - 1.0 - ratio * j as f64) / m as f64)
             .product()
     };
-    let mut old = [0.0; MOST];
-    let mut weights = [[0.0; MOST]; MOST];
+    let mut old = [0.0; MAX_ORDER];
+    let mut weights = [[0.0; MAX_ORDER]; MAX_ORDER];
     for (i, row) in weights[..order].iter_mut().enumerate() {
         for (j, weight) in row[..order].iter_mut().enumerate() {
             *weight = (1..=order)

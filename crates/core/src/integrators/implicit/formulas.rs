@@ -2,17 +2,16 @@
 
 use nalgebra::Complex;
 
-use super::differences::MOST;
+use super::differences::MAX_ORDER;
 
-/// Iterations by which roots are found, and what is then left of a change.
-const ITERATIONS: usize = 100;
-const CLOSE: f64 = 1e-13;
+/// Largest number of iterations for roots, and change at which they end.
+const MAX_ITERATIONS: usize = 100;
+const ROOT_TOLERANCE: f64 = 1e-13;
 
-/// Coefficient kappa of each order: with it the error is smaller than without, and as much is
-/// stable.
-pub(super) const KAPPA: [f64; MOST + 1] = [0.0, -0.185, -1.0 / 9.0, -0.0823, -0.0415, 0.0];
+/// Coefficient kappa of each order: it reduces the error, at about the same stability.
+pub(super) const KAPPA: [f64; MAX_ORDER + 1] = [0.0, -0.185, -1.0 / 9.0, -0.0823, -0.0415, 0.0];
 
-/// Sum g of the inverses of the numbers up to an order.
+/// Sum g of the reciprocals of the numbers up to an order.
 pub(super) fn harmonic(order: usize) -> f64 {
     (1..=order).map(|j| 1.0 / j as f64).sum()
 }
@@ -22,8 +21,8 @@ pub(super) fn error_factor(order: usize) -> f64 {
     KAPPA[order] * harmonic(order) + 1.0 / (order + 1) as f64
 }
 
-/// Growth in one of equal steps, at the order that grows most, of a solution of y' = l y with
-/// z = h l = re + i im.
+/// Growth per step of a solution of y' = l y with z = h l = re + i im, in equal steps of the order
+/// with the largest growth.
 ///
 /// A solution `y_n = r^n` has backward differences `w^j y_n` with w = 1 - 1/r, so w is a root of
 /// `sum(w^j / j, j = 1..k) - kappa_k g_k w^(k+1) = z`.
@@ -36,10 +35,11 @@ pub fn bdf_growth(re: f64, im: f64) -> f64 {
         let rates = roots(&polynomial).into_iter();
         rates.map(|w| 1.0 / (1.0 - w).norm()).fold(0.0, f64::max)
     };
-    (1..=MOST).map(of_order).fold(0.0, f64::max)
+    (1..=MAX_ORDER).map(of_order).fold(0.0, f64::max)
 }
 
-/// Roots of a polynomial by its coefficients from the constant on, all at once (Durand and Kerner).
+/// Roots of a polynomial, given by its coefficients from the constant on, found simultaneously
+/// (Durand and Kerner).
 fn roots(coefficients: &[Complex<f64>]) -> Vec<Complex<f64>> {
     let zero = |c: &Complex<f64>| c.norm() > 0.0;
     let degree = coefficients.iter().rposition(zero).unwrap_or(0);
@@ -48,11 +48,11 @@ fn roots(coefficients: &[Complex<f64>]) -> Vec<Complex<f64>> {
         let terms = coefficients[..degree].iter().rev();
         terms.fold(Complex::from(1.0), |sum, c| sum * x + c / leading)
     };
-    // None of them is real, nor a root of one.
+    // Start values that are neither real nor roots of unity.
     let mut roots: Vec<_> = (0..degree)
         .map(|k| Complex::new(0.4, 0.9).powu(k as u32))
         .collect();
-    for _ in 0..ITERATIONS {
+    for _ in 0..MAX_ITERATIONS {
         let mut largest: f64 = 0.0;
         for k in 0..degree {
             let others = (0..degree).filter(|j| *j != k).map(|j| roots[k] - roots[j]);
@@ -60,7 +60,7 @@ fn roots(coefficients: &[Complex<f64>]) -> Vec<Complex<f64>> {
             roots[k] -= change;
             largest = largest.max(change.norm());
         }
-        if largest < CLOSE {
+        if largest < ROOT_TOLERANCE {
             break;
         }
     }
@@ -95,8 +95,7 @@ mod tests {
         }
     }
 
-    /// The angle about the negative real axis in which order 5 is stable is 51 degrees (Shampine,
-    /// Reichelt, table 2).
+    /// Order 5 is stable within 51 degrees of the negative real axis (Shampine, Reichelt, table 2).
     #[test]
     fn what_decays_within_the_known_angle_is_stable() {
         let grows = |degrees: f64| {

@@ -1,7 +1,7 @@
 //! Simplified Newton's method: the tangent is formed at one state and kept, over iterations and
-//! over steps, as long as the iterations converge with it (Hairer, Wanner, *Solving Ordinary
-//! Differential Equations II*, 1996, IV.8). They end where the rate at which they converge says
-//! that the error of the equations is a small part of the error that a step may make.
+//! steps, as long as the iterations converge with it (Hairer, Wanner, *Solving Ordinary
+//! Differential Equations II*, 1996, IV.8). They end when, by their rate of convergence, the
+//! remaining error is a small part of the allowed error of a step.
 
 use super::super::arithmetic::add_scaled;
 use super::super::error_norm::ErrorNorm;
@@ -10,14 +10,14 @@ use super::stage::StageSolver;
 use crate::system::{Linearized, Mechanics, ParticleSystem};
 use crate::work::Work;
 
-/// Part of the tolerated error that may remain in the equations.
-const CLOSE: f64 = 0.1;
+/// Part of the allowed error that may remain in the equations.
+const ERROR_SHARE: f64 = 0.1;
 /// Largest number of iterations with one tangent.
-const MOST: i32 = 4;
-/// Relative residual of an iterative linear solve: less than what an iteration of Newton's method
-/// leaves.
+const MAX_ITERATIONS: i32 = 4;
+/// Relative residual of an iterative linear solve: less than the error that an iteration of
+/// Newton's method leaves.
 const FORCING: f64 = 0.02;
-/// Tangent that is kept: where it was formed, and how well the iterations converge with it.
+/// Kept tangent: where it was formed, and how fast the iterations converge with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tangent {
     /// Time at which it was formed (s).
@@ -26,7 +26,7 @@ pub(super) struct Tangent {
     pub a: f64,
     /// Whether compressed springs are clamped in it.
     pub clamped: bool,
-    /// Ratio of a change of the iteration to the one before it.
+    /// Ratio of consecutive changes in the iteration.
     pub rate: f64,
 }
 
@@ -40,7 +40,7 @@ impl Tangent {
     };
 }
 
-/// Reason for which a solve with the kept tangent failed.
+/// Reason why a solve with the kept tangent failed.
 enum Failure {
     /// The tangent is not positive definite.
     Indefinite,
@@ -68,7 +68,7 @@ impl KeptSolver {
         }
     }
 
-    /// Forgets the tangent: the system may be another one than before.
+    /// Forgets the tangent, because the system may have changed.
     pub fn forget(&mut self, system: &dyn ParticleSystem) {
         self.tangent = Tangent::NONE;
         if let (StageSolver::Mechanical(stage), Some(linearized)) =
@@ -78,8 +78,8 @@ impl KeptSolver {
         }
     }
 
-    /// Takes y from the state `predicted` to the solution of y = base + a f(t, y), by the tangent
-    /// that is kept, or by a new one. Returns the cost, and whether y solves the equations.
+    /// Solves y = base + a f(t, y), starting from the state `predicted`, with the kept tangent or a
+    /// new one. Returns the cost, and whether that succeeded.
     pub fn solve(
         &mut self,
         system: &dyn ParticleSystem,
@@ -127,7 +127,8 @@ impl KeptSolver {
         }
     }
 
-    /// Forms the tangent again, where it was formed. Returns the cost, and whether it is of use.
+    /// Forms the tangent where it was formed before. Returns the cost, and whether it is positive
+    /// definite.
     pub fn form(&mut self, system: &dyn ParticleSystem) -> (Work, bool) {
         let Tangent { t, a, clamped, .. } = self.tangent;
         match (&mut self.stage, linearized(system)) {
@@ -155,7 +156,7 @@ impl KeptSolver {
         let mut work = Work::default();
         let mut last: Option<f64> = None;
         let rate = &mut self.tangent.rate;
-        for left in (0..MOST).rev() {
+        for left in (0..MAX_ITERATIONS).rev() {
             let (cost, solved) = match (&mut self.stage, linearized(system)) {
                 (StageSolver::Mechanical(stage), Some(linearized)) => {
                     stage.correct(linearized, (t, a), base, y, &mut self.change)
@@ -174,13 +175,13 @@ impl KeptSolver {
             let size = norm.of(y, y, &self.change);
             if let Some(last) = last {
                 let found = if last > 0.0 { size / last } else { 0.0 };
-                // Not a number is as bad as can be.
-                if !(found < 1.0 && size * found.powi(left) <= CLOSE * (1.0 - found)) {
+                // NaN counts as divergence.
+                if !(found < 1.0 && size * found.powi(left) <= ERROR_SHARE * (1.0 - found)) {
                     break;
                 }
                 *rate = found.max(0.3 * *rate);
             }
-            if size * (*rate / (1.0 - *rate)).min(1.0) <= CLOSE {
+            if size * (*rate / (1.0 - *rate)).min(1.0) <= ERROR_SHARE {
                 return (work, Ok(()));
             }
             last = Some(size);
@@ -189,14 +190,14 @@ impl KeptSolver {
     }
 }
 
-/// View of a system with forces and masses to first order, if it offers one.
+/// Linearised view of a system with forces and masses, if it offers one.
 fn linearized(system: &dyn ParticleSystem) -> Option<&dyn Linearized> {
     system.mechanics().and_then(Mechanics::linearized)
 }
 
 impl Mechanical {
-    /// One iteration: adds its change to y. Returns the cost, and whether the linear system was
-    /// solved.
+    /// Makes one iteration: adds its change to y. Returns the cost, and whether the linear system
+    /// was solved.
     fn correct(
         &mut self,
         mechanics: &dyn Linearized,

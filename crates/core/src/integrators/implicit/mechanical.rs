@@ -1,15 +1,14 @@
 //! Implicit stages of a mechanical system with masses M, drag C, damping D and stiffness K, solved
 //! by Newton's method.
 //!
-//! The guess (x, v) and
-//! base = (bx, bv), an iteration solves
+//! For the guess (x, v) and base = (bx, bv), an iteration solves
 //! A dv = M (bv - v) + a F(t, x, v) - a K g, with the gap g = bx + a v - x and
 //! A = M + a (C + D) + a^2 K, and adds dv to v and dx = g + a dv to x. Pinned particles are put in
 //! their places first and are filtered out of the equations (Baraff, Witkin, *Large Steps in Cloth
 //! Simulation*, 1998).
 
-use super::changes::{CLOSE, Changes};
-use super::newton::{MOST, Newton, dot, norm};
+use super::changes::{Changes, TOLERANCE};
+use super::newton::{MAX_ITERATIONS, Newton, dot, norm};
 use super::secants::Secants;
 use crate::error::Error;
 use crate::integrators::arithmetic::add_scaled;
@@ -17,19 +16,19 @@ use crate::linear::Solver;
 use crate::system::{Linearized, place_pins};
 use crate::work::Work;
 
-/// Most iterations where contact acts, whose tangent is not exact.
-const MOST_IN_CONTACT: u32 = 150;
-/// Change relative to the state that counts as none where contact acts, if several in a row are so
-/// small: where a vertex is caught between forces that jump, as those of two surfaces do where they
-/// meet, no force solves the equations, but the state is found.
-const SETTLED: f64 = 1e-6;
+/// Largest number of iterations if contact acts, whose tangent is inexact.
+const MAX_CONTACT_ITERATIONS: u32 = 150;
+/// Relative change of the state that counts as negligible if contact acts and several in a row are
+/// so small. Where a vertex is caught between forces that jump, as those of two surfaces at their
+/// common edge, no force solves the equations, but the state has been found.
+const SETTLED_TOLERANCE: f64 = 1e-6;
 /// Number of such changes in a row at which the iteration ends.
-const STAYS: u32 = 6;
-/// Share of the power of the residual along a change that may be left, with the other sign, after
-/// it: a change that overshoots by more is shortened.
-const OVERSHOT: f64 = 0.5;
-/// Most times that a change is shortened.
-const SHORTENED: u32 = 12;
+const SETTLED_ITERATIONS: u32 = 6;
+/// Largest power of the residual along a change after it, with the opposite sign, as a share of
+/// that before it: a change that overshoots by more is shortened.
+const MAX_OVERSHOOT: f64 = 0.5;
+/// Largest number of times that a change is shortened.
+const MAX_SHORTENINGS: u32 = 12;
 /// Relative position gap below which it counts as rounding error.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -45,9 +44,9 @@ pub(super) struct Mechanical {
     dx: Vec<f64>,
     /// Right-hand side at the beginning of an iteration.
     before: Vec<f64>,
-    /// Corrections of the tangent, where it is not exact.
+    /// Corrections of the tangent, if it is inexact.
     secants: Secants,
-    /// Whether the forces were evaluated where the next iteration begins.
+    /// Whether the forces are known at the beginning of the next iteration.
     evaluated: bool,
 }
 
@@ -87,11 +86,15 @@ impl Mechanical {
         let mut work = Work::default();
         let searches = newton == Newton::Full && mechanics.reach().is_finite();
         let mut changes = Changes::new(!searches);
-        let most = if searches { MOST_IN_CONTACT } else { MOST };
+        let most = if searches {
+            MAX_CONTACT_ITERATIONS
+        } else {
+            MAX_ITERATIONS
+        };
         self.evaluated = false;
         self.secants.clear();
         if searches {
-            // The guess of x counts, where nothing has passed through anything: no gap is left.
+            // The guess of x, in which surfaces do not cross, determines v: it leaves no gap.
             for ((v, x), bx) in v.iter_mut().zip(&*x).zip(bx) {
                 *v = (x - bx) / a;
             }
@@ -99,8 +102,8 @@ impl Mechanical {
         }
         let mut settled = 0;
         for iteration in 0..most {
-            let gathers = searches || !changes.shrink_fast().unwrap_or(false);
-            let how = (newton, gathers, changes.forcing());
+            let assembles = searches || !changes.shrink_fast().unwrap_or(false);
+            let how = (newton, assembles, changes.forcing());
             let (mut change, residual) =
                 self.iterate(mechanics, t, a, [bx, bv], [x, v], how, &mut work)?;
             if searches {
@@ -113,26 +116,26 @@ impl Mechanical {
             }
             let size = norm(v) + norm(x) / a.abs();
             changes.add(change, size, residual);
-            if changes.are_over(1e3 * CLOSE) {
+            if changes.are_over(1e3 * TOLERANCE) {
                 return Ok(work);
             }
             if !changes.are_finite() {
                 break;
             }
-            settled = if change <= SETTLED * size {
+            settled = if change <= SETTLED_TOLERANCE * size {
                 settled + 1
             } else {
                 0
             };
-            if searches && (settled == STAYS || iteration + 1 == most && settled > 0) {
+            if searches && (settled == SETTLED_ITERATIONS || iteration + 1 == most && settled > 0) {
                 return Ok(work);
             }
         }
         Err(changes.failure())
     }
 
-    /// One iteration of Newton's method. Returns the norm of the change of v, and the relative
-    /// residual to which the linear system was solved.
+    /// Makes one iteration of Newton's method. Returns the norm of the change of v, and the
+    /// relative residual of the linear system.
     #[expect(clippy::too_many_arguments, reason = "the stage's equation has them")]
     pub(super) fn iterate(
         &mut self,
@@ -141,23 +144,23 @@ impl Mechanical {
         a: f64,
         [bx, bv]: [&[f64]; 2],
         [x, v]: [&mut [f64]; 2],
-        (newton, gathers, forcing): (Newton, bool, f64),
+        (newton, assembles, forcing): (Newton, bool, f64),
         work: &mut Work,
     ) -> Result<(f64, f64), Error> {
         if !std::mem::take(&mut self.evaluated) {
             *work += self.evaluate(mechanics, t, a, bx, [x, v]);
         }
         let mut clamped = newton == Newton::Once;
-        let mut gathers = gathers;
+        let mut assembles = assembles;
         let residual = loop {
-            if gathers {
+            if assembles {
                 *work += self.solver.gather(mechanics, (t, a), x, clamped);
             }
             self.reduce(mechanics, a, bv, v);
             let tolerance = match newton {
                 Newton::Full => forcing,
-                // Short steps are solved more closely, so that errors fall with the step to the
-                // method's order.
+                // Short steps are solved more accurately, so that errors keep the method's order in
+                // the step.
                 Newton::Once => 1e-4 * self.solver.stiffness().clamp(1e-2, 1.0).powi(4),
             };
             self.before.copy_from_slice(&self.rhs);
@@ -169,9 +172,9 @@ impl Mechanical {
             *work += cost;
             match solved {
                 Some(residual) => break residual,
-                // Compressed springs can make the matrix indefinite. With these clamped, Newton's
+                // Compressed springs can make the matrix indefinite. If they are clamped, Newton's
                 // method converges more slowly.
-                None if !clamped => (clamped, gathers) = (true, true),
+                None if !clamped => (clamped, assembles) = (true, true),
                 None => return Err(Error::NoConvergence { residual: 1.0 }),
             }
         };
@@ -183,10 +186,10 @@ impl Mechanical {
         Ok((norm(&self.dv), residual))
     }
 
-    /// Takes back a share of the change that an iteration made, if it overshot: until the power of
-    /// the residual along the change, r . dv, is small enough against that at its beginning
-    /// (Matthies, Strang, *The solution of nonlinear finite element equations*, 1979). Evaluates
-    /// the forces where it ends. Returns the share of the change that is left.
+    /// Shortens the change of an iteration if it overshot: until the power of the residual along
+    /// the change, r . dv, is small against that at its beginning (Matthies, Strang, *The solution
+    /// of nonlinear finite element equations*, 1979). Evaluates the forces at the end. Returns the
+    /// remaining share of the change.
     pub(super) fn search(
         &mut self,
         mechanics: &dyn Linearized,
@@ -205,14 +208,14 @@ impl Mechanical {
             add_scaled(x, share - 1.0, &self.dx);
             add_scaled(v, share - 1.0, &self.dv);
         }
-        // Shares of the change with the powers there: positive, and negative.
+        // Shares of the change with positive and with negative power, and the power there.
         let (mut low, mut high) = ((0.0, begin), (share, 0.0));
-        for _ in 0..SHORTENED {
+        for _ in 0..MAX_SHORTENINGS {
             *work += self.evaluate(mechanics, t, a, bx, [x, v]);
             self.evaluated = true;
             self.reduce(mechanics, a, bv, v);
             let power = dot(&self.rhs, &self.dv);
-            if power.abs() <= OVERSHOT * begin || share == high.0 && power > 0.0 {
+            if power.abs() <= MAX_OVERSHOOT * begin || share == high.0 && power > 0.0 {
                 break;
             }
             if power > 0.0 {
@@ -230,8 +233,8 @@ impl Mechanical {
         share
     }
 
-    /// Evaluates the forces at (x, v), and the gap: none where it is rounding everywhere. Returns
-    /// the cost.
+    /// Evaluates the forces at (x, v), and the gap, which is set to zero if it is a rounding error
+    /// everywhere. Returns the cost.
     pub(super) fn evaluate(
         &mut self,
         mechanics: &dyn Linearized,
@@ -246,15 +249,15 @@ impl Mechanical {
             *gap = bx + a * v - x;
             most = most.max(gap.abs() - ROUNDING * (bx.abs() + x.abs()));
         }
-        // After an iteration there is no gap: its rounding is not worth a product.
+        // After an iteration the gap is zero up to rounding, which is not worth a product.
         if most <= 0.0 {
             self.gap.fill(0.0);
         }
         Work::of(1)
     }
 
-    /// Writes M (bv - v) + a F - a K g for free particles to the right-hand side, with the K that
-    /// was gathered last.
+    /// Writes M (bv - v) + a F - a K g for free particles to the right-hand side, with the K
+    /// assembled last.
     pub(super) fn reduce(&mut self, mechanics: &dyn Linearized, a: f64, bv: &[f64], v: &[f64]) {
         let Self {
             solver,
@@ -282,7 +285,7 @@ impl Mechanical {
     }
 }
 
-/// Most by which a row of an n x 3 matrix differs from their mean.
+/// Largest distance of a row of an n x 3 matrix from their mean.
 fn spread(a: &[f64]) -> f64 {
     let n = a.len() / 3;
     let columns = [0, 1, 2].map(|axis| &a[axis * n..(axis + 1) * n]);

@@ -1,7 +1,7 @@
-//! Newton's method: its iterations, and products of vectors.
+//! Newton's method: numbers of iterations, and products of vectors.
 
 /// Largest number of iterations of Newton's method.
-pub(super) const MOST: u32 = 30;
+pub(super) const MAX_ITERATIONS: u32 = 30;
 
 /// Number of iterations of Newton's method.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -1,17 +1,17 @@
-//! Secants of Newton's method with a tangent that is not exact: the last few steps s of v, with the
-//! change y of the residual over each, correct the tangent to one that maps s to y (limited-memory
-//! BFGS: Nocedal, *Updating quasi-Newton matrices with limited storage*, 1980; with the tangent of
-//! an implicit step: Liu, Bouaziz, Kavan, *Quasi-Newton methods for real-time simulation of
+//! Secants for Newton's method with an inexact tangent: the last few steps s of v, with the change
+//! y of the residual over each, correct the tangent to one that maps s to y (limited-memory BFGS:
+//! Nocedal, *Updating quasi-Newton matrices with limited storage*, 1980; with the tangent of an
+//! implicit step: Liu, Bouaziz, Kavan, *Quasi-Newton methods for real-time simulation of
 //! hyperelastic materials*, 2017).
 
 use super::super::arithmetic::add_scaled;
 use super::newton::dot;
 
-/// Number of secants that are kept.
-const KEPT: usize = 8;
-/// Least cosine between a step and the change of the residual over it: a secant with less says
-/// that the residual hardly falls.
-const STEEP: f64 = 1e-6;
+/// Largest number of secants.
+const MAX_SECANTS: usize = 8;
+/// Least cosine of the angle between a step and the change of the residual over it: with less, the
+/// residual hardly falls along the step.
+const MIN_COSINE: f64 = 1e-6;
 
 /// The last secants, oldest first.
 pub(super) struct Secants {
@@ -26,12 +26,12 @@ struct Secant {
     change: Vec<f64>,
     /// Scalar product of both.
     product: f64,
-    /// Share of the step that was taken from the right-hand side.
+    /// Coefficient of the step in the solution for the right-hand side.
     share: f64,
 }
 
 impl Secants {
-    /// None yet, with room for those of systems of so many equations.
+    /// Empty, with room for secants of systems of n equations.
     pub fn new(equations: usize) -> Self {
         let room = || Secant {
             step: Vec::with_capacity(equations),
@@ -39,7 +39,7 @@ impl Secants {
             ..Secant::default()
         };
         Self {
-            kept: (0..KEPT).map(|_| room()).collect(),
+            kept: (0..MAX_SECANTS).map(|_| room()).collect(),
             count: 0,
         }
     }
@@ -51,7 +51,7 @@ impl Secants {
 
     /// Adds the secant of a step that took the residual from one to another.
     pub fn add(&mut self, step: &[f64], share: f64, from: &[f64], to: &[f64]) {
-        if self.count == KEPT {
+        if self.count == MAX_SECANTS {
             self.kept.rotate_left(1);
             self.count -= 1;
         }
@@ -64,12 +64,12 @@ impl Secants {
             .extend(from.iter().zip(to).map(|(from, to)| from - to));
         secant.product = dot(&secant.step, &secant.change);
         let sizes = dot(&secant.step, &secant.step) * dot(&secant.change, &secant.change);
-        if secant.product > STEEP * sizes.sqrt() {
+        if secant.product > MIN_COSINE * sizes.sqrt() {
             self.count += 1;
         }
     }
 
-    /// Takes from a right-hand side what the secants solve.
+    /// Removes the part of a right-hand side that the secants solve.
     pub fn reduce(&mut self, rhs: &mut [f64]) {
         for secant in self.kept[..self.count].iter_mut().rev() {
             secant.share = dot(&secant.step, rhs) / secant.product;
@@ -77,7 +77,7 @@ impl Secants {
         }
     }
 
-    /// Adds to the solution of the reduced system what the secants solve.
+    /// Adds the part that the secants solve to the solution of the reduced system.
     pub fn complete(&self, solution: &mut [f64]) {
         for secant in &self.kept[..self.count] {
             let share = secant.share - dot(&secant.change, solution) / secant.product;

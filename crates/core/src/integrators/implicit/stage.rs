@@ -23,7 +23,7 @@ impl StageSolver {
         }
     }
 
-    /// Takes y from a guess to the solution of y = base + a f(t, y).
+    /// Solves y = base + a f(t, y), starting from the guess y.
     pub(super) fn solve(
         &mut self,
         system: &dyn ParticleSystem,

@@ -1,4 +1,5 @@
-//! The guard and what is led: pins that move past surfaces, and into what leaves no room.
+//! The collision safeguard with kinematic vertices: pins that move past surfaces, and pins that
+//! leave no room.
 
 use a3_core::contact::{Obstacle, Shape, Skin};
 use a3_core::{Cause, Control, Error, Model, Network, Path, Scene, Simulation, Touch, Vector3};
@@ -8,8 +9,8 @@ use crate::common::method;
 /// Step (s).
 const STEP: f64 = 0.002;
 
-/// A run of particles that fly from some places to others in a step; those in `led` are pinned. A
-/// triangle joins the last three, and an edge the first two. No force acts.
+/// A run of particles that fly from one place to another in a step; those in `led` are pinned. A
+/// triangle connects the last three, and an edge the first two. No force acts.
 fn flight(ways: &[[[f64; 3]; 2]; 5], led: &[usize]) -> Simulation {
     let mut network = Network::new(vec![0.001; 5]).unwrap();
     network.set_triangles([[2, 3, 4]]).unwrap();
@@ -46,8 +47,8 @@ fn flight(ways: &[[[f64; 3]; 2]; 5], led: &[usize]) -> Simulation {
     Simulation::new(scene, method("verlet"), Control::Step(STEP)).unwrap()
 }
 
-/// An edge of pins that turns past a long triangle comes near it, parts, and crosses it later in
-/// the same step.
+/// An edge of pins that rotates past a long triangle comes near it, moves away, and crosses it
+/// later in the same step.
 #[test]
 fn what_comes_near_and_parts_is_followed_to_the_end_of_the_step() {
     let mut run = flight(
@@ -112,7 +113,8 @@ fn what_comes_near_and_parts_is_followed_to_the_end_of_the_step() {
     assert_eq!(run.model().network().unwrap().crossed(STEP, x), []);
 }
 
-/// A ball that is led into a pin leaves no room, and the run says so instead of going through.
+/// A ball that moves into a pin leaves no room, and the run reports that instead of passing
+/// through.
 #[test]
 fn what_is_led_through_a_pin_ends_the_run() {
     let still = |x: f64, y: f64, z: f64| [[x, y, z]; 2];
@@ -141,6 +143,6 @@ fn what_is_led_through_a_pin_ends_the_run() {
     let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else {
         panic!("the ball went through the pin");
     };
-    assert!(matches!(lost.cause, Cause::Squeezed { .. }), "{lost}");
+    assert!(matches!(lost.cause, Cause::Pinched { .. }), "{lost}");
     assert!((lost.time - 0.4).abs() < 0.011, "{lost}");
 }
