@@ -16,6 +16,11 @@ pub(crate) fn within(x: f64) -> bool {
     x.abs() <= LARGEST
 }
 
+/// What is said of a number that is not.
+pub(crate) fn beyond(x: f64) -> String {
+    format!("{BOUNDS}, not {x:e}")
+}
+
 /// The result, its error as a fault of that key.
 pub(crate) fn at<T>(key: &str, result: Result<T, impl Display>) -> Result<T, Fault> {
     result.map_err(|why| Fault::new(key, why))

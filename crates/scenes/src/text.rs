@@ -47,6 +47,11 @@ pub fn unmarked(text: &[u8]) -> Result<&[u8], String> {
     Ok(text.strip_prefix(MARK).unwrap_or(text))
 }
 
+/// Line of a byte, counted from 1.
+pub(crate) fn line(text: &str, at: usize) -> usize {
+    1 + text.bytes().take(at).filter(|b| *b == b'\n').count()
+}
+
 /// Lines of a text, which end in LF, CR LF or CR.
 pub(crate) struct Lines<'a> {
     text: &'a [u8],

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use a3_core::{Grid, Method, Scene, integrators};
-use a3_scenes::{Description, Fault, Setup};
+use a3_scenes::{Description, Fault, Places, Setup, parse_json, parse_toml};
 use serde_json::Value;
 
 use super::files::{beside, read_input, read_text};
@@ -27,6 +27,8 @@ pub struct Source {
     pub description: Arc<Description>,
     /// The text of the file, also of a built-in scene.
     text: Arc<str>,
+    /// The places of the keys in that text. It has no lines if nobody wrote it.
+    places: Arc<Places>,
     /// The hash of the files of its meshes when it was last built.
     meshes: Arc<AtomicU64>,
 }
@@ -40,6 +42,7 @@ impl Source {
                 path: None,
                 description: Arc::new(entry.description().map_err(|e| e.to_string())?),
                 text: entry.text.into(),
+                places: Arc::default(),
                 meshes: Arc::default(),
             });
         }
@@ -49,6 +52,7 @@ impl Source {
             .and_then(|e| e.to_str())
             .map(str::to_lowercase);
         let read = || read_text(path).map_err(|why| format!("{typed}: {why}"));
+        let mut is_written = true;
         let (text, json) = match extension.as_deref() {
             None if typed == INPUT => {
                 let text = read_input().map_err(|why| format!("standard input: {why}"))?;
@@ -57,18 +61,21 @@ impl Source {
             }
             Some("toml") => (read()?, false),
             Some("json") => (read()?, true),
-            Some(extension) if hung::is_mesh(extension) => (hung::scene(path)?, false),
+            Some(extension) if hung::is_mesh(extension) => {
+                is_written = false;
+                (hung::scene(path)?, false)
+            }
             Some(extension) if path.is_file() => {
                 return Err(format!("{typed}: {}", mesh::not_read(Some(extension))));
             }
             _ => return Err(unknown(typed)),
         };
         let parsed = if json {
-            a3_scenes::parse_json(&text)
+            parse_json(&text)
         } else {
-            Description::parse(&text)
+            parse_toml(&text)
         };
-        let mut description = parsed.map_err(|fault| place(typed, &fault.to_string()))?;
+        let (mut description, places) = parsed.map_err(|fault| place(typed, &fault.to_string()))?;
         if description.name.is_none() {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
             let is_input = typed == INPUT;
@@ -79,6 +86,11 @@ impl Source {
             path: Some(path.into()),
             description: Arc::new(description),
             text: text.into(),
+            places: Arc::new(if is_written {
+                places
+            } else {
+                places.without_lines()
+            }),
             meshes: Arc::default(),
         })
     }
@@ -94,28 +106,29 @@ impl Source {
         let mut table: Value = if json {
             serde_json::from_str(&self.text).map_err(|e| e.to_string())?
         } else {
-            table(&self.text).map_err(|fault| fault.to_string())?
+            a3_scenes::read(&self.text).map_err(|fault| fault.to_string())?
         };
         change(&mut table)?;
         let (text, parsed) = if json {
             let text = table.to_string();
-            (text.clone(), a3_scenes::parse_json(&text))
+            (text.clone(), parse_json(&text))
         } else {
             let text = toml::to_string(&table).map_err(|e| e.to_string())?;
-            (text.clone(), Description::parse(&text))
+            (text.clone(), parse_toml(&text))
         };
         // Lines of a text that nobody wrote tell nobody anything.
         let parsed = parsed.map_err(|fault| Fault {
             line: None,
             ..fault
         });
-        let mut description = parsed.map_err(|fault| fault.to_string())?;
+        let (mut description, places) = parsed.map_err(|fault| fault.to_string())?;
         if description.name.is_none() {
             description.name.clone_from(&self.description.name);
         }
         Ok(Self {
             description: Arc::new(description),
             text: text.into(),
+            places: Arc::new(places.without_lines()),
             meshes: Arc::default(),
             ..self.clone()
         })
@@ -134,13 +147,7 @@ impl Source {
         let built = self.description.build(grid, &mut mesh);
         self.meshes.store(reader.hash.value(), Ordering::Relaxed);
         built.map_err(|fault| {
-            let extension = self.path.as_deref().and_then(Path::extension);
-            let extension = extension.map(|e| e.to_string_lossy().to_lowercase());
-            let fault = match extension {
-                // Its text is not in the file.
-                Some(extension) if hung::is_mesh(&extension) => fault,
-                _ => fault.locate(&self.text),
-            };
+            let fault = self.places.locate(fault);
             match &self.path {
                 Some(_) => place(&self.typed, &fault.to_string()),
                 None => fault.to_string(),
@@ -174,27 +181,6 @@ impl Source {
         hash.add(self.meshes.load(Ordering::Relaxed).to_le_bytes());
         hash.add(scene.state.iter().flat_map(|y| y.to_le_bytes()));
         format!("{} {:016x}", scene.name, hash.value())
-    }
-}
-
-/// The table of a text in TOML, in which whole numbers are whole, however they are written.
-pub fn table(text: &str) -> Result<Value, Fault> {
-    let mut table = a3_scenes::read(text)?;
-    make_whole(&mut table);
-    Ok(table)
-}
-
-fn make_whole(value: &mut Value) {
-    match value {
-        Value::Number(number) => {
-            let whole = |x: &f64| x.fract() == 0.0 && x.abs() < 2f64.powi(53);
-            if let Some(whole) = number.as_f64().filter(whole) {
-                *value = Value::from(whole as i64);
-            }
-        }
-        Value::Array(items) => items.iter_mut().for_each(make_whole),
-        Value::Object(entries) => entries.values_mut().for_each(make_whole),
-        _ => {}
     }
 }
 

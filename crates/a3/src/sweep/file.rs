@@ -15,7 +15,7 @@ use crate::bounds;
 use crate::cli::{ErrorMeasure, ErrorScope};
 use crate::failure::Failure;
 use crate::output;
-use crate::scene_file::{Source, place, table};
+use crate::scene_file::{Source, place};
 
 /// Size of the largest file (bytes).
 const LARGEST: u64 = 1 << 20;
@@ -72,10 +72,7 @@ impl Sweep {
         }
         output::is_read(path);
         let text = fs::read_to_string(path).map_err(|e| wrong(output::reason(&e)))?;
-        // Once for words with lines, once for whole numbers.
-        let _: Text = a3_scenes::read(&text).map_err(|fault| wrong(fault.to_string()))?;
-        let table = table(&text).map_err(|fault| wrong(fault.to_string()))?;
-        let text: Text = serde_json::from_value(table).map_err(|why| wrong(why.to_string()))?;
+        let text: Text = a3_scenes::read(&text).map_err(|fault| wrong(fault.to_string()))?;
         Self::new(path, &text).map_err(wrong)
     }
 

@@ -25,11 +25,10 @@ use std::sync::Arc;
 use a3_core::{Grid, Model, Scene, Swing, Vector3, integrators};
 
 use crate::budget::Budget;
-use crate::check::{at, at_least, positive};
+use crate::check::{at, at_least, key_of, positive};
 use crate::description::Description;
 use crate::fault::Fault;
 use crate::mesh::Mesh;
-use crate::numbers;
 use crate::setup::{Defaults, Presentation, Setup, Viewpoint};
 use crate::surface::Surface;
 use crate::wording::unknown_choice;
@@ -39,7 +38,8 @@ use network::NetworkParts;
 
 impl Description {
     /// The scene, with this grid of its first cloth instead of its own, if one is given. `mesh`
-    /// reads a file of triangles.
+    /// reads a file of triangles. That each number is from -1e9 to 1e9 is checked where a text is
+    /// read: it is not checked again for a description that is made in code.
     ///
     /// # Errors
     /// A number makes no sense, or a file cannot be read.
@@ -48,7 +48,6 @@ impl Description {
         grid: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Setup, Fault> {
-        numbers::check(self)?;
         let Some(grid) = grid else {
             return self.assemble(None, mesh);
         };
@@ -61,7 +60,7 @@ impl Description {
                 ),
             ));
         };
-        let in_cloth = |fault: Fault| fault.within("cloth");
+        let in_cloth = |fault: Fault| fault.within(&key_of("cloth", 0, self.cloth.len()));
         let own_mass = own.checked_mass().map_err(in_cloth)?;
         let mut other = self.clone();
         other.cloth[0].grid = [grid.rows(), grid.cols()];

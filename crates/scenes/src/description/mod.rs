@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::budget::check_text;
 use crate::fault::Fault;
-use crate::reader;
+use crate::reader::{self, Places};
 
 pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, SolidModel};
 pub use constraints::{BallSpec, CircleSpec, ConstraintSpec, LineSpec};
@@ -157,15 +157,24 @@ pub struct State {
     pub angular_momenta: Vec<Triple>,
 }
 
+/// Reads a description from TOML, with the places of its keys, by which the lines of faults are
+/// found that show when it is built.
+///
+/// # Errors
+/// As [`Description::parse`].
+pub fn parse_toml(text: &str) -> Result<(Description, Places), Fault> {
+    check_text(text.as_bytes()).map_err(|why| Fault::new("", why))?;
+    reader::read_toml(text)
+}
+
 impl Description {
     /// Reads a description from TOML.
     ///
     /// # Errors
     /// The text is not TOML or too long, a key is unknown or missing, or a value is of the wrong
-    /// kind.
+    /// kind, or a number beyond -1e9 to 1e9.
     pub fn parse(text: &str) -> Result<Self, Fault> {
-        check_text(text.as_bytes()).map_err(|why| Fault::new("", why))?;
-        reader::read(text)
+        parse_toml(text).map(|(description, _)| description)
     }
 
     /// Writes TOML that [`parse`](Self::parse) reads as the same description.

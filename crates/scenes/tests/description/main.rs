@@ -10,7 +10,7 @@ mod solids;
 mod words;
 
 use a3_core::{Grid, Scene};
-use a3_scenes::{Description, Fault, Mesh, Setup, find};
+use a3_scenes::{Fault, Mesh, Setup, find, parse_toml};
 
 /// A built-in scene, with this grid or its own.
 fn scene(name: &str, grid: Option<[usize; 2]>) -> Setup {
@@ -38,8 +38,9 @@ fn mesh(name: &str) -> Result<Mesh, String> {
 }
 
 fn set_up(text: &str) -> Result<Setup, Fault> {
-    let built = Description::parse(text).and_then(|d| d.build(None, &mut mesh));
-    built.map_err(|fault| fault.locate(text))
+    let (description, places) = parse_toml(text)?;
+    let built = description.build(None, &mut mesh);
+    built.map_err(|fault| places.locate(fault))
 }
 
 fn build(text: &str) -> Result<Scene, Fault> {

@@ -1,7 +1,7 @@
 //! Solids: their boxes, their files, and what is wrong with them.
 
 use a3_core::{Element, Network, Vector3};
-use a3_scenes::{Description, Mesh, Setup, snapshot};
+use a3_scenes::{Description, Mesh, Setup, parse_toml, snapshot};
 
 use crate::{build, said};
 
@@ -77,9 +77,9 @@ fn from_file(mesh: &Mesh, extra: &str) -> Result<Setup, String> {
     let text = format!(
         "[[solid]]\nfile = 'a'\ndensity = 12\nyoung = 1\npoisson = 0\nat = [0, 0, 0]\n{extra}"
     );
-    let description = Description::parse(&text).map_err(|fault| fault.to_string())?;
+    let (description, places) = parse_toml(&text).map_err(|fault| fault.to_string())?;
     let built = description.build(None, &mut |_| Ok(mesh.clone()));
-    built.map_err(|fault| fault.locate(&text).to_string())
+    built.map_err(|fault| places.locate(fault).to_string())
 }
 
 /// All formats have the same two tetrahedra, whose corners `TetGen`'s file counts the other way.

@@ -4,7 +4,7 @@ mod memory;
 mod mutation;
 
 use a3_core::Element;
-use a3_scenes::{Description, Mesh, SCENES, Setup};
+use a3_scenes::{Description, Mesh, Places, SCENES, Setup, parse_json, parse_toml};
 
 use memory::taken;
 use mutation::{Random, seeds};
@@ -49,9 +49,9 @@ fn mesh(name: &str) -> Result<Mesh, String> {
 }
 
 /// Whether a scene can be built, all of whose numbers are finite then.
-fn is_scene(description: &Description, text: &str) -> bool {
+fn is_scene((description, places): &(Description, Places), text: &str) -> bool {
     let built = description.build(None, &mut mesh);
-    let Ok(Setup { scene, .. }) = built.map_err(|fault| said(&fault.locate(text).to_string()))
+    let Ok(Setup { scene, .. }) = built.map_err(|fault| said(&places.locate(fault).to_string()))
     else {
         return false;
     };
@@ -94,8 +94,8 @@ fn scenes_are_taken_or_refused() {
         let Ok(text) = str::from_utf8(bytes) else {
             return false;
         };
-        match Description::parse(text) {
-            Ok(description) => is_scene(&description, text),
+        match parse_toml(text) {
+            Ok(parsed) => is_scene(&parsed, text),
             Err(fault) => {
                 said(&fault.to_string());
                 false
@@ -111,8 +111,8 @@ fn lists_of_particles_are_taken_or_refused() {
         let Ok(text) = str::from_utf8(bytes) else {
             return false;
         };
-        let parsed = a3_scenes::parse_json(text).map_err(|fault| said(&fault.to_string()));
-        parsed.is_ok_and(|description| is_scene(&description, ""))
+        let parsed = parse_json(text).map_err(|fault| said(&fault.to_string()));
+        parsed.is_ok_and(|parsed| is_scene(&parsed, text))
     });
     assert!(taken > INPUTS / 25, "{taken}");
 }
@@ -274,10 +274,11 @@ fn what_is_too_much_is_refused() {
         (format!("{} = 1", "a".repeat(1_000_000)), "there is no key"),
     ] {
         refused(expected, || {
-            let built = Description::parse(&scene).and_then(|d| d.build(None, &mut mesh));
+            let (description, places) = parse_toml(&scene).map_err(|fault| fault.to_string())?;
+            let built = description.build(None, &mut mesh);
             built
                 .map(|_| ())
-                .map_err(|fault| fault.locate(&scene).to_string())
+                .map_err(|fault| places.locate(fault).to_string())
         });
     }
 }
@@ -290,7 +291,7 @@ fn what_is_large_is_taken() {
     let pins = format!("{long}pin = [{{ particles = [{}] }}]", numbers.join(","));
     for text in [pins, format!("{long}rigid = true"), SOLID.into()] {
         let begun = std::time::Instant::now();
-        let memory = taken(|| assert!(is_scene(&Description::parse(&text).unwrap(), &text)));
+        let memory = taken(|| assert!(is_scene(&parse_toml(&text).unwrap(), &text)));
         assert!(memory < MOST, "{memory:?}");
         assert!(begun.elapsed().as_secs() < 10);
     }

@@ -10,7 +10,6 @@ mod skin;
 
 use super::data::Mesh;
 use crate::budget;
-use crate::fault::Fault;
 use accessor::Buffers;
 use container::{decoded, parts, unescaped};
 use document::{Document, Head, Text, compressed, item};
@@ -128,8 +127,7 @@ fn document(json: &[u8]) -> Result<Document<'_>, String> {
             {
                 return Err(only(version.trim_matches('"')));
             }
-            let fault = Fault::of_json(&String::from_utf8_lossy(json), &error);
-            Err(format!("it is no glTF 2.0 file: {fault}"))
+            Err(format!("it is no glTF 2.0 file: {error}"))
         }
     }
 }

@@ -1,0 +1,111 @@
+//! Places of the keys of a text, by which the line of a fault is found that shows later.
+
+use std::collections::BTreeMap;
+use std::iter;
+
+use super::value::{Found, Value};
+use crate::fault::{Fault, join};
+
+/// Lines of the keys in the text of a description.
+#[derive(Clone, Debug, Default)]
+pub struct Places {
+    /// Line of each key, counted from 1. Keys are as in faults: `cloth.1.spacing`.
+    lines: BTreeMap<String, usize>,
+    /// Keys of a description that the text has under other names: the beginning of a key, and that
+    /// of the text.
+    names: &'static [(&'static str, &'static str)],
+}
+
+impl Places {
+    /// The places of a table and of all tables in it.
+    pub(super) fn of(whole: &Value) -> Result<Self, Fault> {
+        let ends = whole.text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
+        let mut walk = Walk {
+            ends: ends.map(|(at, _)| at).collect(),
+            lines: BTreeMap::new(),
+        };
+        walk.add("", whole)?;
+        Ok(Self {
+            lines: walk.lines,
+            names: &[],
+        })
+    }
+
+    /// The places of a text in which keys have these names: the beginning of a key of the
+    /// description, and that of the text.
+    pub(crate) fn named(self, names: &'static [(&'static str, &'static str)]) -> Self {
+        Self { names, ..self }
+    }
+
+    /// The places of a text whose lines tell nobody anything, because nobody wrote it.
+    #[must_use]
+    pub fn without_lines(self) -> Self {
+        Self {
+            lines: BTreeMap::new(),
+            ..self
+        }
+    }
+
+    /// The fault with its key as the text has it, and with its line: that of the longest part of
+    /// the key that is there.
+    #[must_use]
+    pub fn locate(&self, fault: Fault) -> Fault {
+        let mut names = self.names.iter();
+        let name = names.find_map(|(ours, theirs)| {
+            let rest = fault.key.strip_prefix(ours)?;
+            Some(format!("{theirs}{rest}"))
+        });
+        let key = name.unwrap_or_else(|| fault.key.clone());
+        let mut parts = iter::successors(Some(key.as_str()), |part| {
+            part.rsplit_once('.').map(|(part, _)| part)
+        });
+        let line = fault
+            .line
+            .or_else(|| parts.find_map(|part| self.lines.get(part).copied()));
+        Fault { line, key, ..fault }
+    }
+}
+
+/// A way through all tables.
+struct Walk {
+    /// Bytes at which lines end.
+    ends: Vec<usize>,
+    lines: BTreeMap<String, usize>,
+}
+
+impl Walk {
+    fn insert(&mut self, key: String, at: usize) {
+        let line = 1 + self.ends.partition_point(|end| *end < at);
+        self.lines.insert(key, line);
+    }
+
+    /// Adds the keys of a value that has that key. Lists of numbers have no keys.
+    fn add(&mut self, key: &str, value: &Value) -> Result<(), Fault> {
+        match value.found()? {
+            Found::Table(entries) => {
+                for entry in entries {
+                    let key = join(key, &entry.key);
+                    self.add(&key, &entry.value)?;
+                    self.insert(key, entry.at);
+                }
+            }
+            Found::List(items) => {
+                let count = items.len();
+                for (k, item) in items.enumerate() {
+                    if !item.is_table() {
+                        break;
+                    }
+                    if count == 1 {
+                        self.add(key, &item)?;
+                    } else {
+                        let key = join(key, &k.to_string());
+                        self.add(&key, &item)?;
+                        self.insert(key, item.at());
+                    }
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}
